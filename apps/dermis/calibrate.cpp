@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/calibrate.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "dermis/core/version.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/store/array_toml.hpp"
+#include "dermis/store/content_hash.hpp"
+#include "dermis/store/frames_csv.hpp"
+#include "dermis/store/loads_csv.hpp"
+#include "progress.hpp"
+#include "seconds.hpp"
+
+namespace dermis::app {
+namespace {
+
+using calibration::Calibration;
+using calibration::CalibrationReport;
+
+struct CalibrateOptions {
+  std::string array;
+  std::string frames;
+  std::string loads;
+  std::string out;
+  double settle_s = 0.0;
+  bool json = false;
+};
+
+Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::string>& provenance) {
+  for (const auto& [key, path] : {std::pair{"array hash", &options.array}, std::pair{"frames hash", &options.frames},
+                                  std::pair{"loads hash", &options.loads}}) {
+    const Result<std::string> hash = store::content_hash(*path);
+    if (!hash) return hash.error();
+    provenance[key] = *hash;
+  }
+  provenance["dermis version"] = DERMIS_VERSION;
+  return Done{};
+}
+
+void print_text(const CalibrationReport& report, const ArrayDescription& array) {
+  const calibration::TrainingReport& training = report.training;
+  fmt::print("{} labelled frames, {} rejected{}\n", report.frames, report.frames_rejected,
+             report.frames_rejected > 0 ? " (" + report.first_rejection + ")" : "");
+  fmt::print("{}\n", training.choice);
+  fmt::print("loads {:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons);
+  if (training.uses_temperature) fmt::print(", {:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius);
+  fmt::print("\nfit on the calibration itself: median {:.2f} %, worst taxel {} {:.2f} %\n",
+             100.0 * training.median_fit_error,
+             taxel_name(training.worst_taxel / array.cols, training.worst_taxel % array.cols),
+             100.0 * training.worst_fit_error);
+  for (const std::size_t taxel : training.dead_taxels) {
+    fmt::print("dead taxel {}: it does not answer to its loads\n", taxel_name(taxel / array.cols, taxel % array.cols));
+  }
+  fmt::print("time:");
+  for (const calibration::StageTime& stage : report.stages) fmt::print(" {} {:.2f} s", stage.stage, stage.seconds);
+  fmt::print("\n");
+}
+
+void print_json(const CalibrationReport& report, const ArrayDescription& array) {
+  const calibration::TrainingReport& training = report.training;
+  nlohmann::ordered_json json = {{"frames", report.frames},
+                                 {"frames_rejected", report.frames_rejected},
+                                 {"networks", training.choice},
+                                 {"own_networks", training.own_networks},
+                                 {"shared_networks", training.shared_networks},
+                                 {"hidden_units", training.hidden_units},
+                                 {"uses_temperature", training.uses_temperature},
+                                 {"lightest_newtons", training.lightest_newtons},
+                                 {"heaviest_newtons", training.heaviest_newtons},
+                                 {"median_fit_error", training.median_fit_error},
+                                 {"worst_fit_error", training.worst_fit_error},
+                                 {"dead_taxels", nlohmann::ordered_json::array()},
+                                 {"seconds", nlohmann::ordered_json::object()}};
+  for (const std::size_t taxel : training.dead_taxels) {
+    json["dead_taxels"].push_back(taxel_name(taxel / array.cols, taxel % array.cols));
+  }
+  for (const calibration::StageTime& stage : report.stages) json["seconds"][stage.stage] = stage.seconds;
+  fmt::print("{}\n", json.dump(2));
+}
+
+Status calibrate(const CalibrateOptions& options) {
+  const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
+  if (!settle) return settle.error();
+  const Result<ArrayDescription> array = store::read_array(options.array);
+  if (!array) return array.error();
+  const auto start = std::chrono::steady_clock::now();
+  const Result<std::vector<RawFrame>> frames = store::read_frames(options.frames, array->rows, array->cols);
+  if (!frames) return frames.error();
+  const Result<std::vector<Load>> loads = store::read_loads(options.loads, *array, frames->size());
+  if (!loads) return loads.error();
+  const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  Progress progress;
+  Result<Calibration> calibration =
+      calibration::calibrate(*array, *frames, *loads, *settle,
+                             [&](const std::string& stage, double share) { progress.show(stage, share); });
+  if (!calibration) return calibration.error();
+  calibration->report.stages.insert(calibration->report.stages.begin(), {"reading", read_s});
+  if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
+  if (Status written = pipeline::write_model(options.out, calibration->model); !written) return written;
+  options.json ? print_json(calibration->report, *array) : print_text(calibration->report, *array);
+  return Done{};
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Action& action) {
+  auto options = std::make_shared<CalibrateOptions>();
+  CLI::App* command = app.add_subcommand("calibrate", "Frames with known loads -> a model");
+  command->add_option("--array", options->array, "array.toml: size, pitch and readout circuit")->required();
+  command->add_option("--frames", options->frames, "frames.csv: raw counts")->required();
+  command->add_option("--loads", options->loads, "loads.csv: which load pressed where in which frame")->required();
+  command->add_option("--out", options->out, "Model file to write (safetensors)")->required();
+  command->add_option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
+      ->capture_default_str();
+  command->add_flag("--json", options->json, "Print the report as JSON");
+  command->callback([&action, options] { action = [options] { return calibrate(*options); }; });
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+
+#include <cmath>
+#include <memory>
+
+#include "commands.hpp"
+#include "dermis/calibration/evaluation.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/report/evaluation_report.hpp"
+#include "dermis/store/frames_csv.hpp"
+#include "dermis/store/loads_csv.hpp"
+
+namespace dermis::app {
+namespace {
+
+using calibration::Evaluation;
+
+struct EvaluateOptions {
+  std::string model;
+  std::string frames;
+  std::string loads;
+  std::string report;
+  bool json = false;
+};
+
+std::string percent(const std::optional<double>& share) {
+  if (!share) return "-";
+  return std::isfinite(*share) ? fmt::format("{:.2f} %", 100.0 * *share) : "no force";
+}
+
+std::string newtons(const std::optional<double>& value) {
+  if (!value) return "-";
+  return std::isfinite(*value) ? fmt::format("{:.3f} N", *value) : "no force";
+}
+
+void print_text(const Evaluation& evaluation) {
+  const auto& first = evaluation.estimators.front();
+  fmt::print("{} labelled frames ({} rejected), {} taxels of at least {} N, {} unloaded, {} totals\n\n",
+             evaluation.frames, evaluation.frames_rejected, first.relative_error.count, calibration::kJudgedNewtons,
+             first.ghost_n.count, first.totals_judged);
+  fmt::print("{:<20}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "estimator", "median", "p95", "p99", "max", "ghost p99",
+             "total rmse");
+  for (const calibration::EstimatorResult& result : evaluation.estimators) {
+    fmt::print("{:<20}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", result.name, percent(result.relative_error.median),
+               percent(result.relative_error.p95), percent(result.relative_error.p99),
+               percent(result.relative_error.max), newtons(result.ghost_n.p99), newtons(result.total_rmse_n));
+  }
+}
+
+Status evaluate(const EvaluateOptions& options) {
+  const Result<pipeline::Model> model = pipeline::read_model(options.model);
+  if (!model) return model.error();
+  const Result<std::vector<RawFrame>> frames =
+      store::read_frames(options.frames, model->array.rows, model->array.cols);
+  if (!frames) return frames.error();
+  const Result<std::vector<Load>> loads = store::read_loads(options.loads, model->array, frames->size());
+  if (!loads) return loads.error();
+  const Result<Evaluation> evaluation = calibration::evaluate(*model, *frames, *loads);
+  if (!evaluation) return evaluation.error();
+  if (!options.report.empty()) {
+    if (Status written = report::write_evaluation_report(options.report, *evaluation, *model); !written) return written;
+  }
+  options.json ? fmt::print("{}\n", calibration::to_json(*evaluation)) : print_text(*evaluation);
+  return Done{};
+}
+
+}  // namespace
+
+void add_evaluate(CLI::App& app, Action& action) {
+  auto options = std::make_shared<EvaluateOptions>();
+  CLI::App* command = app.add_subcommand("evaluate", "Accuracy against known loads, beside the baseline estimators");
+  command->add_option("--model", options->model, "Model file of 'dermis calibrate'")->required();
+  command->add_option("--frames", options->frames, "frames.csv: raw counts")->required();
+  command->add_option("--loads", options->loads, "loads.csv: the truth")->required();
+  command->add_flag("--json", options->json, "Print the result as JSON");
+  command->add_option("--report", options->report, "Folder for an HTML report with pictures");
+  command->callback([&action, options] { action = [options] { return evaluate(*options); }; });
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "commands.hpp"
+#include "dermis/core/version.hpp"
+
+namespace {
+
+constexpr int kExitFailed = 1;
+constexpr int kExitBadInput = 2;
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+int run(int argc, char** argv) {
+  CLI::App app{"dermis: calibrated force (newtons) from resistive tactile arrays", "dermis"};
+  app.set_version_flag("--version", DERMIS_VERSION);
+  app.require_subcommand(1);
+  dermis::app::Action action;
+  dermis::app::add_simulate(app, action);
+  dermis::app::add_calibrate(app, action);
+  dermis::app::add_run(app, action);
+  dermis::app::add_evaluate(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    fmt::print(stderr, "dermis: {} (see dermis --help)\n", first_line(error.what()));
+    return kExitBadInput;
+  }
+  const dermis::Status status = action();
+  if (status) return 0;
+  fmt::print(stderr, "dermis: {}\n", first_line(status.error().message));
+  return status.error().kind == dermis::ErrorKind::bad_input ? kExitBadInput : kExitFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A write beyond a size limit or to a closed pipe becomes an error of write() instead of the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {  // out of memory and the like
+    fmt::print(stderr, "dermis: {}\n", error.what());
+    return kExitFailed;
+  }
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/preprocessing/phase.hpp"
+#include "dermis/store/forces_csv.hpp"
+#include "dermis/store/frames_csv.hpp"
+#include "seconds.hpp"
+
+namespace dermis::app {
+namespace {
+
+struct RunOptions {
+  std::string model;
+  std::string in;
+  std::string out;
+  double settle_s = 0.0;
+};
+
+Status run(const RunOptions& options) {
+  const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
+  if (!settle) return settle.error();
+  const Result<pipeline::Model> model = pipeline::read_model(options.model);
+  if (!model) return model.error();
+  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*model);
+  if (!pipeline) return pipeline.error();
+  Result<std::unique_ptr<store::FramesCsvReader>> source =
+      store::FramesCsvReader::open(options.in, model->array.rows, model->array.cols);
+  if (!source) return source.error();
+  Result<store::ForcesCsvWriter> forces =
+      store::ForcesCsvWriter::create(options.out, model->array.rows, model->array.cols);
+  if (!forces) return forces.error();
+
+  preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
+  std::size_t frames = 0;
+  std::size_t rejected = 0;
+  std::string first_rejection;
+  RawFrame raw;
+  ForceFrame force;
+  for (;;) {
+    const Result<bool> more = (*source)->next(raw);
+    if (!more) return more.error();
+    if (!*more) break;
+    if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) continue;
+    pipeline->process(raw, force);
+    if (Status written = forces->write(force); !written) return written;
+    ++frames;
+    if (!has(force.status, FrameStatus::rejected)) continue;
+    if (rejected++ == 0) {
+      first_rejection =
+          fmt::format("{}:{}: {}", options.in, (*source)->line(), preprocessing::to_string(pipeline->rejection()));
+    }
+  }
+  if (Status written = forces->commit(); !written) return written;
+  if (rejected > 0) {
+    fmt::print(stderr, "{} of {} frames rejected, the first: {}\n", rejected, frames, first_rejection);
+  }
+  return Done{};
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Action& action) {
+  auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Raw counts -> newtons per taxel");
+  command->add_option("--model", options->model, "Model file of 'dermis calibrate'")->required();
+  command->add_option("--in", options->in, "frames.csv: raw counts")->required();
+  command->add_option("--out", options->out, "forces.csv to write")->required();
+  command->add_option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
+      ->capture_default_str();
+  command->callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "commands.hpp"
+#include "dermis/simulation/simulator.hpp"
+#include "dermis/store/array_toml.hpp"
+#include "dermis/store/frames_csv.hpp"
+#include "dermis/store/loads_csv.hpp"
+#include "progress.hpp"
+
+namespace dermis::app {
+namespace {
+
+struct SimulateOptions {
+  std::string array;
+  std::string scene;
+  std::string out;
+  std::string physics;
+  std::uint64_t seed = 1;
+  std::optional<std::size_t> frames;
+};
+
+Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOptions& options, const ArrayDescription& array) {
+  simulation::SimulationOptions physics;
+  if (!options.physics.empty()) {
+    Result<simulation::SimulationOptions> read = simulation::read_simulation_options(options.physics);
+    if (!read) return read.error();
+    physics = *read;
+  }
+  return simulation::Simulator::create(array, physics, options.scene, options.seed, options.frames);
+}
+
+Status simulate(const SimulateOptions& options) {
+  const Result<ArrayDescription> array = store::read_array(options.array);
+  if (!array) return array.error();
+  Result<std::unique_ptr<simulation::Simulator>> simulator = create_simulator(options, *array);
+  if (!simulator) return simulator.error();
+
+  const std::filesystem::path folder(options.out);
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return failed(fmt::format("cannot create the folder '{}': {}", options.out, error.message()));
+  Result<store::FramesCsvWriter> frames =
+      store::FramesCsvWriter::create((folder / "frames.csv").string(), array->rows, array->cols);
+  if (!frames) return frames.error();
+
+  Progress progress;
+  std::vector<Load> loads;
+  RawFrame frame;
+  const std::size_t count = (*simulator)->frame_count();
+  for (std::size_t k = 0;; ++k) {
+    const Result<bool> more = (*simulator)->next(frame);
+    if (!more) return more.error();
+    if (!*more) break;
+    if (Status written = frames->write(frame); !written) return written;
+    loads.insert(loads.end(), (*simulator)->loads().begin(), (*simulator)->loads().end());
+    progress.show(options.scene, static_cast<double>(k + 1) / static_cast<double>(count));
+  }
+  if (Status written = store::write_loads((folder / "loads.csv").string(), *array, loads); !written) return written;
+  return frames->commit();
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Action& action) {
+  auto options = std::make_shared<SimulateOptions>();
+  CLI::App* command = app.add_subcommand("simulate", "Simulate an array: frames.csv and loads.csv (the truth)");
+  command->add_option("--array", options->array, "array.toml: size, pitch and readout circuit")->required();
+  std::string scenes;
+  for (const std::string& name : simulation::scene_names()) scenes += (scenes.empty() ? "" : " | ") + name;
+  command->add_option("--scene", options->scene, scenes)->required();
+  command->add_option("--out", options->out, "Folder for frames.csv and loads.csv")->required();
+  command->add_option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise")
+      ->capture_default_str();
+  command->add_option("--frames", options->frames, "Length of the scenes multitouch and idle");
+  command->add_option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
+  command->callback([&action, options] { action = [options] { return simulate(*options); }; });
+}
+
+}  // namespace dermis::app

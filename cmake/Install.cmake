@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+include(CMakePackageConfigHelpers)
+
+get_property(modules GLOBAL PROPERTY DERMIS_MODULES)
+install(TARGETS dermis ${modules} EXPORT dermis-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS dermis_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY include/dermis ${PROJECT_BINARY_DIR}/include/dermis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT dermis-targets NAMESPACE dermis:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/dermis)
+
+configure_package_config_file(cmake/dermis-config.cmake.in ${PROJECT_BINARY_DIR}/dermis-config.cmake
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/dermis)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/dermis-config-version.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/dermis-config.cmake ${PROJECT_BINARY_DIR}/dermis-config-version.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/dermis)

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dermis/calibration/force_training.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::calibration {
+
+/// Where the time of a calibration went.
+struct StageTime {
+  std::string stage;
+  double seconds = 0.0;
+};
+
+/// What a calibration did and how well it fits its own samples.
+struct CalibrationReport {
+  std::size_t frames = 0;           ///< Labelled frames used.
+  std::size_t frames_rejected = 0;
+  std::string first_rejection;
+  TrainingReport training;
+  std::vector<StageTime> stages;
+};
+
+struct Calibration {
+  pipeline::Model model;
+  CalibrationReport report;
+};
+
+/// Called with the stage and the share of it that is done, [0, 1]; may come from any thread, one call at a time.
+using Progress = std::function<void(const std::string& stage, double share)>;
+
+/// The learning phase: frames with known loads -> a model. Deterministic, whatever the number of threads.
+/// Errors: those of build_sample_database() and train_force_networks().
+[[nodiscard]] Result<Calibration> calibrate(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                            std::span<const Load> loads, Nanos settle_time = Nanos{0},
+                                            const Progress& progress = {});
+
+}  // namespace dermis::calibration

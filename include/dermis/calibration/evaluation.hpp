@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::calibration {
+
+/// Taxels are judged by relative error from this true force on [N].
+inline constexpr double kJudgedNewtons = 1.0;
+
+/// Percentiles of a set of errors; all empty where nothing was judged.
+struct ErrorSummary {
+  std::size_t count = 0;
+  std::optional<double> median;
+  std::optional<double> p95;
+  std::optional<double> p99;
+  std::optional<double> max;
+};
+
+/// Nearest-rank percentiles; NaN errors (a taxel without a force) count as the worst.
+[[nodiscard]] ErrorSummary summarise(std::vector<double> errors);
+
+/// How one estimator did on all frames.
+struct EstimatorResult {
+  std::string name;             ///< "dermis" first, then the baselines.
+  ErrorSummary relative_error;  ///< |estimate / truth - 1| of taxels of at least kJudgedNewtons; dimensionless.
+  ErrorSummary ghost_n;         ///< Force on taxels that are unloaded [N].
+  std::size_t totals_judged = 0;                 ///< `force` loads over several taxels.
+  std::optional<double> total_rmse_n;            ///< Root mean square error of their sums [N].
+  ErrorSummary total_relative_error;             ///< |sum / total - 1| of totals above 0.
+};
+
+/// One loaded taxel of one frame, for plots.
+struct JudgedTaxel {
+  std::size_t frame = 0;
+  std::size_t taxel = 0;
+  double true_newtons = 0.0;
+  std::optional<double> temperature_celsius;
+  std::optional<double> supply_v;
+  std::size_t contacts = 0;        ///< Separate stressed areas in the frame (8-connected).
+  std::vector<float> newtons;      ///< Estimate of each estimator, in their order.
+};
+
+/// One `force` load over several taxels of one frame, for plots.
+struct JudgedTotal {
+  std::size_t frame = 0;
+  double true_newtons = 0.0;
+  std::optional<double> temperature_celsius;
+  std::vector<double> newtons;     ///< Sum of each estimator, in their order.
+};
+
+/// Errors of all estimators on the judged taxels (totals, where no taxel is judged) that fall into [low, high).
+struct BreakdownBin {
+  double low = 0.0;
+  double high = 0.0;
+  std::vector<ErrorSummary> relative_error;  ///< One per estimator.
+};
+
+/// A frame at its stages, for pictures; each [rows, cols].
+struct TactileExample {
+  std::size_t frame = 0;
+  std::vector<double> reading;     ///< counts / full scale
+  std::vector<double> siemens;     ///< Crosstalk removed.
+  std::vector<float> newtons;      ///< dermis
+  std::vector<double> true_newtons;
+};
+
+struct Evaluation {
+  ArrayDescription array;
+  std::size_t frames = 0;           ///< Labelled frames judged.
+  std::size_t frames_rejected = 0;
+  std::vector<EstimatorResult> estimators;
+  std::vector<JudgedTaxel> taxels;
+  std::vector<JudgedTotal> totals;
+  std::vector<BreakdownBin> by_force;        ///< [N]
+  std::vector<BreakdownBin> by_temperature;  ///< [C]
+  std::vector<BreakdownBin> by_supply;       ///< [V]
+  std::vector<BreakdownBin> by_contacts;     ///< Number of contacts, one a bin.
+  std::vector<TactileExample> examples;      ///< A few loaded frames with known taxel forces.
+};
+
+/// Runs the model and its baselines on frames whose loads are known. Unlabelled frames pass through the pipeline but
+/// are not judged. Errors: frames that do not fit the model's array, no labelled frame, loads given as pressure without
+/// a taxel area.
+[[nodiscard]] Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFrame> frames,
+                                          std::span<const Load> loads);
+
+/// The result as in `dermis evaluate --json` (docs/command-line.md).
+[[nodiscard]] std::string to_json(const Evaluation& evaluation);
+
+}  // namespace dermis::calibration

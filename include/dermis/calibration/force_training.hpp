@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "dermis/calibration/sample_database.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/fusion/force_fusion.hpp"
+
+namespace dermis::calibration {
+
+/// What the training chose, why, and how well it fits.
+struct TrainingReport {
+  std::size_t own_networks = 0;     ///< Taxels with a network of their own.
+  std::size_t shared_networks = 0;  ///< Taxels on the shared network with a gain.
+  std::vector<std::size_t> dead_taxels;
+  std::size_t hidden_units = 0;         ///< Of each network of its own.
+  std::size_t shared_hidden_units = 0;  ///< Of the shared network.
+  double shared_leave_one_out_error = 0.0;  ///< Root mean square relative error of a load left out of the shared fit.
+  bool uses_temperature = false;
+  double lowest_celsius = 0.0;      ///< Calibrated temperatures; meaningful where uses_temperature.
+  double highest_celsius = 0.0;
+  double lightest_newtons = 0.0;    ///< Lightest and heaviest calibrated load.
+  double heaviest_newtons = 0.0;
+  double median_fit_error = 0.0;    ///< Median over taxels of the root mean square relative error on own samples.
+  double worst_fit_error = 0.0;     ///< The worst taxel.
+  std::size_t worst_taxel = 0;
+  std::string choice;               ///< One sentence: which networks were trained and what decided it.
+};
+
+struct ForceTraining {
+  fusion::ForceNetworks networks;
+  TrainingReport report;
+};
+
+/// Trains what the samples support: a network per taxel where its own force is known often enough, one shared network
+/// with gains, trained through the sum of the taxels, for the others. `progress` gets the share done, from any thread.
+/// Errors: no load above zero; no taxel answers to the loads.
+[[nodiscard]] Result<ForceTraining> train_force_networks(const SampleDatabase& database,
+                                                         const std::function<void(double)>& progress = {});
+
+}  // namespace dermis::calibration

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// A total force over several taxels that share it in an unknown way.
+struct TotalForce {
+  std::vector<std::size_t> taxels;  ///< Row-major indices.
+  double newtons = 0.0;             ///< >= 0
+};
+
+/// A labelled frame with supply and crosstalk removed.
+struct Sample {
+  std::optional<double> temperature_celsius;
+  std::vector<double> reading;          ///< Bare readings [taxels], counts / full scale, for the baselines.
+  std::vector<double> siemens;          ///< Conductances [taxels].
+  std::vector<float> known_newtons;     ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
+  std::vector<TotalForce> totals;
+  bool unloaded = false;                ///< Nothing presses anywhere.
+};
+
+/// The paper's "sample database": what the networks are trained on.
+struct SampleDatabase {
+  ArrayDescription array;
+  std::vector<Sample> samples;
+  double siemens_per_count = 0.0;       ///< Conductance of one ADC count at an unloaded taxel [S].
+  std::size_t frames_rejected = 0;
+  std::string first_rejection;          ///< "frame 17: a reading outside the ADC range"; empty when none.
+};
+
+/// Runs labelled frames after `settle_time` through units 2 and 3. Errors: no labelled frame, no unloaded frame (a
+/// frame labelled `force,all,0`), a load beyond the frames, more than a tenth of the labelled frames rejected, a
+/// circuit that cannot be inverted.
+[[nodiscard]] Result<SampleDatabase> build_sample_database(const ArrayDescription& array,
+                                                           std::span<const RawFrame> frames,
+                                                           std::span<const Load> loads, Nanos settle_time = Nanos{0});
+
+}  // namespace dermis::calibration

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// The stages of a tactile frame. The stage is in the type: counts cannot be passed where newtons are meant.
+/// Every per-taxel vector has the shape [rows, cols], row-major: index = row * cols + col.
+namespace dermis {
+
+/// Time since an arbitrary origin of the source (the first frame, the boot of the device).
+using Nanos = std::chrono::nanoseconds;
+
+/// What is known about one taxel of one frame.
+enum class TaxelStatus : std::uint8_t {
+  ok,
+  saturated,    ///< The ADC stands at the end of its range: the force is at least the one given.
+  above_range,  ///< Beyond the heaviest calibrated load: clamped to it.
+  dead,         ///< Did not answer to its calibration loads: no force is given (NaN).
+  invalid,      ///< The reading is missing or not a number, or the crosstalk has no solution: no force (NaN).
+};
+
+/// Outcome of a frame: a set of flags, empty when all is well.
+enum class FrameStatus : std::uint8_t {
+  ok = 0,
+  rejected = 1U << 0U,              ///< Wrong shape, not a number, out of ADC range or time going backwards.
+  saturated = 1U << 1U,             ///< At least one taxel is saturated.
+  above_range = 1U << 2U,           ///< At least one taxel is clamped to its calibrated end.
+  dead_taxels = 1U << 3U,           ///< The array has dead taxels.
+  temperature_unknown = 1U << 4U,   ///< The frame carries no temperature: the calibration's mean is taken.
+  temperature_clamped = 1U << 5U,   ///< Outside the calibrated temperatures: clamped to the nearest.
+  not_converged = 1U << 6U,         ///< The crosstalk inversion did not reach its tolerance.
+};
+
+[[nodiscard]] constexpr FrameStatus operator|(FrameStatus a, FrameStatus b) noexcept {
+  return static_cast<FrameStatus>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
+}
+constexpr FrameStatus& operator|=(FrameStatus& a, FrameStatus b) noexcept { return a = a | b; }
+[[nodiscard]] constexpr bool has(FrameStatus status, FrameStatus flag) noexcept {
+  return (static_cast<unsigned>(status) & static_cast<unsigned>(flag)) != 0;
+}
+
+/// "ok", or the flags joined with '+', as in the status column of forces.csv.
+[[nodiscard]] std::string to_string(FrameStatus status);
+
+/// Unit 1 -> 2. What the device said.
+struct RawFrame {
+  Nanos time{};
+  std::optional<double> temperature_celsius;  ///< Temperature of the array [C]; empty where the source has none.
+  std::optional<double> supply_v;             ///< Measured supply [V], > 0; empty where the source has none.
+  std::vector<float> counts;  ///< ADC readings [counts], 0 ... 2^adc_bits - 1; fractional where a source averages.
+};
+
+/// Unit 2 -> 3. Validated; the supply is divided out.
+struct ConditionedFrame {
+  Nanos time{};
+  FrameStatus status = FrameStatus::ok;
+  std::optional<double> temperature_celsius;
+  std::vector<double> ratio;         ///< Reading / supply, rising with pressure; dimensionless, [0, 1].
+  std::vector<TaxelStatus> taxels;
+};
+
+/// Unit 3 -> 4. Crosstalk is removed.
+struct ConductanceFrame {
+  Nanos time{};
+  FrameStatus status = FrameStatus::ok;
+  std::optional<double> temperature_celsius;
+  std::vector<double> siemens;       ///< Taxel conductance [S], >= 0 up to noise; the bare ratio for `circuit = "none"`.
+  std::vector<TaxelStatus> taxels;
+};
+
+/// Unit 4 ->. What the robot wants.
+struct ForceFrame {
+  Nanos time{};
+  FrameStatus status = FrameStatus::ok;
+  std::vector<float> newtons;        ///< Normal force per taxel [N], >= 0; NaN where `taxels` says dead or invalid.
+  std::vector<TaxelStatus> taxels;
+};
+
+}  // namespace dermis

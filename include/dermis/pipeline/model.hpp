@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/fusion/force_fusion.hpp"
+#include "dermis/fusion/look_up.hpp"
+
+namespace dermis::pipeline {
+
+/// Everything that turns the counts of one array into newtons: what is known (the array and its circuit), what was
+/// learned (the networks), and what the networks are judged against (the baselines of the same calibration).
+struct Model {
+  ArrayDescription array;
+  fusion::ForceNetworks networks;
+  std::vector<fusion::LookUpTables> baselines;
+  std::map<std::string, std::string> provenance;  ///< Hashes, counts and statistics of the calibration, as text.
+};
+
+/// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it.
+[[nodiscard]] Status write_model(const std::string& path, const Model& model);
+
+/// A model read is complete and consistent, or an error that names the file.
+[[nodiscard]] Result<Model> read_model(const std::string& path);
+
+}  // namespace dermis::pipeline

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/fusion/force_fusion.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/preprocessing/conditioner.hpp"
+
+namespace dermis::pipeline {
+
+/// The paper's Fig. 4: counts in, newtons out. Not thread-safe: one per stream of frames.
+class Pipeline {
+ public:
+  [[nodiscard]] static Result<Pipeline> create(const Model& model);
+
+  /// Never fails: what is wrong with a frame is in its status. Allocates nothing after the first frame.
+  void process(const RawFrame& raw, ForceFrame& force) noexcept;
+
+  /// Intermediate stages of the last frame, for pictures and diagnosis.
+  [[nodiscard]] const ConditionedFrame& conditioned() const noexcept { return conditioned_; }
+  [[nodiscard]] const ConductanceFrame& conductance() const noexcept { return conductance_; }
+  [[nodiscard]] preprocessing::Rejection rejection() const noexcept { return conditioner_.rejection(); }
+
+ private:
+  Pipeline(const Model& model, compensation::Compensator compensator);
+
+  preprocessing::Conditioner conditioner_;
+  compensation::Compensator compensator_;
+  fusion::ForceFusion fusion_;
+  ConditionedFrame conditioned_;
+  ConductanceFrame conductance_;
+};
+
+}  // namespace dermis::pipeline

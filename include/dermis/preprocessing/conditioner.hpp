@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::preprocessing {
+
+/// Why a frame was rejected.
+enum class Rejection {
+  none,
+  wrong_shape,           ///< Not rows x cols readings.
+  not_a_number,          ///< A reading, the temperature or the supply is NaN or infinite.
+  outside_adc_range,     ///< A reading below 0 or above 2^adc_bits - 1.
+  supply_not_positive,   ///< A measured supply of 0 V or less.
+  time_going_backwards,  ///< Earlier than the frame before it.
+};
+
+[[nodiscard]] const char* to_string(Rejection rejection) noexcept;
+
+/// Unit 2 of the paper, Data Pre-Processing: validates a raw frame and "converts raw sensor data into the needed data
+/// formats": counts -> ratio of the supply, so that supply fluctuation is gone before the circuit is solved.
+///
+///   ratio = counts / (2^adc_bits - 1) * adc_reference_v / supply_v     (the reference is the supply: the factor is 1)
+///
+/// and 1 - ratio where pressure lowers the reading. Readings at either end of the ADC that pressure drives them to are
+/// marked saturated. Not thread-safe: one conditioner per stream of frames.
+class Conditioner {
+ public:
+  /// The array must be valid (ArrayDescription::validate). A reference in volts needs a supply, either nominal
+  /// (readout.supply_v) or in every frame.
+  explicit Conditioner(ArrayDescription array);
+
+  /// Allocates nothing once `conditioned` has the array's size. A rejected frame has the status `rejected` and only
+  /// invalid taxels; the next frame is judged against the last accepted one.
+  void process(const RawFrame& raw, ConditionedFrame& conditioned) noexcept;
+
+  /// Why the last frame was rejected.
+  [[nodiscard]] Rejection rejection() const noexcept { return rejection_; }
+
+ private:
+  [[nodiscard]] Rejection inspect(const RawFrame& raw) const noexcept;
+
+  ArrayDescription array_;
+  double full_scale_counts_;
+  std::optional<Nanos> last_time_;
+  Rejection rejection_ = Rejection::none;
+};
+
+/// counts / full scale, turned round where pressure lowers the reading: what an estimator sees that knows neither the
+/// supply nor the circuit. `reading` [rows, cols] in [0, 1]; the frame must have the array's shape. Thread-safe.
+void bare_readings(const ArrayDescription& array, const RawFrame& raw, std::span<double> reading) noexcept;
+
+}  // namespace dermis::preprocessing

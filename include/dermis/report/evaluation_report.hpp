@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+
+#include "dermis/calibration/evaluation.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::report {
+
+/// The report as one self-contained HTML page: no script, nothing loaded from elsewhere, light and dark, printable.
+/// The page says in a sentence what could not be judged.
+[[nodiscard]] std::string evaluation_page(const calibration::Evaluation& evaluation, const pipeline::Model& model);
+
+/// Writes the page as DIR/index.html and each of its figures as an SVG file beside it (calibration_vs_output.svg,
+/// error_vs_force.svg, error_vs_temperature.svg, error_vs_supply.svg, error_vs_contacts.svg, tactile_1.svg, ...), as
+/// far as there is something to show. Creates the directory; every file appears complete or not at all, the page last.
+/// Errors: the directory cannot be made or written.
+[[nodiscard]] Status write_evaluation_report(const std::string& directory, const calibration::Evaluation& evaluation,
+                                             const pipeline::Model& model);
+
+}  // namespace dermis::report

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "dermis/report/svg.hpp"
+
+namespace dermis::report {
+
+struct Colour {
+  std::uint8_t red = 0;
+  std::uint8_t green = 0;
+  std::uint8_t blue = 0;
+};
+
+/// A sequential colour map, dark violet over blue and green to light yellow, for readers with any colour vision and
+/// for grey prints. `share` is clamped to [0, 1]; not NaN. The lightness rises linearly by construction: a path through
+/// Oklch (B. Ottosson, "A perceptual color space for image processing", 2020) with L from 0.24 to 0.94 and the hue from
+/// 300 to 105 degrees, inside the gamut of sRGB.
+[[nodiscard]] Colour sequential_colour(double share) noexcept;
+
+/// One quantity on every taxel of an array: each measured taxel is a square, nothing is interpolated.
+struct HeatMap {
+  std::string title;
+  std::string unit;        ///< Stands above the colour scale.
+  std::size_t rows = 0;    ///< >= 1
+  std::size_t cols = 0;    ///< >= 1
+  double row_pitch = 1.0;  ///< Distance of rows over distance of columns is the shape of a taxel; > 0.
+  double col_pitch = 1.0;
+  double high = 1.0;           ///< End of the colour scale, which starts at 0; finite and > 0.
+  std::vector<double> values;  ///< [rows, cols]; NaN and infinity are drawn as crossed-out squares.
+};
+
+[[nodiscard]] Drawing heat_map(const HeatMap& map);
+
+/// End of a colour scale for these values: their largest finite one, or 1 where none is above 0.
+[[nodiscard]] double heat_map_high(const std::vector<double>& values) noexcept;
+
+}  // namespace dermis::report

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <vector>
+
+#include "dermis/calibration/evaluation.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/report/svg.hpp"
+
+namespace dermis::report {
+
+/// The tactile image of one frame at four stages: the reading as it comes, the conductance without crosstalk, the force
+/// by dermis and the true force, the last two on the same scale in newtons. r0c0 is at the top left, and taxels have
+/// the shape of the array's pitches. The vectors of `example` have the size of the array.
+[[nodiscard]] std::vector<Drawing> tactile_panels(const ArrayDescription& array,
+                                                  const calibration::TactileExample& example);
+
+/// The same side by side, as one drawing.
+[[nodiscard]] Drawing tactile_image(const ArrayDescription& array, const calibration::TactileExample& example);
+
+}  // namespace dermis::report

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/random.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::simulation {
+
+/// The surroundings of the array and the instruments that watch them. Defaults: the reference array of the project.
+struct EnvironmentOptions {
+  double supply_variation = 0.10;          ///< The supply is nominal times 1 +- this, uniform, 0 ... 0.5.
+  double temperature_noise_celsius = 0.3;  ///< Sd of the reported temperature [C], 0 ... 20. A digital sensor.
+  double supply_noise = 0.001;             ///< Relative sd of the reported supply, 0 ... 0.1.
+  double adc_noise_lsb = 1.0;              ///< Sd of the ADC before rounding [counts], 0 ... 1000.
+
+  /// Names the first field that is out of its range, as "environment.supply_noise: ...".
+  [[nodiscard]] Status validate() const;
+};
+
+/// What happens to the array until one frame is taken, and what is known about it. The frame is taken at the end.
+struct SceneFrame {
+  double rest_s = 0.0;               ///< First unloaded for so long [s]; 0: the load changes at once.
+  double hold_s = 0.0;               ///< Then under force_n for so long [s].
+  double temperature_celsius = 0.0;  ///< True temperature of the whole array [C].
+  double supply_v = 0.0;             ///< True supply [V].
+  std::vector<double> force_n;       ///< True force applied to each taxel [N], [rows, cols].
+  std::vector<Load> loads;           ///< The labels of loads.csv; every frame has at least one.
+};
+
+/// A script of loads for an array. The supply is drawn anew each frame around Readout::supply_v (5 V where empty).
+///
+/// name         loads                                                                      frames
+/// calibration  each taxel alone at 14 forces, 0.5 ... 50 N in equal ratios, at 0, 12.5,   5 (20 + 14 taxels)
+///              25, 37.5 and 50 C; the whole array at one force before the next force;
+///              each temperature starts with 20 unloaded frames
+/// uniform      an air bladder: 14 pressures, 15 ... 700 kPa in equal ratios, rising       5 (20 + 14 x 5)
+///              without venting, 5 frames each, same temperatures and unloaded frames;
+///              force = pressure times taxel area, labelled as pressure
+/// paper        10, 20, 50 N at 16 different random taxels each, alone, 20 C               48
+/// multitouch   1-4 contacts of 1-50 N (log-uniform): 40 % on one taxel, the others        1000 or as asked
+///              Gaussians of 0.7-2.5 pitches sigma centred anywhere, cut below 0.02 N;
+///              at most 50 N a taxel; 0-50 C uniform; each frame is independent
+/// idle         unloaded; 0 to 50 C and back over the scene, as a cosine                   1000 or as asked
+///
+/// A press is 1 s of rest and 1 s of hold; uniform and multitouch change the load without rest, every 1 s; idle takes a
+/// frame every 10 s. Each temperature of calibration and uniform starts with 600 s of rest.
+/// Thread-safe: frame() only reads, and a frame depends on the seed and its index alone.
+class Scene {
+ public:
+  /// Fails on an unknown name, options out of range, a frame count for a scene of fixed length (or of 0), and where the
+  /// array does not suit: uniform needs taxel_area_m2, paper at least 16 taxels.
+  [[nodiscard]] static Result<Scene> create(std::string_view name, const ArrayDescription& array,
+                                            const EnvironmentOptions& environment, std::uint64_t seed,
+                                            std::optional<std::size_t> frames = {});
+
+  [[nodiscard]] std::size_t frame_count() const noexcept { return frame_count_; }
+
+  /// Frame `index` < frame_count(), reusing the buffers of `out`.
+  void frame(std::size_t index, SceneFrame& out) const;
+
+ private:
+  enum class Kind { calibration, uniform, paper, multitouch, idle };
+
+  Scene(Kind kind, const ArrayDescription& array, const EnvironmentOptions& environment, std::uint64_t seed);
+  [[nodiscard]] Status check_array() const;
+  [[nodiscard]] std::size_t default_frame_count() const;
+  void choose_paper_taxels();
+  void press_each_taxel(std::size_t index, SceneFrame& out) const;
+  void inflate_bladder(std::size_t index, SceneFrame& out) const;
+  void press_as_in_paper(std::size_t index, SceneFrame& out) const;
+  void touch(Random& random, SceneFrame& out) const;
+  void leave_alone(std::size_t index, SceneFrame& out) const;
+  void add_contact(Random& random, std::vector<double>& force_n) const;
+  void label_forces(std::size_t index, SceneFrame& out) const;
+
+  Kind kind_;
+  ArrayDescription array_;
+  double supply_variation_;
+  std::uint64_t seed_;
+  std::size_t frame_count_ = 0;
+  std::vector<std::size_t> paper_taxels_;  // [3 forces, 16]
+};
+
+/// All names that Scene::create knows.
+[[nodiscard]] std::vector<std::string> scene_names();
+
+}  // namespace dermis::simulation

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/random.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/simulation/adc.hpp"
+#include "dermis/simulation/readout_circuit.hpp"
+#include "dermis/simulation/rubber.hpp"
+#include "dermis/simulation/scene.hpp"
+
+namespace dermis::simulation {
+
+struct SimulationOptions {
+  RubberOptions rubber;
+  EnvironmentOptions environment;
+
+  [[nodiscard]] Status validate() const;
+};
+
+/// Reads the tables [rubber] and [environment] of a TOML file; keys are the field names, absent keys keep their
+/// defaults. `rubber.carbon_percent` (5, 10 or 15) sets the defaults of that grade. Unknown keys are errors.
+[[nodiscard]] Result<SimulationOptions> read_simulation_options(const std::string& path);
+
+/// A simulated array as a source of frames: scene -> rubber -> readout circuit -> ADC.
+/// The piece of rubber depends on RubberOptions::seed alone, so the same array can go through several scenes; `seed`
+/// drives contacts, supply, temperature and all noise. Not thread-safe: one reader.
+class Simulator final : public FrameSource {
+ public:
+  /// `frames`: number of frames of the scenes "multitouch" and "idle". Fails as Scene::create and
+  /// ConductiveRubber::create do.
+  [[nodiscard]] static Result<std::unique_ptr<Simulator>> create(const ArrayDescription& array,
+                                                                 const SimulationOptions& options,
+                                                                 std::string_view scene, std::uint64_t seed,
+                                                                 std::optional<std::size_t> frames = {});
+
+  [[nodiscard]] Result<bool> next(RawFrame& frame) override;
+
+  [[nodiscard]] std::size_t frame_count() const noexcept { return scene_.frame_count(); }
+
+  /// What a calibration rig would know of the last frame: its lines of loads.csv.
+  [[nodiscard]] const std::vector<Load>& loads() const noexcept { return truth_.loads; }
+
+  /// What nobody could know of the last frame: true forces, temperature and supply.
+  [[nodiscard]] const SceneFrame& truth() const noexcept { return truth_; }
+
+  /// True conductances of the last frame [S], [rows, cols].
+  [[nodiscard]] const std::vector<double>& true_siemens() const noexcept { return siemens_; }
+
+  /// The true law of the material.
+  [[nodiscard]] const ConductiveRubber& rubber() const noexcept { return rubber_; }
+
+ private:
+  Simulator(Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit, const Readout& readout,
+            const EnvironmentOptions& environment, std::uint64_t seed);
+
+  Scene scene_;
+  ConductiveRubber rubber_;
+  ReadoutCircuit circuit_;
+  Adc adc_;
+  EnvironmentOptions environment_;
+  Random instruments_;
+  std::size_t next_frame_ = 0;
+  double time_s_ = 0.0;
+  SceneFrame truth_;
+  std::vector<double> unloaded_n_;
+  std::vector<double> siemens_;
+  std::vector<double> ratio_;
+};
+
+}  // namespace dermis::simulation

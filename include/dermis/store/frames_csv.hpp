@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/store/atomic_file.hpp"
+
+namespace dermis::store {
+
+/// The optional columns of frames.csv; time_s and the taxels are always there.
+struct FramesCsvColumns {
+  bool temperature_celsius = true;
+  bool supply_v = true;
+};
+
+/// Reads frames.csv (docs/file-formats.md) frame by frame: the memory is that of one line, at most 32 MiB.
+/// Counts may be fractional, nan or inf: whether a reading can be used is for preprocessing to say. An empty cell of
+/// temperature_celsius or supply_v is no value. Errors name the line and the column. Not thread-safe.
+class FramesCsvReader final : public FrameSource {
+ public:
+  /// Opens the file and checks its header against an array of rows x cols taxels.
+  [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(const std::string& path, std::size_t rows,
+                                                                     std::size_t cols);
+  /// The same from a stream; `name` stands for the path in messages.
+  [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(std::unique_ptr<std::istream> in,
+                                                                     const std::string& name, std::size_t rows,
+                                                                     std::size_t cols);
+  ~FramesCsvReader() override;
+
+  [[nodiscard]] Result<bool> next(RawFrame& frame) override;
+
+  /// Line of the last frame, from 1 for the header.
+  [[nodiscard]] std::size_t line() const noexcept;
+
+ private:
+  struct State;
+  explicit FramesCsvReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// All frames of a file.
+[[nodiscard]] Result<std::vector<RawFrame>> read_frames(const std::string& path, std::size_t rows, std::size_t cols);
+
+/// Writes frames.csv: exact times, shortest digits that read back as the same number. Not thread-safe.
+class FramesCsvWriter {
+ public:
+  [[nodiscard]] static Result<FramesCsvWriter> create(const std::string& path, std::size_t rows, std::size_t cols,
+                                                      const FramesCsvColumns& columns = {});
+
+  /// Appends a frame of rows * cols counts; values of columns that are not in the file are dropped. Returns the first
+  /// write error as soon as it is known.
+  [[nodiscard]] Status write(const RawFrame& frame);
+  /// Puts the complete file in its place; without it, nothing is left behind.
+  [[nodiscard]] Status commit();
+
+ private:
+  FramesCsvWriter(AtomicFile file, std::size_t taxel_count, const FramesCsvColumns& columns);
+
+  AtomicFile file_;
+  std::size_t taxel_count_;
+  FramesCsvColumns columns_;
+  std::string line_;
+};
+
+}  // namespace dermis::store

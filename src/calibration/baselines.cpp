@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/baselines.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/unloaded_fit.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+constexpr std::size_t kMaxKnots = 64;
+
+/// Signal of one taxel at a known force.
+struct Point {
+  double newtons = 0.0;
+  double signal = 0.0;
+  double temperature_offset = 0.0;
+};
+
+struct Knot {
+  double signal = 0.0;
+  double newtons = 0.0;
+  double weight = 0.0;
+};
+
+double signal_of(const Sample& sample, std::size_t taxel, fusion::LookUpSignal signal) {
+  return signal == fusion::LookUpSignal::reading ? sample.reading[taxel] : sample.siemens[taxel];
+}
+
+/// The loaded points of a taxel and those of frames without any load, sorted by force.
+std::vector<Point> known_points(const SampleDatabase& database, std::size_t taxel, fusion::LookUpSignal signal,
+                                const TemperatureSpan& span) {
+  std::vector<Point> points;
+  for (const Sample& sample : database.samples) {
+    const double newtons = sample.known_newtons[taxel];
+    if (!(newtons > 0.0) && !sample.unloaded) continue;
+    points.push_back({newtons, signal_of(sample, taxel, signal), temperature_offset(sample, span)});
+  }
+  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.newtons < b.newtons; });
+  return points;
+}
+
+/// Calls visit(first, last) for every run of points of equal force.
+template <typename Visit>
+void for_each_level(std::span<Point> points, Visit visit) {
+  for (std::size_t first = 0; first < points.size();) {
+    std::size_t last = first;
+    while (last < points.size() && points[last].newtons == points[first].newtons) ++last;
+    visit(points.subspan(first, last - first));
+    first = last;
+  }
+}
+
+double mean_signal(std::span<const Point> level) {
+  double mean = 0.0;
+  for (const Point& point : level) mean += point.signal / static_cast<double>(level.size());
+  return mean;
+}
+
+/// The k of signal * (1 + k dT) that makes the signals of equal force agree best.
+double temperature_coefficient(std::span<Point> points) {
+  double covariance = 0.0;
+  double variance = 0.0;
+  for_each_level(points, [&](std::span<const Point> level) {
+    const double mean = mean_signal(level);
+    if (level.front().newtons <= 0.0 || mean <= 0.0) return;
+    for (const Point& point : level) {
+      covariance += (point.signal / mean - 1.0) * point.temperature_offset;
+      variance += point.temperature_offset * point.temperature_offset;
+    }
+  });
+  return variance > 0.0 ? -covariance / variance : 0.0;
+}
+
+/// Pools neighbours until the signal rises with the force (Ayer et al. 1955).
+void pool_adjacent_violators(std::vector<Knot>& knots) {
+  std::vector<Knot> pooled;
+  for (Knot knot : knots) {
+    while (!pooled.empty() && pooled.back().signal >= knot.signal) {
+      const Knot& previous = pooled.back();
+      const double weight = previous.weight + knot.weight;
+      knot = {(previous.signal * previous.weight + knot.signal * knot.weight) / weight,
+              (previous.newtons * previous.weight + knot.newtons * knot.weight) / weight, weight};
+      pooled.pop_back();
+    }
+    pooled.push_back(knot);
+  }
+  knots = std::move(pooled);
+}
+
+/// At most kMaxKnots, by merging equal numbers of neighbours.
+void thin_out(std::vector<Knot>& knots) {
+  if (knots.size() <= kMaxKnots) return;
+  std::vector<Knot> thinned(kMaxKnots);
+  for (std::size_t k = 0; k < knots.size(); ++k) {
+    Knot& target = thinned[k * kMaxKnots / knots.size()];
+    target.signal += knots[k].signal * knots[k].weight;
+    target.newtons += knots[k].newtons * knots[k].weight;
+    target.weight += knots[k].weight;
+  }
+  for (Knot& knot : thinned) {
+    knot.signal /= knot.weight;
+    knot.newtons /= knot.weight;
+  }
+  knots = std::move(thinned);
+}
+
+std::vector<Knot> table_of_levels(std::vector<Point>& points, double coefficient) {
+  for (Point& point : points) point.signal *= 1.0 + coefficient * point.temperature_offset;
+  std::vector<Knot> knots;
+  for_each_level(points, [&](std::span<const Point> level) {
+    knots.push_back({mean_signal(level), level.front().newtons, static_cast<double>(level.size())});
+  });
+  thin_out(knots);
+  pool_adjacent_violators(knots);
+  return knots;
+}
+
+/// Straight lines for taxels that are only known through totals: newtons = slope * (signal - unloaded signal), with the
+/// slope and the temperature coefficient in common.
+class SharedLine {
+ public:
+  SharedLine(const SampleDatabase& database, fusion::LookUpSignal signal, const TemperatureSpan& span,
+             bool with_temperature)
+      : unloaded_(database.array.taxel_count()), highest_(database.array.taxel_count()) {
+    find_range(database, signal);
+    fit(database, signal, span, with_temperature);
+  }
+
+  [[nodiscard]] double coefficient() const { return coefficient_; }
+
+  [[nodiscard]] std::vector<Knot> table(std::size_t taxel) const {
+    const double rise = std::max(highest_[taxel] - unloaded_[taxel], 1e-12);
+    return {{unloaded_[taxel], 0.0, 1.0}, {unloaded_[taxel] + rise, slope_ * rise, 1.0}};
+  }
+
+ private:
+  void find_range(const SampleDatabase& database, fusion::LookUpSignal signal) {
+    for (std::size_t taxel = 0; taxel < unloaded_.size(); ++taxel) {
+      double frames = 0.0;
+      for (const Sample& sample : database.samples) {
+        const double value = signal_of(sample, taxel, signal);
+        highest_[taxel] = std::max(highest_[taxel], value);
+        if (!sample.unloaded) continue;
+        unloaded_[taxel] += value;
+        frames += 1.0;
+      }
+      unloaded_[taxel] /= frames;
+    }
+  }
+
+  /// Least squares of total = a * s + b * s dT over all totals, s the sum of the signals above the unloaded ones.
+  void fit(const SampleDatabase& database, fusion::LookUpSignal signal, const TemperatureSpan& span,
+           bool with_temperature) {
+    double ss = 0.0;
+    double st = 0.0;
+    double tt = 0.0;
+    double sy = 0.0;
+    double ty = 0.0;
+    for (const Sample& sample : database.samples) {
+      for (const TotalForce& total : sample.totals) {
+        double s = 0.0;
+        for (const std::size_t taxel : total.taxels) s += signal_of(sample, taxel, signal) - unloaded_[taxel];
+        const double t = s * temperature_offset(sample, span);
+        ss += s * s;
+        st += s * t;
+        tt += t * t;
+        sy += s * total.newtons;
+        ty += t * total.newtons;
+      }
+    }
+    const double determinant = ss * tt - st * st;
+    const bool two_unknowns = with_temperature && determinant > 1e-9 * ss * tt;
+    slope_ = two_unknowns ? (sy * tt - ty * st) / determinant : ss > 0.0 ? sy / ss : 0.0;
+    if (two_unknowns && slope_ > 0.0) coefficient_ = (ty * ss - sy * st) / determinant / slope_;
+  }
+
+  std::vector<double> unloaded_;
+  std::vector<double> highest_;
+  double slope_ = 0.0;
+  double coefficient_ = 0.0;
+};
+
+fusion::LookUpTables make_tables(const SampleDatabase& database, const char* name, fusion::LookUpSignal signal,
+                                 bool with_temperature) {
+  const TemperatureSpan span = temperature_span(database);
+  const SharedLine shared(database, signal, span, with_temperature);
+  const std::size_t taxels = database.array.taxel_count();
+  fusion::LookUpTables tables;
+  tables.name = name;
+  tables.signal = signal;
+  tables.reference_celsius = span.centre_celsius;
+  tables.temperature_coefficient.resize(taxels);
+  std::vector<std::vector<Knot>> knots(taxels);
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    std::vector<Point> points = known_points(database, taxel, signal, span);
+    const bool is_known = points.back().newtons > 0.0;
+    double& coefficient = tables.temperature_coefficient[taxel];
+    if (with_temperature) coefficient = is_known ? temperature_coefficient(points) : shared.coefficient();
+    knots[taxel] = is_known ? table_of_levels(points, coefficient) : shared.table(taxel);
+    tables.knots = std::max({tables.knots, knots[taxel].size(), std::size_t{2}});
+  }
+  for (std::vector<Knot>& table : knots) {
+    table.resize(tables.knots, table.back());  // repeated last knots: the table is clamped there
+    for (const Knot& knot : table) {
+      tables.knot_signal.push_back(knot.signal);
+      tables.knot_newtons.push_back(knot.newtons);
+    }
+  }
+  return tables;
+}
+
+}  // namespace
+
+std::vector<fusion::LookUpTables> make_baselines(const SampleDatabase& database) {
+  return {make_tables(database, "raw_lookup", fusion::LookUpSignal::reading, false),
+          make_tables(database, "temperature_lookup", fusion::LookUpSignal::reading, true),
+          make_tables(database, "crosstalk_lookup", fusion::LookUpSignal::conductance, true)};
+}
+
+}  // namespace dermis::calibration

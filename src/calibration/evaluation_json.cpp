@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "dermis/calibration/evaluation.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json estimator_json(const EstimatorResult& result) {
+  return {{"name", result.name},
+          {"median_relative_error", number(result.relative_error.median)},
+          {"p95_relative_error", number(result.relative_error.p95)},
+          {"p99_relative_error", number(result.relative_error.p99)},
+          {"max_relative_error", number(result.relative_error.max)},
+          {"taxels_judged", result.relative_error.count},
+          {"ghost_p99_n", number(result.ghost_n.p99)},
+          {"ghost_max_n", number(result.ghost_n.max)},
+          {"ghost_taxels_judged", result.ghost_n.count},
+          {"total_rmse_n", number(result.total_rmse_n)},
+          {"total_median_relative_error", number(result.total_relative_error.median)},
+          {"total_max_relative_error", number(result.total_relative_error.max)},
+          {"totals_judged", result.totals_judged}};
+}
+
+Json breakdown_json(const Evaluation& evaluation, const std::vector<BreakdownBin>& bins) {
+  Json rows = Json::array();
+  for (const BreakdownBin& bin : bins) {
+    Json estimators = Json::object();
+    for (std::size_t k = 0; k < bin.relative_error.size(); ++k) {
+      estimators[evaluation.estimators[k].name] = {{"median_relative_error", number(bin.relative_error[k].median)},
+                                                   {"p95_relative_error", number(bin.relative_error[k].p95)}};
+    }
+    rows.push_back({{"from", bin.low},
+                    {"to", bin.high},
+                    {"count", bin.relative_error.front().count},
+                    {"estimators", std::move(estimators)}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string to_json(const Evaluation& evaluation) {
+  Json estimators = Json::array();
+  for (const EstimatorResult& result : evaluation.estimators) estimators.push_back(estimator_json(result));
+  const Json root = {{"frames", evaluation.frames},
+                     {"frames_rejected", evaluation.frames_rejected},
+                     {"estimators", std::move(estimators)},
+                     {"by_force", breakdown_json(evaluation, evaluation.by_force)},
+                     {"by_temperature", breakdown_json(evaluation, evaluation.by_temperature)},
+                     {"by_supply", breakdown_json(evaluation, evaluation.by_supply)},
+                     {"by_contacts", breakdown_json(evaluation, evaluation.by_contacts)}};
+  return root.dump(2);
+}
+
+}  // namespace dermis::calibration

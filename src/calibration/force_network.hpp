@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "dermis/core/random.hpp"
+#include "dermis/fusion/force_fusion.hpp"
+#include "dermis/network/perceptron.hpp"
+
+namespace dermis::calibration {
+
+/// The network of one taxel, or of many: newtons = exp(perceptron(inputs)), as fusion::ForceNetworks defines it.
+struct ForceNetwork {
+  network::PerceptronShape shape;
+  double reference_siemens = 1.0;
+  double heaviest_siemens = 1.0;
+  double heaviest_newtons = 0.0;
+  double rms_error = 0.0;           ///< Root mean square relative error on its own samples.
+  std::vector<double> parameters;   ///< [shape.parameter_count()]
+
+  using Inputs = std::array<double, fusion::kInputsWithTemperature>;
+
+  /// Inputs for an excess conductance > 0 [S] and a temperature normalised to about [-1, 1].
+  [[nodiscard]] Inputs inputs(double excess_siemens, double temperature) const noexcept;
+
+  /// ln(newtons), and d ln(newtons) / d free parameter in `gradient` where it is not empty.
+  double log_newtons(const Inputs& inputs, std::span<double> gradient) const noexcept;
+};
+
+/// Two or three inputs, rising with conductance.
+[[nodiscard]] network::PerceptronShape force_shape(bool uses_temperature, std::size_t hidden) noexcept;
+
+/// Free parameters to start from: newtons = newtons_at_reference * e / reference, and small random hidden units.
+[[nodiscard]] std::vector<double> random_start(const network::PerceptronShape& shape, double newtons_at_reference,
+                                               Random& random);
+
+/// A Gaussian prior on the parameters, as residuals that are appended to those of the data: hidden weights are about 0,
+/// the power of conductance about 1. `scale`: standard deviation of a data residual.
+/// Fills residuals [parameter_count] and, where it is not empty, jacobian [parameter_count, columns].
+void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals,
+                     std::span<double> jacobian, std::size_t columns) noexcept;
+
+}  // namespace dermis::calibration

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/force_training.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "calibration/shared_training.hpp"
+#include "calibration/taxel_training.hpp"
+#include "calibration/unloaded_fit.hpp"
+#include "dermis/core/parallel.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+constexpr std::size_t kMostHiddenUnits = 4;          // the design's 2-4-1
+constexpr std::size_t kPointsPerParameterOfUnit = 2;
+constexpr std::size_t kLeastPoints = 8;              // for a network of its own
+constexpr std::size_t kLeastForceLevels = 3;
+constexpr double kLeastTemperatureShare = 0.5;
+constexpr double kDetectable = 3.0;                  // in standard deviations of the unloaded reading
+
+/// What the samples say about each taxel.
+struct Evidence {
+  TemperatureSpan span;
+  UnloadedFit unloaded;
+  std::vector<std::vector<TaxelPoint>> points;  ///< Known forces above zero [taxels].
+  std::vector<bool> dead;                       ///< [taxels]
+};
+
+std::vector<TaxelPoint> known_points(const SampleDatabase& database, std::size_t taxel, const Evidence& evidence) {
+  std::vector<TaxelPoint> points;
+  for (const Sample& sample : database.samples) {
+    const double newtons = sample.known_newtons[taxel];
+    if (!(newtons > 0.0)) continue;
+    const double t = evidence.span.is_input
+                         ? temperature_offset(sample, evidence.span) / evidence.span.half_span_celsius
+                         : 0.0;
+    points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.span), t, newtons});
+  }
+  return points;
+}
+
+/// A taxel is dead where not even its heaviest tenth of known loads is felt.
+bool is_dead(const std::vector<TaxelPoint>& points, double noise_siemens) {
+  if (points.empty()) return false;
+  std::vector<TaxelPoint> by_force = points;
+  std::sort(by_force.begin(), by_force.end(), [](const auto& a, const auto& b) { return a.newtons > b.newtons; });
+  const std::size_t heaviest = (points.size() + 9) / 10;
+  double mean = 0.0;
+  for (std::size_t k = 0; k < heaviest; ++k) mean += by_force[k].excess_siemens / static_cast<double>(heaviest);
+  return mean < kDetectable * noise_siemens;
+}
+
+Evidence gather_evidence(const SampleDatabase& database) {
+  const std::size_t taxels = database.array.taxel_count();
+  Evidence evidence;
+  evidence.span = temperature_span(database);
+  evidence.unloaded = fit_unloaded(database, evidence.span);
+  evidence.points.resize(taxels);
+  std::vector<char> dead(taxels);
+  parallel_for(taxels, [&](std::size_t taxel) {
+    std::vector<TaxelPoint> points = known_points(database, taxel, evidence);
+    const double noise = evidence.unloaded.noise_siemens[taxel];
+    dead[taxel] = is_dead(points, noise) ? 1 : 0;
+    std::erase_if(points, [&](const TaxelPoint& point) { return point.excess_siemens < kDetectable * noise; });
+    evidence.points[taxel] = std::move(points);
+  });
+  evidence.dead.assign(dead.begin(), dead.end());
+  return evidence;
+}
+
+bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_temperature) {
+  if (points.size() < kLeastPoints) return false;
+  std::set<double> levels;
+  double coldest = 1.0;
+  double hottest = -1.0;
+  for (const TaxelPoint& point : points) {
+    levels.insert(point.newtons);
+    coldest = std::min(coldest, point.temperature);
+    hottest = std::max(hottest, point.temperature);
+  }
+  return levels.size() >= kLeastForceLevels &&
+         (!uses_temperature || hottest - coldest >= 2.0 * kLeastTemperatureShare);
+}
+
+/// Hidden units that the given number of points can hold.
+std::size_t hidden_units(std::size_t points, bool uses_temperature) {
+  const std::size_t parameters_of_unit = force_shape(uses_temperature, 1).inputs + 2;
+  return std::min(points / (kPointsPerParameterOfUnit * parameters_of_unit), kMostHiddenUnits);
+}
+
+fusion::ForceNetworks make_networks(const network::PerceptronShape& shape, const Evidence& evidence) {
+  const std::size_t taxels = evidence.points.size();
+  fusion::ForceNetworks networks;
+  networks.shape = shape;
+  networks.temperature_centre_celsius = evidence.span.centre_celsius;
+  networks.temperature_half_span_celsius = evidence.span.half_span_celsius;
+  networks.offset_siemens = evidence.unloaded.offset_siemens;
+  networks.offset_per_celsius = evidence.unloaded.offset_per_celsius;
+  networks.reference_siemens.assign(taxels, 1.0F);
+  networks.heaviest_siemens.assign(taxels, 1.0F);
+  networks.heaviest_newtons.assign(taxels, std::numeric_limits<float>::infinity());
+  networks.gain.assign(taxels, 1.0F);
+  networks.parameters.assign(shape.parameter_count() * taxels, 0.0F);
+  for (const bool dead : evidence.dead) networks.dead.push_back(dead ? 1 : 0);
+  return networks;
+}
+
+/// Hidden units that the network has less than the bank stay zero.
+void put(fusion::ForceNetworks& networks, std::size_t taxel, const ForceNetwork& network, double gain) {
+  networks.reference_siemens[taxel] = static_cast<float>(network.reference_siemens);
+  networks.heaviest_siemens[taxel] = static_cast<float>(network.heaviest_siemens);
+  networks.heaviest_newtons[taxel] = static_cast<float>(network.heaviest_newtons);
+  networks.gain[taxel] = static_cast<float>(gain);
+  const network::PerceptronShape& bank = networks.shape;
+  const network::PerceptronShape& own = network.shape;
+  const auto copy = [&](std::size_t to, std::size_t from) {
+    networks.parameters[to * networks.taxel_count() + taxel] = static_cast<float>(network.parameters[from]);
+  };
+  for (std::size_t unit = 0; unit < own.hidden; ++unit) {
+    copy(bank.bias(unit), own.bias(unit));
+    for (std::size_t input = 0; input < own.inputs; ++input) copy(bank.weight(unit, input), own.weight(unit, input));
+    copy(bank.output_weight(unit), own.output_weight(unit));
+  }
+  copy(bank.output_bias(), own.output_bias());
+  for (std::size_t input = 0; input < own.inputs; ++input) copy(bank.direct_weight(input), own.direct_weight(input));
+}
+
+/// The lightest and heaviest load of the calibration.
+void report_loads(const SampleDatabase& database, TrainingReport& report) {
+  report.lightest_newtons = std::numeric_limits<double>::infinity();
+  const auto take = [&](double newtons) {
+    if (!(newtons > 0.0)) return;
+    report.lightest_newtons = std::min(report.lightest_newtons, newtons);
+    report.heaviest_newtons = std::max(report.heaviest_newtons, newtons);
+  };
+  for (const Sample& sample : database.samples) {
+    for (const float newtons : sample.known_newtons) take(static_cast<double>(newtons));
+    for (const TotalForce& total : sample.totals) take(total.newtons);
+  }
+}
+
+void report_fit(const std::vector<std::size_t>& own, const std::vector<ForceNetwork>& networks,
+                TrainingReport& report) {
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    errors.push_back(networks[k].rms_error);
+    if (errors.back() <= report.worst_fit_error) continue;
+    report.worst_fit_error = errors.back();
+    report.worst_taxel = own[k];
+  }
+  if (errors.empty()) return;
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  report.median_fit_error = errors[errors.size() / 2];
+}
+
+/// Taxels by what trains them.
+struct Division {
+  std::vector<std::size_t> own;
+  std::vector<std::size_t> shared;
+  std::vector<std::size_t> dead;
+  std::size_t least_points = std::numeric_limits<std::size_t>::max();  ///< of the taxels with a network of their own
+};
+
+Division divide(const Evidence& evidence) {
+  Division division;
+  for (std::size_t taxel = 0; taxel < evidence.points.size(); ++taxel) {
+    if (evidence.dead[taxel]) {
+      division.dead.push_back(taxel);
+    } else if (supports_own_network(evidence.points[taxel], evidence.span.is_input)) {
+      division.own.push_back(taxel);
+      division.least_points = std::min(division.least_points, evidence.points[taxel].size());
+    } else {
+      division.shared.push_back(taxel);
+    }
+  }
+  return division;
+}
+
+std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& division,
+                                    const std::function<void(double)>& progress) {
+  const network::PerceptronShape shape =
+      force_shape(evidence.span.is_input, hidden_units(division.least_points, evidence.span.is_input));
+  std::vector<ForceNetwork> networks(division.own.size());
+  std::atomic<std::size_t> done = 0;
+  parallel_for(division.own.size(), [&](std::size_t k) {
+    const std::size_t taxel = division.own[k];
+    networks[k] = train_taxel(shape, evidence.points[taxel], evidence.unloaded.noise_siemens[taxel], taxel);
+    if (progress) progress(static_cast<double>(++done) / static_cast<double>(division.own.size()));
+  });
+  return networks;
+}
+
+std::string describe(const TrainingReport& report, bool has_gains) {
+  std::string text;
+  if (report.own_networks > 0) {
+    text = fmt::format("{} taxels have a network of their own (their own force is known often enough)",
+                       report.own_networks);
+  }
+  if (report.shared_networks > 0) {
+    text += fmt::format("{}{} taxels share one network of {} hidden units, trained through the sum of the loads, {}",
+                        text.empty() ? "" : "; ", report.shared_networks, report.shared_hidden_units,
+                        has_gains ? "with a gain each" : "without gains (they did not lower the leave-one-out error)");
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<ForceTraining> train_force_networks(const SampleDatabase& database,
+                                           const std::function<void(double)>& progress) {
+  ForceTraining training;
+  TrainingReport& report = training.report;
+  report_loads(database, report);
+  if (report.heaviest_newtons <= 0.0) {
+    return bad_input("every load is zero: label frames with the force that presses on the array");
+  }
+  const Evidence evidence = gather_evidence(database);
+  const Division division = divide(evidence);
+  report.uses_temperature = evidence.span.is_input;
+  report.lowest_celsius = evidence.span.centre_celsius - evidence.span.half_span_celsius;
+  report.highest_celsius = evidence.span.centre_celsius + evidence.span.half_span_celsius;
+  report.own_networks = division.own.size();
+  report.shared_networks = division.shared.size();
+  report.dead_taxels = division.dead;
+
+  std::vector<ForceNetwork> own;
+  SharedNetwork shared;
+  if (!division.own.empty()) own = train_own(evidence, division, progress);
+  if (!division.shared.empty()) shared = train_shared(database, evidence.span, evidence.unloaded, evidence.dead);
+  const bool has_shared = !shared.network.parameters.empty();
+  if (own.empty() && !has_shared) {
+    return bad_input("no taxel answers to its loads: check that frames and loads belong together, and the circuit");
+  }
+  if (has_shared) report.shared_hidden_units = shared.network.shape.hidden;
+  if (!own.empty()) report.hidden_units = own.front().shape.hidden;
+  report.shared_leave_one_out_error = shared.leave_one_out_error;
+
+  training.networks = make_networks(
+      force_shape(evidence.span.is_input, std::max(report.hidden_units, report.shared_hidden_units)), evidence);
+  for (std::size_t k = 0; k < own.size(); ++k) put(training.networks, division.own[k], own[k], 1.0);
+  for (const std::size_t taxel : division.shared) {
+    put(training.networks, taxel, shared.network, shared.gain[taxel]);
+  }
+  report_fit(division.own, own, report);
+  report.choice = describe(report, shared.has_gains);
+  return training;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/labels.hpp"
+
+#include <fmt/core.h>
+
+#include <limits>
+
+namespace dermis::calibration {
+
+Status check_loads(const ArrayDescription& array, std::size_t frame_count, std::span<const Load> loads) {
+  if (loads.empty()) return bad_input("the loads name no frame: known loads are needed");
+  for (const Load& load : loads) {
+    if (load.frame >= frame_count) {
+      return bad_input(fmt::format("a load names frame {}, there are {} (counted from 0)", load.frame, frame_count));
+    }
+    if (load.kind == LoadKind::pressure && !array.taxel_area_m2) {
+      return bad_input("loads given as pressure need array.taxel_area_mm2");
+    }
+  }
+  return Done{};
+}
+
+std::vector<std::vector<Load>> group_by_frame(std::span<const Load> loads, std::size_t frame_count) {
+  std::vector<std::vector<Load>> groups(frame_count);
+  for (const Load& load : loads) groups[load.frame].push_back(load);
+  return groups;
+}
+
+void expand_loads(const ArrayDescription& array, std::span<const Load> loads, Sample& sample) {
+  sample.known_newtons.assign(array.taxel_count(), 0.0F);
+  sample.totals.clear();
+  sample.unloaded = true;
+  for (const Load& load : loads) {
+    const std::vector<std::size_t> taxels = taxel_indices(load.where, array.cols);
+    if (load.value > 0.0) sample.unloaded = false;
+    const bool is_shared = load.kind == LoadKind::force && taxels.size() > 1 && load.value > 0.0;
+    const double known = load.kind == LoadKind::pressure ? load.value * array.taxel_area_m2.value_or(0.0) : load.value;
+    for (const std::size_t taxel : taxels) {
+      sample.known_newtons[taxel] = is_shared ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(known);
+    }
+    if (is_shared) sample.totals.push_back({taxels, load.value});
+  }
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <vector>
+
+#include "calibration/force_network.hpp"
+#include "calibration/unloaded_fit.hpp"
+#include "dermis/calibration/sample_database.hpp"
+
+namespace dermis::calibration {
+
+/// One network for all taxels and a gain for each.
+struct SharedNetwork {
+  ForceNetwork network;
+  std::vector<double> gain;              ///< [taxels]; all 1 where gains did not help.
+  bool has_gains = false;
+  double leave_one_out_error = 0.0;      ///< Root mean square relative error of a load that is left out.
+};
+
+/// Trains through the sum: for every load, sum over its taxels of gain_i f(e_i, t) = newtons. The number of hidden
+/// units (0 ... 3) and whether there are gains are chosen by the analytic leave-one-out error; of several random starts
+/// the one with the lowest error is kept. Gains have a log-normal prior about 1, as wide as taxels are known to differ.
+/// Every live taxel counts as answering to the shared law. Deterministic, whatever the number of threads.
+[[nodiscard]] SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan& span,
+                                         const UnloadedFit& unloaded, const std::vector<bool>& dead);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <vector>
+
+#include "dermis/calibration/sample_database.hpp"
+
+namespace dermis::calibration {
+
+/// The temperatures of a calibration.
+struct TemperatureSpan {
+  double centre_celsius = 20.0;
+  double half_span_celsius = 0.0;
+  bool is_input = false;  ///< Every sample has a temperature and they differ enough to learn from.
+};
+
+[[nodiscard]] TemperatureSpan temperature_span(const SampleDatabase& database);
+
+/// Sample temperature from the centre [C]; 0 where temperature is not an input.
+[[nodiscard]] double temperature_offset(const Sample& sample, const TemperatureSpan& span);
+
+/// Unloaded conductance of every taxel, offset + per_celsius * dT, and the noise of one frame about it.
+struct UnloadedFit {
+  std::vector<double> offset_siemens;      ///< [taxels]
+  std::vector<double> offset_per_celsius;  ///< [taxels]
+  std::vector<double> noise_siemens;       ///< Standard deviation of a single frame [taxels], at least a third of a count.
+};
+
+/// Least squares over the frames in which nothing presses anywhere, at least one.
+[[nodiscard]] UnloadedFit fit_unloaded(const SampleDatabase& database, const TemperatureSpan& span);
+
+/// Conductance of a taxel above its unloaded value [S].
+[[nodiscard]] inline double excess_siemens(const Sample& sample, std::size_t taxel, const UnloadedFit& unloaded,
+                                           const TemperatureSpan& span) {
+  return sample.siemens[taxel] - unloaded.offset_siemens[taxel] -
+         unloaded.offset_per_celsius[taxel] * temperature_offset(sample, span);
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <vector>
+
+#include "dermis/compensation/crosstalk.hpp"
+
+namespace dermis::compensation {
+
+/// Columns at virtual ground, resistive row drivers: closed form, formula (2) of research/literature.md A.3.
+///
+///   y_kj = ratio_kj / load_ohm_j,   Y_k = sum_j y_kj,   G_kj = y_kj / (1 - drive_ohm_k Y_k)
+///
+/// Idle rows carry no current, grounded or floating, as every column is at 0 V.
+class VirtualGround final : public CrosstalkInversion {
+ public:
+  explicit VirtualGround(const ArrayDescription& array);
+  [[nodiscard]] bool invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
+  [[nodiscard]] double siemens_per_ratio() const noexcept override { return load_siemens_.front(); }
+
+ private:
+  std::vector<double> drive_ohm_;     // [rows]
+  std::vector<double> load_siemens_;  // [cols]
+};
+
+}  // namespace dermis::compensation

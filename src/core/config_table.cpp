@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/core/config_table.hpp"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace dermis {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20U;
+constexpr std::size_t kMaxKeyDotsPerLine = 64;
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+/// Keeps a message on one line whatever the file holds.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20U || c == 0x7FU; }, '?');
+  return text;
+}
+
+Result<std::string> read_text(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
+  if (!file) return bad_input(one_line("cannot open '" + path + "': " + std::strerror(errno)));
+  std::string text(kMaxBytes + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  if (std::ferror(file.get()) != 0) return failed(one_line("cannot read '" + path + "': " + std::strerror(errno)));
+  return text;
+}
+
+bool is_decimal_point(std::string_view line, std::size_t dot) {
+  std::size_t first = dot;
+  while (first > 0 && is_digit(line[first - 1])) --first;
+  const bool digits_around = first < dot && dot + 1 < line.size() && is_digit(line[dot + 1]);
+  return digits_around && (first == 0 || line[first - 1] != '.');
+}
+
+/// toml++ bounds the nesting of values but not the parts of a dotted key, and frees its tables recursively.
+bool has_too_deep_key(std::string_view line) {
+  std::size_t dots = 0;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool is_ellipsis = i > 0 && line[i - 1] == '.';
+    if (line[i] == '.' && !is_ellipsis && !is_decimal_point(line, i)) ++dots;
+  }
+  return dots > kMaxKeyDotsPerLine;
+}
+
+Status check_depth(std::string_view text, const std::string& name) {
+  for (std::size_t line_number = 1; !text.empty(); ++line_number) {
+    const std::size_t length = std::min(text.find('\n'), text.size());
+    if (has_too_deep_key(text.substr(0, length))) {
+      return bad_input(one_line(name + ":" + std::to_string(line_number) + ": too many dots in one line; break it"));
+    }
+    text.remove_prefix(std::min(length + 1, text.size()));
+  }
+  return Done{};
+}
+
+/// Number of inserted, removed or replaced characters that lead from a to b (Levenshtein).
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i + 1);
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+/// The known name nearest to `name`, or empty where none is near enough to be meant.
+std::string nearest_name(const std::string& name, const std::set<std::string>& known) {
+  constexpr std::size_t kMaxNameLength = 100;
+  if (name.size() > kMaxNameLength) return {};
+  std::string nearest;
+  std::size_t best = std::min<std::size_t>(3, 1 + name.size() / 4) + 1;
+  for (const std::string& candidate : known) {
+    const std::size_t distance = edit_distance(name, candidate);
+    if (distance < best) {
+      best = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+std::optional<double> finite_number(const toml::node& node) {
+  std::optional<double> number;
+  if (const toml::value<double>* real = node.as_floating_point()) number = real->get();
+  if (const toml::value<std::int64_t>* whole = node.as_integer()) number = static_cast<double>(whole->get());
+  return number && std::isfinite(*number) ? number : std::nullopt;
+}
+
+std::optional<std::vector<double>> finite_numbers(const toml::array& list) {
+  std::vector<double> numbers;
+  for (const toml::node& node : list) {
+    const std::optional<double> number = finite_number(node);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+std::string quoted_list(const std::vector<std::string>& names) {
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) list += i + 1 == names.size() ? " or " : ", ";
+    list += "\"" + names[i] + "\"";
+  }
+  return list;
+}
+
+}  // namespace
+
+struct ConfigFile::Parsed {
+  struct Unknown {
+    toml::source_index line = 0;
+    std::string key;
+    bool is_table = false;
+  };
+
+  std::string name;
+  toml::table root;
+  std::set<std::string> known_keys;
+  std::set<std::string> known_tables;
+  std::optional<Error> first_error;
+  bool first_error_is_missing_key = false;
+
+  const toml::node* find(std::string_view key) const {
+    const toml::table* table = &root;
+    while (table != nullptr) {
+      const std::size_t dot = key.find('.');
+      const toml::node* node = table->get(key.substr(0, dot));
+      if (dot == std::string_view::npos || node == nullptr) return node;
+      table = node->as_table();
+      key.remove_prefix(dot + 1);
+    }
+    return nullptr;
+  }
+
+  const toml::node* ask(std::string_view key) {
+    known_keys.emplace(key);
+    for (std::size_t dot = key.find('.'); dot != std::string_view::npos; dot = key.find('.', dot + 1)) {
+      known_tables.emplace(key.substr(0, dot));
+    }
+    return find(key);
+  }
+
+  void keep(const toml::node* node, std::string_view key, std::string_view message) {
+    if (first_error) return;
+    std::string text = name + ":";
+    if (node != nullptr) text += std::to_string(node->source().begin.line) + ":";
+    text.append(" ").append(key).append(": ").append(message);
+    first_error = bad_input(one_line(std::move(text)));
+    first_error_is_missing_key = node == nullptr;
+  }
+
+  void read_list(const toml::node& node, std::string_view key, std::size_t size, std::string wanted,
+                 std::vector<double>& values) {
+    const toml::array* list = node.as_array();
+    std::optional<std::vector<double>> numbers;
+    if (list != nullptr) numbers = finite_numbers(*list);
+    if (numbers && numbers->size() == size) {
+      values = std::move(*numbers);
+      return;
+    }
+    if (numbers) wanted += ", has " + std::to_string(numbers->size());
+    keep(&node, key, wanted);
+  }
+
+  /// The unknown key that stands first in the file.
+  void find_unknown(const toml::table& table, const std::string& prefix, std::optional<Unknown>& first) const {
+    for (const auto& [key, node] : table) {
+      const std::string path = prefix + std::string(key.str());
+      if (known_keys.contains(path)) continue;
+      const toml::table* inner = node.as_table();
+      if (inner != nullptr && known_tables.contains(path)) {
+        find_unknown(*inner, path + ".", first);
+        continue;
+      }
+      const toml::source_index line = key.source().begin.line;
+      if (!first || line < first->line) first = Unknown{line, path, inner != nullptr};
+    }
+  }
+
+  Error describe(const Unknown& unknown) const {
+    std::string text = name + ":" + std::to_string(unknown.line) + ": unknown " + (unknown.is_table ? "table" : "key") +
+                       " '" + unknown.key + "'";
+    const std::string nearest = nearest_name(unknown.key, unknown.is_table ? known_tables : known_keys);
+    if (!nearest.empty()) text += "; did you mean '" + nearest + "'?";
+    return bad_input(one_line(std::move(text)));
+  }
+};
+
+ConfigFile::ConfigFile() : parsed_(std::make_unique<Parsed>()) {}
+ConfigFile::ConfigFile(ConfigFile&&) noexcept = default;
+ConfigFile& ConfigFile::operator=(ConfigFile&&) noexcept = default;
+ConfigFile::~ConfigFile() = default;
+
+Result<ConfigFile> ConfigFile::read(const std::string& path) {
+  const Result<std::string> text = read_text(path);
+  if (!text) return text.error();
+  return parse(*text, path);
+}
+
+Result<ConfigFile> ConfigFile::parse(std::string_view text, const std::string& name) {
+  if (text.size() > kMaxBytes) return bad_input(one_line(name + ": is larger than 1 MiB"));
+  if (const Status depth = check_depth(text, name); !depth) return depth.error();
+  ConfigFile file;
+  file.parsed_->name = name;
+  try {
+    file.parsed_->root = toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    return bad_input(one_line(name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
+                              std::string(error.description())));
+  }
+  return file;
+}
+
+bool ConfigFile::contains(std::string_view key) const {
+  return parsed_->find(key) != nullptr;
+}
+
+bool ConfigFile::is_text(std::string_view key, std::string_view text) {
+  const toml::node* node = parsed_->ask(key);
+  return node != nullptr && node->is_string() && node->as_string()->get() == text;
+}
+
+void ConfigFile::number(std::string_view key, double& value) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  const std::optional<double> number = finite_number(*node);
+  if (!number) return parsed_->keep(node, key, "must be a number");
+  value = *number;
+}
+
+void ConfigFile::number(std::string_view key, std::optional<double>& value) {
+  double number_value = value.value_or(0.0);
+  number(key, number_value);
+  if (contains(key)) value = number_value;
+}
+
+void ConfigFile::integer(std::string_view key, int& value) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  const toml::value<std::int64_t>* whole = node->as_integer();
+  if (whole == nullptr || !std::in_range<int>(whole->get())) {
+    return parsed_->keep(node, key, "must be a whole number");
+  }
+  value = static_cast<int>(whole->get());
+}
+
+void ConfigFile::count(std::string_view key, std::size_t& value) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  const toml::value<std::int64_t>* whole = node->as_integer();
+  if (whole == nullptr || whole->get() < 0) return parsed_->keep(node, key, "must be a whole number of 0 or more");
+  value = static_cast<std::size_t>(whole->get());
+}
+
+void ConfigFile::boolean(std::string_view key, bool& value) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  if (!node->is_boolean()) return parsed_->keep(node, key, "must be true or false");
+  value = node->as_boolean()->get();
+}
+
+void ConfigFile::text(std::string_view key, std::string& value) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  if (!node->is_string()) return parsed_->keep(node, key, "must be a text in quotes");
+  value = node->as_string()->get();
+}
+
+void ConfigFile::number_per_line(std::string_view key, std::size_t size, std::vector<double>& values) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  const std::string wanted = "must be one number or a list of " + std::to_string(size) + " numbers";
+  if (node->is_array()) return parsed_->read_list(*node, key, size, wanted, values);
+  const std::optional<double> number = finite_number(*node);
+  if (!number) return parsed_->keep(node, key, wanted);
+  values.assign(size, *number);
+}
+
+void ConfigFile::numbers(std::string_view key, std::size_t size, std::vector<double>& values) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  parsed_->read_list(*node, key, size, "must be a list of " + std::to_string(size) + " numbers", values);
+}
+
+void ConfigFile::choice(std::string_view key, const std::vector<std::string>& names, std::size_t& index) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  const auto name =
+      std::find_if(names.begin(), names.end(), [&](const std::string& known) { return is_text(key, known); });
+  if (name == names.end()) return parsed_->keep(node, key, "must be " + quoted_list(names));
+  index = static_cast<std::size_t>(name - names.begin());
+}
+
+void ConfigFile::require(std::string_view key) {
+  if (parsed_->ask(key) == nullptr) parsed_->keep(nullptr, key, "is missing; it has no default");
+}
+
+void ConfigFile::fail(std::string_view key, std::string_view message) {
+  parsed_->keep(parsed_->find(key), key, message);
+}
+
+Status ConfigFile::finish() const {
+  const std::optional<Error>& error = parsed_->first_error;
+  if (error && !parsed_->first_error_is_missing_key) return *error;
+  std::optional<Parsed::Unknown> unknown;
+  parsed_->find_unknown(parsed_->root, "", unknown);
+  if (unknown) return parsed_->describe(*unknown);
+  if (error) return *error;
+  return Done{};
+}
+
+}  // namespace dermis

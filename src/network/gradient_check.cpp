@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/network/gradient_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dermis::network {
+
+double jacobian_deviation(const ResidualFunction& residual_function, std::size_t residual_count,
+                          std::span<const double> parameters) {
+  const std::size_t n = parameters.size();
+  std::vector<double> point(parameters.begin(), parameters.end());
+  std::vector<double> residuals(residual_count);
+  std::vector<double> jacobian(residual_count * n);
+  residual_function(point, residuals, jacobian);
+
+  const double relative_step = std::cbrt(std::numeric_limits<double>::epsilon());
+  std::vector<double> above(residual_count);
+  std::vector<double> below(residual_count);
+  double deviation = 0.0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const double step = relative_step * std::max(1.0, std::abs(point[k]));
+    const double centre = point[k];
+    point[k] = centre + step;
+    residual_function(point, above, {});
+    point[k] = centre - step;
+    residual_function(point, below, {});
+    point[k] = centre;
+    for (std::size_t i = 0; i < residual_count; ++i) {
+      const double analytic = jacobian[i * n + k];
+      const double numeric = (above[i] - below[i]) / (2.0 * step);
+      const double scale = std::max({1.0, std::abs(analytic), std::abs(numeric)});
+      deviation = std::max(deviation, std::abs(analytic - numeric) / scale);
+    }
+  }
+  return deviation;
+}
+
+}  // namespace dermis::network

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/pipeline/model.hpp"
+
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "dermis/store/array_toml.hpp"
+#include "dermis/store/safetensors.hpp"
+
+namespace dermis::pipeline {
+namespace {
+
+using fusion::ForceNetworks;
+using fusion::LookUpTables;
+using store::SafetensorsFile;
+
+constexpr const char* kFormat = "dermis model 1";
+constexpr const char* kProvenancePrefix = "provenance.";
+constexpr std::size_t kMaxBaselines = 16;
+
+/// The tensors of the networks, of shape [taxels] each; the file's names are the struct's.
+struct TaxelTensors {
+  std::array<std::pair<const char*, std::vector<double> ForceNetworks::*>, 2> doubles{
+      {{"networks.offset_siemens", &ForceNetworks::offset_siemens},
+       {"networks.offset_per_celsius", &ForceNetworks::offset_per_celsius}}};
+  std::array<std::pair<const char*, std::vector<float> ForceNetworks::*>, 4> floats{
+      {{"networks.reference_siemens", &ForceNetworks::reference_siemens},
+       {"networks.heaviest_siemens", &ForceNetworks::heaviest_siemens},
+       {"networks.heaviest_newtons", &ForceNetworks::heaviest_newtons},
+       {"networks.gain", &ForceNetworks::gain}}};
+};
+
+template <typename T>
+void put(SafetensorsFile& file, const std::string& name, std::vector<std::size_t> shape, const std::vector<T>& values) {
+  file.tensors[name] = {std::move(shape), values};
+}
+
+/// Copies a tensor out of the file; keeps the first error.
+class TensorReader {
+ public:
+  explicit TensorReader(const SafetensorsFile& file) : file_(file) {}
+
+  template <typename T>
+  void get(const std::string& name, const std::vector<std::size_t>& shape, std::vector<T>& values) {
+    const Result<std::span<const T>> view = file_.view<T>(name, shape);
+    if (view) {
+      values.assign(view->begin(), view->end());
+    } else if (!first_error_) {
+      first_error_ = view.error();
+    }
+  }
+
+  [[nodiscard]] const std::optional<Error>& first_error() const { return first_error_; }
+
+ private:
+  const SafetensorsFile& file_;
+  std::optional<Error> first_error_;
+};
+
+const std::string& metadata(const SafetensorsFile& file, const std::string& key) {
+  static const std::string kEmpty;
+  const auto found = file.metadata.find(key);
+  return found == file.metadata.end() ? kEmpty : found->second;
+}
+
+std::size_t metadata_count(const SafetensorsFile& file, const std::string& key) {
+  const std::string& text = metadata(file, key);
+  std::size_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() ? value : 0;
+}
+
+void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
+  const std::size_t taxels = networks.taxel_count();
+  file.metadata["networks.inputs"] = std::to_string(networks.shape.inputs);
+  file.metadata["networks.hidden"] = std::to_string(networks.shape.hidden);
+  put<double>(file, "networks.temperature_celsius", {2},
+              {networks.temperature_centre_celsius, networks.temperature_half_span_celsius});
+  const TaxelTensors tensors;
+  for (const auto& [name, member] : tensors.doubles) put(file, name, {taxels}, networks.*member);
+  for (const auto& [name, member] : tensors.floats) put(file, name, {taxels}, networks.*member);
+  put(file, "networks.dead", {taxels}, networks.dead);
+  put(file, "networks.parameters", {networks.shape.parameter_count(), taxels}, networks.parameters);
+}
+
+ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, TensorReader& reader) {
+  ForceNetworks networks;
+  networks.shape = {metadata_count(file, "networks.inputs"), metadata_count(file, "networks.hidden"), 2};
+  std::vector<double> temperature;
+  reader.get("networks.temperature_celsius", {2}, temperature);
+  if (temperature.size() == 2) {
+    networks.temperature_centre_celsius = temperature[0];
+    networks.temperature_half_span_celsius = temperature[1];
+  }
+  const TaxelTensors tensors;
+  for (const auto& [name, member] : tensors.doubles) reader.get(name, {taxels}, networks.*member);
+  for (const auto& [name, member] : tensors.floats) reader.get(name, {taxels}, networks.*member);
+  reader.get("networks.dead", {taxels}, networks.dead);
+  reader.get("networks.parameters", {networks.shape.parameter_count(), taxels}, networks.parameters);
+  return networks;
+}
+
+std::string baseline_key(std::size_t index, const char* field) {
+  return "baseline." + std::to_string(index) + "." + field;
+}
+
+void put_baseline(SafetensorsFile& file, std::size_t index, const LookUpTables& tables) {
+  const std::size_t taxels = tables.taxel_count();
+  file.metadata[baseline_key(index, "name")] = tables.name;
+  file.metadata[baseline_key(index, "signal")] =
+      tables.signal == fusion::LookUpSignal::reading ? "reading" : "conductance";
+  file.metadata[baseline_key(index, "knots")] = std::to_string(tables.knots);
+  put<double>(file, baseline_key(index, "reference_celsius"), {1}, {tables.reference_celsius});
+  put(file, baseline_key(index, "knot_signal"), {taxels, tables.knots}, tables.knot_signal);
+  put(file, baseline_key(index, "knot_newtons"), {taxels, tables.knots}, tables.knot_newtons);
+  put(file, baseline_key(index, "temperature_coefficient"), {taxels}, tables.temperature_coefficient);
+}
+
+LookUpTables get_baseline(const SafetensorsFile& file, std::size_t index, std::size_t taxels, TensorReader& reader) {
+  LookUpTables tables;
+  tables.name = metadata(file, baseline_key(index, "name"));
+  tables.signal = metadata(file, baseline_key(index, "signal")) == "reading" ? fusion::LookUpSignal::reading
+                                                                             : fusion::LookUpSignal::conductance;
+  tables.knots = metadata_count(file, baseline_key(index, "knots"));
+  std::vector<double> reference;
+  reader.get(baseline_key(index, "reference_celsius"), {1}, reference);
+  if (!reference.empty()) tables.reference_celsius = reference.front();
+  reader.get(baseline_key(index, "knot_signal"), {taxels, tables.knots}, tables.knot_signal);
+  reader.get(baseline_key(index, "knot_newtons"), {taxels, tables.knots}, tables.knot_newtons);
+  reader.get(baseline_key(index, "temperature_coefficient"), {taxels}, tables.temperature_coefficient);
+  return tables;
+}
+
+bool is_consistent(const Model& model) {
+  const std::size_t taxels = model.array.taxel_count();
+  if (model.networks.taxel_count() != taxels || !model.networks.is_consistent()) return false;
+  for (const LookUpTables& tables : model.baselines) {
+    if (tables.taxel_count() != taxels || !tables.is_consistent()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Status write_model(const std::string& path, const Model& model) {
+  SafetensorsFile file;
+  file.metadata["format"] = kFormat;
+  file.metadata["array"] = store::array_to_toml(model.array);
+  for (const auto& [key, text] : model.provenance) file.metadata[kProvenancePrefix + key] = text;
+  put_networks(file, model.networks);
+  file.metadata["baselines"] = std::to_string(model.baselines.size());
+  for (std::size_t index = 0; index < model.baselines.size(); ++index) {
+    put_baseline(file, index, model.baselines[index]);
+  }
+  return store::write_safetensors(path, file);
+}
+
+Result<Model> read_model(const std::string& path) {
+  const Result<SafetensorsFile> file = store::read_safetensors(path);
+  if (!file) return file.error();
+  if (metadata(*file, "format") != kFormat) {
+    return bad_input(path + ": is not a dermis model; write one with 'dermis calibrate'");
+  }
+  Model model;
+  Result<ArrayDescription> array = store::array_from_toml(metadata(*file, "array"), path + ": array");
+  if (!array) return array.error();
+  model.array = std::move(*array);
+
+  const std::size_t taxels = model.array.taxel_count();
+  TensorReader reader(*file);
+  model.networks = get_networks(*file, taxels, reader);
+  const std::size_t baselines = metadata_count(*file, "baselines");
+  for (std::size_t index = 0; index < baselines && index < kMaxBaselines; ++index) {
+    model.baselines.push_back(get_baseline(*file, index, taxels, reader));
+  }
+  if (reader.first_error()) return bad_input(path + ": " + reader.first_error()->message);
+  if (!is_consistent(model)) {
+    return bad_input(path + ": holds values out of range; write it again with 'dermis calibrate'");
+  }
+  const std::string prefix = kProvenancePrefix;
+  for (const auto& [key, text] : file->metadata) {
+    if (key.starts_with(prefix)) model.provenance[key.substr(prefix.size())] = text;
+  }
+  return model;
+}
+
+}  // namespace dermis::pipeline

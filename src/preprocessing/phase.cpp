@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/preprocessing/phase.hpp"
+
+namespace dermis::preprocessing {
+
+Phase PhaseSelector::phase_at(Nanos time) noexcept {
+  if (!start_) start_ = time;
+  return time - *start_ < settle_time_ ? Phase::settle : after_settling_;
+}
+
+Destination PhaseSelector::select(Nanos time, bool labelled) noexcept {
+  switch (phase_at(time)) {
+    case Phase::settle: return Destination::nowhere;
+    case Phase::calibrate: return labelled ? Destination::sample_database : Destination::nowhere;
+    case Phase::operate: return Destination::pipeline;
+  }
+  return Destination::nowhere;
+}
+
+}  // namespace dermis::preprocessing

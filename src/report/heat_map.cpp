@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/report/heat_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "report/canvas.hpp"
+
+namespace dermis::report {
+namespace {
+
+constexpr double kWidth = 270.0;
+constexpr double kLeft = 34.0;
+constexpr double kTop = 44.0;
+constexpr double kLargestSide = 168.0;  // Of the array [px].
+constexpr double kSmallestSide = 6.0;   // So that a single long row can still be seen.
+constexpr double kBottom = 26.0;
+constexpr double kBarGap = 10.0;
+constexpr double kBarWidth = 10.0;
+constexpr std::size_t kBarSteps = 64;
+constexpr std::size_t kColours = 256;
+constexpr std::size_t kMostTicks = 6;
+
+/// Gamma-encodes a linear sRGB component.
+std::uint8_t encoded(double linear) {
+  const double inside = std::clamp(linear, 0.0, 1.0);
+  const double srgb = inside <= 0.0031308 ? 12.92 * inside : 1.055 * std::pow(inside, 1.0 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(255.0 * srgb));
+}
+
+Colour from_oklab(double lightness, double a, double b) {
+  const auto cube = [](double x) { return x * x * x; };
+  const double l = cube(lightness + 0.3963377774 * a + 0.2158037573 * b);
+  const double m = cube(lightness - 0.1055613458 * a - 0.0638541728 * b);
+  const double s = cube(lightness - 0.0894841775 * a - 1.2914855480 * b);
+  return {encoded(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+          encoded(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+          encoded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+}
+
+std::string fill(std::size_t level) {
+  const Colour colour = sequential_colour(static_cast<double>(level) / static_cast<double>(kColours - 1));
+  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
+}
+
+class Painter {
+ public:
+  explicit Painter(const HeatMap& map) : map_(map) {
+    const double width = static_cast<double>(map.cols) * map.col_pitch;
+    const double height = static_cast<double>(map.rows) * map.row_pitch;
+    const double scale = kLargestSide / std::max(width, height);
+    width_ = std::max(width * scale, kSmallestSide);
+    height_ = std::max(height * scale, kSmallestSide);
+  }
+
+  Drawing paint() && {
+    canvas_.text("title", Anchor::start, {kLeft, 16.0}, map_.title);
+    draw_cells();
+    canvas_.rectangle("frame", {kLeft, kTop}, width_, height_);
+    draw_lines();
+    draw_scale();
+    const double height = kTop + std::max(height_, kLargestSide) + kBottom;
+    return {kWidth, height, map_.title + " [" + map_.unit + "]", std::move(canvas_).take()};
+  }
+
+ private:
+  [[nodiscard]] double left_of(std::size_t col) const {
+    return kLeft + width_ * static_cast<double>(col) / static_cast<double>(map_.cols);
+  }
+  [[nodiscard]] double top_of(std::size_t row) const {
+    return kTop + height_ * static_cast<double>(row) / static_cast<double>(map_.rows);
+  }
+
+  /// 0 ... kColours - 1, or kColours for a value that is not finite.
+  [[nodiscard]] std::size_t level(std::size_t row, std::size_t col) const {
+    const double value = map_.values[row * map_.cols + col];
+    if (!std::isfinite(value)) return kColours;
+    const double share = std::clamp(value / map_.high, 0.0, 1.0);
+    return static_cast<std::size_t>(std::lround(share * static_cast<double>(kColours - 1)));
+  }
+
+  /// One path a colour; neighbours of one colour in a row are one rectangle of it. Large arrays stay small files.
+  void draw_cells() {
+    std::map<std::size_t, std::string> rectangles;
+    std::string crosses;
+    for (std::size_t row = 0; row < map_.rows; ++row) {
+      for (std::size_t col = 0; col < map_.cols;) {
+        const std::size_t first = col;
+        const std::size_t colour = level(row, first);
+        while (col < map_.cols && level(row, col) == colour) ++col;
+        rectangles[colour] += cell_path(row, first, col);
+        for (std::size_t i = first; colour == kColours && i < col; ++i) crosses += cross_path(row, i);
+      }
+    }
+    for (const auto& [colour, data] : rectangles) draw_colour(colour, data);
+    canvas_.path("cross", crosses);
+  }
+
+  void draw_colour(std::size_t colour, const std::string& data) {
+    colour == kColours ? canvas_.path("nothing", data) : canvas_.filled_path("cell", fill(colour), data);
+  }
+
+  [[nodiscard]] std::string cell_path(std::size_t row, std::size_t first, std::size_t end) const {
+    return move_to({left_of(first), top_of(row)}) + "H" + coordinate(left_of(end)) + "V" + coordinate(top_of(row + 1)) +
+           "H" + coordinate(left_of(first)) + "z";
+  }
+
+  [[nodiscard]] std::string cross_path(std::size_t row, std::size_t col) const {
+    const Point from{left_of(col), top_of(row)};
+    const Point to{left_of(col + 1), top_of(row + 1)};
+    return move_to(from) + line_to(to) + move_to({from.x, to.y}) + line_to({to.x, from.y});
+  }
+
+  /// Names of the first and last lines: "c0" and "c15" above, "r0" and "r15" at the left.
+  void draw_lines() {
+    const auto column = [&](std::size_t col) {
+      const Point place{(left_of(col) + left_of(col + 1)) / 2.0, kTop - 6.0};
+      canvas_.text("small muted", Anchor::middle, place, "c" + std::to_string(col));
+    };
+    const auto row = [&](std::size_t line) {
+      const Point place{kLeft - 5.0, (top_of(line) + top_of(line + 1)) / 2.0 + 4.0};
+      canvas_.text("small muted", Anchor::end, place, "r" + std::to_string(line));
+    };
+    column(0);
+    row(0);
+    if (width_ > 48.0 && map_.cols > 1) column(map_.cols - 1);
+    if (height_ > 28.0 && map_.rows > 1) row(map_.rows - 1);
+  }
+
+  void draw_scale() {
+    const double left = kLeft + std::max(width_, 40.0) + kBarGap;
+    const double step = kLargestSide / static_cast<double>(kBarSteps);
+    for (std::size_t i = 0; i < kBarSteps; ++i) {
+      const double top = kTop + kLargestSide - step * static_cast<double>(i + 1);
+      const std::string data = move_to({left, top}) + "h" + coordinate(kBarWidth) + "V" + coordinate(top + step) + "H" +
+                               coordinate(left) + "z";
+      canvas_.filled_path("cell", fill(i * (kColours - 1) / (kBarSteps - 1)), data);
+    }
+    canvas_.rectangle("frame", {left, kTop}, kBarWidth, kLargestSide);
+    canvas_.text("small muted", Anchor::start, {left, kTop - 6.0}, map_.unit);
+    for (const double tick : linear_ticks(0.0, map_.high, kMostTicks)) {
+      const double y = kTop + kLargestSide * (1.0 - tick / map_.high);
+      canvas_.line("tick", {left + kBarWidth, y}, {left + kBarWidth + 4.0, y});
+      canvas_.text("small", Anchor::start, {left + kBarWidth + 7.0, y + 4.0}, tick_label(tick));
+    }
+  }
+
+  const HeatMap& map_;
+  Canvas canvas_;
+  double width_ = 0.0;
+  double height_ = 0.0;
+};
+
+}  // namespace
+
+Colour sequential_colour(double share) noexcept {
+  const double t = std::clamp(share, 0.0, 1.0);
+  const double lightness = 0.24 + 0.70 * t;
+  const double hue = (300.0 - 195.0 * t) * std::numbers::pi / 180.0;
+  const double chroma = 0.105 - 0.02 * std::sin(std::numbers::pi * t) + 0.06 * t * t;
+  return from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
+}
+
+double heat_map_high(const std::vector<double>& values) noexcept {
+  double high = 0.0;
+  for (const double value : values) {
+    if (std::isfinite(value)) high = std::max(high, value);
+  }
+  return high > 0.0 ? high : 1.0;
+}
+
+Drawing heat_map(const HeatMap& map) {
+  assert(map.rows >= 1 && map.cols >= 1 && map.values.size() == map.rows * map.cols);
+  assert(map.high > 0.0 && std::isfinite(map.high));
+  return Painter(map).paint();
+}
+
+}  // namespace dermis::report

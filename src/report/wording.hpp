@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace dermis::report {
+
+/// A number >= 0 with two significant digits, or whole from 10 on: "0.58", "2.4", "51".
+[[nodiscard]] std::string two_digits(double value);
+
+/// A relative error as "2.4 %". One that is not finite reads "no force": it stands for taxels without an estimate.
+[[nodiscard]] std::string percent(double fraction);
+
+/// "0.031 N", or "no force".
+[[nodiscard]] std::string newtons(double force);
+
+/// "12,345"
+[[nodiscard]] std::string grouped(std::size_t count);
+
+/// "1 frame", "12 frames"
+[[nodiscard]] std::string counted(std::size_t count, const std::string& noun);
+
+}  // namespace dermis::report

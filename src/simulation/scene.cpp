@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/simulation/scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "simulation/option_range.hpp"
+
+namespace dermis::simulation {
+namespace {
+
+constexpr std::array kNames = {"calibration", "uniform", "paper", "multitouch",
+                               "idle"};  // In the order of Scene::Kind.
+
+constexpr double kDefaultSupplyV = 5.0;
+constexpr double kRestS = 1.0;
+constexpr double kHoldS = 1.0;
+constexpr double kSoakS = 600.0;
+constexpr double kIdlePeriodS = 10.0;
+
+constexpr std::size_t kTemperatures = 5;
+constexpr double kHottestCelsius = 50.0;
+constexpr std::size_t kUnloadedFrames = 20;
+constexpr std::size_t kLevels = 14;
+constexpr double kLightestN = 0.5;
+constexpr double kHeaviestN = 50.0;
+constexpr double kLowestPa = 15e3;
+constexpr double kHighestPa = 700e3;
+constexpr std::size_t kFramesPerPressure = 5;
+
+constexpr std::array kPaperForcesN = {10.0, 20.0, 50.0};
+constexpr std::size_t kPaperPoints = 16;
+constexpr double kPaperCelsius = 20.0;
+constexpr std::uint64_t kPaperStream = std::numeric_limits<std::uint64_t>::max();  // No frame has this index.
+
+constexpr std::size_t kDefaultFrames = 1000;
+constexpr std::uint64_t kMaxContacts = 4;
+constexpr double kSingleTaxelShare = 0.4;
+constexpr double kWeakestContactN = 1.0;
+constexpr double kNarrowestPitches = 0.7;
+constexpr double kWidestPitches = 2.5;
+constexpr double kContactEdgeN = 0.02;
+
+double step_in_equal_ratios(double first, double last, std::size_t level) {
+  if (level + 1 == kLevels) return last;
+  return first * std::pow(last / first, static_cast<double>(level) / static_cast<double>(kLevels - 1));
+}
+
+double calibration_celsius(std::size_t index) {
+  return kHottestCelsius * static_cast<double>(index) / static_cast<double>(kTemperatures - 1);
+}
+
+std::string known_names() {
+  std::string names;
+  for (const char* name : kNames) names += (names.empty() ? "" : ", ") + std::string(name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> scene_names() {
+  return {kNames.begin(), kNames.end()};
+}
+
+Status EnvironmentOptions::validate() const {
+  return check_ranges({{"environment.supply_variation", supply_variation, 0.0, 0.5},
+                       {"environment.temperature_noise_celsius", temperature_noise_celsius, 0.0, 20.0},
+                       {"environment.supply_noise", supply_noise, 0.0, 0.1},
+                       {"environment.adc_noise_lsb", adc_noise_lsb, 0.0, 1000.0}});
+}
+
+Scene::Scene(Kind kind, const ArrayDescription& array, const EnvironmentOptions& environment, std::uint64_t seed)
+    : kind_(kind), array_(array), supply_variation_(environment.supply_variation), seed_(seed) {}
+
+Result<Scene> Scene::create(std::string_view name, const ArrayDescription& array, const EnvironmentOptions& environment,
+                            std::uint64_t seed, std::optional<std::size_t> frames) {
+  const auto* const found = std::find(kNames.begin(), kNames.end(), name);
+  if (found == kNames.end()) {
+    return bad_input("scene \"" + std::string(name) + "\": unknown; there are " + known_names());
+  }
+  if (Status valid = array.validate(); !valid) return valid.error();
+  if (Status valid = environment.validate(); !valid) return valid.error();
+  const Kind kind = static_cast<Kind>(found - kNames.begin());
+  Scene scene(kind, array, environment, seed);
+  if (Status suits = scene.check_array(); !suits) return suits.error();
+  if (frames && kind != Kind::multitouch && kind != Kind::idle) {
+    return bad_input("scene \"" + std::string(name) + "\": has a fixed number of frames");
+  }
+  if (frames && *frames == 0) return bad_input("scene \"" + std::string(name) + "\": needs at least 1 frame");
+  scene.frame_count_ = frames.value_or(scene.default_frame_count());
+  if (kind == Kind::paper) scene.choose_paper_taxels();
+  return scene;
+}
+
+Status Scene::check_array() const {
+  if (kind_ == Kind::uniform && !array_.taxel_area_m2) {
+    return bad_input("array.taxel_area_mm2: is missing; the scene \"uniform\" needs it to turn pressure into force");
+  }
+  if (kind_ == Kind::paper && array_.taxel_count() < kPaperPoints) {
+    return bad_input("scene \"paper\": needs an array of at least " + std::to_string(kPaperPoints) + " taxels");
+  }
+  return Done{};
+}
+
+std::size_t Scene::default_frame_count() const {
+  switch (kind_) {
+    case Kind::calibration: return kTemperatures * (kUnloadedFrames + kLevels * array_.taxel_count());
+    case Kind::uniform: return kTemperatures * (kUnloadedFrames + kLevels * kFramesPerPressure);
+    case Kind::paper: return kPaperForcesN.size() * kPaperPoints;
+    case Kind::multitouch:
+    case Kind::idle: break;
+  }
+  return kDefaultFrames;
+}
+
+void Scene::choose_paper_taxels() {
+  Random random = Random::stream(seed_, kPaperStream);
+  std::vector<std::size_t> deck(array_.taxel_count());
+  std::iota(deck.begin(), deck.end(), std::size_t{0});
+  for (std::size_t force = 0; force < kPaperForcesN.size(); ++force) {
+    for (std::size_t point = 0; point < kPaperPoints; ++point) {
+      std::swap(deck[point], deck[point + random.below(deck.size() - point)]);
+      paper_taxels_.push_back(deck[point]);
+    }
+  }
+}
+
+void Scene::frame(std::size_t index, SceneFrame& out) const {
+  assert(index < frame_count_);
+  Random random = Random::stream(seed_, index);
+  out.force_n.assign(array_.taxel_count(), 0.0);
+  out.loads.clear();
+  out.rest_s = kRestS;
+  out.hold_s = kHoldS;
+  const double nominal_v = array_.readout.supply_v.value_or(kDefaultSupplyV);
+  out.supply_v = nominal_v * (1.0 + supply_variation_ * random.uniform(-1.0, 1.0));
+  switch (kind_) {
+    case Kind::calibration: press_each_taxel(index, out); break;
+    case Kind::uniform: inflate_bladder(index, out); break;
+    case Kind::paper: press_as_in_paper(index, out); break;
+    case Kind::multitouch: touch(random, out); break;
+    case Kind::idle: leave_alone(index, out); break;
+  }
+  if (out.loads.empty()) label_forces(index, out);
+}
+
+void Scene::press_each_taxel(std::size_t index, SceneFrame& out) const {
+  const std::size_t taxels = array_.taxel_count();
+  const std::size_t per_temperature = kUnloadedFrames + kLevels * taxels;
+  const std::size_t step = index % per_temperature;
+  out.temperature_celsius = calibration_celsius(index / per_temperature);
+  if (step == 0) out.rest_s = kSoakS;
+  if (step < kUnloadedFrames) return;
+  const std::size_t press = step - kUnloadedFrames;
+  out.force_n[press % taxels] = step_in_equal_ratios(kLightestN, kHeaviestN, press / taxels);
+}
+
+void Scene::inflate_bladder(std::size_t index, SceneFrame& out) const {
+  constexpr std::size_t kPerTemperature = kUnloadedFrames + kLevels * kFramesPerPressure;
+  const std::size_t step = index % kPerTemperature;
+  out.temperature_celsius = calibration_celsius(index / kPerTemperature);
+  out.rest_s = step == 0 ? kSoakS : 0.0;
+  if (step < kUnloadedFrames) return;
+  const double pascal = step_in_equal_ratios(kLowestPa, kHighestPa, (step - kUnloadedFrames) / kFramesPerPressure);
+  std::fill(out.force_n.begin(), out.force_n.end(), pascal * *array_.taxel_area_m2);
+  out.loads.push_back({index, LoadKind::pressure, all_taxels(array_), pascal});
+}
+
+void Scene::press_as_in_paper(std::size_t index, SceneFrame& out) const {
+  out.temperature_celsius = kPaperCelsius;
+  out.force_n[paper_taxels_[index]] = kPaperForcesN[index / kPaperPoints];
+}
+
+void Scene::touch(Random& random, SceneFrame& out) const {
+  out.rest_s = 0.0;
+  out.temperature_celsius = random.uniform(0.0, kHottestCelsius);
+  const std::uint64_t contacts = 1 + random.below(kMaxContacts);
+  for (std::uint64_t contact = 0; contact < contacts; ++contact) add_contact(random, out.force_n);
+  for (double& force_n : out.force_n) force_n = std::min(force_n, kHeaviestN);
+}
+
+void Scene::leave_alone(std::size_t index, SceneFrame& out) const {
+  out.rest_s = 0.0;
+  out.hold_s = kIdlePeriodS;
+  const double phase = static_cast<double>(index) / static_cast<double>(frame_count_);
+  out.temperature_celsius = kHottestCelsius / 2.0 * (1.0 - std::cos(2.0 * std::numbers::pi * phase));
+}
+
+void Scene::add_contact(Random& random, std::vector<double>& force_n) const {
+  const double peak_n = random.log_uniform(kWeakestContactN, kHeaviestN);
+  if (random.uniform() < kSingleTaxelShare) {
+    force_n[random.below(force_n.size())] += peak_n;
+    return;
+  }
+  const double sigma_pitches = random.uniform(kNarrowestPitches, kWidestPitches);
+  const double centre_row = random.uniform(-0.5, static_cast<double>(array_.rows) - 0.5);
+  const double centre_col = random.uniform(-0.5, static_cast<double>(array_.cols) - 0.5);
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    for (std::size_t col = 0; col < array_.cols; ++col) {
+      const double away_rows = (static_cast<double>(row) - centre_row) / sigma_pitches;
+      const double away_cols = (static_cast<double>(col) - centre_col) / sigma_pitches;
+      const double share_n = peak_n * std::exp(-0.5 * (away_rows * away_rows + away_cols * away_cols));
+      if (share_n >= kContactEdgeN) force_n[array_.index(row, col)] += share_n;
+    }
+  }
+}
+
+void Scene::label_forces(std::size_t index, SceneFrame& out) const {
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    for (std::size_t col = 0; col < array_.cols; ++col) {
+      const double force_n = out.force_n[array_.index(row, col)];
+      if (force_n > 0.0) out.loads.push_back({index, LoadKind::force, {row, col, row, col}, force_n});
+    }
+  }
+  if (out.loads.empty()) out.loads.push_back({index, LoadKind::force, all_taxels(array_), 0.0});
+}
+
+}  // namespace dermis::simulation

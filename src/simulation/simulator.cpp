@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/simulation/simulator.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "dermis/core/config_table.hpp"
+
+namespace dermis::simulation {
+namespace {
+
+// Streams of the scene's seed that no frame index reaches.
+constexpr std::uint64_t kRubberNoiseStream = std::numeric_limits<std::uint64_t>::max() - 1;
+constexpr std::uint64_t kInstrumentStream = std::numeric_limits<std::uint64_t>::max() - 2;
+
+void read_rubber(ConfigFile& file, RubberOptions& rubber) {
+  if (file.contains("rubber.carbon_percent")) {
+    int carbon_percent = 10;
+    file.integer("rubber.carbon_percent", carbon_percent);
+    const Result<RubberOptions> grade = rubber_grade(carbon_percent);
+    if (!grade) return file.fail("rubber.carbon_percent", "must be 5, 10 or 15");
+    rubber = *grade;
+  }
+  std::size_t seed = rubber.seed;
+  file.count("rubber.seed", seed);
+  rubber.seed = seed;
+  file.number("rubber.resistance_at_10n_ohm", rubber.resistance_at_10n_ohm);
+  file.number("rubber.resistance_spread", rubber.resistance_spread);
+  file.number("rubber.exponent", rubber.exponent);
+  file.number("rubber.exponent_spread", rubber.exponent_spread);
+  file.number("rubber.unloaded_ohm", rubber.unloaded_ohm);
+  file.number("rubber.contact_ohm", rubber.contact_ohm);
+  file.number("rubber.temperature_coefficient", rubber.temperature_coefficient);
+  file.number("rubber.temperature_coefficient_spread", rubber.temperature_coefficient_spread);
+  file.number("rubber.temperature_curvature", rubber.temperature_curvature);
+  file.number("rubber.hysteresis", rubber.hysteresis);
+  file.number("rubber.creep", rubber.creep);
+  file.number("rubber.pink_noise", rubber.pink_noise);
+  file.number("rubber.mechanical_spread", rubber.mechanical_spread);
+}
+
+void read_environment(ConfigFile& file, EnvironmentOptions& environment) {
+  file.number("environment.supply_variation", environment.supply_variation);
+  file.number("environment.temperature_noise_celsius", environment.temperature_noise_celsius);
+  file.number("environment.supply_noise", environment.supply_noise);
+  file.number("environment.adc_noise_lsb", environment.adc_noise_lsb);
+}
+
+}  // namespace
+
+Status SimulationOptions::validate() const {
+  if (Status valid = rubber.validate(); !valid) return valid;
+  return environment.validate();
+}
+
+Result<SimulationOptions> read_simulation_options(const std::string& path) {
+  Result<ConfigFile> file = ConfigFile::read(path);
+  if (!file) return file.error();
+  SimulationOptions options;
+  read_rubber(*file, options.rubber);
+  read_environment(*file, options.environment);
+  if (Status complete = file->finish(); !complete) return complete.error();
+  if (Status valid = options.validate(); !valid) return bad_input(path + ": " + valid.error().message);
+  return options;
+}
+
+Simulator::Simulator(Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit, const Readout& readout,
+                     const EnvironmentOptions& environment, std::uint64_t seed)
+    : scene_(std::move(scene)),
+      rubber_(std::move(rubber)),
+      circuit_(std::move(circuit)),
+      adc_(readout, environment.adc_noise_lsb),
+      environment_(environment),
+      instruments_(Random::stream(seed, kInstrumentStream)),
+      unloaded_n_(rubber_.taxel_count()),
+      siemens_(rubber_.taxel_count()),
+      ratio_(rubber_.taxel_count()) {}
+
+Result<std::unique_ptr<Simulator>> Simulator::create(const ArrayDescription& array, const SimulationOptions& options,
+                                                     std::string_view scene, std::uint64_t seed,
+                                                     std::optional<std::size_t> frames) {
+  Result<Scene> script = Scene::create(scene, array, options.environment, seed, frames);
+  if (!script) return script.error();
+  const std::uint64_t noise_seed = Random::stream(seed, kRubberNoiseStream).bits();
+  Result<ConductiveRubber> rubber = ConductiveRubber::create(options.rubber, array.rows, array.cols, noise_seed);
+  if (!rubber) return rubber.error();
+  Result<ReadoutCircuit> circuit = ReadoutCircuit::create(array);
+  if (!circuit) return circuit.error();
+  return std::unique_ptr<Simulator>(new Simulator(*std::move(script), *std::move(rubber), *std::move(circuit),
+                                                  array.readout, options.environment, seed));
+}
+
+Result<bool> Simulator::next(RawFrame& frame) {
+  if (next_frame_ == scene_.frame_count()) return false;
+  scene_.frame(next_frame_++, truth_);
+  if (truth_.rest_s > 0.0) rubber_.press(unloaded_n_, truth_.rest_s);
+  rubber_.press(truth_.force_n, truth_.hold_s);
+  rubber_.read(truth_.temperature_celsius, siemens_);
+  circuit_.ratios(siemens_, ratio_);
+  time_s_ += truth_.rest_s + truth_.hold_s;
+
+  frame.time = Nanos(std::llround(time_s_ * 1e9));
+  frame.temperature_celsius =
+      truth_.temperature_celsius + environment_.temperature_noise_celsius * instruments_.normal();
+  frame.supply_v = truth_.supply_v * (1.0 + environment_.supply_noise * instruments_.normal());
+  frame.counts.resize(ratio_.size());
+  adc_.convert(ratio_, truth_.supply_v, instruments_, frame.counts);
+  return true;
+}
+
+}  // namespace dermis::simulation

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/store/forces_csv.hpp"
+
+#include <cassert>
+#include <utility>
+
+#include "store/taxel_text.hpp"
+#include "store/text.hpp"
+
+namespace dermis::store {
+
+ForcesCsvWriter::ForcesCsvWriter(AtomicFile file, std::size_t taxel_count)
+    : file_(std::move(file)), taxel_count_(taxel_count) {}
+
+Result<ForcesCsvWriter> ForcesCsvWriter::create(const std::string& path, std::size_t rows, std::size_t cols) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return file.error();
+  std::string header = "time_s,status";
+  append_taxel_names(header, rows, cols);
+  file->write(header + "\n");
+  return ForcesCsvWriter(*std::move(file), rows * cols);
+}
+
+Status ForcesCsvWriter::write(const ForceFrame& frame) {
+  assert(frame.newtons.size() == taxel_count_);
+  line_.clear();
+  append_seconds(line_, frame.time);
+  line_ += ',';
+  line_ += to_string(frame.status);
+  for (const float newtons : frame.newtons) {
+    line_ += ',';
+    append_number(line_, newtons);
+  }
+  line_ += '\n';
+  file_.write(line_);
+  return file_.status();
+}
+
+Status ForcesCsvWriter::commit() {
+  return file_.commit();
+}
+
+}  // namespace dermis::store

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace dermis::store {
+
+struct TaxelPlace {
+  std::size_t row = 0;
+  std::size_t col = 0;
+};
+
+/// Reads "r3c5".
+[[nodiscard]] std::optional<TaxelPlace> parse_taxel(std::string_view text);
+
+/// Appends ",r0c0,r0c1,..." row by row.
+void append_taxel_names(std::string& header, std::size_t rows, std::size_t cols);
+
+}  // namespace dermis::store

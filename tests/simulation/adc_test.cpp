@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/simulation/adc.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace dermis::simulation {
+namespace {
+
+std::vector<float> convert(const Readout& readout, double noise_lsb, const std::vector<double>& ratio, double supply_v,
+                           std::uint64_t seed = 1) {
+  Random random(seed);
+  std::vector<float> counts(ratio.size());
+  Adc(readout, noise_lsb).convert(ratio, supply_v, random, counts);
+  return counts;
+}
+
+TEST(Adc, RoundsToTheNearestCount) {
+  const Readout ratiometric;
+  const std::vector<double> ratio = {0.0, 0.49 / 4095.0, 0.51 / 4095.0, 2047.6 / 4095.0, 1.0};
+  EXPECT_EQ(convert(ratiometric, 0.0, ratio, 3.7), (std::vector<float>{0, 0, 1, 2048, 4095}));
+}
+
+TEST(Adc, FixedReferenceFollowsTheSupplyAndRatiometricDoesNot) {
+  Readout fixed;
+  fixed.adc_reference_v = 5.0;
+  EXPECT_EQ(convert(fixed, 0.0, {0.5}, 4.0), (std::vector<float>{1638}));
+  EXPECT_EQ(convert(fixed, 0.0, {0.5}, 5.0), (std::vector<float>{2048}));
+  EXPECT_EQ(convert(Readout{}, 0.0, {0.5}, 4.0), (std::vector<float>{2048}));
+}
+
+TEST(Adc, ClampsToItsRange) {
+  Readout readout;
+  readout.adc_bits = 10;
+  EXPECT_EQ(convert(readout, 0.0, {-0.2, 1.3}, 5.0), (std::vector<float>{0, 1023}));
+}
+
+TEST(Adc, NoiseHasTheAskedVarianceOnTopOfTheRounding) {
+  constexpr std::size_t kReadings = 100'000;
+  const auto counts = convert(Readout{}, 2.0, std::vector<double>(kReadings, 1000.0 / 4095.0), 5.0);
+  double mean = 0.0;
+  double variance = 0.0;
+  for (const float count : counts) mean += count / kReadings;
+  for (const float count : counts) variance += (count - mean) * (count - mean) / kReadings;
+  EXPECT_NEAR(mean, 1000.0, 5.0 * 2.0 / std::sqrt(kReadings));
+  EXPECT_NEAR(variance, 4.0 + 1.0 / 12.0, 5.0 * 4.0 * std::sqrt(2.0 / kReadings));
+}
+
+TEST(Adc, SameSeedGivesTheSameCounts) {
+  const std::vector<double> ratio(100, 0.3);
+  EXPECT_EQ(convert(Readout{}, 1.0, ratio, 5.0, 4), convert(Readout{}, 1.0, ratio, 5.0, 4));
+  EXPECT_NE(convert(Readout{}, 1.0, ratio, 5.0, 4), convert(Readout{}, 1.0, ratio, 5.0, 5));
+}
+
+}  // namespace
+}  // namespace dermis::simulation

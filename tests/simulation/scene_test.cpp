@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/simulation/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <vector>
+
+namespace dermis::simulation {
+namespace {
+
+ArrayDescription make_array(std::size_t rows, std::size_t cols) {
+  ArrayDescription array;
+  array.rows = rows;
+  array.cols = cols;
+  array.taxel_area_m2 = 38.48e-6;
+  array.readout.drive_ohm.assign(rows, 20.0);
+  array.readout.load_ohm.assign(cols, 200.0);
+  array.readout.supply_v = 5.0;
+  return array;
+}
+
+std::vector<SceneFrame> play(std::string_view name, const ArrayDescription& array, std::uint64_t seed = 1,
+                             std::optional<std::size_t> frames = {}) {
+  const Scene scene = Scene::create(name, array, EnvironmentOptions{}, seed, frames).value();
+  std::vector<SceneFrame> played(scene.frame_count());
+  for (std::size_t i = 0; i < played.size(); ++i) scene.frame(i, played[i]);
+  return played;
+}
+
+double total(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+TEST(Scene, LabelsOfEveryFrameStateItsForces) {
+  const ArrayDescription array = make_array(5, 4);
+  for (const std::string& name : scene_names()) {
+    const auto frames = play(name, array);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      ASSERT_FALSE(frames[i].loads.empty()) << name;
+      std::vector<double> labelled(array.taxel_count(), 0.0);
+      for (const Load& load : frames[i].loads) {
+        EXPECT_EQ(load.frame, i);
+        const double on_each = load.kind == LoadKind::pressure ? load.value * *array.taxel_area_m2 : load.value;
+        for (const std::size_t taxel : taxel_indices(load.where, array.cols)) labelled[taxel] = on_each;
+      }
+      EXPECT_EQ(labelled, frames[i].force_n) << name << " frame " << i;
+    }
+  }
+}
+
+TEST(Scene, SupplyStaysWithinTenPercent) {
+  const auto frames = play("multitouch", make_array(4, 4));
+  const auto [low, high] = std::minmax_element(frames.begin(), frames.end(),
+                                               [](const auto& a, const auto& b) { return a.supply_v < b.supply_v; });
+  EXPECT_GE(low->supply_v, 4.5);
+  EXPECT_LT(low->supply_v, 4.51);
+  EXPECT_LE(high->supply_v, 5.5);
+  EXPECT_GT(high->supply_v, 5.49);
+}
+
+TEST(Scene, CalibrationPressesEachTaxelAloneAtEveryForceAndTemperature) {
+  const ArrayDescription array = make_array(3, 4);
+  const auto frames = play("calibration", array);
+  EXPECT_EQ(frames.size(), 5 * (20 + 14 * 12));
+  std::map<std::pair<double, std::size_t>, std::vector<double>> presses;
+  std::map<double, int> unloaded;
+  for (const SceneFrame& frame : frames) {
+    const auto loaded = std::count_if(frame.force_n.begin(), frame.force_n.end(), [](double n) { return n > 0.0; });
+    ASSERT_LE(loaded, 1);
+    if (loaded == 0) {
+      ++unloaded[frame.temperature_celsius];
+      continue;
+    }
+    const auto pressed = std::max_element(frame.force_n.begin(), frame.force_n.end());
+    const auto taxel = static_cast<std::size_t>(pressed - frame.force_n.begin());
+    presses[{frame.temperature_celsius, taxel}].push_back(*pressed);
+    EXPECT_EQ(frame.hold_s, 1.0);
+    EXPECT_GE(frame.rest_s, 1.0);
+  }
+  EXPECT_EQ(unloaded, (std::map<double, int>{{0.0, 20}, {12.5, 20}, {25.0, 20}, {37.5, 20}, {50.0, 20}}));
+  EXPECT_EQ(presses.size(), 5U * 12U);
+  for (const auto& [where, forces_n] : presses) {
+    ASSERT_EQ(forces_n.size(), 14U);
+    EXPECT_EQ(forces_n.front(), 0.5);
+    EXPECT_EQ(forces_n.back(), 50.0);
+    for (std::size_t i = 1; i < 14; ++i) EXPECT_NEAR(forces_n[i] / forces_n[i - 1], std::pow(100.0, 1.0 / 13.0), 1e-12);
+  }
+}
+
+TEST(Scene, CalibrationOfTheReferenceArrayHas17920Presses) {
+  const Scene scene = Scene::create("calibration", make_array(16, 16), EnvironmentOptions{}, 1).value();
+  EXPECT_EQ(scene.frame_count(), 17'920U + 100U);
+}
+
+TEST(Scene, UniformLabelsPressureOnAllTaxels) {
+  const ArrayDescription array = make_array(3, 3);
+  const auto frames = play("uniform", array);
+  EXPECT_EQ(frames.size(), 5U * (20 + 70));
+  std::set<double> levels;
+  for (const SceneFrame& frame : frames) {
+    ASSERT_EQ(frame.loads.size(), 1U);
+    EXPECT_EQ(frame.loads[0].where, all_taxels(array));
+    if (frame.loads[0].kind == LoadKind::pressure) {
+      levels.insert(frame.loads[0].value);
+    } else {
+      EXPECT_EQ(total(frame.force_n), 0.0);
+    }
+  }
+  EXPECT_EQ(levels.size(), 14U);
+  EXPECT_EQ(*levels.begin(), 15e3);
+  EXPECT_EQ(*levels.rbegin(), 700e3);
+}
+
+TEST(Scene, PaperPressesSixteenDifferentTaxelsAtEachForce) {
+  const auto frames = play("paper", make_array(16, 16));
+  ASSERT_EQ(frames.size(), 48U);
+  std::map<double, std::set<std::size_t>> taxels;
+  for (const SceneFrame& frame : frames) {
+    ASSERT_EQ(frame.loads.size(), 1U);
+    EXPECT_EQ(frame.temperature_celsius, 20.0);
+    taxels[frame.loads[0].value].insert(16 * frame.loads[0].where.first_row + frame.loads[0].where.first_col);
+  }
+  ASSERT_EQ(taxels.size(), 3U);
+  for (const double force_n : {10.0, 20.0, 50.0}) EXPECT_EQ(taxels[force_n].size(), 16U);
+  EXPECT_NE(taxels[10.0], taxels[20.0]);
+}
+
+TEST(Scene, MultitouchStaysInTheCalibratedRange) {
+  const auto frames = play("multitouch", make_array(16, 16));
+  ASSERT_EQ(frames.size(), 1000U);
+  std::size_t on_one_taxel = 0;
+  for (const SceneFrame& frame : frames) {
+    EXPECT_GE(frame.temperature_celsius, 0.0);
+    EXPECT_LT(frame.temperature_celsius, 50.0);
+    EXPECT_GT(total(frame.force_n), 0.0);
+    for (const double force_n : frame.force_n) {
+      EXPECT_LE(force_n, 50.0);
+      EXPECT_TRUE(force_n == 0.0 || force_n >= 0.02);
+    }
+    if (frame.loads.size() == 1) ++on_one_taxel;
+  }
+  // One contact (1/4) on a single taxel (0.4), or up to four on the same one (rare): about 10 %.
+  EXPECT_NEAR(static_cast<double>(on_one_taxel) / 1000.0, 0.1, 5.0 * std::sqrt(0.1 * 0.9 / 1000.0));
+}
+
+TEST(Scene, IdleWarmsUpAndCoolsDownUnloaded) {
+  const auto frames = play("idle", make_array(2, 2), 1, 100);
+  ASSERT_EQ(frames.size(), 100U);
+  EXPECT_EQ(frames[0].temperature_celsius, 0.0);
+  EXPECT_NEAR(frames[50].temperature_celsius, 50.0, 1e-12);
+  EXPECT_NEAR(frames[25].temperature_celsius, frames[75].temperature_celsius, 1e-9);
+  for (const SceneFrame& frame : frames) EXPECT_EQ(total(frame.force_n), 0.0);
+}
+
+TEST(Scene, FramesDependOnSeedAndIndexAlone) {
+  const ArrayDescription array = make_array(6, 6);
+  const auto frames = play("multitouch", array, 5, 50);
+  const Scene longer = Scene::create("multitouch", array, EnvironmentOptions{}, 5, 500).value();
+  SceneFrame frame;
+  longer.frame(31, frame);
+  EXPECT_EQ(frame.force_n, frames[31].force_n);
+  EXPECT_EQ(frame.supply_v, frames[31].supply_v);
+  EXPECT_NE(play("multitouch", array, 6, 50)[31].force_n, frames[31].force_n);
+}
+
+TEST(Scene, RefusesWhatItCannotPlay) {
+  ArrayDescription array = make_array(3, 3);
+  const auto message = [&](std::string_view name, std::optional<std::size_t> frames = {}) {
+    return Scene::create(name, array, EnvironmentOptions{}, 1, frames).error().message;
+  };
+  EXPECT_NE(message("nap").find("calibration, uniform, paper, multitouch, idle"), std::string::npos);
+  EXPECT_NE(message("paper").find("at least 16 taxels"), std::string::npos);
+  EXPECT_NE(message("calibration", 10).find("fixed number"), std::string::npos);
+  EXPECT_NE(message("idle", 0).find("at least 1 frame"), std::string::npos);
+  array.taxel_area_m2.reset();
+  EXPECT_NE(message("uniform").find("array.taxel_area_mm2"), std::string::npos);
+  EnvironmentOptions environment;
+  environment.supply_variation = 0.9;
+  EXPECT_EQ(Scene::create("idle", array, environment, 1).error().message.find("environment.supply_variation:"), 0U);
+}
+
+}  // namespace
+}  // namespace dermis::simulation

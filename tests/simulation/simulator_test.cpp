@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/simulation/simulator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "dermis/core/parallel.hpp"
+
+namespace dermis::simulation {
+namespace {
+
+ArrayDescription make_array(std::size_t rows, std::size_t cols) {
+  ArrayDescription array;
+  array.rows = rows;
+  array.cols = cols;
+  array.taxel_area_m2 = kPaperDiscAreaM2;
+  array.readout.drive_ohm.assign(rows, 20.0);
+  array.readout.load_ohm.assign(cols, 200.0);
+  array.readout.adc_reference_v = 5.0;
+  array.readout.supply_v = 5.0;
+  return array;
+}
+
+std::unique_ptr<Simulator> simulate(const ArrayDescription& array, std::string_view scene, std::uint64_t seed,
+                                    std::optional<std::size_t> frames = {}, const SimulationOptions& options = {}) {
+  return Simulator::create(array, options, scene, seed, frames).value();
+}
+
+std::vector<RawFrame> record(Simulator& simulator) {
+  std::vector<RawFrame> frames;
+  for (RawFrame frame; *simulator.next(frame);) frames.push_back(frame);
+  return frames;
+}
+
+bool same_frame(const RawFrame& a, const RawFrame& b) {
+  return a.time == b.time && a.temperature_celsius == b.temperature_celsius && a.supply_v == b.supply_v &&
+         a.counts == b.counts;
+}
+
+TEST(Simulator, GivesAsManyFramesAsTheSceneHas) {
+  const auto simulator = simulate(make_array(4, 3), "multitouch", 1, 25);
+  EXPECT_EQ(simulator->frame_count(), 25U);
+  const auto frames = record(*simulator);
+  ASSERT_EQ(frames.size(), 25U);
+  EXPECT_EQ(frames[0].counts.size(), 12U);
+  EXPECT_EQ(frames[24].time, std::chrono::seconds(25));
+  RawFrame frame;
+  EXPECT_FALSE(*simulator->next(frame));
+}
+
+TEST(Simulator, SameSeedGivesTheSameFramesInAnyThread) {
+  const ArrayDescription array = make_array(5, 5);
+  std::vector<std::vector<RawFrame>> runs(8);
+  parallel_for(runs.size(), [&](std::size_t i) { runs[i] = record(*simulate(array, "multitouch", i / 2, 40)); });
+  for (std::size_t frame = 0; frame < 40; ++frame) {
+    for (std::size_t i = 0; i < runs.size(); i += 2) EXPECT_TRUE(same_frame(runs[i][frame], runs[i + 1][frame]));
+    EXPECT_FALSE(same_frame(runs[0][frame], runs[2][frame]));
+  }
+}
+
+TEST(Simulator, TheSamePieceOfRubberGoesThroughAllScenes) {
+  const ArrayDescription array = make_array(4, 4);
+  const auto calibration = simulate(array, "calibration", 1);
+  const auto multitouch = simulate(array, "multitouch", 2);
+  for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+    EXPECT_EQ(calibration->rubber().conductance_from_force(taxel, 7.0, 33.0),
+              multitouch->rubber().conductance_from_force(taxel, 7.0, 33.0));
+  }
+}
+
+TEST(Simulator, TrueLawFindsTheTrueForcesButForTheMaterialNoise) {
+  const ArrayDescription array = make_array(8, 8);
+  const auto simulator = simulate(array, "multitouch", 3, 100);
+  RawFrame frame;
+  while (*simulator->next(frame)) {
+    for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+      const double true_n = simulator->truth().force_n[taxel];
+      const double found_n = simulator->rubber().force_from_conductance(taxel, simulator->true_siemens()[taxel],
+                                                                        simulator->truth().temperature_celsius);
+      if (true_n >= 1.0) {
+        EXPECT_NEAR(found_n / true_n, 1.0, 2e-3);
+      }
+    }
+  }
+}
+
+TEST(Simulator, CountsAreTheCircuitsReadings) {
+  const ArrayDescription array = make_array(6, 6);
+  SimulationOptions options;
+  options.environment.adc_noise_lsb = 0.0;
+  const auto simulator = simulate(array, "multitouch", 4, 20, options);
+  const ReadoutCircuit circuit = ReadoutCircuit::create(array).value();
+  std::vector<double> ratio(array.taxel_count());
+  RawFrame frame;
+  while (*simulator->next(frame)) {
+    circuit.ratios(simulator->true_siemens(), ratio);
+    for (std::size_t i = 0; i < ratio.size(); ++i) {
+      EXPECT_NEAR(frame.counts[i], ratio[i] * simulator->truth().supply_v / 5.0 * 4095.0, 0.5 + 1e-6);
+    }
+  }
+}
+
+TEST(Simulator, InstrumentsReportWithTheirNoise) {
+  constexpr std::size_t kFrames = 4000;
+  const auto simulator = simulate(make_array(1, 1), "idle", 5, kFrames);
+  double temperature_variance = 0.0;
+  double supply_variance = 0.0;
+  RawFrame frame;
+  while (*simulator->next(frame)) {
+    const double celsius = *frame.temperature_celsius - simulator->truth().temperature_celsius;
+    const double relative = *frame.supply_v / simulator->truth().supply_v - 1.0;
+    temperature_variance += celsius * celsius / kFrames;
+    supply_variance += relative * relative / kFrames;
+  }
+  const double five_sigma = 5.0 * std::sqrt(2.0 / kFrames);
+  EXPECT_NEAR(temperature_variance / (0.3 * 0.3), 1.0, five_sigma);
+  EXPECT_NEAR(supply_variance / (0.001 * 0.001), 1.0, five_sigma);
+}
+
+TEST(Simulator, CreepIsSeenInTheConductanceOfAPress) {
+  SimulationOptions options;
+  options.rubber.creep = 0.1;
+  options.rubber.pink_noise = 0.0;
+  const auto simulator = simulate(make_array(4, 4), "paper", 6, {}, options);
+  RawFrame frame;
+  ASSERT_TRUE(*simulator->next(frame));
+  const Load press = simulator->loads().front();
+  const std::size_t taxel = 4 * press.where.first_row + press.where.first_col;
+  const double felt_n = simulator->rubber().force_from_conductance(taxel, simulator->true_siemens()[taxel], 20.0);
+  const double late = (3.0 - std::exp(-10.0) - std::exp(-1.0 / 3.0) - std::exp(-0.01)) / 3.0;
+  EXPECT_NEAR(felt_n, press.value * (0.9 + 0.1 * late), 1e-9);
+}
+
+TEST(Simulator, RefusesOptionsOutOfRange) {
+  SimulationOptions options;
+  options.rubber.hysteresis = 2.0;
+  EXPECT_EQ(options.validate().error().message.find("rubber.hysteresis:"), 0U);
+  EXPECT_EQ(Simulator::create(make_array(2, 2), options, "idle", 1).error().kind, ErrorKind::bad_input);
+}
+
+Result<SimulationOptions> read_text(const std::string& text) {
+  const auto path =
+      std::filesystem::temp_directory_path() / ("dermis_" + std::to_string(std::random_device{}()) + ".toml");
+  std::ofstream(path) << text;
+  Result<SimulationOptions> options = read_simulation_options(path.string());
+  std::filesystem::remove(path);
+  return options;
+}
+
+TEST(SimulationOptionsFile, SetsWhatItNamesAndKeepsTheOtherDefaults) {
+  const auto options = read_text("[rubber]\nseed = 9\nhysteresis = 0.1\n[environment]\nadc_noise_lsb = 0.5\n");
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->rubber.seed, 9U);
+  EXPECT_EQ(options->rubber.hysteresis, 0.1);
+  EXPECT_EQ(options->rubber.exponent, RubberOptions{}.exponent);
+  EXPECT_EQ(options->environment.adc_noise_lsb, 0.5);
+  EXPECT_EQ(options->environment.supply_noise, EnvironmentOptions{}.supply_noise);
+}
+
+TEST(SimulationOptionsFile, GradeComesBeforeTheOtherKeys) {
+  const auto options = read_text("[rubber]\nexponent = 0.95\ncarbon_percent = 15\n");
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->rubber.exponent, 0.95);
+  EXPECT_EQ(options->rubber.resistance_at_10n_ohm, rubber_grade(15)->resistance_at_10n_ohm);
+}
+
+TEST(SimulationOptionsFile, NamesWhatIsWrong) {
+  EXPECT_NE(read_text("[rubber]\nhysterisis = 0.1\n").error().message.find("hysteresis"), std::string::npos);
+  EXPECT_NE(read_text("[rubber]\ncreep = 3\n").error().message.find("rubber.creep"), std::string::npos);
+  EXPECT_NE(read_text("[rubber]\ncarbon_percent = 7\n").error().message.find("5, 10 or 15"), std::string::npos);
+  EXPECT_EQ(read_simulation_options("/nonexistent/options.toml").error().kind, ErrorKind::bad_input);
+}
+
+}  // namespace
+}  // namespace dermis::simulation
