@@ -51,10 +51,7 @@ void print_text(const CalibrationReport& report, const ArrayDescription& array) 
   fmt::print("{}\n", training.choice);
   fmt::print("loads {:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons);
   if (training.uses_temperature) fmt::print(", {:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius);
-  fmt::print("\nfit on the calibration itself: median {:.2f} %, worst taxel {} {:.2f} %\n",
-             100.0 * training.median_fit_error,
-             taxel_name(training.worst_taxel / array.cols, training.worst_taxel % array.cols),
-             100.0 * training.worst_fit_error);
+  fmt::print("\nfit: {}\n", calibration::describe_fit(training, array));
   for (const std::size_t taxel : training.dead_taxels) {
     fmt::print("dead taxel {}: it does not answer to its loads\n", taxel_name(taxel / array.cols, taxel % array.cols));
   }
@@ -76,6 +73,7 @@ void print_json(const CalibrationReport& report, const ArrayDescription& array) 
                                  {"heaviest_newtons", training.heaviest_newtons},
                                  {"median_fit_error", training.median_fit_error},
                                  {"worst_fit_error", training.worst_fit_error},
+                                 {"shared_leave_one_out_error", training.shared_leave_one_out_error},
                                  {"dead_taxels", nlohmann::ordered_json::array()},
                                  {"seconds", nlohmann::ordered_json::object()}};
   for (const std::size_t taxel : training.dead_taxels) {

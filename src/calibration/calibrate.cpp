@@ -31,10 +31,7 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
       {"networks", training.choice},
       {"loads", fmt::format("{:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons)},
       {"dead taxels", fmt::format("{}", training.dead_taxels.size())},
-      {"fit error",
-       fmt::format("median {:.2f} %, worst {:.2f} % ({})", 100.0 * training.median_fit_error,
-                   100.0 * training.worst_fit_error,
-                   taxel_name(training.worst_taxel / array.cols, training.worst_taxel % array.cols))}};
+      {"fit error", describe_fit(training, array)}};
   facts["temperature"] =
       training.uses_temperature
           ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)

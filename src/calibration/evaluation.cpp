@@ -195,6 +195,15 @@ std::vector<double> equal_edges(const std::vector<JudgedTaxel>& taxels, std::siz
   return edges;
 }
 
+/// One bin for every number of contacts.
+std::vector<double> contact_edges(const std::vector<JudgedTaxel>& taxels) {
+  std::size_t most = 0;
+  for (const JudgedTaxel& taxel : taxels) most = std::max(most, taxel.contacts);
+  std::vector<double> edges;
+  for (std::size_t contacts = 1; contacts <= most + 1; ++contacts) edges.push_back(static_cast<double>(contacts));
+  return edges;
+}
+
 void break_down_all(Evaluation& evaluation) {
   const auto force = [](const auto& judged) { return std::optional<double>(judged.true_newtons); };
   const auto temperature = [](const auto& judged) { return judged.temperature_celsius; };
@@ -211,7 +220,7 @@ void break_down_all(Evaluation& evaluation) {
   evaluation.by_supply = of_taxel([](const JudgedTaxel& taxel) { return taxel.supply_v; },
                                   equal_edges(evaluation.taxels, 5, &JudgedTaxel::supply_v));
   evaluation.by_contacts = of_taxel([](const JudgedTaxel& taxel) { return static_cast<double>(taxel.contacts); },
-                                    {1, 2, 3, 4, 5, 6, 7, 8, 9});
+                                    contact_edges(evaluation.taxels));
 }
 
 bool is_good_example(const Sample& truth) {

@@ -213,6 +213,20 @@ std::string describe(const TrainingReport& report, bool has_gains) {
 
 }  // namespace
 
+std::string describe_fit(const TrainingReport& report, const ArrayDescription& array) {
+  std::string text;
+  if (report.own_networks > 0) {
+    text = fmt::format("median {:.2f} %, worst taxel {} {:.2f} % on their own samples", 100.0 * report.median_fit_error,
+                       taxel_name(report.worst_taxel / array.cols, report.worst_taxel % array.cols),
+                       100.0 * report.worst_fit_error);
+  }
+  if (report.shared_networks > 0) {
+    text += fmt::format("{}shared network {:.2f} % on loads left out", text.empty() ? "" : "; ",
+                        100.0 * report.shared_leave_one_out_error);
+  }
+  return text;
+}
+
 Result<ForceTraining> train_force_networks(const SampleDatabase& database,
                                            const std::function<void(double)>& progress) {
   ForceTraining training;

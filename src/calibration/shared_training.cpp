@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "dermis/core/parallel.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
@@ -15,7 +14,9 @@ namespace {
 
 constexpr std::size_t kMostHiddenUnits = 3;
 constexpr std::size_t kStarts = 6;
-constexpr std::size_t kMostLoads = 2000;       // more loads are thinned out evenly
+constexpr int kMaxIterations = 120;
+constexpr std::size_t kMostSharesForStart = 15'000;  // taxels of all loads together, thinned out evenly beyond:
+constexpr std::size_t kMostShares = 300'000;        // to choose among the starts, and for the final training
 constexpr double kActive = 3.0;                // in standard deviations of the unloaded reading
 constexpr double kExpectedError = 0.05;        // relative error of a load, before the data say better
 constexpr double kGainDeviation = 0.15;        // of ln(gain): literature.md B, taxel-to-taxel 10-20 %
@@ -53,10 +54,18 @@ class LoadCollector {
         if (newtons > 0.0) add(sample, {taxel}, newtons);
       }
     }
-    thin_out();
   }
 
-  [[nodiscard]] const std::vector<RawLoad>& loads() const { return loads_; }
+  /// All loads, or as many of them, evenly, as hold about `most_shares` taxels.
+  [[nodiscard]] std::vector<RawLoad> loads(std::size_t most_shares) const {
+    std::size_t shares = 0;
+    for (const RawLoad& load : loads_) shares += load.excess.size();
+    if (shares <= most_shares) return loads_;
+    const std::size_t count = std::max<std::size_t>(loads_.size() * most_shares / shares, 1);
+    std::vector<RawLoad> kept;
+    for (std::size_t k = 0; k < count; ++k) kept.push_back(loads_[k * loads_.size() / count]);
+    return kept;
+  }
 
  private:
   void add(const Sample& sample, const std::vector<std::size_t>& taxels, double newtons) {
@@ -72,13 +81,6 @@ class LoadCollector {
       is_felt = is_felt || excess > kActive * unloaded_.noise_siemens[taxel];
     }
     if (is_felt) loads_.push_back(std::move(load));
-  }
-
-  void thin_out() {
-    if (loads_.size() <= kMostLoads) return;
-    std::vector<RawLoad> kept;
-    for (std::size_t k = 0; k < kMostLoads; ++k) kept.push_back(std::move(loads_[k * loads_.size() / kMostLoads]));
-    loads_ = std::move(kept);
   }
 
   const TemperatureSpan& span_;
@@ -213,27 +215,43 @@ void train(const SharedProblem& problem, double expected_error, Candidate& candi
   const std::size_t residuals = problem.residual_count(candidate.free.size());
   network::LevenbergMarquardtOptions options;
   options.relative_reduction = 1e-6;
+  options.max_iterations = kMaxIterations;
   candidate.error = network::minimise(function, residuals, candidate.free, options).final_error;
   candidate.leave_one_out =
       network::leave_one_out_mean_square(function, problem.load_count(), residuals, candidate.free);
 }
 
-/// The best start of every size, then the size with the lowest leave-one-out error.
-Candidate choose_size(const SharedProblem& problem, bool uses_temperature, double expected_error) {
+bool has_lower_error(const Candidate& a, const Candidate& b) { return a.error < b.error; }
+bool generalises_better(const Candidate& a, const Candidate& b) { return a.leave_one_out < b.leave_one_out; }
+
+/// The best of several starts for every number of hidden units.
+std::vector<Candidate> best_starts(const SharedProblem& problem, bool uses_temperature) {
   std::vector<Candidate> candidates((kMostHiddenUnits + 1) * kStarts);
   parallel_for(candidates.size(), [&](std::size_t k) {
     candidates[k].shape = force_shape(uses_temperature, k / kStarts);
     candidates[k].free = problem.start(candidates[k].shape, kSeed + k % kStarts);
-    train(problem, expected_error, candidates[k]);
+    train(problem, kExpectedError, candidates[k]);
   });
-  std::optional<Candidate> chosen;
-  for (std::size_t hidden = 0; hidden <= kMostHiddenUnits; ++hidden) {
-    const auto first = candidates.begin() + static_cast<std::ptrdiff_t>(hidden * kStarts);
-    Candidate& best = *std::min_element(first, first + static_cast<std::ptrdiff_t>(kStarts),
-                                        [](const auto& a, const auto& b) { return a.error < b.error; });
-    if (!chosen || best.leave_one_out < chosen->leave_one_out) chosen = std::move(best);
+  std::vector<Candidate> best;
+  for (auto first = candidates.begin(); first != candidates.end(); first += kStarts) {
+    best.push_back(std::move(*std::min_element(first, first + kStarts, has_lower_error)));
   }
-  return *chosen;
+  return best;
+}
+
+/// Trains every candidate to the end, without gains and with them, and keeps what generalises best.
+Candidate choose(const SharedProblem& problem, std::vector<Candidate> candidates) {
+  parallel_for(candidates.size(), [&](std::size_t k) { train(problem, kExpectedError, candidates[k]); });
+  const auto plain = std::min_element(candidates.begin(), candidates.end(), generalises_better);
+  const double seen_error = 2.0 * std::sqrt(plain->leave_one_out);
+  std::vector<Candidate> with_gains = candidates;
+  parallel_for(with_gains.size(), [&](std::size_t k) {
+    with_gains[k].with_gains = true;
+    with_gains[k].free.resize(with_gains[k].free.size() + problem.gain_count(), 0.0);
+    train(problem, seen_error, with_gains[k]);
+  });
+  const auto gained = std::min_element(with_gains.begin(), with_gains.end(), generalises_better);
+  return generalises_better(*gained, *plain) ? *gained : *plain;
 }
 
 }  // namespace
@@ -241,18 +259,14 @@ Candidate choose_size(const SharedProblem& problem, bool uses_temperature, doubl
 SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan& span, const UnloadedFit& unloaded,
                            const std::vector<bool>& dead) {
   const LoadCollector collector(database, span, unloaded, dead);
+  const std::vector<RawLoad> loads = collector.loads(kMostShares);
   SharedNetwork shared;
   shared.gain.assign(dead.size(), 1.0);
-  if (collector.loads().empty()) return shared;
-  const SharedProblem problem(collector.loads(), unloaded);
+  if (loads.empty()) return shared;
+  const SharedProblem problem(loads, unloaded);
 
-  Candidate chosen = choose_size(problem, span.is_input, kExpectedError);
-  const double seen_error = 2.0 * std::sqrt(chosen.leave_one_out);
-  Candidate with_gains = chosen;
-  with_gains.with_gains = true;
-  with_gains.free.resize(chosen.free.size() + problem.gain_count(), 0.0);
-  train(problem, seen_error, with_gains);
-  if (with_gains.leave_one_out < chosen.leave_one_out) chosen = std::move(with_gains);
+  const SharedProblem thinned(collector.loads(kMostSharesForStart), unloaded);
+  const Candidate chosen = choose(problem, best_starts(thinned, span.is_input));
 
   const std::size_t n = chosen.shape.parameter_count();
   shared.network = problem.empty_network(chosen.shape);

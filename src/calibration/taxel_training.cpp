@@ -11,7 +11,9 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kNoiseFloor = 0.003;  // relative; temperature and supply meters, repeatability
-constexpr int kStarts = 2;
+constexpr int kStarts = 6;
+constexpr int kMaxIterations = 100;
+constexpr double kRelativeReduction = 1e-5;
 
 struct TrainingPoint {
   ForceNetwork::Inputs inputs;
@@ -61,7 +63,10 @@ ForceNetwork train_taxel(const network::PerceptronShape& shape, std::span<const 
   double best_error = 0.0;
   for (int start = 0; start < kStarts; ++start) {
     std::vector<double> free = random_start(shape, geometric_mean(points, &TaxelPoint::newtons), random);
-    const auto report = network::minimise(residual_function, training.size() + n, free);
+    network::LevenbergMarquardtOptions options;
+    options.max_iterations = kMaxIterations;
+    options.relative_reduction = kRelativeReduction;
+    const auto report = network::minimise(residual_function, training.size() + n, free, options);
     if (!best.empty() && report.final_error >= best_error) continue;
     best = std::move(free);
     best_error = report.final_error;

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "compensation/matrix_product.hpp"
+
 namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxSteps = 200;
-constexpr double kTolerance = 1e-7;       // largest change of a conductance, relative to the loaded column
+constexpr double kToleranceCounts = 0.01;  // largest change of a step, as a reading
 constexpr double kColumnShareCap = 0.9999;  // 1 - sigma stays positive under noise
 constexpr double kHalvedStep = 0.5;
 
@@ -19,7 +21,9 @@ constexpr double kHalvedStep = 0.5;
 GroundedDivider::GroundedDivider(const ArrayDescription& array)
     : rows_(array.rows),
       cols_(array.cols),
+      tolerance_(kToleranceCounts / array.readout.full_scale_counts()),
       drive_ohm_(array.readout.drive_ohm),
+      line_gain_(rows_),
       column_siemens_(cols_),
       weighted_ratio_(rows_ * cols_),
       coupling_(cols_ * cols_),
@@ -34,7 +38,7 @@ bool GroundedDivider::invert(std::span<const double> ratio, std::span<double> si
   double last_change = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kMaxSteps; ++k) {
     const double change = step(ratio, siemens, damping);
-    if (change <= kTolerance * damping) return true;
+    if (change <= tolerance_ * damping) return true;
     if (!(change < last_change)) damping = kHalvedStep;
     last_change = change;
   }
@@ -82,30 +86,26 @@ double GroundedDivider::step(std::span<const double> ratio, std::span<double> si
 
 void GroundedDivider::undo_drivers(std::span<const double> ratio, std::span<const double> siemens) noexcept {
   std::copy(load_siemens_.begin(), load_siemens_.end(), column_siemens_.begin());
-  std::fill(coupling_.begin(), coupling_.end(), 0.0);
   for (std::size_t row = 0; row < rows_; ++row) {
-    const double* conductance = &siemens[row * cols_];
-    const double* weighted = &weighted_ratio_[row * cols_];
-    for (std::size_t j = 0; j < cols_; ++j) {
-      column_siemens_[j] += conductance[j];
-      double* coupling = &coupling_[j * cols_];
-      for (std::size_t col = 0; col < cols_; ++col) coupling[col] += conductance[j] * weighted[col];
-    }
-  }
-  for (std::size_t j = 0; j < cols_; ++j) {
-    double* coupling = &coupling_[j * cols_];
-    for (std::size_t col = 0; col < cols_; ++col) coupling[col] /= column_siemens_[j];
-  }
-  for (std::size_t row = 0; row < rows_; ++row) {
-    const double* conductance = &siemens[row * cols_];
     double row_siemens = 0.0;
-    for (std::size_t j = 0; j < cols_; ++j) row_siemens += conductance[j];
-    const double line_gain = 1.0 + drive_ohm_[row] * row_siemens;
-    double* undriven = &undriven_[row * cols_];
-    for (std::size_t col = 0; col < cols_; ++col) undriven[col] = line_gain * ratio[row * cols_ + col];
-    for (std::size_t j = 0; j < cols_; ++j) {
-      const double* coupling = &coupling_[j * cols_];
-      for (std::size_t col = 0; col < cols_; ++col) undriven[col] -= conductance[j] * coupling[col];
+    for (std::size_t col = 0; col < cols_; ++col) {
+      const double conductance = siemens[row * cols_ + col];
+      row_siemens += conductance;
+      column_siemens_[col] += conductance;
+    }
+    line_gain_[row] = 1.0 + drive_ohm_[row] * row_siemens;
+  }
+  const StridedMatrix transposed{siemens.data(), 1, cols_};
+  multiply(transposed, weighted_ratio_.data(), cols_, rows_, cols_, coupling_.data());
+  for (std::size_t j = 0; j < cols_; ++j) {
+    const double column_ohm = 1.0 / column_siemens_[j];
+    for (std::size_t col = 0; col < cols_; ++col) coupling_[j * cols_ + col] *= column_ohm;
+  }
+  multiply({siemens.data(), cols_, 1}, coupling_.data(), rows_, cols_, cols_, undriven_.data());
+  for (std::size_t row = 0; row < rows_; ++row) {
+    for (std::size_t col = 0; col < cols_; ++col) {
+      const std::size_t taxel = row * cols_ + col;
+      undriven_[taxel] = line_gain_[row] * ratio[taxel] - undriven_[taxel];
     }
   }
 }

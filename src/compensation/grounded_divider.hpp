@@ -32,7 +32,9 @@ class GroundedDivider final : public CrosstalkInversion {
 
   std::size_t rows_;
   std::size_t cols_;
+  double tolerance_;
   std::vector<double> drive_ohm_;       // Rd [rows]
+  std::vector<double> line_gain_;       // 1 + Rd . G 1 [rows]
   std::vector<double> load_siemens_;    // gL [cols]
   std::vector<double> column_siemens_;  // B [cols]
   std::vector<double> weighted_ratio_;  // Rd T [rows, cols]

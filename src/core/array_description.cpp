@@ -7,7 +7,6 @@
 namespace dermis {
 namespace {
 
-constexpr std::size_t kMaxLines = 1024;
 constexpr int kMaxAdcBits = 24;  // Counts are kept in float, which holds 24 bits exactly.
 
 bool is_positive(double value) { return std::isfinite(value) && value > 0.0; }

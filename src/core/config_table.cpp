@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <limits>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -24,19 +23,12 @@ bool is_digit(char c) {
   return c >= '0' && c <= '9';
 }
 
-/// Keeps a message on one line whatever the file holds.
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20U || c == 0x7FU; }, '?');
-  return text;
-}
-
 Result<std::string> read_text(const std::string& path) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), &std::fclose);
-  if (!file) return bad_input(one_line("cannot open '" + path + "': " + std::strerror(errno)));
+  if (!file) return bad_input("cannot open '" + path + "': " + std::strerror(errno));
   std::string text(kMaxBytes + 1, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-  if (std::ferror(file.get()) != 0) return failed(one_line("cannot read '" + path + "': " + std::strerror(errno)));
+  if (std::ferror(file.get()) != 0) return failed("cannot read '" + path + "': " + std::strerror(errno));
   return text;
 }
 
@@ -61,7 +53,7 @@ Status check_depth(std::string_view text, const std::string& name) {
   for (std::size_t line_number = 1; !text.empty(); ++line_number) {
     const std::size_t length = std::min(text.find('\n'), text.size());
     if (has_too_deep_key(text.substr(0, length))) {
-      return bad_input(one_line(name + ":" + std::to_string(line_number) + ": too many dots in one line; break it"));
+      return bad_input(name + ":" + std::to_string(line_number) + ": too many dots in one line; break it");
     }
     text.remove_prefix(std::min(length + 1, text.size()));
   }
@@ -166,7 +158,7 @@ struct ConfigFile::Parsed {
     std::string text = name + ":";
     if (node != nullptr) text += std::to_string(node->source().begin.line) + ":";
     text.append(" ").append(key).append(": ").append(message);
-    first_error = bad_input(one_line(std::move(text)));
+    first_error = bad_input(std::move(text));
     first_error_is_missing_key = node == nullptr;
   }
 
@@ -203,7 +195,7 @@ struct ConfigFile::Parsed {
                        " '" + unknown.key + "'";
     const std::string nearest = nearest_name(unknown.key, unknown.is_table ? known_tables : known_keys);
     if (!nearest.empty()) text += "; did you mean '" + nearest + "'?";
-    return bad_input(one_line(std::move(text)));
+    return bad_input(std::move(text));
   }
 };
 
@@ -219,7 +211,7 @@ Result<ConfigFile> ConfigFile::read(const std::string& path) {
 }
 
 Result<ConfigFile> ConfigFile::parse(std::string_view text, const std::string& name) {
-  if (text.size() > kMaxBytes) return bad_input(one_line(name + ": is larger than 1 MiB"));
+  if (text.size() > kMaxBytes) return bad_input(name + ": is larger than 1 MiB");
   if (const Status depth = check_depth(text, name); !depth) return depth.error();
   ConfigFile file;
   file.parsed_->name = name;
@@ -227,8 +219,8 @@ Result<ConfigFile> ConfigFile::parse(std::string_view text, const std::string& n
     file.parsed_->root = toml::parse(text);
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
-    return bad_input(one_line(name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
-                              std::string(error.description())));
+    return bad_input(name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
+                              std::string(error.description()));
   }
   return file;
 }
@@ -251,9 +243,9 @@ void ConfigFile::number(std::string_view key, double& value) {
 }
 
 void ConfigFile::number(std::string_view key, std::optional<double>& value) {
-  double number_value = value.value_or(0.0);
-  number(key, number_value);
-  if (contains(key)) value = number_value;
+  double present = 0.0;
+  number(key, present);
+  if (contains(key)) value = present;
 }
 
 void ConfigFile::integer(std::string_view key, int& value) {

@@ -13,7 +13,7 @@ namespace dermis::report {
 namespace {
 
 constexpr std::size_t kMostLinearTicks = 6;
-constexpr int kMostLogTicks = 9;
+constexpr int kMostLogTicks = 12;
 
 // Beyond these, differences and ratios of values could leave the range of a double.
 constexpr double kLargest = 1e100;
@@ -31,9 +31,9 @@ int decade_of(int index) {
 /// factor * 1, 2, 5, 10, 20, ... for index 0, 1, 2, 3, 4, ...; below 0 it goes on with 0.5, 0.2, 0.1, ...
 /// Negative powers divide, so that 3 * 0.1 is the double that is written 0.3.
 double on_grid(double factor, int index) {
-  constexpr std::array<double, 3> mantissas = {1.0, 2.0, 5.0};
+  constexpr std::array<double, 3> kMantissas = {1.0, 2.0, 5.0};
   const int decade = decade_of(index);
-  const double mantissa = factor * mantissas[static_cast<std::size_t>(index - 3 * decade)];
+  const double mantissa = factor * kMantissas[static_cast<std::size_t>(index - 3 * decade)];
   return decade >= 0 ? mantissa * std::pow(10.0, decade) : mantissa / std::pow(10.0, -decade);
 }
 
@@ -53,13 +53,13 @@ int grid_index_above(double value) {
 
 /// First and last whole multiple of `step` in [low, high], with a little room for rounding.
 Range multiples_inside(double low, double high, double step) {
-  constexpr double room = 1e-9;
-  return {std::ceil(low / step - room), std::floor(high / step + room)};
+  constexpr double kRoom = 1e-9;
+  return {std::ceil(low / step - kRoom) + 0.0, std::floor(high / step + kRoom)};  // + 0.0: never -0
 }
 
 Range multiples_around(double low, double high, double step) {
-  constexpr double room = 1e-9;
-  return {std::floor(low / step + room), std::ceil(high / step - room)};
+  constexpr double kRoom = 1e-9;
+  return {std::floor(low / step + kRoom) + 0.0, std::ceil(high / step - kRoom)};
 }
 
 int step_index(double low, double high, std::size_t most) {
@@ -74,7 +74,8 @@ int step_index(double low, double high, std::size_t most) {
 
 std::vector<double> multiples_on_grid(Range factors, int index) {
   std::vector<double> ticks;
-  for (double factor = factors.low; factor <= factors.high; factor += 1.0) ticks.push_back(on_grid(factor, index));
+  const auto count = static_cast<int>(factors.high - factors.low) + 1;
+  for (int i = 0; i < count; ++i) ticks.push_back(on_grid(factors.low + i, index));
   return ticks;
 }
 
@@ -83,8 +84,8 @@ bool is_usable(double value, Scale scale) {
 }
 
 Range range_of(Scale scale, std::span<const double> values) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Range range{infinity, -infinity};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Range range{kInfinity, -kInfinity};
   for (const double value : values) {
     if (is_usable(value, scale)) range = {std::min(range.low, value), std::max(range.high, value)};
   }
@@ -107,9 +108,9 @@ void fit_linear(Axis& axis, Range range) {
 }
 
 void fit_logarithmic(Axis& axis, Range range) {
-  constexpr double room = 1e-3;  // 50.0001 does not ask for an axis up to 100.
-  const int first = grid_index_below(range.low * (1.0 + room));
-  const int last = std::max(grid_index_above(range.high * (1.0 - room)), first + 1);
+  constexpr double kRoom = 1e-3;  // 50.0001 does not ask for an axis up to 100.
+  const int first = grid_index_below(range.low * (1.0 + kRoom));
+  const int last = std::max(grid_index_above(range.high * (1.0 - kRoom)), first + 1);
   axis.low = on_grid(1.0, first);
   axis.high = on_grid(1.0, last);
   axis.ticks = log_ticks(axis.low, axis.high);

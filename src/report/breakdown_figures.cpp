@@ -83,9 +83,24 @@ std::vector<Bin> drawable_bins(const Breakdown& breakdown, const Evaluation& eva
   return bins;
 }
 
+/// Some room beyond the first and the last tick, so that no mark stands on the frame.
+Axis padded(Axis axis) {
+  constexpr double kShare = 0.04;
+  if (axis.scale == Scale::logarithmic) {
+    const double factor = std::pow(axis.high / axis.low, kShare);
+    axis.low /= factor;
+    axis.high *= factor;
+  } else {
+    const double room = kShare * (axis.high - axis.low);
+    axis.low -= room;
+    axis.high += room;
+  }
+  return axis;
+}
+
 Axis x_axis(const Breakdown& breakdown, const Evaluation& evaluation, std::span<const Bin> bins) {
   if (!breakdown.whole_numbers) {
-    return nice_axis(breakdown.x_label, breakdown.scale, quantities(breakdown, evaluation));
+    return padded(nice_axis(breakdown.x_label, breakdown.scale, quantities(breakdown, evaluation)));
   }
   Axis axis{breakdown.x_label, Scale::linear, bins.front().x - 0.5, bins.back().x + 0.5, {}};
   for (const Bin& bin : bins) axis.ticks.push_back(bin.x);

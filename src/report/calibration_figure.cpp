@@ -74,8 +74,8 @@ std::string missing_sentences(const calibration::Evaluation& evaluation, const S
 }
 
 Axis action_point_axis(std::size_t points) {
-  constexpr std::size_t most_ticks = 16;
-  const std::size_t step = (points + most_ticks - 1) / most_ticks;
+  constexpr std::size_t kMostTicks = 16;
+  const std::size_t step = (points + kMostTicks - 1) / kMostTicks;
   Axis axis{"action point", Scale::linear, 0.5, static_cast<double>(points) + 0.5, {}};
   for (std::size_t i = 1; i <= points; i += step) axis.ticks.push_back(static_cast<double>(i));
   return axis;
@@ -90,7 +90,7 @@ Drawing level_panel(const calibration::Evaluation& evaluation, double level, con
   const double high = level * (1.0 + kPaperTolerance);
   plot.region("calibration \u00b15 %", {{x.low, low}, {x.high, low}, {x.high, high}, {x.low, high}});
   plot.reference("calibration", {{x.low, level}, {x.high, level}});
-  for (std::size_t i = evaluation.estimators.size(); i-- > 0;) {
+  for (std::size_t i = 0; i < evaluation.estimators.size(); ++i) {
     std::vector<Point> points;
     for (const Sample& sample : samples) {
       points.push_back({static_cast<double>(points.size() + 1),
@@ -138,13 +138,19 @@ void draw_levels(const calibration::Evaluation& evaluation, const Levels& levels
 
 /// Forces far below the lightest load are drawn on the lower edge: a logarithmic axis has no zero.
 Axis output_axis(const Samples& samples, const std::vector<double>& truths) {
-  const double lowest = *std::min_element(truths.begin(), truths.end()) / 100.0;
+  const double lowest = *std::min_element(truths.begin(), truths.end()) / 20.0;
   std::vector<double> forces = truths;
   for (const Sample& sample : samples) {
     std::copy_if(sample.estimates.begin(), sample.estimates.end(), std::back_inserter(forces),
                  [&](double estimate) { return estimate >= lowest; });
   }
   return nice_axis("output [N]", Scale::logarithmic, forces);
+}
+
+bool is_cut_off(const Samples& samples, const Axis& y) {
+  return std::any_of(samples.begin(), samples.end(), [&](const Sample& sample) {
+    return std::any_of(sample.estimates.begin(), sample.estimates.end(), [&](double force) { return force < y.low; });
+  });
 }
 
 /// y = x, and the band around it, over the part of the x axis that the y axis covers.
@@ -179,7 +185,7 @@ void draw_scatter(const calibration::Evaluation& evaluation, const Samples& samp
       fmt::format("Output of each estimator against the known {}. The band is the 5 % that the paper claims.",
                   evaluation.taxels.empty() ? "totals" : "force of each loaded taxel");
   if (step > 1) figure.caption += fmt::format(" Of {} loads, one in {} is drawn.", grouped(samples.size()), step);
-  figure.caption += " Dots on the lower edge lie there or below.";
+  if (is_cut_off(samples, y)) figure.caption += " Dots on the lower edge lie below it.";
 }
 
 }  // namespace

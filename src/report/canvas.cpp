@@ -13,7 +13,7 @@
 namespace dermis::report {
 namespace {
 
-constexpr double kCharacterWidth = 6.7;  // Mean of a sans-serif face at 12.5 px.
+constexpr double kCharacterWidth = 6.2;  // Mean of a sans-serif face at 11 px.
 
 constexpr std::array<const char*, 3> kAnchorClasses = {"", " middle", " end"};
 
@@ -72,7 +72,7 @@ std::string line_to(Point point) {
 }
 
 std::string mark(std::size_t style, Point centre) {
-  static constexpr std::array<const char*, 6> shapes = {
+  static constexpr std::array<const char*, 6> kShapes = {
       "m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0-7.2 0z",           // circle
       "m-3.3-3.3h6.6v6.6h-6.6z",                                    // square
       "m0-4.2l4.1 7.2h-8.2z",                                       // triangle
@@ -80,12 +80,12 @@ std::string mark(std::size_t style, Point centre) {
       "m0 4.2l4.1-7.2h-8.2z",                                       // triangle, point down
       "m-4-1.2h2.8v-2.8h2.4v2.8h2.8v2.4h-2.8v2.8h-2.4v-2.8h-2.8z",  // plus
   };
-  return move_to(centre) + shapes[style % shapes.size()];
+  return move_to(centre) + kShapes[style % kShapes.size()];
 }
 
 std::string series_class(std::size_t style) {
-  constexpr std::size_t colours = 7;  // Seven colours and six marks: 42 looks.
-  return "s" + std::to_string(style % colours);
+  constexpr std::size_t kColours = 7;  // Seven colours and six marks: 42 looks.
+  return "s" + std::to_string(style % kColours);
 }
 
 double text_width(std::string_view words) {

@@ -45,7 +45,7 @@ class Canvas {
 /// "s3": the class of a series, which sets its colour.
 [[nodiscard]] std::string series_class(std::size_t style);
 
-/// Width of a text of the drawings [px], estimated from its characters.
+/// Width of a small text of the drawings [px], estimated from its characters.
 [[nodiscard]] double text_width(std::string_view words);
 
 /// A number as on a tick of an axis.

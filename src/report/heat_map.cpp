@@ -24,6 +24,7 @@ constexpr double kSmallestSide = 6.0;   // So that a single long row can still b
 constexpr double kBottom = 26.0;
 constexpr double kBarGap = 10.0;
 constexpr double kBarWidth = 10.0;
+constexpr double kLeastBarHeight = 90.0;
 constexpr std::size_t kBarSteps = 64;
 constexpr std::size_t kColours = 256;
 constexpr std::size_t kMostTicks = 6;
@@ -66,11 +67,12 @@ class Painter {
     canvas_.rectangle("frame", {kLeft, kTop}, width_, height_);
     draw_lines();
     draw_scale();
-    const double height = kTop + std::max(height_, kLargestSide) + kBottom;
-    return {kWidth, height, map_.title + " [" + map_.unit + "]", std::move(canvas_).take()};
+    const double height = kTop + bar_height() + kBottom;
+    return {kWidth, height, map_.title, std::move(canvas_).take()};
   }
 
  private:
+  [[nodiscard]] double bar_height() const { return std::max(height_, kLeastBarHeight); }
   [[nodiscard]] double left_of(std::size_t col) const {
     return kLeft + width_ * static_cast<double>(col) / static_cast<double>(map_.cols);
   }
@@ -136,17 +138,16 @@ class Painter {
 
   void draw_scale() {
     const double left = kLeft + std::max(width_, 40.0) + kBarGap;
-    const double step = kLargestSide / static_cast<double>(kBarSteps);
+    const double step = bar_height() / static_cast<double>(kBarSteps);
     for (std::size_t i = 0; i < kBarSteps; ++i) {
-      const double top = kTop + kLargestSide - step * static_cast<double>(i + 1);
+      const double top = kTop + bar_height() - step * static_cast<double>(i + 1);
       const std::string data = move_to({left, top}) + "h" + coordinate(kBarWidth) + "V" + coordinate(top + step) + "H" +
                                coordinate(left) + "z";
       canvas_.filled_path("cell", fill(i * (kColours - 1) / (kBarSteps - 1)), data);
     }
-    canvas_.rectangle("frame", {left, kTop}, kBarWidth, kLargestSide);
-    canvas_.text("small muted", Anchor::start, {left, kTop - 6.0}, map_.unit);
+    canvas_.rectangle("frame", {left, kTop}, kBarWidth, bar_height());
     for (const double tick : linear_ticks(0.0, map_.high, kMostTicks)) {
-      const double y = kTop + kLargestSide * (1.0 - tick / map_.high);
+      const double y = kTop + bar_height() * (1.0 - tick / map_.high);
       canvas_.line("tick", {left + kBarWidth, y}, {left + kBarWidth + 4.0, y});
       canvas_.text("small", Anchor::start, {left + kBarWidth + 7.0, y + 4.0}, tick_label(tick));
     }

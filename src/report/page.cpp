@@ -32,9 +32,8 @@ constexpr std::string_view kPageCss =
     "h2{font-size:1.15rem;margin:44px 0 10px;padding-top:12px;border-top:1px solid #d5dae0;font-weight:650}\n"
     "p{margin:8px 0;max-width:78ch}\n"
     ".muted,figcaption,.note{color:#59636e}\n"
-    ".tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:1px;margin:24px 0 8px;"
-    "background:#d5dae0;border:1px solid #d5dae0}\n"
-    ".tile{background:#fff;padding:12px 14px}\n"
+    ".tiles{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));margin:24px 1px 8px 0}\n"
+    ".tile{border:1px solid #d5dae0;margin:0 -1px -1px 0;padding:12px 14px}\n"
     ".tile b{display:block;font-size:1.75rem;line-height:1.25;font-weight:600;font-variant-numeric:tabular-nums;"
     "white-space:nowrap}\n"
     ".tile span{display:block;font-size:.82rem;color:#59636e;overflow-wrap:anywhere}\n"
@@ -47,6 +46,8 @@ constexpr std::string_view kPageCss =
     ".numbers th+th,.numbers td{text-align:right;white-space:nowrap;padding:6px 0 6px 14px}\n"
     ".numbers tbody th{white-space:nowrap}\n"
     ".numbers svg{width:12px;height:12px;margin-right:6px;vertical-align:-1px;display:inline}\n"
+    ".numbers .group{text-align:center;border-bottom:1px solid #e3e7ec;font-weight:400;color:#59636e}.numbers thead "
+    "td{border:0}\n"
     ".best{font-weight:700}\n"
     ".facts th{width:16rem;padding-right:20px;overflow-wrap:anywhere}\n"
     ".facts td{overflow-wrap:anywhere}\n"
@@ -55,27 +56,30 @@ constexpr std::string_view kPageCss =
     "figcaption{font-size:.9rem;max-width:84ch;margin-top:6px;overflow-wrap:anywhere}\n"
     "figcaption b{color:#1c2128}\n"
     ".panels{display:grid;gap:12px 20px}\n"
-    ".fig{display:block;max-width:100%;height:auto}\n"
+    ".panels .fig{display:block;width:100%;height:auto}\n"
+    ".across1{max-width:560px}\n"
     ".across2{grid-template-columns:repeat(2,minmax(0,1fr))}\n"
     ".across3{grid-template-columns:repeat(3,minmax(0,1fr))}\n"
     ".across4{grid-template-columns:repeat(4,minmax(0,1fr))}\n"
     "@media (max-width:820px){.across2,.across3{grid-template-columns:minmax(0,1fr)}"
     ".across4{grid-template-columns:repeat(2,minmax(0,1fr))}}\n"
-    "@media (max-width:480px){main{padding:20px 14px 36px}.facts th{width:9rem}.tiles{grid-template-columns:1fr 1fr}}\n"
+    "@media (max-width:480px){main{padding:20px 14px 36px}.facts th{width:11rem}.tiles{grid-template-columns:1fr "
+    "1fr}}\n"
     "@media screen and (prefers-color-scheme:dark){\n"
-    "body,.tile{background:#14181d;color:#e6eaf0}\n"
-    "h2{border-color:#39424d}.tiles{background:#39424d;border-color:#39424d}\n"
-    "th,td{border-color:#2b323b}thead th{border-color:#8b96a3}\n"
-    ".muted,figcaption,.note,.tile span{color:#9aa5b1}figcaption b{color:#e6eaf0}\n"
+    "body{background:#14181d;color:#e6eaf0}\n"
+    "h2,.tile{border-color:#39424d}\n"
+    "th,td{border-color:#2b323b}thead th{border-color:#8b96a3}.numbers .group{border-color:#2b323b}\n"
+    ".muted,figcaption,.note,.tile span,.numbers .group{color:#9aa5b1}figcaption b{color:#e6eaf0}\n"
     "}\n"
     "@media print{main{max-width:none;padding:0}body{font-size:11pt}h2{break-after:avoid}.scroll{overflow:visible}}\n";
 
 /// One column of the table of estimators: the smaller the better, except for shares.
 struct Column {
+  std::string group;  ///< Stands above neighbouring columns.
   std::string head;
+  std::string headline;  ///< Name among the large numbers; empty for columns that are not there.
   std::function<std::optional<double>(std::size_t)> value;
   std::string (*words)(double);
-  bool is_headline = true;
   bool larger_is_better = false;
 };
 
@@ -87,22 +91,26 @@ std::vector<Column> table_columns(const Evaluation& evaluation) {
   const auto of = [&](auto member) {
     return [&evaluation, member](std::size_t i) { return std::invoke(member, evaluation.estimators[i]); };
   };
+  const std::string single = "relative error";
+  const std::string ghost = "ghost force";
+  const std::string total = "totals";
   std::vector<Column> columns = {
-      {"median", of([](const EstimatorResult& e) { return e.relative_error.median; }), percent},
-      {"p95", of([](const EstimatorResult& e) { return e.relative_error.p95; }), percent},
-      {"p99", of([](const EstimatorResult& e) { return e.relative_error.p99; }), percent},
-      {"max", of([](const EstimatorResult& e) { return e.relative_error.max; }), percent},
-      {"within 5 %",
+      {single, "median", "median error", of([](const EstimatorResult& e) { return e.relative_error.median; }), percent},
+      {single, "p95", "p95 error", of([](const EstimatorResult& e) { return e.relative_error.p95; }), percent},
+      {single, "p99", "p99 error", of([](const EstimatorResult& e) { return e.relative_error.p99; }), percent},
+      {single, "max", "largest error", of([](const EstimatorResult& e) { return e.relative_error.max; }), percent},
+      {single, "within 5 %", "",
        [&evaluation](std::size_t i) {
          const double share = share_within(evaluation, i, kPaperTolerance);
          return std::isnan(share) ? std::nullopt : std::optional(share);
        },
-       share_words, false, true},
-      {"ghost p99", of([](const EstimatorResult& e) { return e.ghost_n.p99; }), newtons},
-      {"ghost max", of([](const EstimatorResult& e) { return e.ghost_n.max; }), newtons, false},
-      {"total RMSE", of([](const EstimatorResult& e) { return e.total_rmse_n; }), newtons},
-      {"total median", of([](const EstimatorResult& e) { return e.total_relative_error.median; }), percent},
-      {"total p95", of([](const EstimatorResult& e) { return e.total_relative_error.p95; }), percent}};
+       share_words, true},
+      {ghost, "p99", "ghost force p99", of([](const EstimatorResult& e) { return e.ghost_n.p99; }), newtons},
+      {ghost, "max", "", of([](const EstimatorResult& e) { return e.ghost_n.max; }), newtons},
+      {total, "RMSE", "RMSE of totals", of([](const EstimatorResult& e) { return e.total_rmse_n; }), newtons},
+      {total, "median", "", of([](const EstimatorResult& e) { return e.total_relative_error.median; }), percent},
+      {total, "p95", "p95 of totals", of([](const EstimatorResult& e) { return e.total_relative_error.p95; }),
+       percent}};
   std::erase_if(columns, [&](const Column& column) {
     for (std::size_t i = 0; i < evaluation.estimators.size(); ++i) {
       if (column.value(i)) return false;
@@ -110,6 +118,19 @@ std::vector<Column> table_columns(const Evaluation& evaluation) {
     return true;
   });
   return columns;
+}
+
+/// Two rows: the groups, and the columns in them.
+std::string table_heads(const std::vector<Column>& columns) {
+  std::string groups;
+  std::string heads;
+  for (std::size_t i = 0; i < columns.size();) {
+    const std::size_t first = i;
+    while (i < columns.size() && columns[i].group == columns[first].group)
+      heads += "<th>" + columns[i++].head + "</th>";
+    groups += fmt::format("<th class=\"group\" colspan=\"{}\">{}</th>", i - first, columns[first].group);
+  }
+  return "<tr><td></td>" + groups + "</tr>\n<tr><th>estimator</th>" + heads + "</tr>\n";
 }
 
 /// The best finite value of the estimators from `first` on.
@@ -190,9 +211,9 @@ void Page::add_summary(const Evaluation& evaluation) {
   element("p", "muted", summary_sentence(evaluation));
   html_ += "<div class=\"tiles\">\n";
   for (const Column& column : table_columns(evaluation)) {
-    if (!column.is_headline || !column.value(0)) continue;
+    if (column.headline.empty() || !column.value(0)) continue;
     const std::optional<double> other = best_value(column, 1, evaluation.estimators.size());
-    tile(column.head, column.words(*column.value(0)), other ? "best other: " + column.words(*other) : "");
+    tile(column.headline, column.words(*column.value(0)), other ? "best other: " + column.words(*other) : "");
   }
   html_ += "</div>\n";
 }
@@ -209,9 +230,8 @@ void Page::add_estimators(const Evaluation& evaluation, const pipeline::Model& m
   const std::vector<Column> columns = table_columns(evaluation);
   if (columns.empty()) return;
   element("h2", "", "Estimators side by side");
-  html_ += "<div class=\"scroll\"><table class=\"numbers\">\n<thead><tr><th>estimator</th>";
-  for (const Column& column : columns) element("th", "", column.head);
-  html_ += "</tr></thead>\n<tbody>\n";
+  html_ += "<div class=\"scroll\"><table class=\"numbers\">\n<thead>\n";
+  html_ += table_heads(columns) + "</thead>\n<tbody>\n";
   const std::size_t count = evaluation.estimators.size();
   for (std::size_t i = 0; i < evaluation.estimators.size(); ++i) {
     html_ += "<tr><th>" + series_key(i) + escape_xml(evaluation.estimators[i].name) + "</th>";

@@ -51,7 +51,8 @@ class Plot::Painter {
     draw_counts();
     draw_x_axis();
     draw_y_axis();
-    for (const Layer& layer : plot_.layers_) draw(layer);
+    for (const Layer& layer : plot_.layers_) draw_backdrop(layer);
+    std::for_each(plot_.layers_.rbegin(), plot_.layers_.rend(), [this](const Layer& layer) { draw_series(layer); });
     canvas_.rectangle("frame", {left_, top_}, right_ - left_, bottom_ - top_);
     return std::move(canvas_).take();
   }
@@ -133,17 +134,16 @@ class Plot::Painter {
     canvas_.upright_text("muted", {13.0, (top_ + bottom_) / 2.0}, plot_.y_.label);
   }
 
-  void draw(const Layer& layer) {
-    switch (layer.kind) {
-      case Kind::region: canvas_.path("region", joined(layer, layer.points) + "z"); return;
-      case Kind::reference: canvas_.path("reference", joined(layer, layer.points)); return;
-      case Kind::curve: break;
-      case Kind::cloud: break;
-      case Kind::whiskers: break;
-    }
+  void draw_backdrop(const Layer& layer) {
+    if (layer.kind == Kind::region) canvas_.path("region", joined(layer) + "z");
+    if (layer.kind == Kind::reference) canvas_.path("reference", joined(layer));
+  }
+
+  void draw_series(const Layer& layer) {
+    if (layer.kind == Kind::region || layer.kind == Kind::reference) return;
     canvas_.open_group(series_class(layer.style));
     if (layer.kind == Kind::curve) {
-      canvas_.path("curve", joined(layer, layer.points));
+      canvas_.path("curve", joined(layer));
       canvas_.path("mark", marks(layer));
     } else if (layer.kind == Kind::cloud) {
       canvas_.path("cloud", dots(layer));
@@ -154,10 +154,10 @@ class Plot::Painter {
   }
 
   /// A line through the points; it breaks where one is missing.
-  std::string joined(const Layer& layer, const std::vector<Point>& points) const {
+  std::string joined(const Layer& layer) const {
     std::string data;
     bool is_first = true;
-    for (const Point& point : points) {
+    for (const Point& point : layer.points) {
       const bool is_missing = std::isnan(point.x) || std::isnan(point.y);
       if (!is_missing) data += is_first ? move_to(place(layer, point)) : line_to(place(layer, point));
       is_first = is_missing;

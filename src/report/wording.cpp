@@ -17,7 +17,7 @@ std::string two_digits(double value) {
   if (value == 0.0) return "0";
   if (value < 9.95e-5 || value >= 1e6) return fmt::format("{:.1e}", value);
   if (value >= 9.95) return fmt::format("{:.0f}", value);
-  return fmt::format("{:.{}f}", value, 1 - static_cast<int>(std::floor(std::log10(value * (1.0 + 1e-3)))));
+  return fmt::format("{:.{}f}", value, 1 - static_cast<int>(std::floor(std::log10(value * (10.0 / 9.95)))));
 }
 
 std::string percent(double fraction) {

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kMillimetresPerMetre = 1e3;
 constexpr double kSquareMillimetresPerSquareMetre = 1e6;
-constexpr std::size_t kMaxLines = 1024;
 
 void read_line_count(ConfigFile& file, std::string_view key, std::size_t& lines) {
   file.require(key);
@@ -49,13 +48,15 @@ void read_choice(ConfigFile& file, std::string_view key, std::initializer_list<C
 
 void read_resistors(ConfigFile& file, std::string_view key, Circuit circuit, std::size_t lines,
                     std::vector<double>& ohms) {
-  if (file.is_text(key, "fit")) file.fail(key, "\"fit\" is not available yet; give the resistance in ohm");
-  if (circuit != Circuit::none) {
-    file.require(key);
-    file.number_per_line(key, lines, ohms);
-  } else if (file.contains(key)) {
-    file.fail(key, "has no meaning with readout.circuit = \"none\"; remove it");
+  const bool is_fit = file.is_text(key, "fit");
+  if (circuit == Circuit::none) {  // known or not, the resistances are not used
+    std::vector<double> unused;
+    if (!is_fit) file.number_per_line(key, lines, unused);
+    return;
   }
+  if (is_fit) file.fail(key, "\"fit\" is not available yet; give the resistance in ohm");
+  file.require(key);
+  file.number_per_line(key, lines, ohms);
 }
 
 void read_readout(ConfigFile& file, std::size_t rows, std::size_t cols, Readout& readout) {

@@ -12,7 +12,7 @@
 namespace dermis::store {
 namespace {
 
-constexpr std::size_t kFirstBufferBytes = std::size_t{1} << 18U;
+constexpr std::size_t kFirstBufferBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 25U;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
@@ -44,7 +44,7 @@ Result<bool> CsvReader::next_line(std::string_view& line) {
 }
 
 Error CsvReader::error(std::string_view message) const {
-  return bad_input(one_line(name_) + ":" + std::to_string(std::max<std::size_t>(line_number_, 1)) + ": " +
+  return bad_input(name_ + ":" + std::to_string(std::max<std::size_t>(line_number_, 1)) + ": " +
                    std::string(message));
 }
 

@@ -21,7 +21,7 @@ namespace {
 enum class Column { time, temperature, supply };
 
 constexpr std::array<const char*, 3> kColumnNames{"time_s", "temperature_celsius", "supply_v"};
-constexpr std::size_t kMaxColumns = 1024 * 1024 + kColumnNames.size();
+constexpr std::size_t kMaxColumns = kMaxLines * kMaxLines + kColumnNames.size();
 
 const char* name_of(Column column) {
   return kColumnNames[static_cast<std::size_t>(column)];

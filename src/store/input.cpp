@@ -40,7 +40,7 @@ Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
     bytes.resize(kept + static_cast<std::size_t>((*in)->gcount()));
   }
   if (bytes.size() > max_bytes) {
-    return bad_input(one_line(path) + ": is larger than " + std::to_string(max_bytes) + " bytes");
+    return bad_input(path + ": is larger than " + std::to_string(max_bytes) + " bytes");
   }
   return bytes;
 }

@@ -32,7 +32,7 @@ Result<TaxelPlace> parse_existing_taxel(std::string_view text, const ArrayDescri
   const std::optional<TaxelPlace> place = parse_taxel(text);
   if (!place) return bad_input(in_quotes(text) + " is not a place; write r3c5, r0c0:r3c3 or all");
   if (place->row >= array.rows || place->col >= array.cols) {
-    return bad_input(one_line(text) + " does not exist in a " + std::to_string(array.rows) + "x" +
+    return bad_input(std::string(text) + " does not exist in a " + std::to_string(array.rows) + "x" +
                      std::to_string(array.cols) + " array");
   }
   return *place;
@@ -138,7 +138,7 @@ class OverlapCheck {
   }
 
   [[nodiscard]] Error overlap(const NumberedLoad& numbered, std::size_t earlier, std::size_t taxel) const {
-    return bad_input(one_line(name_) + ":" + std::to_string(numbered.line) + ": overlaps line " +
+    return bad_input(name_ + ":" + std::to_string(numbered.line) + ": overlaps line " +
                      std::to_string(earlier) + " at " + taxel_name(taxel / array_.cols, taxel % array_.cols) +
                      " of frame " + std::to_string(numbered.load.frame) + "; name each taxel once per frame");
   }

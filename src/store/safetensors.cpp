@@ -136,16 +136,20 @@ std::optional<Shape> sizes_from_json(const json& object, const char* key) {
   return sizes;
 }
 
+Result<Values> parse_type(const json& object, const std::string& who) {
+  const auto type = object.find("dtype");
+  if (type == object.end() || !type->is_string()) return bad_input(who + " has no dtype");
+  const auto& name = type->get_ref<const std::string&>();
+  std::optional<Values> values = empty_values(name);
+  if (!values) return bad_input(who + " has type " + in_quotes(name) + "; F32, F64, U8 and I64 can be read");
+  return *std::move(values);
+}
+
 Result<Entry> parse_entry(const std::string& name, const json& object, std::size_t data_bytes) {
   const std::string who = "tensor " + in_quotes(name);
   if (!object.is_object()) return bad_input(who + " is not described by an object");
-  const auto type = object.find("dtype");
-  if (type == object.end() || !type->is_string()) return bad_input(who + " has no dtype");
-  std::optional<Values> values = empty_values(type->get_ref<const std::string&>());
-  if (!values) {
-    return bad_input(who + " has type " + in_quotes(type->get_ref<const std::string&>()) +
-                     "; F32, F64, U8 and I64 can be read");
-  }
+  Result<Values> values = parse_type(object, who);
+  if (!values) return values.error();
   std::optional<Shape> shape = sizes_from_json(object, "shape");
   if (!shape) return bad_input(who + " has no shape of whole numbers");
   const std::optional<Shape> offsets = sizes_from_json(object, "data_offsets");
@@ -155,8 +159,8 @@ Result<Entry> parse_entry(const std::string& name, const json& object, std::size
   const auto [begin, end] = std::pair((*offsets)[0], (*offsets)[1]);
   const std::size_t size = element_bytes(*values);
   if ((end - begin) % size != 0 || shape_product(*shape) != (end - begin) / size) {
-    return bad_input(who + " has " + std::to_string(end - begin) + " bytes, which do not fit " +
-                     type->get_ref<const std::string&>() + " " + shape_text(*shape));
+    return bad_input(who + " has " + std::to_string(end - begin) + " bytes, which do not fit " + type_name(*values) +
+                     " " + shape_text(*shape));
   }
   if (end > data_bytes) {
     return bad_input("is cut short: " + who + " ends at byte " + std::to_string(end) + " of the data, which has " +
@@ -300,7 +304,7 @@ Result<SafetensorsFile> read_safetensors(const std::string& path) {
 
 Result<SafetensorsFile> safetensors_from_bytes(std::string_view bytes, const std::string& name) {
   Result<SafetensorsFile> file = parse_bytes(bytes);
-  if (!file) return bad_input(one_line(name) + ": " + file.error().message);
+  if (!file) return bad_input(name + ": " + file.error().message);
   return file;
 }
 

@@ -66,16 +66,9 @@ void append_shortest(std::string& text, Number value) {
 
 }  // namespace
 
-std::string one_line(std::string_view text) {
-  std::string line(text);
-  std::replace_if(
-      line.begin(), line.end(), [](unsigned char c) { return c < 0x20U || c == 0x7FU; }, '?');
-  return line;
-}
-
 std::string in_quotes(std::string_view text) {
   constexpr std::size_t kMaxShown = 200;
-  return "'" + one_line(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "...'" : "'");
+  return "'" + std::string(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "...'" : "'");
 }
 
 bool parse_number(std::string_view text, float& value) {

@@ -9,11 +9,8 @@
 
 namespace dermis::store {
 
-/// 'text' in quotes for a one-line message: control characters become '?', long text is cut.
+/// 'text' in quotes for a message; long text is cut.
 [[nodiscard]] std::string in_quotes(std::string_view text);
-
-/// The same without quotes and cut, for names of files.
-[[nodiscard]] std::string one_line(std::string_view text);
 
 /// Parses the whole text; nan and inf are numbers.
 [[nodiscard]] bool parse_number(std::string_view text, float& value);

@@ -19,7 +19,8 @@ inline std::vector<float> sample_estimates(double truth, double temperature, std
   const double crosstalk = 0.25 * static_cast<double>(contacts);
   const double noise = 0.004 + 0.01 / truth;
   const auto spread = [&](double scale) { return std::exp(scale * random.normal()); };
-  return {static_cast<float>(truth * spread(noise)), static_cast<float>(truth * spread(0.3) * (1.0 - drift - crosstalk)),
+  return {static_cast<float>(truth * spread(noise)),
+          static_cast<float>(truth * spread(0.3) * (1.0 - drift - crosstalk)),
           static_cast<float>(truth * spread(0.3) * (1.0 - crosstalk)),
           static_cast<float>(truth * spread(2.0 * noise) * (1.0 - drift))};
 }
@@ -55,14 +56,14 @@ inline void summarise_sample(calibration::Evaluation& evaluation) {
   const auto all = sample_summaries(evaluation, [](std::size_t) { return true; });
   for (std::size_t k = 0; k < all.size(); ++k) evaluation.estimators[k].relative_error = all[k];
   const auto& taxels = evaluation.taxels;
-  evaluation.by_force = sample_bins(evaluation, {1, 2, 5, 10, 20, 50.0001},
-                                    [&](std::size_t i) { return taxels[i].true_newtons; });
+  evaluation.by_force =
+      sample_bins(evaluation, {1, 2, 5, 10, 20, 50.0001}, [&](std::size_t i) { return taxels[i].true_newtons; });
   evaluation.by_temperature = sample_bins(evaluation, {0, 10, 20, 30, 40, 50},
                                           [&](std::size_t i) { return taxels[i].temperature_celsius.value_or(-1.0); });
   evaluation.by_supply = sample_bins(evaluation, {4.5, 4.7, 4.9, 5.1, 5.3, 5.5},
                                      [&](std::size_t i) { return taxels[i].supply_v.value_or(-1.0); });
-  evaluation.by_contacts = sample_bins(evaluation, {1, 2, 3, 4, 5},
-                                       [&](std::size_t i) { return static_cast<double>(taxels[i].contacts); });
+  evaluation.by_contacts =
+      sample_bins(evaluation, {1, 2, 3, 4, 5}, [&](std::size_t i) { return static_cast<double>(taxels[i].contacts); });
 }
 
 inline ArrayDescription sample_array(std::size_t rows, std::size_t cols) {

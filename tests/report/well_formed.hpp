@@ -118,7 +118,9 @@ class WellFormed {
   int roots_ = 0;
 };
 
-inline std::string xml_error(std::string_view text) { return WellFormed(text).check(); }
+inline std::string xml_error(std::string_view text) {
+  return WellFormed(text).check();
+}
 
 /// True where "nan" or "inf" stands as a word of its own, in any case and with any sign.
 inline bool has_bad_number(std::string_view text) {

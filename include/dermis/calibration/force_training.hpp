@@ -32,6 +32,10 @@ struct TrainingReport {
   std::string choice;               ///< One sentence: which networks were trained and what decided it.
 };
 
+/// "median 0.74 %, worst taxel r2c7 1.44 %" of the networks of their own, and what a left-out load of the shared
+/// network shows.
+[[nodiscard]] std::string describe_fit(const TrainingReport& report, const ArrayDescription& array);
+
 struct ForceTraining {
   fusion::ForceNetworks networks;
   TrainingReport report;

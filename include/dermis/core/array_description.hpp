@@ -11,6 +11,9 @@
 
 namespace dermis {
 
+/// Most rows, and most columns, of an array.
+inline constexpr std::size_t kMaxLines = 1024;
+
 /// How the array is wired to the ADC. Drawings: docs/circuits.md.
 enum class Circuit {
   divider,         ///< Every column ends in a resistor to ground; the ADC reads the column voltage.
@@ -42,8 +45,8 @@ struct Readout {
 /// A resistive tactile array: rows are driven, columns are sensed; r0c0 is the corner next to the connector.
 struct ArrayDescription {
   std::string name = "array";
-  std::size_t rows = 0;              ///< Driven lines, 1 ... 1024.
-  std::size_t cols = 0;              ///< Sensed lines, 1 ... 1024.
+  std::size_t rows = 0;              ///< Driven lines, 1 ... kMaxLines.
+  std::size_t cols = 0;              ///< Sensed lines, 1 ... kMaxLines.
   double row_pitch_m = 0.010;        ///< Distance between neighbouring rows [m], > 0.
   double col_pitch_m = 0.010;        ///< Distance between neighbouring columns [m], > 0.
   std::optional<double> taxel_area_m2;  ///< Pressed area of a taxel [m2], > 0; needed for loads given as pressure.

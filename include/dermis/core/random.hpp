@@ -20,7 +20,7 @@ class Random {
   [[nodiscard]] double uniform(double low, double high) noexcept; ///< [low, high)
   [[nodiscard]] double log_uniform(double low, double high) noexcept;  ///< density ~ 1/x on [low, high), low > 0
   [[nodiscard]] double normal() noexcept;                         ///< mean 0, standard deviation 1
-  [[nodiscard]] std::uint64_t below(std::uint64_t bound) noexcept;     ///< 0 ... bound - 1, bound >= 1
+  [[nodiscard]] std::uint64_t below(std::uint64_t bound) noexcept;     ///< 0 ... bound - 1, 1 <= bound <= 2^32
 
  private:
   std::uint64_t state_[4];

@@ -21,13 +21,9 @@ struct Error {
   std::string message;
 };
 
-[[nodiscard]] inline Error bad_input(std::string message) {
-  return {ErrorKind::bad_input, std::move(message)};
-}
-
-[[nodiscard]] inline Error failed(std::string message) {
-  return {ErrorKind::failed, std::move(message)};
-}
+/// An error whose message stays on one line whatever a file name or a file holds: control characters become '?'.
+[[nodiscard]] Error bad_input(std::string message);
+[[nodiscard]] Error failed(std::string message);
 
 /// A value or an Error. Reading the wrong one is a programmer error (assert).
 template <typename T>

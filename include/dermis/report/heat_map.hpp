@@ -25,8 +25,7 @@ struct Colour {
 
 /// One quantity on every taxel of an array: each measured taxel is a square, nothing is interpolated.
 struct HeatMap {
-  std::string title;
-  std::string unit;        ///< Stands above the colour scale.
+  std::string title;       ///< With the unit of the colour scale: "force [N]".
   std::size_t rows = 0;    ///< >= 1
   std::size_t cols = 0;    ///< >= 1
   double row_pitch = 1.0;  ///< Distance of rows over distance of columns is the shape of a taxel; > 0.

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+# CI runs these targets (.ci/run). Each installs what it needs.
+
+.PHONY: build setup demo test lint sanitize bench docs clean
+
+build: setup
+	cmake --preset release
+	cmake --build --preset release --target dermis_cli
+
+setup:
+	scripts/setup build
+
+demo: build
+	scripts/demo
+
+test: setup
+	scripts/setup test
+	cmake --preset release
+	cmake --build --preset release
+	ctest --preset release
+
+sanitize: setup
+	scripts/setup test
+	cmake --preset asan
+	cmake --build --preset asan
+	ctest --preset asan
+
+lint: setup
+	scripts/setup lint
+	cmake --preset release
+	scripts/lint
+
+bench: setup
+	cmake --preset release
+	cmake --build --preset release
+	if [ -x scripts/bench ]; then scripts/bench; else build/release/benchmarks/pipeline_benchmark; fi
+
+docs:
+	scripts/setup test
+	/usr/bin/python3 scripts/check_docs.py
+
+clean:
+	rm -rf build demo

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/matrix_product.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "compensation/matrix_product.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h comes first: it includes this file again for every instruction set.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace dermis::compensation::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Rows row ... row + kRows - 1 of the product, columns col ... col + 2 lanes(d) - 1 (or lanes(d), without `kPair`),
+/// held in registers while the inner dimension goes by.
+template <std::size_t kRows, bool kPair, class D>
+HWY_INLINE void multiply_block(D d, const StridedMatrix& a, const double* HWY_RESTRICT b, std::size_t row,
+                               std::size_t col, std::size_t inner, std::size_t cols, double* HWY_RESTRICT out) {
+  const std::size_t lanes = hn::Lanes(d);
+  hn::Vec<D> left[kRows];
+  hn::Vec<D> right[kRows];
+  for (std::size_t r = 0; r < kRows; ++r) left[r] = right[r] = hn::Zero(d);
+  for (std::size_t l = 0; l < inner; ++l) {
+    const double* b_row = b + l * cols + col;
+    const auto b_left = hn::LoadU(d, b_row);
+    const auto b_right = kPair ? hn::LoadU(d, b_row + lanes) : b_left;
+    for (std::size_t r = 0; r < kRows; ++r) {
+      const auto factor = hn::Set(d, a.data[(row + r) * a.row_stride + l * a.col_stride]);
+      left[r] = hn::MulAdd(factor, b_left, left[r]);
+      if constexpr (kPair) right[r] = hn::MulAdd(factor, b_right, right[r]);
+    }
+  }
+  for (std::size_t r = 0; r < kRows; ++r) {
+    double* out_row = out + (row + r) * cols + col;
+    hn::StoreU(left[r], d, out_row);
+    if constexpr (kPair) hn::StoreU(right[r], d, out_row + lanes);
+  }
+}
+
+template <std::size_t kRows>
+HWY_INLINE void multiply_rows(const StridedMatrix& a, const double* b, std::size_t row, std::size_t inner,
+                              std::size_t cols, double* out) {
+  const hn::ScalableTag<double> d;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t col = 0;
+  for (; col + 2 * lanes <= cols; col += 2 * lanes) multiply_block<kRows, true>(d, a, b, row, col, inner, cols, out);
+  for (; col + lanes <= cols; col += lanes) multiply_block<kRows, false>(d, a, b, row, col, inner, cols, out);
+  const hn::CappedTag<double, 1> one;
+  for (; col < cols; ++col) multiply_block<kRows, false>(one, a, b, row, col, inner, cols, out);
+}
+
+void multiply_matrices(const StridedMatrix& a, const double* b, std::size_t rows, std::size_t inner, std::size_t cols,
+                       double* out) {
+  std::size_t row = 0;
+  for (; row + 4 <= rows; row += 4) multiply_rows<4>(a, b, row, inner, cols, out);
+  for (; row < rows; ++row) multiply_rows<1>(a, b, row, inner, cols, out);
+}
+
+}  // namespace dermis::compensation::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace dermis::compensation {
+
+HWY_EXPORT(multiply_matrices);
+
+void multiply(const StridedMatrix& a, const double* b, std::size_t rows, std::size_t inner, std::size_t cols,
+              double* out) noexcept {
+  HWY_DYNAMIC_DISPATCH(multiply_matrices)(a, b, rows, inner, cols, out);
+}
+
+}  // namespace dermis::compensation
+#endif

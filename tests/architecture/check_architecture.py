@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""Holds the rules of ARCHITECTURE.md against the sources. Usage: check_architecture.py ROOT"""
+import re
+import sys
+from pathlib import Path
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+STANDARD_HEADER = re.compile(r"[a-z_]+")
+SPDX = "// SPDX-License-Identifier: Apache-2.0\n// SPDX-FileCopyrightText: 2026 The dermis authors\n"
+
+
+def allowed_includes(architecture):
+    """The dependency table: rows `| module | may include |` below the heading "Dependencies"."""
+    section = architecture.split("\n## Dependencies\n", 1)[1].split("\n## ", 1)[0]
+    rows = re.findall(r"^\| `(\w+)` \|([^|]*)\|$", section, re.MULTILINE)
+    return {module: {module} | set(re.findall(r"`(\w+)`", cell)) for module, cell in rows}
+
+
+def sources(root):
+    """(path, module) of every C++ file that the table is about; apps count as the module `apps`."""
+    for folder in ("include/dermis", "src"):
+        for path in sorted((root / folder).rglob("*.[ch]pp")):
+            yield path, path.relative_to(root / folder).parts[0]
+    for path in sorted((root / "apps").rglob("*.[ch]pp")):
+        yield path, "apps"
+
+
+def include_violations(root, allowed):
+    for path, module in sources(root):
+        place = path.relative_to(root)
+        if module not in allowed:
+            yield f"{place}: the module {module} is not in the table of ARCHITECTURE.md"
+            continue
+        for bracket, name in INCLUDE.findall(path.read_text()):
+            parts = name.split("/")
+            if parts[0] == "dermis" and len(parts) == 3:
+                if parts[1] not in allowed[module]:
+                    yield f"{place}: {module} must not include {parts[1]} ({name})"
+            elif bracket == '"' and parts[0] in allowed and parts[0] != module:
+                yield f"{place}: {name} is private to the module {parts[0]}"
+
+
+def header_violations(root):
+    include = root / "include"
+    for path in sorted(include.rglob("*.hpp")):
+        place = path.relative_to(root)
+        text = path.read_text()
+        if not text.startswith(SPDX + "#pragma once\n"):
+            yield f"{place}: must begin with the two SPDX lines and #pragma once"
+        for bracket, name in INCLUDE.findall(text):
+            if bracket == "<" and not STANDARD_HEADER.fullmatch(name):
+                yield f"{place}: a public header must not include <{name}>"
+            if bracket == '"' and not name.startswith("dermis/"):
+                yield f"{place}: a public header must not include the private \"{name}\""
+        header = path.relative_to(include / "dermis")
+        test = root / "tests" / header.parent / f"{header.stem}_test.cpp"
+        if not test.exists():
+            yield f"{place}: needs the test file {test.relative_to(root)}"
+
+
+def licence_violations(root):
+    for folder in ("src", "apps", "tests", "examples", "benchmarks", "fuzz"):
+        for path in sorted((root / folder).rglob("*.[ch]pp")):
+            if not path.read_text().startswith(SPDX):
+                yield f"{path.relative_to(root)}: must begin with the two SPDX lines"
+
+
+def version_violations(root):
+    project = re.search(r"project\(dermis VERSION ([\d.]+)", (root / "CMakeLists.txt").read_text()).group(1)
+    for name, pattern in (("CITATION.cff", r"^version: \"?([\d.]+)\"?$"), ("CHANGELOG.md", r"^## \[([\d.]+)\]")):
+        found = re.search(pattern, (root / name).read_text(), re.MULTILINE)
+        version = found.group(1) if found else "none"
+        if version != project:
+            yield f"{name}: says version {version}, CMakeLists.txt {project}"
+
+
+def violations(root):
+    allowed = allowed_includes((root / "ARCHITECTURE.md").read_text())
+    yield from include_violations(root, allowed)
+    yield from header_violations(root)
+    yield from licence_violations(root)
+    yield from version_violations(root)
+
+
+if __name__ == "__main__":
+    found = list(violations(Path(sys.argv[1])))
+    print("\n".join(found) if found else "all rules hold")
+    sys.exit(1 if found else 0)

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/evaluation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "calibration/simulated.hpp"
+#include "support/hand_made_model.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+/// A model and a frame for which dermis is exact: a row of one taxel each, so that nothing couples.
+pipeline::Model exact_model() {
+  pipeline::Model model = support::hand_made_model(2, 2);
+  model.array.readout.drive_ohm.assign(2, 0.0);
+  return model;
+}
+
+/// Counts of the model's array under given forces at its centre temperature: ideal drivers, no noise.
+RawFrame frame_under(const pipeline::Model& model, const std::vector<double>& newtons) {
+  const ArrayDescription& array = model.array;
+  RawFrame frame;
+  frame.temperature_celsius = model.networks.temperature_centre_celsius;
+  frame.counts.resize(newtons.size());
+  std::vector<double> siemens;
+  for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
+    siemens.push_back(support::siemens_under(model, taxel, newtons[taxel], *frame.temperature_celsius));
+  }
+  for (std::size_t col = 0; col < array.cols; ++col) {
+    double column = 1.0 / array.readout.load_ohm[col];
+    for (std::size_t row = 0; row < array.rows; ++row) column += siemens[array.index(row, col)];
+    for (std::size_t row = 0; row < array.rows; ++row) {
+      const std::size_t taxel = array.index(row, col);
+      frame.counts[taxel] = static_cast<float>(siemens[taxel] / column * array.readout.full_scale_counts());
+    }
+  }
+  return frame;
+}
+
+TEST(Evaluation, summarises_by_nearest_rank) {
+  std::vector<double> errors;
+  for (int k = 100; k >= 1; --k) errors.push_back(k);
+  const ErrorSummary summary = summarise(errors);
+  EXPECT_EQ(summary.count, 100U);
+  EXPECT_EQ(summary.median, 50.0);
+  EXPECT_EQ(summary.p95, 95.0);
+  EXPECT_EQ(summary.p99, 99.0);
+  EXPECT_EQ(summary.max, 100.0);
+  EXPECT_FALSE(summarise({}).median.has_value());
+  EXPECT_TRUE(std::isinf(*summarise({0.1, std::numeric_limits<double>::quiet_NaN()}).max));
+}
+
+TEST(Evaluation, judges_loaded_taxels_ghosts_and_totals) {
+  const pipeline::Model model = exact_model();
+  const std::vector<RawFrame> frames = {frame_under(model, {5.0, 0.0, 0.0, 20.0}),
+                                        frame_under(model, {3.0, 4.0, 0.0, 0.5}), frame_under(model, {0, 0, 0, 0})};
+  const std::vector<Load> loads = {{0, LoadKind::force, {0, 0, 0, 0}, 5.0 * 1.25},  // the label is off by a quarter
+                                   {0, LoadKind::force, {1, 1, 1, 1}, 20.0},
+                                   {1, LoadKind::force, {0, 0, 0, 1}, 8.0},  // 7 N in truth
+                                   {1, LoadKind::force, {1, 1, 1, 1}, 0.5}};
+  const Result<Evaluation> evaluation = evaluate(model, frames, loads);
+  ASSERT_TRUE(evaluation) << evaluation.error().message;
+  EXPECT_EQ(evaluation->frames, 2U);
+  const EstimatorResult& dermis = evaluation->estimators.front();
+  EXPECT_EQ(dermis.name, "dermis");
+  EXPECT_EQ(dermis.relative_error.count, 2U);  // 0.5 N is not judged
+  EXPECT_NEAR(*dermis.relative_error.max, 0.2, 1e-3);
+  EXPECT_NEAR(*dermis.relative_error.median, 0.0, 1e-3);
+  EXPECT_EQ(dermis.ghost_n.count, 3U);  // r0c1, r1c0 of frame 0 and r1c0 of frame 1
+  EXPECT_LT(*dermis.ghost_n.max, 0.01);
+  EXPECT_EQ(dermis.totals_judged, 1U);
+  EXPECT_NEAR(*dermis.total_rmse_n, 1.0, 0.01);
+  EXPECT_NEAR(*dermis.total_relative_error.max, 1.0 / 8.0, 1e-3);
+}
+
+TEST(Evaluation, counts_separate_stressed_areas) {
+  const pipeline::Model model = exact_model();
+  const std::vector<RawFrame> frames = {frame_under(model, {5.0, 0.0, 0.0, 5.0})};
+  const std::vector<Load> loads = {{0, LoadKind::force, {0, 0, 0, 0}, 5.0}, {0, LoadKind::force, {1, 1, 1, 1}, 5.0}};
+  const auto evaluation = evaluate(model, frames, loads);
+  ASSERT_TRUE(evaluation);
+  ASSERT_EQ(evaluation->taxels.size(), 2U);
+  EXPECT_EQ(evaluation->taxels.front().contacts, 1U);  // they touch at a corner
+  ASSERT_EQ(evaluation->by_contacts.size(), 1U);
+  EXPECT_EQ(evaluation->by_contacts.front().low, 1.0);
+}
+
+TEST(Evaluation, breaks_down_every_judged_taxel_once) {
+  const pipeline::Model model = exact_model();
+  std::vector<RawFrame> frames;
+  std::vector<Load> loads;
+  for (const double newtons : {1.0, 1.9, 2.0, 9.0, 50.0, 70.0}) {
+    loads.push_back({frames.size(), LoadKind::force, {0, 0, 0, 0}, newtons});
+    frames.push_back(frame_under(model, {newtons, 0, 0, 0}));
+    frames.back().supply_v = 5.0;
+  }
+  const auto evaluation = evaluate(model, frames, loads);
+  ASSERT_TRUE(evaluation);
+  for (const auto* bins : {&evaluation->by_force, &evaluation->by_temperature, &evaluation->by_supply,
+                           &evaluation->by_contacts}) {
+    std::size_t count = 0;
+    for (const BreakdownBin& bin : *bins) {
+      ASSERT_EQ(bin.relative_error.size(), evaluation->estimators.size());
+      count += bin.relative_error.front().count;
+    }
+    EXPECT_EQ(count, 6U);
+  }
+}
+
+TEST(Evaluation, counts_a_rejected_frame_apart) {
+  const pipeline::Model model = exact_model();
+  std::vector<RawFrame> frames = {frame_under(model, {5.0, 0, 0, 0}), frame_under(model, {5.0, 0, 0, 0})};
+  frames[1].counts[0] = -1.0F;
+  const std::vector<Load> loads = {{0, LoadKind::force, {0, 0, 0, 0}, 5.0}, {1, LoadKind::force, {0, 0, 0, 0}, 5.0}};
+  const auto evaluation = evaluate(model, frames, loads);
+  ASSERT_TRUE(evaluation);
+  EXPECT_EQ(evaluation->frames, 1U);
+  EXPECT_EQ(evaluation->frames_rejected, 1U);
+}
+
+TEST(Evaluation, has_the_documented_json_keys_and_no_bare_nan) {
+  pipeline::Model model = exact_model();
+  model.networks.dead[0] = 1;  // gives NaN where 5 N presses
+  const std::vector<RawFrame> frames = {frame_under(model, {5.0, 0, 0, 0})};
+  const auto evaluation = evaluate(model, frames, std::vector<Load>{{0, LoadKind::force, {0, 0, 0, 0}, 5.0}});
+  ASSERT_TRUE(evaluation);
+  const std::string json = to_json(*evaluation);
+  for (const char* key : {"estimators", "name", "median_relative_error", "p95_relative_error", "p99_relative_error",
+                          "max_relative_error", "ghost_p99_n", "ghost_max_n", "total_rmse_n", "taxels_judged", "by_force",
+                          "by_temperature", "by_supply", "by_contacts"}) {
+    EXPECT_NE(json.find("\"" + std::string(key) + "\""), std::string::npos) << key;
+  }
+  EXPECT_EQ(json.find("nan"), std::string::npos);
+  EXPECT_EQ(json.find("inf"), std::string::npos);
+  EXPECT_NE(json.find("\"max_relative_error\": null"), std::string::npos);
+}
+
+TEST(Evaluation, refuses_loads_without_frames) {
+  const auto evaluation = evaluate(exact_model(), {}, std::vector<Load>{{0, LoadKind::force, {0, 0, 0, 0}, 5.0}});
+  ASSERT_FALSE(evaluation);
+  EXPECT_EQ(evaluation.error().message, "a load names frame 0, there are 0 (counted from 0)");
+}
+
+}  // namespace
+}  // namespace dermis::calibration

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/force_training.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "calibration/simulated.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+SampleDatabase database_of(const ArrayDescription& array, const Recording& recording) {
+  auto database = build_sample_database(array, recording.frames, recording.loads);
+  EXPECT_TRUE(database) << database.error().message;
+  return std::move(*database);
+}
+
+/// Appends a recording, later in time.
+void append(Recording& recording, const Recording& other) {
+  const Nanos shift = recording.frames.back().time + std::chrono::seconds(1);
+  const std::size_t first = recording.frames.size();
+  for (RawFrame frame : other.frames) {
+    frame.time += shift;
+    recording.frames.push_back(frame);
+  }
+  for (Load load : other.loads) {
+    load.frame += first;
+    recording.loads.push_back(load);
+  }
+}
+
+TEST(ForceTraining, gives_every_taxel_its_own_network_from_single_presses) {
+  const ArrayDescription array = reference_array(3, 4);
+  const auto training = train_force_networks(database_of(array, record(array, "calibration", 1)));
+  ASSERT_TRUE(training) << training.error().message;
+  const TrainingReport& report = training->report;
+  EXPECT_EQ(report.own_networks, 12U);
+  EXPECT_EQ(report.shared_networks, 0U);
+  EXPECT_EQ(report.hidden_units, 4U);
+  EXPECT_TRUE(report.uses_temperature);
+  EXPECT_TRUE(report.dead_taxels.empty());
+  EXPECT_NEAR(report.lightest_newtons, 0.5, 1e-6);
+  EXPECT_NEAR(report.heaviest_newtons, 50.0, 1e-5);
+  EXPECT_LT(report.median_fit_error, 0.02);
+  EXPECT_TRUE(training->networks.is_consistent());
+}
+
+TEST(ForceTraining, follows_the_force_it_was_trained_on_and_rises_with_conductance) {
+  const ArrayDescription array = reference_array(2, 2);
+  const auto simulator = simulate(array, "calibration", 1);
+  const auto training = train_force_networks(database_of(array, record(*simulator)));
+  ASSERT_TRUE(training);
+  fusion::ForceFusion fusion(training->networks);
+  ConductanceFrame conductance;
+  conductance.taxels.assign(4, TaxelStatus::ok);
+  ForceFrame force;
+  for (const double celsius : {2.0, 25.0, 48.0}) {
+    conductance.temperature_celsius = celsius;
+    std::vector<float> last(4, 0.0F);
+    for (double newtons = 0.05; newtons < 49.0; newtons *= 1.02) {
+      conductance.siemens.clear();
+      for (std::size_t taxel = 0; taxel < 4; ++taxel) {
+        conductance.siemens.push_back(simulator->rubber().conductance_from_force(taxel, newtons, celsius));
+      }
+      fusion.process(conductance, force);
+      for (std::size_t taxel = 0; taxel < 4; ++taxel) {
+        EXPECT_GT(force.newtons[taxel], last[taxel]);
+        if (newtons >= 1.0) {
+          EXPECT_NEAR(static_cast<double>(force.newtons[taxel]) / newtons, 1.0, 0.015) << newtons << " N";
+        } else {
+          EXPECT_NEAR(static_cast<double>(force.newtons[taxel]), newtons, 0.05 * newtons + 0.02);
+        }
+      }
+      last = force.newtons;
+    }
+  }
+}
+
+TEST(ForceTraining, leaves_temperature_out_where_the_calibration_has_one) {
+  const ArrayDescription array = reference_array(2, 2);
+  Recording recording = record(array, "calibration", 1);
+  for (RawFrame& frame : recording.frames) frame.temperature_celsius = 21.5;
+  const auto training = train_force_networks(database_of(array, recording));
+  ASSERT_TRUE(training);
+  EXPECT_FALSE(training->report.uses_temperature);
+  EXPECT_EQ(training->networks.shape.inputs, 2U);
+}
+
+TEST(ForceTraining, shares_one_network_where_one_load_cell_weighs_the_whole_pad) {
+  const ArrayDescription array = reference_array(4, 4);
+  Recording recording = record(array, "multitouch", 5, {}, 300);
+  std::vector<double> total(recording.frames.size());
+  for (const Load& load : recording.loads) total[load.frame] += load.value;
+  recording.loads.clear();
+  for (std::size_t k = 0; k < total.size(); ++k) {
+    recording.loads.push_back({k, LoadKind::force, all_taxels(array), total[k]});
+  }
+  append(recording, record(array, "idle", 6, {}, 30));
+
+  const auto training = train_force_networks(database_of(array, recording));
+  ASSERT_TRUE(training) << training.error().message;
+  EXPECT_EQ(training->report.shared_networks, 16U);
+  EXPECT_EQ(training->report.own_networks, 0U);
+  EXPECT_LT(training->report.shared_leave_one_out_error, 0.05);
+  EXPECT_NE(training->report.choice.find("with a gain each"), std::string::npos) << training->report.choice;
+
+  // The gains tell the taxels apart: compare with the true conductance of each at 10 N.
+  const auto simulator = simulate(array, "idle", 1, {}, 1);
+  fusion::ForceFusion fusion(training->networks);
+  ConductanceFrame conductance;
+  conductance.temperature_celsius = 25.0;
+  conductance.taxels.assign(16, TaxelStatus::ok);
+  for (std::size_t taxel = 0; taxel < 16; ++taxel) {
+    conductance.siemens.push_back(simulator->rubber().conductance_from_force(taxel, 10.0, 25.0));
+  }
+  ForceFrame force;
+  fusion.process(conductance, force);
+  for (const float newtons : force.newtons) EXPECT_NEAR(newtons, 10.0F, 1.5F);
+}
+
+TEST(ForceTraining, is_content_with_an_air_bladder) {
+  const ArrayDescription array = reference_array(3, 3);
+  const auto training = train_force_networks(database_of(array, record(array, "uniform", 2)));
+  ASSERT_TRUE(training);
+  EXPECT_EQ(training->report.own_networks, 9U);  // a uniform pressure tells the force of every taxel
+  EXPECT_LT(training->report.median_fit_error, 0.03);
+}
+
+TEST(ForceTraining, mixes_own_and_shared_networks) {
+  const ArrayDescription array = reference_array(3, 3);
+  Recording recording = record(array, "calibration", 1);
+  // Taxel r2c2 was pressed only with 5 N at most twice: not enough for a network of its own.
+  std::size_t kept = 0;
+  std::erase_if(recording.loads, [&](const Load& load) {
+    return load.where == TaxelRegion{2, 2, 2, 2} && (load.value < 4.0 || load.value > 6.0 || ++kept > 2);
+  });
+  const auto training = train_force_networks(database_of(array, recording));
+  ASSERT_TRUE(training);
+  EXPECT_EQ(training->report.own_networks, 8U);
+  EXPECT_EQ(training->report.shared_networks, 1U);
+}
+
+TEST(ForceTraining, finds_a_dead_taxel) {
+  const ArrayDescription array = reference_array(3, 3);
+  Recording recording = record(array, "calibration", 1);
+  for (RawFrame& frame : recording.frames) frame.counts[4] = 0.0F;
+  const auto training = train_force_networks(database_of(array, recording));
+  ASSERT_TRUE(training);
+  EXPECT_EQ(training->report.dead_taxels, (std::vector<std::size_t>{4}));
+  EXPECT_EQ(training->networks.dead[4], 1);
+  EXPECT_EQ(training->report.own_networks, 8U);
+}
+
+TEST(ForceTraining, needs_a_load_and_an_answer) {
+  const ArrayDescription array = reference_array(2, 2);
+  const Recording idle = record(array, "idle", 1, {}, 20);
+  const auto unloaded = train_force_networks(database_of(array, idle));
+  ASSERT_FALSE(unloaded);
+  EXPECT_EQ(unloaded.error().message,
+            "every load is zero: label frames with the force that presses on the array");
+
+  Recording deaf = record(array, "calibration", 1);
+  for (RawFrame& frame : deaf.frames) frame.counts.assign(4, 3.0F);
+  const auto silent = train_force_networks(database_of(array, deaf));
+  ASSERT_FALSE(silent);
+  EXPECT_EQ(silent.error().message,
+            "no taxel answers to its loads: check that frames and loads belong together, and the circuit");
+}
+
+}  // namespace
+}  // namespace dermis::calibration

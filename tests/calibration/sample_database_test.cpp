@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/sample_database.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calibration/simulated.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+ArrayDescription bare_array() {
+  ArrayDescription array;
+  array.rows = 2;
+  array.cols = 3;
+  array.taxel_area_m2 = 1e-4;
+  array.readout.circuit = Circuit::none;
+  array.readout.adc_bits = 10;
+  return array;
+}
+
+std::vector<RawFrame> frames_of(std::size_t count) {
+  std::vector<RawFrame> frames(count);
+  for (std::size_t k = 0; k < count; ++k) {
+    frames[k].time = std::chrono::seconds(k);
+    frames[k].counts.assign(6, static_cast<float>(100 * k));
+  }
+  return frames;
+}
+
+constexpr TaxelRegion kAll{0, 0, 1, 2};
+
+TEST(SampleDatabase, keeps_labelled_frames_and_what_their_loads_tell) {
+  const std::vector<Load> loads = {{0, LoadKind::force, kAll, 0.0},
+                                   {1, LoadKind::force, {0, 1, 0, 1}, 5.0},
+                                   {3, LoadKind::force, {0, 0, 1, 0}, 8.0},
+                                   {4, LoadKind::pressure, {1, 0, 1, 2}, 2e4}};
+  const Result<SampleDatabase> database = build_sample_database(bare_array(), frames_of(6), loads);
+  ASSERT_TRUE(database) << database.error().message;
+  ASSERT_EQ(database->samples.size(), 4U);  // frames 2 and 5 are unlabelled
+  EXPECT_TRUE(database->samples[0].unloaded);
+
+  const Sample& press = database->samples[1];
+  EXPECT_FALSE(press.unloaded);
+  EXPECT_EQ(press.known_newtons, (std::vector<float>{0, 5, 0, 0, 0, 0}));
+  EXPECT_NEAR(press.siemens[0], 100.0 / 1023.0, 1e-12);
+
+  const Sample& shared = database->samples[2];
+  EXPECT_TRUE(std::isnan(shared.known_newtons[0]) && std::isnan(shared.known_newtons[3]));
+  EXPECT_EQ(shared.known_newtons[1], 0.0F);
+  ASSERT_EQ(shared.totals.size(), 1U);
+  EXPECT_EQ(shared.totals[0].taxels, (std::vector<std::size_t>{0, 3}));
+  EXPECT_EQ(shared.totals[0].newtons, 8.0);
+
+  const Sample& bladder = database->samples[3];
+  EXPECT_EQ(bladder.known_newtons, (std::vector<float>{0, 0, 0, 2, 2, 2}));  // 20 kPa on 1 cm2
+  EXPECT_TRUE(bladder.totals.empty());
+}
+
+TEST(SampleDatabase, leaves_out_what_comes_before_settling) {
+  const std::vector<Load> loads = {{1, LoadKind::force, kAll, 0.0}, {4, LoadKind::force, kAll, 0.0}};
+  const auto database = build_sample_database(bare_array(), frames_of(6), loads, std::chrono::seconds(2));
+  ASSERT_TRUE(database);
+  ASSERT_EQ(database->samples.size(), 1U);
+  EXPECT_NEAR(database->samples[0].siemens[0], 400.0 / 1023.0, 1e-12);
+}
+
+TEST(SampleDatabase, asks_for_an_unloaded_frame) {
+  const auto database = build_sample_database(bare_array(), frames_of(2), std::vector<Load>{{1, LoadKind::force, kAll, 3.0}});
+  ASSERT_FALSE(database);
+  EXPECT_EQ(database.error().kind, ErrorKind::bad_input);
+  EXPECT_EQ(database.error().message,
+            "the loads name no unloaded frame: record a few frames with nothing on the array and label them "
+            "'<frame>,force,all,0'");
+}
+
+TEST(SampleDatabase, refuses_loads_that_cannot_be_used) {
+  ArrayDescription array = bare_array();
+  EXPECT_EQ(build_sample_database(array, frames_of(2), {}).error().message,
+            "the loads name no frame: known loads are needed");
+  EXPECT_EQ(build_sample_database(array, frames_of(2), std::vector<Load>{{2, LoadKind::force, kAll, 0.0}}).error().message,
+            "a load names frame 2, there are 2 (counted from 0)");
+  array.taxel_area_m2.reset();
+  EXPECT_EQ(build_sample_database(array, frames_of(2), std::vector<Load>{{1, LoadKind::pressure, kAll, 1.0}}).error().message,
+            "loads given as pressure need array.taxel_area_mm2");
+}
+
+TEST(SampleDatabase, counts_rejected_frames_and_refuses_many_of_them) {
+  std::vector<RawFrame> frames = frames_of(10);
+  std::vector<Load> loads;
+  for (std::size_t k = 0; k < 40; ++k) {
+    if (k >= 10) {
+      frames.push_back(frames.back());
+      frames.back().counts.assign(6, 1.0F);
+    }
+    loads.push_back({k, LoadKind::force, kAll, 0.0});
+  }
+  frames[5].counts[2] = 2000.0F;
+  frames[7].counts[2] = std::nanf("");
+  const auto few = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(few);
+  EXPECT_EQ(few->samples.size(), 38U);
+  EXPECT_EQ(few->frames_rejected, 2U);
+  EXPECT_EQ(few->first_rejection, "frame 5: a reading outside the ADC range");
+
+  for (std::size_t k = 20; k < 25; ++k) frames[k].counts.pop_back();
+  const auto many = build_sample_database(bare_array(), frames, loads);
+  ASSERT_FALSE(many);
+  EXPECT_EQ(many.error().message,
+            "7 of 40 labelled frames cannot be used, the first: frame 5: a reading outside the ADC range");
+}
+
+TEST(SampleDatabase, does_not_trust_a_saturated_reading) {
+  std::vector<RawFrame> frames = frames_of(2);
+  frames[1].counts[4] = 1023.0F;
+  const std::vector<Load> loads = {{0, LoadKind::force, kAll, 0.0}, {1, LoadKind::force, {1, 1, 1, 1}, 90.0}};
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database);
+  EXPECT_TRUE(std::isnan(database->samples[1].known_newtons[4]));
+}
+
+TEST(SampleDatabase, removes_crosstalk_and_supply) {
+  const ArrayDescription array = reference_array(6, 5);
+  auto simulator = simulate(array, "multitouch", 3, {}, 20);
+  Recording recording;
+  std::vector<std::vector<double>> truth;
+  RawFrame frame;
+  while (simulator->next(frame).value()) {
+    recording.frames.push_back(frame);
+    recording.loads.insert(recording.loads.end(), simulator->loads().begin(), simulator->loads().end());
+    truth.push_back(simulator->true_siemens());
+  }
+  Recording idle = record(array, "idle", 4, {}, 1);
+  idle.frames[0].time = recording.frames.back().time;
+  recording.frames.push_back(idle.frames[0]);
+  recording.loads.push_back({recording.frames.size() - 1, LoadKind::force, all_taxels(array), 0.0});
+  const auto database = build_sample_database(array, recording.frames, recording.loads);
+  ASSERT_TRUE(database) << database.error().message;
+  for (std::size_t k = 0; k < truth.size(); ++k) {
+    for (std::size_t taxel = 0; taxel < truth[k].size(); ++taxel) {
+      // 1 LSB of noise and 0.1 % of the supply meter, amplified by crosstalk.
+      EXPECT_NEAR(database->samples[k].siemens[taxel], truth[k][taxel], 0.05 * truth[k][taxel] + 3e-5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dermis::calibration

@@ -1,0 +1,296 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""Every bad input: status 2 (1 where the input was right and the work failed), one line that names the place, and no
+output file."""
+import os
+
+import support
+from support import ARRAY, SmallArray, files_limited_to
+
+
+class Usage(SmallArray):
+    def test_no_command(self):
+        self.refuse([], ["subcommand"])
+
+    def test_unknown_command(self):
+        self.refuse(["calibrat"], ["calibrat"])
+
+    def test_unknown_option(self):
+        self.refuse([*self.run_arguments(self.work / "f.csv"), "--fast"], ["--fast"])
+
+    def test_missing_options(self):
+        for command, option in (("simulate", "--array"), ("calibrate", "--array"), ("run", "--model"),
+                                ("evaluate", "--model")):
+            with self.subTest(command):
+                self.refuse([command], [option])
+
+    def test_a_number_that_is_none(self):
+        self.refuse([*self.run_arguments(self.work / "f.csv"), "--settle", "soon"], ["--settle"])
+        self.refuse([*self.run_arguments(self.work / "f.csv"), "--settle", "-1"], ["--settle"])
+        self.refuse([*self.run_arguments(self.work / "f.csv"), "--settle", "nan"], ["--settle"])
+
+    def test_a_count_below_zero(self):
+        for option in ("--frames", "--seed"):
+            with self.subTest(option):
+                self.refuse(["simulate", "--array", self.array, "--scene", "multitouch", "--out", self.work / "o",
+                             option, "-1"], [option], **files_limited_to(1000000))
+
+    def test_unknown_scene(self):
+        self.refuse(["simulate", "--array", self.array, "--scene", "party", "--out", self.work / "o"],
+                    ["party", "multitouch"])
+
+    def test_a_scene_of_fixed_length_with_another_length(self):
+        self.refuse(["simulate", "--array", self.array, "--scene", "paper", "--frames", "3", "--out", self.work / "o"],
+                    ["paper", "fixed"])
+
+
+class MissingFiles(SmallArray):
+    def test_each_input(self):
+        absent = self.work / "absent"
+        model, forces = self.work / "m", self.work / "f.csv"
+        cases = [self.calibrate_arguments(model, array=absent), self.calibrate_arguments(model, frames=absent),
+                 self.calibrate_arguments(model, loads=absent), self.run_arguments(forces, model=absent),
+                 self.run_arguments(forces, **{"in": absent}), self.evaluate_arguments(model=absent),
+                 self.evaluate_arguments(frames=absent), self.evaluate_arguments(loads=absent),
+                 ("simulate", "--array", absent, "--scene", "idle", "--out", self.work / "o"),
+                 ("simulate", "--array", self.array, "--physics", absent, "--scene", "idle", "--out", self.work / "o")]
+        for arguments in cases:
+            with self.subTest(arguments):
+                self.refuse(arguments, [absent])
+
+    def test_a_folder_instead_of_a_file(self):
+        self.refuse(self.run_arguments(self.work / "f.csv", **{"in": self.root}), [self.root])
+
+
+class ArrayFile(SmallArray):
+    def refuse_array(self, text, places):
+        array = self.written("array.toml", text)
+        self.refuse(["simulate", "--array", array, "--scene", "idle", "--out", self.work / "o"], [array, *places])
+
+    def test_unknown_key(self):
+        self.refuse_array(ARRAY.replace("load_ohm", "laod_ohm"), [":10", "laod_ohm", "load_ohm"])
+
+    def test_unknown_table(self):
+        self.refuse_array(ARRAY + "[redaout]\n", ["redaout"])
+
+    def test_missing_key(self):
+        self.refuse_array(ARRAY.replace("rows = 4\n", ""), ["array.rows"])
+
+    def test_text_where_a_number_belongs(self):
+        self.refuse_array(ARRAY.replace("cols = 5", 'cols = "five"'), [":4", "array.cols"])
+
+    def test_out_of_range(self):
+        self.refuse_array(ARRAY.replace("rows = 4", "rows = 0"), [":3", "array.rows"])
+        self.refuse_array(ARRAY.replace("load_ohm = 200.0", "load_ohm = -1"), [":10", "load_ohm"])
+        self.refuse_array(ARRAY.replace("adc_bits = 12", "adc_bits = 99"), [":11", "adc_bits"])
+
+    def test_a_list_of_the_wrong_length(self):
+        self.refuse_array(ARRAY.replace("load_ohm = 200.0", "load_ohm = [1.0, 2.0]"), [":10", "load_ohm", "5"])
+
+    def test_unknown_circuit(self):
+        self.refuse_array(ARRAY.replace("divider", "dividr"), [":8", "circuit", "divider"])
+
+    def test_broken_toml(self):
+        self.refuse_array(ARRAY.replace("rows = 4", "rows 4"), [":3"])
+
+    def test_unknown_physics(self):
+        physics = self.written("physics.toml", "[rubber]\nexponnt = 0.9\n")
+        self.refuse(["simulate", "--array", self.array, "--physics", physics, "--scene", "idle",
+                     "--out", self.work / "o"], [physics, ":2", "exponnt", "exponent"])
+
+
+class FramesFile(SmallArray):
+    def refuse_frames(self, change, places):
+        lines = (self.contacts / "frames.csv").read_text().splitlines()
+        change(lines)
+        frames = self.written("frames.csv", "\n".join(lines) + "\n")
+        out = self.work / "out"
+        for arguments in (self.run_arguments(out, **{"in": frames}), self.evaluate_arguments(frames=frames),
+                          self.calibrate_arguments(out, frames=frames, loads=self.contacts / "loads.csv")):
+            with self.subTest(arguments[0]):
+                self.refuse(arguments, [frames, *places])
+
+    def test_missing_column(self):
+        def change(lines):
+            lines[:] = [line.rpartition(",")[0] for line in lines]
+        self.refuse_frames(change, [":1", "r3c4"])
+
+    def test_missing_time(self):
+        def change(lines):
+            lines[:] = [line.partition(",")[2] for line in lines]
+        self.refuse_frames(change, [":1", "time_s"])
+
+    def test_ragged_row(self):
+        def change(lines):
+            lines[6] = lines[6].rpartition(",")[0]
+        self.refuse_frames(change, [":7", "22", "23"])
+
+    def test_text_in_a_number(self):
+        def change(lines):
+            cells = lines[6].split(",")
+            cells[5] = "12a"
+            lines[6] = ",".join(cells)
+        self.refuse_frames(change, [":7", "r0c2", "12a"])
+
+    def test_wrong_size_for_the_array(self):
+        def change(lines):
+            names = lines[0].split(",")[:3] + [f"r{r}c{c}" for r in range(5) for c in range(4)]
+            lines[0] = ",".join(names)
+        self.refuse_frames(change, [":1", "5x4", "4x5"])
+
+    def test_empty_file(self):
+        self.refuse_frames(lambda lines: lines.clear(), [":1"])
+
+    def test_binary_file(self):
+        frames = self.work / "frames.csv"
+        frames.write_bytes(bytes(range(256)) * 100)
+        self.refuse(self.run_arguments(self.work / "out", **{"in": frames}), [frames])
+
+    def test_no_frame_at_all(self):
+        frames = self.written("frames.csv", (self.contacts / "frames.csv").read_text().splitlines()[0] + "\n")
+        loads = self.written("loads.csv", "frame,kind,where,value\n")
+        self.refuse(self.evaluate_arguments(frames=frames, loads=loads), [""])
+
+
+class LoadsFile(SmallArray):
+    def refuse_loads(self, lines, places):
+        loads = self.written("loads.csv", "\n".join(["frame,kind,where,value", *lines]) + "\n")
+        for arguments in (self.evaluate_arguments(loads=loads), self.calibrate_arguments(self.work / "m", loads=loads)):
+            with self.subTest(arguments[0]):
+                self.refuse(arguments, places if places == [""] else [loads, *places])
+
+    def test_a_taxel_that_does_not_exist(self):
+        self.refuse_loads(["0,force,all,0", "1,force,r4c0,10"], [":3", "r4c0", "4x5"])
+        self.refuse_loads(["0,force,all,0", "1,force,r0c0:r3c5,10"], [":3", "r3c5", "4x5"])
+
+    def test_a_frame_that_does_not_exist(self):
+        self.refuse_loads(["0,force,all,0", "1500,force,r0c0,10"], [":3", "1500"])
+
+    def test_a_value_that_is_no_load(self):
+        for value in ("-1", "ten", "nan", "inf", ""):
+            with self.subTest(value):
+                self.refuse_loads(["0,force,all,0", f"1,force,r0c0,{value}"], [":3"])
+
+    def test_unknown_kind(self):
+        self.refuse_loads(["0,force,all,0", "1,weight,r0c0,1"], [":3", "weight"])
+
+    def test_two_loads_on_one_taxel(self):
+        self.refuse_loads(["0,force,all,0", "1,force,r0c0,1", "1,force,r0c0:r1c1,1"], [":4", "r0c0"])
+
+    def test_another_header(self):
+        loads = self.written("loads.csv", "frame,where,value\n0,all,0\n")
+        self.refuse(self.evaluate_arguments(loads=loads), [loads, ":1", "frame,kind,where,value"])
+
+    def test_no_load(self):
+        self.refuse_loads([], [""])
+
+    def test_a_pressure_on_an_array_without_area(self):
+        array = self.written("array.toml", ARRAY.replace("taxel_area_mm2 = 38.48\n", ""))
+        loads = self.written("loads.csv", "frame,kind,where,value\n0,force,all,0\n1,pressure,all,20\n")
+        self.refuse(self.calibrate_arguments(self.work / "m", array=array, loads=loads), [":3", "taxel_area_mm2"])
+
+
+class Calibration(SmallArray):
+    def test_no_unloaded_frame(self):
+        text = (self.calibration / "loads.csv").read_text()
+        loads = self.written("loads.csv", "".join(line for line in text.splitlines(True) if ",all,0" not in line))
+        self.refuse(self.calibrate_arguments(self.work / "m", loads=loads), ["unloaded", "force,all,0"])
+
+    def test_only_unloaded_frames(self):
+        loads = self.written("loads.csv", "frame,kind,where,value\n0,force,all,0\n1,force,all,0\n")
+        self.refuse(self.calibrate_arguments(self.work / "m", loads=loads), ["zero"])
+
+    def test_frames_and_loads_that_do_not_belong_together(self):
+        lines = (self.calibration / "frames.csv").read_text().splitlines()
+        flat = [lines[0]] + [f"{k}," + lines[1].partition(",")[2] for k in range(len(lines) - 1)]
+        frames = self.written("frames.csv", "\n".join(flat) + "\n")
+        self.refuse(self.calibrate_arguments(self.work / "m", frames=frames), ["no taxel answers"])
+
+    def test_readings_beyond_the_adc(self):
+        array = self.written("array.toml", ARRAY.replace("adc_bits = 12", "adc_bits = 8"))
+        self.refuse(self.calibrate_arguments(self.work / "m", array=array), ["ADC range", "frame"])
+
+    def test_all_frames_settle(self):
+        self.refuse([*self.calibrate_arguments(self.work / "m"), "--settle", "1e6"], ["settling"])
+
+    def test_a_circuit_that_cannot_be_inverted(self):
+        array = self.written("array.toml", ARRAY + 'idle_rows = "floating"\n')
+        self.refuse(self.calibrate_arguments(self.work / "m", array=array), ["idle_rows"])
+
+    def test_a_reference_in_volts_without_any_supply(self):
+        """Readings cannot be put over a supply that nobody knows."""
+        array = self.written("array.toml", ARRAY.replace("supply_v = 5.0\n", ""))
+        rows = [line.split(",") for line in (self.calibration / "frames.csv").read_text().splitlines()]
+        frames = self.written("frames.csv", "".join(",".join(row[:2] + row[3:]) + "\n" for row in rows))
+        self.refuse(self.calibrate_arguments(self.work / "m", array=array, frames=frames), ["supply"])
+
+
+class ModelFile(SmallArray):
+    def test_cut_short_anywhere(self):
+        whole = self.model.read_bytes()
+        header = 8 + int.from_bytes(whole[:8], "little")
+        cut = self.work / "model"
+        for size in (0, 1, 7, 8, 9, header // 2, header - 1, header, header + 1, (header + len(whole)) // 2,
+                     len(whole) - 1):
+            with self.subTest(size):
+                cut.write_bytes(whole[:size])
+                self.refuse(self.run_arguments(self.work / "f.csv", model=cut), [cut])
+                self.refuse(self.evaluate_arguments(model=cut), [cut])
+
+    def test_another_file(self):
+        self.refuse(self.run_arguments(self.work / "f.csv", model=self.array), [self.array])
+        self.refuse(self.run_arguments(self.work / "f.csv", model=self.contacts / "frames.csv"), ["frames.csv"])
+
+    def test_a_header_that_was_changed(self):
+        whole = self.model.read_bytes()
+        changed = self.work / "model"
+        for old, new in ((b"dermis model 1", b"dermis model 9"), (b"rows = 4", b"rows = 3"),
+                         (b"networks.gain", b"networks.gone"), (b"F64", b"F32")):
+            with self.subTest(new):
+                self.assertIn(old, whole)
+                changed.write_bytes(whole.replace(old, new, 1))
+                self.refuse(self.run_arguments(self.work / "f.csv", model=changed), [changed])
+
+    def test_a_model_of_another_array(self):
+        other = self.work / "array.toml"
+        other.write_text(ARRAY.replace("rows = 4", "rows = 5"))
+        frames = self.work / "other"
+        self.succeed("simulate", "--array", other, "--scene", "multitouch", "--frames", "5", "--out", frames)
+        self.refuse(self.run_arguments(self.work / "f.csv", **{"in": frames / "frames.csv"}), [":1", "5x5", "4x5"])
+        self.refuse(self.evaluate_arguments(frames=frames / "frames.csv", loads=frames / "loads.csv"),
+                    [":1", "5x5", "4x5"])
+
+
+class Outputs(SmallArray):
+    def test_a_folder_that_does_not_exist(self):
+        absent = self.work / "absent"
+        self.refuse(self.run_arguments(absent / "f.csv"), [absent], status=1)
+        self.refuse(self.calibrate_arguments(absent / "m"), [absent], status=1)
+
+    def test_a_folder_as_file(self):
+        folder = self.work / "folder"
+        folder.mkdir()
+        self.refuse(self.run_arguments(folder), [folder], status=1)
+        self.refuse(self.calibrate_arguments(folder), [folder], status=1)
+
+    def test_a_file_as_folder(self):
+        file = self.written("file", "")
+        self.refuse(["simulate", "--array", self.array, "--scene", "paper", "--out", file], [file], status=1)
+        self.refuse([*self.evaluate_arguments(), "--report", file], [file], status=1)
+
+    def test_a_folder_that_cannot_be_written(self):
+        folder = self.work / "locked"
+        folder.mkdir(mode=0o555)
+        as_nobody = {}
+        if os.geteuid() == 0:  # root may write everywhere
+            self.work.chmod(0o755)
+            self.root.chmod(0o755)
+            as_nobody = {"user": 65534, "group": 65534}
+        self.refuse(self.run_arguments(folder / "f.csv"), [folder], status=1, **as_nobody)
+        self.refuse(["simulate", "--array", self.array, "--scene", "paper", "--out", folder / "o"], [folder], status=1,
+                    **as_nobody)
+        self.refuse([*self.evaluate_arguments(), "--report", folder / "o"], [folder], status=1, **as_nobody)
+
+
+if __name__ == "__main__":
+    support.main()

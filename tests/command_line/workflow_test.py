@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+import csv
+import json
+import math
+
+import support
+from support import SmallArray, dermis
+
+ESTIMATOR_KEYS = {"name", "median_relative_error", "p95_relative_error", "p99_relative_error", "max_relative_error",
+                  "taxels_judged", "ghost_p99_n", "ghost_max_n", "ghost_taxels_judged", "total_rmse_n",
+                  "total_median_relative_error", "total_max_relative_error", "totals_judged"}
+BREAKDOWNS = ("by_force", "by_temperature", "by_supply", "by_contacts")
+
+
+def rows_of(path):
+    with open(path, newline="") as file:
+        return list(csv.reader(file))
+
+
+class Workflow(SmallArray):
+    def test_forces_have_a_line_for_each_frame_and_a_column_for_each_taxel(self):
+        out = self.work / "forces.csv"
+        self.assertEqual(self.succeed(*self.run_arguments(out)), "")
+        rows = rows_of(out)
+        self.assertEqual(rows[0], ["time_s", "status"] + [f"r{r}c{c}" for r in range(4) for c in range(5)])
+        self.assertEqual(len(rows), 1 + 200)
+        for row, frame in zip(rows[1:], rows_of(self.contacts / "frames.csv")[1:]):
+            self.assertEqual(row[0], frame[0])
+            self.assertTrue(all(math.isfinite(float(cell)) and float(cell) >= 0 for cell in row[2:]))
+
+    def test_forces_are_close_to_the_truth(self):
+        result = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))
+        estimators = {entry["name"]: entry for entry in result["estimators"]}
+        self.assertEqual(result["estimators"][0]["name"], "dermis")
+        self.assertLess(estimators["dermis"]["median_relative_error"], 0.01)
+        self.assertLess(estimators["dermis"]["p99_relative_error"], 0.05)
+        self.assertLess(estimators["dermis"]["ghost_max_n"], 0.1)
+        self.assertGreater(estimators["raw_lookup"]["median_relative_error"], 0.2)
+
+    def test_evaluation_as_json(self):
+        result = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))
+        self.assertEqual(set(result), {"frames", "frames_rejected", "estimators", *BREAKDOWNS})
+        self.assertEqual((result["frames"], result["frames_rejected"]), (200, 0))
+        names = [entry["name"] for entry in result["estimators"]]
+        self.assertEqual(names, ["dermis", "raw_lookup", "temperature_lookup", "crosstalk_lookup"])
+        for entry in result["estimators"]:
+            self.assertEqual(set(entry), ESTIMATOR_KEYS)
+            self.assertEqual(entry["taxels_judged"], result["estimators"][0]["taxels_judged"])
+            self.assertIsNone(entry["total_rmse_n"])  # these loads name single taxels only
+        for breakdown in BREAKDOWNS:
+            self.assertGreater(len(result[breakdown]), 0, breakdown)
+            for row in result[breakdown]:
+                self.assertEqual(set(row), {"from", "to", "count", "estimators"})
+                self.assertEqual(set(row["estimators"]), set(names))
+        judged = result["estimators"][0]["taxels_judged"]
+        for breakdown in BREAKDOWNS:
+            self.assertEqual(sum(row["count"] for row in result[breakdown]), judged, breakdown)
+
+    def test_evaluation_as_text_names_all_estimators(self):
+        text = self.succeed(*self.evaluate_arguments())
+        for name in ("dermis", "raw_lookup", "temperature_lookup", "crosstalk_lookup"):
+            self.assertIn(f"\n{name} ", text)
+
+    def test_report(self):
+        report = self.work / "report"
+        self.succeed(*self.evaluate_arguments(), "--report", report)
+        page = (report / "index.html").read_text()
+        self.assertIn("<html", page)
+        self.assertIn("small", page)
+        self.assertNotIn("<script", page)
+        self.assertTrue(list(report.glob("*.svg")))
+
+    def test_calibration_report_as_json(self):
+        report = json.loads(self.succeed(*self.calibrate_arguments(self.work / "model.safetensors"), "--json"))
+        self.assertEqual(report["frames"], 5 * (20 + 14 * 20))
+        self.assertEqual(report["frames_rejected"], 0)
+        self.assertEqual((report["own_networks"], report["shared_networks"]), (20, 0))
+        self.assertTrue(report["uses_temperature"])
+        self.assertEqual(report["dead_taxels"], [])
+
+    def test_settling_leaves_out_the_first_seconds(self):
+        out = self.work / "forces.csv"
+        self.succeed(*self.run_arguments(out), "--settle", 10)
+        self.assertLess(len(rows_of(out)), 1 + 200)
+
+    def test_output_to_a_pipe(self):
+        piped = self.succeed(*self.run_arguments("/dev/stdout"))
+        out = self.work / "forces.csv"
+        self.succeed(*self.run_arguments(out))
+        self.assertEqual(piped, out.read_text())
+
+    def test_help_and_version(self):
+        self.assertRegex(self.succeed("--version"), r"^\d+\.\d+\.\d+\n$")
+        self.assertIn("calibrate", self.succeed("--help"))
+        for command in ("simulate", "calibrate", "run", "evaluate"):
+            self.assertIn("--", self.succeed(command, "--help"))
+
+
+class Loads(SmallArray):
+    """The rigs that people have, other than a weight on each taxel."""
+
+    def test_air_bladder(self):
+        folder, model = self.work / "uniform", self.work / "model.safetensors"
+        self.succeed("simulate", "--array", self.array, "--scene", "uniform", "--out", folder)
+        self.succeed(*self.calibrate_arguments(model, frames=folder / "frames.csv", loads=folder / "loads.csv"))
+        result = json.loads(self.succeed(*self.evaluate_arguments(model=model), "--json"))
+        self.assertLess(result["estimators"][0]["median_relative_error"], 0.05)
+
+    def test_load_cell_under_the_whole_pad(self):
+        """The taxels of a contact share a total in a way that nobody told."""
+        totals = {}
+        for frame, _, _, value in rows_of(self.contacts / "loads.csv")[1:]:
+            totals[frame] = totals.get(frame, 0.0) + float(value)
+        lines = [f"{frame},force,all,{0.0 if int(frame) < 20 else total}" for frame, total in totals.items()]
+        frames = rows_of(self.contacts / "frames.csv")
+        unloaded = rows_of(self.calibration / "frames.csv")[1:21]
+        for k, row in enumerate(unloaded):  # the first frames become unloaded ones
+            frames[1 + k] = [frames[1 + k][0], *row[1:]]
+        frames_csv = self.written("frames.csv", "".join(",".join(row) + "\n" for row in frames))
+        loads_csv = self.written("loads.csv", "frame,kind,where,value\n" + "\n".join(lines) + "\n")
+        model = self.work / "model.safetensors"
+        text = self.succeed(*self.calibrate_arguments(model, frames=frames_csv, loads=loads_csv))
+        self.assertIn("share one network", text)
+        result = json.loads(self.succeed(*self.evaluate_arguments(model=model, frames=frames_csv, loads=loads_csv),
+                                         "--json"))
+        dermis_result = result["estimators"][0]
+        self.assertEqual(dermis_result["totals_judged"], 180)
+        self.assertEqual(dermis_result["taxels_judged"], 0)
+        self.assertIsNone(dermis_result["median_relative_error"])
+        self.assertLess(dermis_result["total_median_relative_error"], 0.2)
+        self.assertLess(dermis_result["total_rmse_n"], result["estimators"][1]["total_rmse_n"])
+
+
+class Temperature(SmallArray):
+    def without_temperature(self, name, source):
+        rows = rows_of(source)
+        self.assertEqual(rows[0][1], "temperature_celsius")
+        return self.written(name, "".join(",".join([row[0], *row[2:]]) + "\n" for row in rows))
+
+    def statuses(self, model, frames):
+        out = self.work / "forces.csv"
+        self.succeed(*self.run_arguments(out, model=model, **{"in": frames}))
+        return {flag for row in rows_of(out)[1:] for flag in row[1].split("+")}
+
+    def test_frames_without_temperature_say_so(self):
+        frames = self.without_temperature("frames.csv", self.contacts / "frames.csv")
+        self.assertIn("temperature_unknown", self.statuses(self.model, frames))
+
+    def test_a_model_that_was_never_told_a_temperature_asks_for_none(self):
+        calibration = self.without_temperature("calibration.csv", self.calibration / "frames.csv")
+        model = self.work / "model.safetensors"
+        report = json.loads(self.succeed(*self.calibrate_arguments(model, frames=calibration), "--json"))
+        self.assertFalse(report["uses_temperature"])
+        for frames in (self.contacts / "frames.csv",
+                       self.without_temperature("frames.csv", self.contacts / "frames.csv")):
+            self.assertEqual({flag for flag in self.statuses(model, frames) if "temperature" in flag}, set())
+
+
+class Determinism(SmallArray):
+    def simulated(self, name, *options, prefix=()):
+        folder = self.work / name
+        self.succeed("simulate", "--array", self.array, "--scene", "multitouch", "--frames", 50, *options,
+                     "--out", folder, prefix=prefix)
+        return (folder / "frames.csv").read_bytes() + (folder / "loads.csv").read_bytes()
+
+    def test_simulation_depends_on_its_seed_alone(self):
+        first = self.simulated("first", "--seed", 7)
+        self.assertEqual(self.simulated("second", "--seed", 7), first)
+        self.assertNotEqual(self.simulated("third", "--seed", 8), first)
+
+    def test_a_calibration_gives_the_same_bytes_again_and_on_one_core(self):
+        first = self.model.read_bytes()
+        again, one_core = self.work / "again", self.work / "one_core"
+        self.succeed(*self.calibrate_arguments(again))
+        self.succeed(*self.calibrate_arguments(one_core), prefix=("taskset", "-c", "0"))
+        self.assertEqual(again.read_bytes(), first)
+        self.assertEqual(one_core.read_bytes(), first)
+
+    def test_forces_and_evaluation_are_the_same_again_and_on_one_core(self):
+        again, one_core = self.work / "again.csv", self.work / "one_core.csv"
+        self.succeed(*self.run_arguments(again))
+        self.succeed(*self.run_arguments(one_core), prefix=("taskset", "-c", "0"))
+        self.assertEqual(again.read_bytes(), one_core.read_bytes())
+        first = self.succeed(*self.evaluate_arguments(), "--json", "--report", self.work / "first")
+        second = self.succeed(*self.evaluate_arguments(), "--json", "--report", self.work / "second",
+                              prefix=("taskset", "-c", "0"))
+        self.assertEqual(first, second)
+        self.assertEqual((self.work / "first/index.html").read_bytes(), (self.work / "second/index.html").read_bytes())
+
+
+class RejectedFrames(SmallArray):
+    """A frame that cannot be used costs that frame, not the recording."""
+
+    def test_run_goes_on_and_says_so(self):
+        rows = rows_of(self.contacts / "frames.csv")
+        rows[10][3] = "nan"
+        rows[20][3] = "5000"
+        frames = self.written("frames.csv", "".join(",".join(row) + "\n" for row in rows))
+        out = self.work / "forces.csv"
+        result = dermis(*self.run_arguments(out, **{"in": frames}))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("2 of 200 frames rejected", result.stderr)
+        self.assertIn(f"{frames}:11", result.stderr)
+        forces = rows_of(out)
+        self.assertEqual([row[1] for row in (forces[10], forces[20])], ["rejected", "rejected"])
+        self.assertTrue(all(cell == "nan" for cell in forces[10][2:]))
+        self.assertEqual(sum(row[1] == "rejected" for row in forces[1:]), 2)
+
+
+if __name__ == "__main__":
+    support.main()

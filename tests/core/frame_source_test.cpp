@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/core/frame_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+namespace dermis {
+namespace {
+
+class TwoFrames final : public FrameSource {
+ public:
+  Result<bool> next(RawFrame& frame) override {
+    if (count_ == 2) return false;
+    frame.counts.assign(1, static_cast<float>(count_++));
+    return true;
+  }
+
+ private:
+  int count_ = 0;
+};
+
+TEST(FrameSource, is_read_to_its_end_through_the_interface) {
+  const std::unique_ptr<FrameSource> source = std::make_unique<TwoFrames>();
+  RawFrame frame;
+  std::vector<float> counts;
+  while (true) {
+    const Result<bool> got_frame = source->next(frame);
+    ASSERT_TRUE(got_frame);
+    if (!*got_frame) break;
+    counts.push_back(frame.counts[0]);
+  }
+  EXPECT_EQ(counts, (std::vector<float>{0.0F, 1.0F}));
+}
+
+}  // namespace
+}  // namespace dermis

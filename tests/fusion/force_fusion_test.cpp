@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/fusion/force_fusion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dermis/core/random.hpp"
+#include "support/random_networks.hpp"
+
+namespace dermis::fusion {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+ConductanceFrame make_frame(std::vector<double> siemens, std::optional<double> temperature_celsius = 25.0) {
+  ConductanceFrame frame;
+  frame.taxels.assign(siemens.size(), TaxelStatus::ok);
+  frame.siemens = std::move(siemens);
+  frame.temperature_celsius = temperature_celsius;
+  return frame;
+}
+
+ForceFrame fuse(const ForceNetworks& networks, const ConductanceFrame& conductance) {
+  ForceFusion fusion(networks);
+  ForceFrame force;
+  fusion.process(conductance, force);
+  return force;
+}
+
+/// One taxel, a plain power law: F = 10 N (e / 1 mS)^0.9, calibrated to 4 mS.
+ForceNetworks power_law() {
+  ForceNetworks networks;
+  networks.shape = {2, 0, 2};
+  networks.temperature_centre_celsius = 20.0;
+  networks.temperature_half_span_celsius = 10.0;
+  networks.offset_siemens = {1e-5};
+  networks.offset_per_celsius = {1e-6};
+  networks.reference_siemens = {1e-3F};
+  networks.heaviest_siemens = {4e-3F};
+  networks.heaviest_newtons = {std::numeric_limits<float>::infinity()};
+  networks.gain = {1.0F};
+  networks.dead = {0};
+  networks.parameters = {std::log(10.0F), 0.9F, 0.0F};  // c, s_0, s_1
+  return networks;
+}
+
+/// Two taxels of it.
+ForceNetworks two_power_laws() {
+  ForceNetworks networks = power_law();
+  const auto twice = [](auto& values) { values.push_back(values.front()); };
+  twice(networks.offset_siemens);
+  twice(networks.offset_per_celsius);
+  twice(networks.reference_siemens);
+  twice(networks.heaviest_siemens);
+  twice(networks.heaviest_newtons);
+  twice(networks.gain);
+  twice(networks.dead);
+  networks.parameters = {std::log(10.0F), std::log(10.0F), 0.9F, 0.9F, 0.0F, 0.0F};
+  return networks;
+}
+
+TEST(ForceFusion, power_law_is_the_one_computed_by_hand) {
+  for (const double excess : {1e-5, 1e-4, 1e-3, 3e-3}) {
+    const auto force = fuse(power_law(), make_frame({1e-5 + excess}, 20.0));
+    EXPECT_NEAR(force.newtons[0] / (10.0 * std::pow(excess / 1e-3, 0.9)), 1.0, 1e-5) << excess;
+    EXPECT_EQ(force.status, FrameStatus::ok);
+    EXPECT_EQ(force.taxels[0], TaxelStatus::ok);
+  }
+}
+
+TEST(ForceFusion, force_is_the_documented_formula) {
+  for (const std::size_t inputs : {2U, 3U}) {
+    for (const std::size_t hidden : {0U, 1U, 4U}) {
+      for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        SCOPED_TRACE(testing::Message() << inputs << "-" << hidden << "-1, seed " << seed);
+        Random random(seed);
+        const auto networks = support::random_networks(37, inputs, hidden, seed);
+        const double offset = random.uniform(-20.0, 20.0);
+        std::vector<double> siemens(37);
+        for (std::size_t k = 0; k < 37; ++k) {
+          siemens[k] = networks.offset_siemens[k] + random.log_uniform(1e-5, 2e-3);
+        }
+        const auto force = fuse(networks, make_frame(siemens, 25.0 + offset));
+        for (std::size_t k = 0; k < 37; ++k) {
+          const double expected = support::reference_newtons(networks, k, siemens[k], offset);
+          EXPECT_NEAR(force.newtons[k] / expected, 1.0, 3e-5) << "taxel " << k;
+        }
+      }
+    }
+  }
+}
+
+TEST(ForceFusion, force_rises_with_conductance_throughout) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    constexpr std::size_t kTaxels = 9;
+    const auto networks = support::random_networks(kTaxels, 3, 3, seed);
+    ForceFusion fusion(networks);
+    ForceFrame force;
+    std::vector<float> last(kTaxels, 0.0F);
+    std::vector<float> first_pressed(kTaxels, 0.0F);
+    for (int step = 0; step <= 4000; ++step) {
+      std::vector<double> siemens(kTaxels);
+      for (std::size_t k = 0; k < kTaxels; ++k) {
+        // From below the unloaded conductance to beyond the heaviest load, denser towards small loads.
+        const double heaviest = static_cast<double>(networks.heaviest_siemens[k]);
+        siemens[k] = networks.offset_siemens[k] + 1.3 * heaviest * std::pow(step / 4000.0, 3) - 1e-6;
+      }
+      fusion.process(make_frame(siemens, 31.0), force);
+      for (std::size_t k = 0; k < kTaxels; ++k) {
+        // Rounding of single precision alone may lower a force that hardly changes.
+        ASSERT_GE(force.newtons[k], last[k] * (1.0F - 2e-6F)) << "taxel " << k << ", step " << step;
+        last[k] = std::max(last[k], force.newtons[k]);
+        if (first_pressed[k] == 0.0F) first_pressed[k] = force.newtons[k];
+      }
+    }
+    for (std::size_t k = 0; k < kTaxels; ++k) EXPECT_GT(last[k], 2.0F * first_pressed[k]) << "taxel " << k;
+  }
+}
+
+TEST(ForceFusion, force_is_zero_at_and_below_the_unloaded_conductance) {
+  const auto networks = support::random_networks(5, 3, 2, 1);
+  std::vector<double> siemens = networks.offset_siemens;
+  siemens[1] -= 1e-9;
+  siemens[2] -= 1e-3;
+  siemens[3] = 0.0;
+  siemens[4] = -1.0;
+  const auto force = fuse(networks, make_frame(siemens));
+  for (const float newtons : force.newtons) EXPECT_EQ(newtons, 0.0F);
+  EXPECT_EQ(force.status, FrameStatus::ok);
+  EXPECT_EQ(force.taxels, std::vector<TaxelStatus>(5, TaxelStatus::ok));
+}
+
+TEST(ForceFusion, force_leaves_zero_without_a_jump) {
+  // 10 N (1e-6)^0.9 = 40 uN is the least that the first sliver of conductance can give.
+  float last = 0.0F;
+  for (double excess = 1e-16; excess < 1e-6; excess *= 1.5) {
+    const float newtons = fuse(power_law(), make_frame({1e-5 + excess}, 20.0)).newtons[0];
+    EXPECT_GE(newtons, last) << excess;
+    EXPECT_LE(newtons, 1.001 * 10.0 * std::pow(std::max(excess / 1e-3, 1e-6), 0.9)) << excess;
+    last = newtons;
+  }
+}
+
+TEST(ForceFusion, unloaded_conductance_follows_the_temperature) {
+  // At 25 C the offset is 1e-5 + 5 * 1e-6 S.
+  const auto networks = power_law();
+  EXPECT_EQ(fuse(networks, make_frame({1.5e-5}, 25.0)).newtons[0], 0.0F);
+  EXPECT_NEAR(fuse(networks, make_frame({1e-3 + 1.5e-5}, 25.0)).newtons[0], 10.0, 1e-4);
+  EXPECT_GT(fuse(networks, make_frame({1.5e-5}, 20.0)).newtons[0], 0.0F);
+}
+
+TEST(ForceFusion, gain_scales_the_force) {
+  auto networks = power_law();
+  networks.gain = {2.5F};
+  EXPECT_NEAR(fuse(networks, make_frame({1e-3 + 1e-5}, 20.0)).newtons[0], 25.0, 2.5e-4);
+}
+
+TEST(ForceFusion, above_the_heaviest_load_the_force_stands_still_and_is_flagged) {
+  const double at_end = 10.0 * std::pow(4.0, 0.9);
+  for (const double excess : {4.001e-3, 1e-2, 1.0}) {
+    const auto force = fuse(power_law(), make_frame({1e-5 + excess}, 20.0));
+    EXPECT_NEAR(force.newtons[0], at_end, 1e-5 * at_end);
+    EXPECT_EQ(force.taxels[0], TaxelStatus::above_range);
+    EXPECT_EQ(force.status, FrameStatus::above_range);
+  }
+  EXPECT_EQ(fuse(power_law(), make_frame({1e-5 + 3.999e-3}, 20.0)).status, FrameStatus::ok);
+}
+
+TEST(ForceFusion, force_is_clamped_to_the_heaviest_calibrated_load) {
+  auto networks = power_law();
+  networks.heaviest_newtons = {20.0F};
+  const auto inside = fuse(networks, make_frame({1e-3 + 1e-5}, 20.0));
+  EXPECT_NEAR(inside.newtons[0], 10.0, 1e-4);
+  EXPECT_EQ(inside.taxels[0], TaxelStatus::ok);
+  for (const double excess : {3e-3, 5e-3}) {  // 26.9 N before the heaviest conductance, 34.8 N beyond it
+    const auto above = fuse(networks, make_frame({1e-5 + excess}, 20.0));
+    EXPECT_EQ(above.newtons[0], 20.0F);
+    EXPECT_EQ(above.taxels[0], TaxelStatus::above_range);
+    EXPECT_EQ(above.status, FrameStatus::above_range);
+  }
+}
+
+TEST(ForceFusion, saturated_taxel_stays_saturated_and_keeps_a_force) {
+  auto frame = make_frame({1e-5 + 1e-2}, 20.0);
+  frame.taxels[0] = TaxelStatus::saturated;
+  frame.status = FrameStatus::saturated;
+  const auto force = fuse(power_law(), frame);
+  EXPECT_EQ(force.taxels[0], TaxelStatus::saturated);
+  EXPECT_EQ(force.status, FrameStatus::saturated | FrameStatus::above_range);
+  EXPECT_GT(force.newtons[0], 30.0F);
+}
+
+TEST(ForceFusion, temperature_is_clamped_to_the_calibrated_range_and_flagged_beyond_the_sensor_noise) {
+  const auto networks = support::random_networks(8, 3, 2, 3);  // 5 ... 45 C
+  const std::vector<double> siemens(8, 1e-3);
+  for (const double side : {-1.0, 1.0}) {
+    const auto at_end = fuse(networks, make_frame(siemens, 25.0 + side * 20.0));
+    EXPECT_EQ(at_end.status, FrameStatus::ok);
+    const auto a_little_outside = fuse(networks, make_frame(siemens, 25.0 + side * 20.9));
+    EXPECT_EQ(a_little_outside.status, FrameStatus::ok);
+    EXPECT_EQ(a_little_outside.newtons, at_end.newtons);
+    const auto far_outside = fuse(networks, make_frame(siemens, 25.0 + side * 60.0));
+    EXPECT_EQ(far_outside.status, FrameStatus::temperature_clamped);
+    EXPECT_EQ(far_outside.newtons, at_end.newtons);
+  }
+}
+
+TEST(ForceFusion, without_a_temperature_the_centre_is_taken_and_flagged) {
+  const auto networks = support::random_networks(8, 3, 2, 4);
+  const std::vector<double> siemens(8, 1e-3);
+  const auto unknown = fuse(networks, make_frame(siemens, {}));
+  EXPECT_EQ(unknown.status, FrameStatus::temperature_unknown);
+  EXPECT_EQ(unknown.newtons, fuse(networks, make_frame(siemens, 25.0)).newtons);
+  EXPECT_NE(unknown.newtons, fuse(networks, make_frame(siemens, 35.0)).newtons);
+}
+
+TEST(ForceFusion, networks_that_do_not_know_temperature_do_not_miss_it) {
+  EXPECT_EQ(fuse(power_law(), make_frame({1e-3}, {})).status, FrameStatus::ok);
+}
+
+TEST(ForceFusion, dead_and_invalid_taxels_have_no_force_and_leave_the_others_alone) {
+  auto networks = support::random_networks(4, 2, 1, 5);
+  networks.dead[1] = 1;
+  auto frame = make_frame(std::vector<double>(4, 1e-3));
+  frame.taxels[2] = TaxelStatus::invalid;
+  const auto force = fuse(networks, frame);
+  EXPECT_TRUE(std::isnan(force.newtons[1]));
+  EXPECT_TRUE(std::isnan(force.newtons[2]));
+  EXPECT_EQ(force.taxels, (std::vector{TaxelStatus::ok, TaxelStatus::dead, TaxelStatus::invalid, TaxelStatus::ok}));
+  EXPECT_EQ(force.status, FrameStatus::dead_taxels);
+  for (const std::size_t k : {0U, 3U}) {
+    EXPECT_NEAR(force.newtons[k] / support::reference_newtons(networks, k, 1e-3, 0.0), 1.0, 3e-5);
+  }
+}
+
+TEST(ForceFusion, rejected_frame_has_no_force_at_all) {
+  auto frame = make_frame({1e-3, 1e-3}, 20.0);
+  frame.status = FrameStatus::rejected;
+  frame.taxels.assign(2, TaxelStatus::invalid);
+  frame.time = Nanos(5);
+  const auto force = fuse(two_power_laws(), frame);
+  EXPECT_EQ(force.status, FrameStatus::rejected);
+  EXPECT_EQ(force.time, Nanos(5));
+  ASSERT_EQ(force.newtons.size(), 2U);
+  EXPECT_TRUE(std::isnan(force.newtons[0]) && std::isnan(force.newtons[1]));
+  EXPECT_EQ(force.taxels, frame.taxels);
+}
+
+TEST(ForceFusion, frame_of_another_size_is_rejected) {
+  const auto force = fuse(two_power_laws(), make_frame({1e-3, 1e-3, 1e-3}, 20.0));
+  EXPECT_TRUE(has(force.status, FrameStatus::rejected));
+  ASSERT_EQ(force.newtons.size(), 2U);
+  EXPECT_TRUE(std::isnan(force.newtons[0]) && std::isnan(force.newtons[1]));
+}
+
+TEST(ForceFusion, flags_of_the_units_before_go_through) {
+  auto frame = make_frame({1e-3}, 20.0);
+  frame.time = Nanos(77);
+  frame.status = FrameStatus::saturated;
+  const auto force = fuse(power_law(), frame);
+  EXPECT_EQ(force.status, FrameStatus::saturated);
+  EXPECT_EQ(force.time, Nanos(77));
+}
+
+TEST(ForceNetworks, consistent_networks_are_consistent) {
+  EXPECT_TRUE(power_law().is_consistent());
+  EXPECT_TRUE(two_power_laws().is_consistent());
+  for (const std::size_t inputs : {2U, 3U}) EXPECT_TRUE(support::random_networks(9, inputs, 4, 1).is_consistent());
+}
+
+TEST(ForceNetworks, every_broken_field_is_found) {
+  using Break = std::function<void(ForceNetworks&)>;
+  constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinityF = std::numeric_limits<float>::infinity();
+  const std::vector<std::pair<std::string, Break>> breaks = {
+      {"1 input", [](auto& n) { n.shape.inputs = 1; }},
+      {"4 inputs", [](auto& n) { n.shape.inputs = 4; }},
+      {"another number of hidden units", [](auto& n) { n.shape.hidden = 3; }},
+      {"65 hidden units",
+       [](auto& n) {
+         n.shape.hidden = 65;
+         n.parameters.assign(n.shape.parameter_count() * n.taxel_count(), 0.1F);
+       }},
+      {"centre", [](auto& n) { n.temperature_centre_celsius = kNan; }},
+      {"half span NaN", [](auto& n) { n.temperature_half_span_celsius = kNan; }},
+      {"half span 0", [](auto& n) { n.temperature_half_span_celsius = 0.0; }},
+      {"half span negative", [](auto& n) { n.temperature_half_span_celsius = -1.0; }},
+      {"offset NaN", [](auto& n) { n.offset_siemens[1] = kNan; }},
+      {"offset size", [](auto& n) { n.offset_siemens.pop_back(); }},
+      {"offset drift NaN", [](auto& n) { n.offset_per_celsius[1] = kNan; }},
+      {"offset drift size", [](auto& n) { n.offset_per_celsius.push_back(0.0); }},
+      {"reference 0", [](auto& n) { n.reference_siemens[1] = 0.0F; }},
+      {"reference infinite", [](auto& n) { n.reference_siemens[1] = kInfinityF; }},
+      {"reference size", [](auto& n) { n.reference_siemens.pop_back(); }},
+      {"heaviest siemens negative", [](auto& n) { n.heaviest_siemens[1] = -1e-3F; }},
+      {"heaviest siemens NaN", [](auto& n) { n.heaviest_siemens[1] = kNanF; }},
+      {"heaviest siemens size", [](auto& n) { n.heaviest_siemens.pop_back(); }},
+      {"heaviest newtons 0", [](auto& n) { n.heaviest_newtons[1] = 0.0F; }},
+      {"heaviest newtons NaN", [](auto& n) { n.heaviest_newtons[1] = kNanF; }},
+      {"heaviest newtons size", [](auto& n) { n.heaviest_newtons.pop_back(); }},
+      {"gain 0", [](auto& n) { n.gain[1] = 0.0F; }},
+      {"gain NaN", [](auto& n) { n.gain[1] = kNanF; }},
+      {"gain size", [](auto& n) { n.gain.pop_back(); }},
+      {"dead 2", [](auto& n) { n.dead[1] = 2; }},
+      {"dead size", [](auto& n) { n.dead.pop_back(); }},
+      {"parameter NaN", [](auto& n) { n.parameters.back() = kNanF; }},
+      {"parameter infinite", [](auto& n) { n.parameters.front() = kInfinityF; }},
+      {"parameters size", [](auto& n) { n.parameters.pop_back(); }},
+  };
+  for (const auto& [name, damage] : breaks) {
+    ForceNetworks networks = support::random_networks(3, 3, 2, 1);
+    ASSERT_TRUE(networks.is_consistent());
+    damage(networks);
+    EXPECT_FALSE(networks.is_consistent()) << name;
+  }
+}
+
+}  // namespace
+}  // namespace dermis::fusion

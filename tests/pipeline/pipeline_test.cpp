@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/pipeline/pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/core/random.hpp"
+#include "dermis/simulation/adc.hpp"
+#include "dermis/simulation/readout_circuit.hpp"
+#include "support/allocation_guard.hpp"
+#include "support/hand_made_model.hpp"
+#include "support/random_networks.hpp"
+
+namespace dermis::pipeline {
+namespace {
+
+using support::hand_made_model;
+
+std::unique_ptr<Pipeline> make_pipeline(const Model& model) {
+  auto pipeline = Pipeline::create(model);
+  EXPECT_TRUE(pipeline);
+  return std::make_unique<Pipeline>(*std::move(pipeline));
+}
+
+/// What the simulated hardware gives for known forces: material, circuit, ADC without noise.
+RawFrame measure(const Model& model, const std::vector<double>& newtons, double celsius, double supply_v) {
+  std::vector<double> siemens(newtons.size());
+  for (std::size_t k = 0; k < newtons.size(); ++k) {
+    siemens[k] = support::siemens_under(model, k, newtons[k], celsius);
+  }
+  std::vector<double> ratio(newtons.size());
+  simulation::ReadoutCircuit::create(model.array)->ratios(siemens, ratio);
+  RawFrame raw;
+  raw.temperature_celsius = celsius;
+  raw.supply_v = supply_v;
+  raw.counts.resize(newtons.size());
+  Random random(1);
+  simulation::Adc(model.array.readout, 0.0).convert(ratio, supply_v, random, raw.counts);
+  return raw;
+}
+
+std::vector<double> random_presses(std::size_t taxels, Random& random) {
+  std::vector<double> newtons(taxels, 0.0);
+  for (double& force : newtons) {
+    if (random.below(5) < 2) force = random.log_uniform(1.0, 40.0);
+  }
+  return newtons;
+}
+
+RawFrame random_frame(const Model& model, std::uint64_t seed) {
+  Random random(seed);
+  RawFrame raw = measure(model, random_presses(model.array.taxel_count(), random), random.uniform(0.0, 50.0),
+                         random.uniform(4.5, 5.5));
+  raw.time = Nanos(static_cast<std::int64_t>(seed) * 1000);
+  return raw;
+}
+
+/// A 24-bit converter leaves the inversion's tolerance: 1e-6 of a column of some 10 mS.
+void expect_truth(const Model& model, std::uint64_t seed) {
+  SCOPED_TRACE(testing::Message() << "seed " << seed);
+  Random random(seed);
+  const auto newtons = random_presses(model.array.taxel_count(), random);
+  const double celsius = random.uniform(5.0, 45.0);
+  ForceFrame force;
+  make_pipeline(model)->process(measure(model, newtons, celsius, random.uniform(4.5, 5.5)), force);
+  ASSERT_EQ(force.newtons.size(), newtons.size());
+  EXPECT_EQ(force.status, FrameStatus::ok) << to_string(force.status);
+  for (std::size_t k = 0; k < newtons.size(); ++k) {
+    if (newtons[k] > 0.0) {
+      EXPECT_NEAR(force.newtons[k] / newtons[k], 1.0, 2e-4) << "taxel " << k;
+    } else {
+      EXPECT_NEAR(force.newtons[k], 0.0, 2e-3) << "taxel " << k;
+    }
+  }
+}
+
+TEST(Pipeline, forces_of_a_simulated_array_are_the_true_ones) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) expect_truth(hand_made_model(4, 4), seed);
+}
+
+TEST(Pipeline, supply_fluctuation_does_not_reach_the_forces_of_a_converter_with_its_own_reference) {
+  Model model = hand_made_model(4, 4);
+  model.array.readout.adc_reference_v = 5.5;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) expect_truth(model, seed);
+}
+
+TEST(Pipeline, arrays_whose_reading_falls_with_pressure_give_the_true_forces) {
+  Model model = hand_made_model(4, 4);
+  model.array.readout.pressure_raises_reading = false;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) expect_truth(model, seed);
+}
+
+TEST(Pipeline, arrays_at_virtual_ground_give_the_true_forces) {
+  Model model = hand_made_model(4, 4);
+  model.array.readout.circuit = Circuit::transimpedance;
+  model.array.readout.load_ohm.assign(4, 100.0);
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) expect_truth(model, seed);
+}
+
+TEST(Pipeline, a_press_in_a_large_array_leaves_no_ghosts) {
+  const Model model = hand_made_model(16, 16);
+  std::vector<double> newtons(256, 0.0);
+  newtons[model.array.index(3, 4)] = 20.0;
+  newtons[model.array.index(3, 9)] = 35.0;
+  newtons[model.array.index(11, 4)] = 12.0;  // the fourth corner of the rectangle is the classical ghost
+  ForceFrame force;
+  make_pipeline(model)->process(measure(model, newtons, 30.0, 5.0), force);
+  for (std::size_t k = 0; k < 256; ++k) EXPECT_NEAR(force.newtons[k], newtons[k], 2e-4 * newtons[k] + 2e-3) << k;
+}
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](float x, float y) {
+    return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
+  });
+}
+
+TEST(Pipeline, process_is_the_units_chained_by_hand) {
+  Model model = hand_made_model(5, 7);
+  model.networks = support::random_networks(35, 3, 2, 9);
+  model.networks.dead[3] = 1;
+  const auto pipeline = make_pipeline(model);
+  preprocessing::Conditioner conditioner(model.array);
+  auto compensator = compensation::Compensator::create(model.array);
+  ASSERT_TRUE(compensator);
+  fusion::ForceFusion fusion(model.networks);
+  ConditionedFrame conditioned;
+  ConductanceFrame conductance;
+  ForceFrame by_hand;
+  ForceFrame force;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    RawFrame raw = random_frame(model, seed);
+    if (seed % 5 == 0) raw.counts[seed % 35] = -1.0F;
+    if (seed % 7 == 0) raw.time = Nanos(0);
+    if (seed % 11 == 0) raw.temperature_celsius.reset();
+    conditioner.process(raw, conditioned);
+    compensator->process(conditioned, conductance);
+    fusion.process(conductance, by_hand);
+    pipeline->process(raw, force);
+    EXPECT_EQ(force.time, by_hand.time);
+    EXPECT_EQ(force.status, by_hand.status);
+    EXPECT_EQ(force.taxels, by_hand.taxels);
+    EXPECT_TRUE(same_bits(force.newtons, by_hand.newtons));
+    EXPECT_EQ(pipeline->conditioned().ratio, conditioned.ratio);
+    EXPECT_EQ(pipeline->conductance().siemens, conductance.siemens);
+    EXPECT_EQ(pipeline->rejection(), conditioner.rejection());
+  }
+}
+
+TEST(Pipeline, frames_do_not_influence_each_other) {
+  const Model model = hand_made_model(6, 6);
+  const auto pipeline = make_pipeline(model);
+  ForceFrame force;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const RawFrame raw = random_frame(model, seed);
+    ForceFrame alone;
+    make_pipeline(model)->process(raw, alone);
+    pipeline->process(raw, force);
+    EXPECT_TRUE(same_bits(force.newtons, alone.newtons));
+  }
+}
+
+TEST(Pipeline, rejected_frame_says_why_and_has_no_force) {
+  const Model model = hand_made_model(2, 2);
+  const auto pipeline = make_pipeline(model);
+  RawFrame raw = random_frame(model, 1);
+  raw.counts[2] = std::numeric_limits<float>::quiet_NaN();
+  ForceFrame force;
+  pipeline->process(raw, force);
+  EXPECT_EQ(force.status, FrameStatus::rejected);
+  EXPECT_EQ(pipeline->rejection(), preprocessing::Rejection::not_a_number);
+  ASSERT_EQ(force.newtons.size(), 4U);
+  for (const float newtons : force.newtons) EXPECT_TRUE(std::isnan(newtons));
+  EXPECT_EQ(force.taxels, std::vector<TaxelStatus>(4, TaxelStatus::invalid));
+  raw.counts.pop_back();
+  pipeline->process(raw, force);
+  EXPECT_EQ(pipeline->rejection(), preprocessing::Rejection::wrong_shape);
+  EXPECT_EQ(force.newtons.size(), 4U);
+  pipeline->process(random_frame(model, 2), force);
+  EXPECT_EQ(force.status, FrameStatus::ok);
+  EXPECT_EQ(pipeline->rejection(), preprocessing::Rejection::none);
+}
+
+TEST(Pipeline, statuses_of_all_units_meet_in_the_frame) {
+  Model model = hand_made_model(2, 2);
+  model.array.readout.circuit = Circuit::transimpedance;
+  model.array.readout.load_ohm.assign(2, 50.0);
+  model.networks.dead[3] = 1;
+  model.networks.heaviest_siemens.assign(4, 1e-4F);
+  const auto pipeline = make_pipeline(model);
+  const float full_scale = static_cast<float>(model.array.readout.full_scale_counts());
+  RawFrame raw;
+  raw.counts = {full_scale, 0.0F, 0.3F * full_scale, 0.0F};
+  raw.temperature_celsius = 80.0;
+  ForceFrame force;
+  pipeline->process(raw, force);
+  EXPECT_EQ(to_string(force.status), "saturated+above_range+dead_taxels+temperature_clamped");
+  EXPECT_EQ(force.taxels,
+            (std::vector{TaxelStatus::saturated, TaxelStatus::ok, TaxelStatus::above_range, TaxelStatus::dead}));
+  raw.temperature_celsius.reset();
+  raw.counts = {0.0F, 0.0F, 0.0F, 0.0F};
+  pipeline->process(raw, force);
+  EXPECT_EQ(to_string(force.status), "dead_taxels+temperature_unknown");
+}
+
+TEST(Pipeline, frame_without_a_solution_is_flagged_and_has_no_force) {
+  Model model = hand_made_model(2, 2);
+  model.array.readout.circuit = Circuit::transimpedance;
+  model.array.readout.load_ohm.assign(2, 20.0);  // full scale on both columns draws 2 supplies through the driver
+  const auto pipeline = make_pipeline(model);
+  RawFrame raw;
+  raw.temperature_celsius = 25.0;
+  raw.counts.assign(4, static_cast<float>(model.array.readout.full_scale_counts()));
+  ForceFrame force;
+  pipeline->process(raw, force);
+  EXPECT_EQ(force.status, FrameStatus::saturated | FrameStatus::not_converged);
+  for (const float newtons : force.newtons) EXPECT_TRUE(std::isnan(newtons));
+}
+
+TEST(Pipeline, circuit_that_cannot_be_inverted_is_refused) {
+  Model model = hand_made_model(2, 2);
+  model.array.readout.idle_rows = IdleRows::floating;
+  const auto pipeline = Pipeline::create(model);
+  ASSERT_FALSE(pipeline);
+  EXPECT_EQ(pipeline.error().kind, ErrorKind::bad_input);
+}
+
+TEST(AllocationGuard, sees_allocations_of_every_kind) {
+  if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
+  const auto count_of = [](auto allocate) {
+    const support::AllocationGuard guard;
+    allocate();
+    return guard.count();
+  };
+  std::vector<float> sink;
+  EXPECT_EQ(count_of([] {}), 0U);
+  EXPECT_EQ(count_of([&] { sink.resize(100); }), 1U);
+  EXPECT_EQ(count_of([&] { sink.resize(50); }), 0U);
+  void* volatile block = nullptr;
+  EXPECT_EQ(count_of([&] { block = std::malloc(10); }), 1U);
+  std::free(block);
+  EXPECT_EQ(count_of([&] { block = std::aligned_alloc(64, 128); }), 1U);
+  std::free(block);
+  EXPECT_EQ(count_of([&] { block = std::calloc(2, 8); }), 1U);
+  EXPECT_EQ(count_of([&] { block = std::realloc(block, 4096); }), 1U);
+  std::free(block);
+}
+
+/// Frames of every kind: good, saturated, without temperature, rejected for each reason, without a solution.
+std::vector<RawFrame> frames_of_every_kind(const Model& model) {
+  std::vector<RawFrame> frames;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) frames.push_back(random_frame(model, seed));
+  const float full_scale = static_cast<float>(model.array.readout.full_scale_counts());
+  const auto add = [&](auto change) {
+    RawFrame raw = frames.front();
+    raw.time = frames.back().time;
+    change(raw);
+    frames.push_back(raw);
+  };
+  add([](RawFrame& raw) { raw.temperature_celsius.reset(); });
+  add([](RawFrame& raw) { raw.temperature_celsius = 400.0; });
+  add([&](RawFrame& raw) { raw.counts[1] = full_scale; });
+  add([&](RawFrame& raw) { raw.counts.assign(raw.counts.size(), full_scale); });
+  add([](RawFrame& raw) { raw.counts.clear(); });
+  add([](RawFrame& raw) { raw.counts.resize(3 * raw.counts.size()); });
+  add([](RawFrame& raw) { raw.counts[0] = std::numeric_limits<float>::quiet_NaN(); });
+  add([](RawFrame& raw) { raw.counts[0] = -1.0F; });
+  add([](RawFrame& raw) { raw.supply_v = 0.0; });
+  frames.push_back(frames.front());  // time going backwards
+  return frames;
+}
+
+TEST(Pipeline, allocates_nothing_after_the_first_frame) {
+  if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc: allocations cannot be counted";
+  for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance, Circuit::none}) {
+    Model model = hand_made_model(8, 9);
+    model.array.readout.circuit = circuit;
+    const auto frames = frames_of_every_kind(model);
+    for (std::size_t first = 0; first < frames.size(); ++first) {
+      SCOPED_TRACE(testing::Message() << to_string(circuit) << ", first frame " << first);
+      const auto pipeline = make_pipeline(model);
+      ForceFrame force;
+      pipeline->process(frames[first], force);
+      FrameStatus seen = FrameStatus::ok;
+      const support::AllocationGuard guard;
+      for (const RawFrame& frame : frames) {
+        pipeline->process(frame, force);
+        seen |= force.status;
+      }
+      const std::size_t allocations = guard.count();
+      EXPECT_EQ(allocations, 0U);
+      EXPECT_TRUE(has(seen, FrameStatus::rejected));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dermis::pipeline

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/preprocessing/conditioner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "dermis/core/random.hpp"
+
+namespace dermis::preprocessing {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+ArrayDescription make_array(std::size_t rows = 1, std::size_t cols = 3) {
+  ArrayDescription array;
+  array.rows = rows;
+  array.cols = cols;
+  array.readout.drive_ohm.assign(rows, 20.0);
+  array.readout.load_ohm.assign(cols, 200.0);
+  return array;
+}
+
+RawFrame make_frame(std::vector<float> counts, std::optional<double> supply_v = {}) {
+  RawFrame frame;
+  frame.counts = std::move(counts);
+  frame.supply_v = supply_v;
+  return frame;
+}
+
+ConditionedFrame condition(const ArrayDescription& array, const RawFrame& raw) {
+  Conditioner conditioner(array);
+  ConditionedFrame conditioned;
+  conditioner.process(raw, conditioned);
+  return conditioned;
+}
+
+Rejection rejection_of(const RawFrame& raw) {
+  Conditioner conditioner(make_array());
+  ConditionedFrame conditioned;
+  conditioner.process(raw, conditioned);
+  EXPECT_EQ(conditioner.rejection() != Rejection::none, conditioned.status == FrameStatus::rejected);
+  return conditioner.rejection();
+}
+
+TEST(Conditioner, ratiometric_reading_does_not_know_the_supply) {
+  for (const std::optional<double> supply_v : {std::optional<double>(), std::optional(3.0), std::optional(5.5)}) {
+    const auto conditioned = condition(make_array(), make_frame({0.0F, 1023.75F, 4095.0F}, supply_v));
+    EXPECT_EQ(conditioned.ratio, (std::vector<double>{0.0, 0.25, 1.0}));
+  }
+}
+
+TEST(Conditioner, reference_in_volts_is_divided_by_the_measured_supply) {
+  ArrayDescription array = make_array();
+  array.readout.adc_reference_v = 3.3;
+  array.readout.supply_v = 5.0;
+  const auto conditioned = condition(array, make_frame({0.0F, 819.0F, 4095.0F}, 4.5));
+  EXPECT_EQ(conditioned.ratio[0], 0.0);
+  EXPECT_NEAR(conditioned.ratio[1], 0.2 * 3.3 / 4.5, 1e-15);
+  EXPECT_NEAR(conditioned.ratio[2], 3.3 / 4.5, 1e-15);
+}
+
+TEST(Conditioner, reference_in_volts_is_divided_by_the_nominal_supply_of_a_frame_that_carries_none) {
+  ArrayDescription array = make_array();
+  array.readout.adc_reference_v = 3.3;
+  array.readout.supply_v = 5.0;
+  EXPECT_NEAR(condition(array, make_frame({0.0F, 819.0F, 4095.0F})).ratio[1], 0.2 * 3.3 / 5.0, 1e-15);
+}
+
+TEST(Conditioner, ratio_follows_the_resolution_of_the_adc) {
+  for (int bits = 1; bits <= 24; ++bits) {
+    ArrayDescription array = make_array();
+    array.readout.adc_bits = bits;
+    const double full_scale = static_cast<double>((1L << bits) - 1);
+    const auto conditioned = condition(array, make_frame({0.0F, 1.0F, static_cast<float>(full_scale)}));
+    EXPECT_NEAR(conditioned.ratio[1] * full_scale, 1.0, 1e-12) << bits << " bit";
+    EXPECT_NEAR(conditioned.ratio[2], 1.0, 1e-15) << bits << " bit";
+    EXPECT_EQ(conditioned.taxels[2], TaxelStatus::saturated) << bits << " bit";
+  }
+}
+
+TEST(Conditioner, formula_holds_for_random_supplies_references_and_fractional_counts) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    ArrayDescription array = make_array(4, 5);
+    array.readout.adc_bits = 8 + static_cast<int>(random.below(17));
+    array.readout.adc_reference_v = random.uniform(1.0, 6.0);
+    array.readout.pressure_raises_reading = seed % 2 == 0;
+    const double full_scale = array.readout.full_scale_counts();
+    RawFrame raw = make_frame(std::vector<float>(20), random.uniform(2.0, 6.0));
+    for (float& count : raw.counts) count = static_cast<float>(random.uniform(0.01, 0.99) * full_scale);
+    const auto conditioned = condition(array, raw);
+    for (std::size_t k = 0; k < 20; ++k) {
+      const double volts = static_cast<double>(raw.counts[k]) / full_scale * *array.readout.adc_reference_v;
+      const double share = volts / *raw.supply_v;
+      EXPECT_NEAR(conditioned.ratio[k], seed % 2 == 0 ? share : 1.0 - share, 1e-14);
+    }
+    EXPECT_EQ(conditioned.status, FrameStatus::ok);
+  }
+}
+
+TEST(Conditioner, ratio_rises_with_pressure_where_pressure_lowers_the_reading) {
+  ArrayDescription array = make_array();
+  array.readout.pressure_raises_reading = false;
+  EXPECT_EQ(condition(array, make_frame({4095.0F, 1023.75F, 0.0F})).ratio, (std::vector<double>{0.0, 0.75, 1.0}));
+}
+
+TEST(Conditioner, saturation_is_the_end_of_the_adc_that_pressure_drives_to) {
+  ArrayDescription array = make_array(1, 4);
+  const RawFrame raw = make_frame({0.0F, 0.5F, 4094.5F, 4095.0F});
+  const auto rising = condition(array, raw);
+  EXPECT_EQ(rising.taxels, (std::vector{TaxelStatus::ok, TaxelStatus::ok, TaxelStatus::ok, TaxelStatus::saturated}));
+  EXPECT_EQ(rising.status, FrameStatus::saturated);
+  array.readout.pressure_raises_reading = false;
+  const auto falling = condition(array, raw);
+  EXPECT_EQ(falling.taxels, (std::vector{TaxelStatus::saturated, TaxelStatus::ok, TaxelStatus::ok, TaxelStatus::ok}));
+  EXPECT_EQ(falling.status, FrameStatus::saturated);
+}
+
+TEST(Conditioner, a_frame_without_saturated_taxels_is_ok) {
+  EXPECT_EQ(condition(make_array(), make_frame({0.0F, 1.0F, 4094.0F})).status, FrameStatus::ok);
+}
+
+TEST(Conditioner, time_and_temperature_go_through) {
+  RawFrame raw = make_frame({1.0F, 2.0F, 3.0F});
+  raw.time = Nanos(-17);
+  raw.temperature_celsius = -12.5;
+  const auto conditioned = condition(make_array(), raw);
+  EXPECT_EQ(conditioned.time, Nanos(-17));
+  EXPECT_EQ(conditioned.temperature_celsius, -12.5);
+  EXPECT_FALSE(condition(make_array(), make_frame({1.0F, 2.0F, 3.0F})).temperature_celsius);
+}
+
+TEST(Conditioner, accepts_the_ends_of_the_adc_range) {
+  EXPECT_EQ(rejection_of(make_frame({0.0F, -0.0F, 4095.0F})), Rejection::none);
+}
+
+TEST(Conditioner, rejects_a_frame_of_another_shape) {
+  for (const std::size_t size : {0U, 2U, 4U}) {
+    EXPECT_EQ(rejection_of(make_frame(std::vector<float>(size))), Rejection::wrong_shape) << size << " readings";
+  }
+}
+
+TEST(Conditioner, rejects_what_is_not_a_number) {
+  EXPECT_EQ(rejection_of(make_frame({1.0F, kNan, 2.0F})), Rejection::not_a_number);
+  EXPECT_EQ(rejection_of(make_frame({1.0F, 2.0F, kInfinity})), Rejection::not_a_number);
+  EXPECT_EQ(rejection_of(make_frame({-kInfinity, 2.0F, 3.0F})), Rejection::not_a_number);
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_EQ(rejection_of(make_frame({1.0F, 2.0F, 3.0F}, value)), Rejection::not_a_number);
+    RawFrame hot = make_frame({1.0F, 2.0F, 3.0F});
+    hot.temperature_celsius = value;
+    EXPECT_EQ(rejection_of(hot), Rejection::not_a_number);
+  }
+}
+
+TEST(Conditioner, rejects_a_reading_that_the_adc_cannot_give) {
+  EXPECT_EQ(rejection_of(make_frame({1.0F, 2.0F, -0.001F})), Rejection::outside_adc_range);
+  EXPECT_EQ(rejection_of(make_frame({4095.01F, 2.0F, 3.0F})), Rejection::outside_adc_range);
+}
+
+TEST(Conditioner, rejects_a_supply_that_is_not_positive) {
+  EXPECT_EQ(rejection_of(make_frame({1.0F, 2.0F, 3.0F}, 0.0)), Rejection::supply_not_positive);
+  EXPECT_EQ(rejection_of(make_frame({1.0F, 2.0F, 3.0F}, -5.0)), Rejection::supply_not_positive);
+}
+
+TEST(Conditioner, rejects_time_going_backwards_but_not_time_standing_still) {
+  Conditioner conditioner(make_array());
+  ConditionedFrame conditioned;
+  RawFrame raw = make_frame({1.0F, 2.0F, 3.0F});
+  const auto rejection_at = [&](int nanoseconds) {
+    raw.time = Nanos(nanoseconds);
+    conditioner.process(raw, conditioned);
+    return conditioner.rejection();
+  };
+  EXPECT_EQ(rejection_at(-5), Rejection::none);
+  EXPECT_EQ(rejection_at(10), Rejection::none);
+  EXPECT_EQ(rejection_at(10), Rejection::none);
+  EXPECT_EQ(rejection_at(9), Rejection::time_going_backwards);
+  EXPECT_EQ(rejection_at(10), Rejection::none);
+  EXPECT_EQ(rejection_at(11), Rejection::none);
+}
+
+TEST(Conditioner, a_rejected_frame_leaves_the_clock_untouched) {
+  Conditioner conditioner(make_array());
+  ConditionedFrame conditioned;
+  RawFrame raw = make_frame({1.0F, 2.0F, 3.0F});
+  raw.time = Nanos(10);
+  conditioner.process(raw, conditioned);
+  RawFrame broken = make_frame({1.0F, 2.0F, kNan});
+  broken.time = Nanos(1'000'000);
+  conditioner.process(broken, conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::not_a_number);
+  raw.time = Nanos(5);
+  conditioner.process(raw, conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::time_going_backwards);
+  raw.time = Nanos(11);
+  conditioner.process(raw, conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::none);
+  EXPECT_EQ(conditioned.status, FrameStatus::ok);
+}
+
+TEST(Conditioner, a_rejected_frame_has_the_shape_of_the_array_and_only_invalid_taxels) {
+  Conditioner conditioner(make_array(2, 3));
+  ConditionedFrame conditioned;
+  conditioner.process(make_frame(std::vector<float>(6, 4095.0F)), conditioned);
+  EXPECT_EQ(conditioned.status, FrameStatus::saturated);
+  RawFrame broken = make_frame({1.0F});
+  broken.time = Nanos(3);
+  broken.temperature_celsius = 25.0;
+  conditioner.process(broken, conditioned);
+  EXPECT_EQ(conditioned.status, FrameStatus::rejected);
+  EXPECT_EQ(conditioned.time, Nanos(3));
+  EXPECT_EQ(conditioned.ratio, std::vector<double>(6, 0.0));
+  EXPECT_EQ(conditioned.taxels, std::vector<TaxelStatus>(6, TaxelStatus::invalid));
+}
+
+TEST(Conditioner, recovers_fully_after_a_rejected_frame) {
+  Conditioner conditioner(make_array());
+  ConditionedFrame conditioned;
+  conditioner.process(make_frame({1.0F}), conditioned);
+  conditioner.process(make_frame({1.0F, 2.0F, 4095.0F}), conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::none);
+  EXPECT_EQ(conditioned.status, FrameStatus::saturated);
+  EXPECT_EQ(conditioned.taxels, (std::vector{TaxelStatus::ok, TaxelStatus::ok, TaxelStatus::saturated}));
+}
+
+TEST(Rejection, every_reason_has_words_of_its_own) {
+  std::set<std::string> words;
+  for (const Rejection reason :
+       {Rejection::none, Rejection::wrong_shape, Rejection::not_a_number, Rejection::outside_adc_range,
+        Rejection::supply_not_positive, Rejection::time_going_backwards}) {
+    words.insert(to_string(reason));
+  }
+  EXPECT_EQ(words.size(), 6U);
+}
+
+TEST(BareReadings, are_the_share_of_full_scale_whatever_the_supply) {
+  ArrayDescription array = make_array();
+  array.readout.adc_reference_v = 3.3;
+  std::vector<double> reading(3);
+  bare_readings(array, make_frame({0.0F, 1023.75F, 4095.0F}, 4.5), reading);
+  EXPECT_EQ(reading, (std::vector<double>{0.0, 0.25, 1.0}));
+}
+
+TEST(BareReadings, rise_with_pressure_where_pressure_lowers_the_counts) {
+  ArrayDescription array = make_array();
+  array.readout.pressure_raises_reading = false;
+  std::vector<double> reading(3);
+  bare_readings(array, make_frame({0.0F, 1023.75F, 4095.0F}), reading);
+  EXPECT_EQ(reading, (std::vector<double>{1.0, 0.75, 0.0}));
+}
+
+}  // namespace
+}  // namespace dermis::preprocessing

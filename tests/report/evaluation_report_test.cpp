@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/report/evaluation_report.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "report/sample_evaluation.hpp"
+#include "report/well_formed.hpp"
+
+namespace dermis::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+class ReportTest : public testing::Test {
+ protected:
+  ReportTest() {
+    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+    directory_ = fs::temp_directory_path() / ("dermis_report_" + std::to_string(::getpid()) + "_" + test->name());
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  /// Writes the report, checks every file of it and returns their names.
+  std::set<std::string> write(const calibration::Evaluation& evaluation) {
+    const Status written = write_evaluation_report(directory_.string(), evaluation, sample_model(evaluation));
+    EXPECT_TRUE(written.has_value());
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(directory_)) {
+      names.insert(entry.path().filename().string());
+      const std::string text = read(entry.path());
+      EXPECT_EQ(xml_error(text), "") << entry.path();
+      EXPECT_FALSE(has_bad_number(text)) << entry.path();
+    }
+    page_ = read(directory_ / "index.html");
+    return names;
+  }
+
+  [[nodiscard]] bool says(std::string_view words) const { return page_.find(words) != std::string::npos; }
+
+  fs::path directory_;
+  std::string page_;
+};
+
+const std::set<std::string> kAllFiles = {"index.html",
+                                         "calibration_vs_output.svg",
+                                         "error_vs_force.svg",
+                                         "error_vs_contacts.svg",
+                                         "error_vs_temperature.svg",
+                                         "error_vs_supply.svg",
+                                         "tactile_1.svg",
+                                         "tactile_2.svg"};
+
+TEST_F(ReportTest, WritesThePageAndEveryFigure) {
+  EXPECT_EQ(write(sample_evaluation(16, 16, 300)), kAllFiles);
+  EXPECT_TRUE(says("2,400 loaded taxels of at least 1 N, from 300 labelled frames."));
+  EXPECT_TRUE(says("temperature_lookup"));
+  EXPECT_TRUE(says("one in 2 is drawn"));
+  EXPECT_TRUE(says("9f86d081884c7d65")) << "provenance";
+  EXPECT_TRUE(says("BP networks of 2-4-1 units"));
+}
+
+TEST_F(ReportTest, LoadsNothingFromElsewhere) {
+  write(sample_evaluation(4, 4, 20));
+  for (const char* part : {"<script", "src=", "href=", "@import", "url("}) EXPECT_FALSE(says(part)) << part;
+}
+
+TEST_F(ReportTest, ShowsThePaperLevelsAgainstActionPoints) {
+  write(paper_sample());
+  EXPECT_TRUE(says("action point"));
+  EXPECT_TRUE(says("Largest relative error at 10, 20, 50 N: dermis "));
+  EXPECT_TRUE(says(">16</text>"));
+}
+
+TEST_F(ReportTest, SaysWhatCouldNotBeJudged) {
+  const std::set<std::string> names = write(totals_sample());
+  EXPECT_EQ(names, (std::set<std::string>{"index.html", "calibration_vs_output.svg", "error_vs_force.svg"}));
+  EXPECT_TRUE(says("200 totals over several taxels"));
+  EXPECT_TRUE(says("RMSE of totals"));
+  EXPECT_FALSE(says("median error"));
+  EXPECT_TRUE(says("No temperature is known"));
+  EXPECT_TRUE(says("No supply voltage is known"));
+  EXPECT_TRUE(says("No single taxels were judged"));
+}
+
+TEST_F(ReportTest, TakesAnEmptyEvaluation) {
+  EXPECT_EQ(write({}), std::set<std::string>{"index.html"});
+  EXPECT_TRUE(says("No estimator was judged."));
+}
+
+TEST_F(ReportTest, TakesEstimatorsThatJudgedNothing) {
+  EXPECT_EQ(write(empty_sample(4, 4)), std::set<std::string>{"index.html"});
+  EXPECT_TRUE(says("unloaded taxels only"));
+}
+
+TEST_F(ReportTest, TakesOneTaxelJudgedOnce) {
+  calibration::Evaluation evaluation = empty_sample(1, 1);
+  evaluation.frames = 1;
+  evaluation.frames_rejected = 1;
+  evaluation.taxels.push_back({0, 0, 10.0, 20.0, 5.0, 1, {10.0F, 0.0F, 1e30F, 9.0F}});
+  summarise_sample(evaluation);
+  evaluation.examples = {{0, {0.5}, {1e-3}, {10.0F}, {10.0}}};
+  write(evaluation);
+  EXPECT_TRUE(says("1 loaded taxel of at least 1 N, from 1 labelled frame; 1 more frame rejected."));
+  EXPECT_TRUE(says("<b>0 %</b>"));
+}
+
+TEST_F(ReportTest, SaysWhereAnEstimatorGivesNoForce) {
+  calibration::Evaluation evaluation = sample_evaluation(32, 32, 50);
+  for (auto& taxel : evaluation.taxels) {
+    if (taxel.taxel % 3 == 0) taxel.newtons[0] = std::numeric_limits<float>::quiet_NaN();
+    taxel.newtons[1] = std::numeric_limits<float>::infinity();
+  }
+  evaluation.examples[0].newtons[5] = std::numeric_limits<float>::quiet_NaN();
+  summarise_sample(evaluation);
+  EXPECT_EQ(write(evaluation), kAllFiles);
+  EXPECT_TRUE(says("<b>no force</b>"));
+  EXPECT_TRUE(says("raw_lookup gives no force for 400 of 400; they are not drawn."));
+  EXPECT_TRUE(says("What reaches the upper edge includes taxels without any force."));
+  EXPECT_TRUE(says("0.0 %</td>")) << "within 5 %";
+}
+
+TEST_F(ReportTest, ShowsOneEstimatorWithoutAnother) {
+  calibration::Evaluation evaluation = sample_evaluation(4, 4, 20);
+  evaluation.estimators.resize(1);
+  for (auto& taxel : evaluation.taxels) taxel.newtons.resize(1);
+  summarise_sample(evaluation);
+  write(evaluation);
+  EXPECT_FALSE(says("best other"));
+  EXPECT_FALSE(says("class=\"best\""));
+}
+
+TEST_F(ReportTest, MarksTheBestEvenWhereItIsABaseline) {
+  calibration::Evaluation evaluation = sample_evaluation(4, 4, 20);
+  evaluation.estimators[2].relative_error.median = 1e-4;
+  write(evaluation);
+  EXPECT_TRUE(says("<td class=\"best\">0.010 %</td>"));
+  EXPECT_TRUE(says("best other: 0.010 %"));
+}
+
+TEST_F(ReportTest, EscapesNames) {
+  calibration::Evaluation evaluation = sample_evaluation(4, 4, 20);
+  evaluation.array.name = "</style><script>\xff";
+  evaluation.estimators[1].name = "a&b<i>\"";
+  write(evaluation);
+  EXPECT_FALSE(says("<script>"));
+  EXPECT_TRUE(says("a&amp;b&lt;i&gt;&quot;"));
+}
+
+TEST_F(ReportTest, ReplacesAnEarlierReport) {
+  write(sample_evaluation(4, 4, 20));
+  const std::string first = page_;
+  write(sample_evaluation(4, 4, 20));
+  EXPECT_EQ(page_, first) << "deterministic";
+  EXPECT_EQ(page_, evaluation_page(sample_evaluation(4, 4, 20), sample_model(sample_evaluation(4, 4, 20))));
+}
+
+TEST_F(ReportTest, NamesADirectoryThatCannotBeMade) {
+  fs::create_directories(directory_);
+  std::ofstream(directory_ / "file") << "text";
+  const calibration::Evaluation evaluation = paper_sample();
+  const Status written =
+      write_evaluation_report((directory_ / "file" / "report").string(), evaluation, sample_model(evaluation));
+  ASSERT_FALSE(written.has_value());
+  EXPECT_EQ(written.error().kind, ErrorKind::failed);
+  EXPECT_NE(written.error().message.find("file/report"), std::string::npos);
+  EXPECT_EQ(written.error().message.find('\n'), std::string::npos);
+}
+
+TEST_F(ReportTest, LeavesNothingHalfWritten) {
+  fs::create_directories(directory_ / "error_vs_force.svg");  // In the way of a file.
+  const calibration::Evaluation evaluation = paper_sample();
+  ASSERT_FALSE(write_evaluation_report(directory_.string(), evaluation, sample_model(evaluation)).has_value());
+  EXPECT_FALSE(fs::exists(directory_ / "index.html"));
+  for (const auto& entry : fs::directory_iterator(directory_)) {
+    EXPECT_TRUE(entry.is_directory() || xml_error(read(entry.path())).empty()) << entry.path();
+    EXPECT_EQ(entry.path().extension(), ".svg");
+  }
+}
+
+}  // namespace
+}  // namespace dermis::report
