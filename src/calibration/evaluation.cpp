@@ -223,16 +223,30 @@ void break_down_all(Evaluation& evaluation) {
                                     contact_edges(evaluation.taxels));
 }
 
-bool is_good_example(const Sample& truth) {
-  const auto loaded = std::count_if(truth.known_newtons.begin(), truth.known_newtons.end(),
-                                    [](float newtons) { return newtons >= kJudgedNewtons; });
-  return truth.totals.empty() && loaded >= 4;
-}
+/// Frames for pictures: the first ones that press several taxels, or else the first ones that press any.
+class ExampleChoice {
+ public:
+  void offer(std::size_t frame, const Sample& truth, const EstimatorRow& row) {
+    if (!truth.totals.empty()) return;
+    const auto loaded = std::count_if(truth.known_newtons.begin(), truth.known_newtons.end(),
+                                      [](float newtons) { return newtons >= kJudgedNewtons; });
+    std::vector<TactileExample>& examples = loaded >= kSeveral ? rich_ : plain_;
+    if (loaded > 0 && examples.size() < kMaxExamples) examples.push_back(make_example(frame, truth, row));
+  }
 
-TactileExample make_example(std::size_t frame, const Sample& truth, const EstimatorRow& row) {
-  return {frame, row.reading(), row.siemens(), row.newtons()[0],
-          std::vector<double>(truth.known_newtons.begin(), truth.known_newtons.end())};
-}
+  [[nodiscard]] std::vector<TactileExample> chosen() && { return std::move(rich_.empty() ? plain_ : rich_); }
+
+ private:
+  static constexpr std::ptrdiff_t kSeveral = 4;
+
+  static TactileExample make_example(std::size_t frame, const Sample& truth, const EstimatorRow& row) {
+    return {frame, row.reading(), row.siemens(), row.newtons()[0],
+            std::vector<double>(truth.known_newtons.begin(), truth.known_newtons.end())};
+  }
+
+  std::vector<TactileExample> rich_;
+  std::vector<TactileExample> plain_;
+};
 
 }  // namespace
 
@@ -265,6 +279,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   evaluation.array = model.array;
   EstimatorRow row(model, std::move(*pipeline));
   Errors errors(1 + model.baselines.size());
+  ExampleChoice examples;
   const std::vector<std::vector<Load>> loads_of = group_by_frame(loads, frames.size());
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
     const bool accepted = row.run(frames[frame]);
@@ -278,12 +293,11 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
     expand_loads(model.array, loads_of[frame], truth);
     judge_taxels(frame, frames[frame], truth, row, evaluation, errors);
     judge_totals(frame, frames[frame], truth, row, evaluation, errors);
-    if (evaluation.examples.size() < kMaxExamples && is_good_example(truth)) {
-      evaluation.examples.push_back(make_example(frame, truth, row));
-    }
+    examples.offer(frame, truth, row);
   }
   if (evaluation.frames == 0) return bad_input("no labelled frame fits the model's array");
   evaluation.estimators = summarise_estimators(model, evaluation, errors);
+  evaluation.examples = std::move(examples).chosen();
   break_down_all(evaluation);
   return evaluation;
 }

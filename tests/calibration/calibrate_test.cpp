@@ -62,6 +62,9 @@ TEST(Calibrate, reaches_the_noise_floor_on_multitouch_from_single_presses) {
   const pipeline::Model model = model_of(array, record(array, "calibration", 1));
   const EstimatorResult result = judge(model, record(array, "multitouch", 2));
   const ErrorSummary floor = judge_true_law(array, *simulate(array, "multitouch", 2));
+  RecordProperty("true_law_median", std::to_string(*floor.median));
+  RecordProperty("true_law_p95", std::to_string(*floor.p95));
+  RecordProperty("true_law_p99", std::to_string(*floor.p99));
   EXPECT_LE(*result.relative_error.median, 0.007);
   EXPECT_LE(*result.relative_error.p95, 0.03);
   EXPECT_LE(*result.relative_error.p99, 0.05);
