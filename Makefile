@@ -31,9 +31,10 @@ lint: setup
 	scripts/lint
 
 bench: setup
+	scripts/setup test
 	cmake --preset release
 	cmake --build --preset release
-	if [ -x scripts/bench ]; then scripts/bench; else build/release/benchmarks/pipeline_benchmark; fi
+	scripts/bench
 
 docs:
 	scripts/setup test

@@ -106,7 +106,9 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   const std::size_t selected = selection.conditioned.size();
   Result<compensation::Compensator> compensator = compensation::Compensator::create(array);
   if (!compensator) return compensator.error();
-  database.siemens_per_count = compensator->siemens_per_ratio() / array.readout.full_scale_counts();
+  const Readout& readout = array.readout;
+  const double reference = readout.adc_reference_v && readout.supply_v ? *readout.adc_reference_v / *readout.supply_v : 1.0;
+  database.siemens_per_count = compensator->siemens_per_ratio() * reference / readout.full_scale_counts();
   database.samples.resize(selected);
   parallel_for((selected + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
     Result<compensation::Compensator> solver = compensation::Compensator::create(array);

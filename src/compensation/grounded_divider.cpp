@@ -12,9 +12,11 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxSteps = 200;
-constexpr double kToleranceCounts = 0.01;  // largest change of a step, as a reading
+constexpr double kToleranceCounts = 0.01;   // largest change of a step, as a reading
 constexpr double kColumnShareCap = 0.9999;  // 1 - sigma stays positive under noise
 constexpr double kHalvedStep = 0.5;
+constexpr double kLeastDamping = 1.0 / 16.0;
+constexpr double kRunawayChange = 1e3;  // of a conductance, relative to the loaded column
 
 }  // namespace
 
@@ -33,16 +35,28 @@ GroundedDivider::GroundedDivider(const ArrayDescription& array)
 }
 
 bool GroundedDivider::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
-  start(ratio, siemens);
-  double damping = 1.0;
+  for (double damping = 1.0; damping >= kLeastDamping; damping *= kHalvedStep) {
+    start(ratio, siemens);
+    if (iterate(ratio, siemens, damping)) return true;
+  }
+  start(ratio, siemens);  // the best attempt: always finite, right for ideal drivers
+  return false;
+}
+
+bool GroundedDivider::iterate(std::span<const double> ratio, std::span<double> siemens, double damping) noexcept {
   double last_change = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kMaxSteps; ++k) {
     const double change = step(ratio, siemens, damping);
-    if (change <= tolerance_ * damping) return true;
-    if (!(change < last_change)) damping = kHalvedStep;
+    if (change <= tolerance_ * damping) return is_possible();
+    if (!(change < kRunawayChange)) return false;
+    if (!(change < last_change)) damping = std::max(damping * kHalvedStep, kLeastDamping);
     last_change = change;
   }
   return false;
+}
+
+bool GroundedDivider::is_possible() const noexcept {
+  return std::all_of(column_share_.begin(), column_share_.end(), [](double share) { return share < kColumnShareCap; });
 }
 
 void GroundedDivider::start(std::span<const double> ratio, std::span<double> siemens) noexcept {
@@ -73,15 +87,17 @@ double GroundedDivider::step(std::span<const double> ratio, std::span<double> si
     column_siemens_[col] = load_siemens_[col] / (1.0 - std::min(column_share_[col], kColumnShareCap));
   }
   double change = 0.0;
+  bool finite = true;
   for (std::size_t row = 0; row < rows_; ++row) {
     for (std::size_t col = 0; col < cols_; ++col) {
       const std::size_t taxel = row * cols_ + col;
       const double difference = damping * (column_siemens_[col] * undriven_[taxel] - siemens[taxel]);
       siemens[taxel] += difference;
       change = std::max(change, std::abs(difference) / column_siemens_[col]);
+      finite = finite && std::isfinite(difference);  // std::max would drop a NaN
     }
   }
-  return std::isfinite(change) ? change : std::numeric_limits<double>::infinity();
+  return finite ? change : std::numeric_limits<double>::infinity();
 }
 
 void GroundedDivider::undo_drivers(std::span<const double> ratio, std::span<const double> siemens) noexcept {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "dermis/compensation/crosstalk.hpp"
@@ -18,15 +19,21 @@ namespace dermis::compensation {
 ///
 ///   W = (1 + Rd . G 1) T - G B^-1 G^T (Rd T),   sigma_j = sum_i W_ij,   G_ij = gL_j W_ij / (1 - sigma_j)
 ///
-/// started at the solution for ideal drivers. Steps are halved once they stop shrinking (A.5, alpha = 0.5).
+/// started at the solution for ideal drivers. Steps are halved whenever they stop shrinking (A.5, alpha = 0.5), and the
+/// iteration starts anew with smaller steps where it runs away: taxels down to about a quarter of drive_ohm are found.
 class GroundedDivider final : public CrosstalkInversion {
  public:
   explicit GroundedDivider(const ArrayDescription& array);
   [[nodiscard]] bool invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
-  [[nodiscard]] double siemens_per_ratio() const noexcept override { return load_siemens_.front(); }
+  [[nodiscard]] double siemens_per_ratio() const noexcept override {
+    return *std::max_element(load_siemens_.begin(), load_siemens_.end());
+  }
 
  private:
+  /// Every column voltage, all rows driven, is below the supply.
+  [[nodiscard]] bool is_possible() const noexcept;
   void start(std::span<const double> ratio, std::span<double> siemens) noexcept;
+  bool iterate(std::span<const double> ratio, std::span<double> siemens, double damping) noexcept;
   double step(std::span<const double> ratio, std::span<double> siemens, double damping) noexcept;
   void undo_drivers(std::span<const double> ratio, std::span<const double> siemens) noexcept;
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "dermis/compensation/crosstalk.hpp"
@@ -17,7 +18,9 @@ class VirtualGround final : public CrosstalkInversion {
  public:
   explicit VirtualGround(const ArrayDescription& array);
   [[nodiscard]] bool invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
-  [[nodiscard]] double siemens_per_ratio() const noexcept override { return load_siemens_.front(); }
+  [[nodiscard]] double siemens_per_ratio() const noexcept override {
+    return *std::max_element(load_siemens_.begin(), load_siemens_.end());
+  }
 
  private:
   std::vector<double> drive_ohm_;     // [rows]

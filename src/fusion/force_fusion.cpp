@@ -11,12 +11,26 @@
 namespace dermis::fusion {
 namespace {
 
-constexpr float kLeastShare = 1e-6F;  // of the reference: keeps ln(e) finite
+constexpr float kLeastShare = 1e-20F;  // of the reference: keeps ln(e) finite
 constexpr float kNoForce = std::numeric_limits<float>::quiet_NaN();
 
 template <typename Values, typename Predicate>
 bool all(const Values& values, std::size_t size, Predicate predicate) {
   return values.size() == size && std::all_of(values.begin(), values.end(), predicate);
+}
+
+/// The weights that make the force rise with conductance are not negative.
+bool rises_with_conductance(const network::PerceptronShape& shape, const std::vector<float>& parameters,
+                            std::size_t taxels) {
+  if (shape.rising_inputs + 1 != kInputsWithTemperature) return false;
+  for (std::size_t k = 0; k < shape.parameter_count(); ++k) {
+    if (!network::monotone::is_positive(shape, k)) continue;
+    const auto first = parameters.begin() + static_cast<std::ptrdiff_t>(k * taxels);
+    if (std::any_of(first, first + static_cast<std::ptrdiff_t>(taxels), [](float weight) { return weight < 0.0F; })) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -28,12 +42,14 @@ bool ForceNetworks::is_consistent() const noexcept {
   const bool uses_temperature = shape.inputs == kInputsWithTemperature;
   const bool in_range = (uses_temperature || shape.inputs + 1 == kInputsWithTemperature) && shape.hidden <= 64 &&
                         std::isfinite(temperature_centre_celsius) && std::isfinite(temperature_half_span_celsius) &&
+                        temperature_half_span_celsius >= 0.0 &&  // std::clamp needs low <= high
                         (!uses_temperature || temperature_half_span_celsius > 0.0);
   return in_range && all(offset_siemens, taxels, is_finite) && all(offset_per_celsius, taxels, is_finite) &&
          all(reference_siemens, taxels, is_positive) && all(heaviest_siemens, taxels, is_positive) &&
          all(heaviest_newtons, taxels, [](float value) { return value > 0.0F; }) && all(gain, taxels, is_positive) &&
          all(dead, taxels, [](std::uint8_t value) { return value <= 1; }) &&
-         all(parameters, shape.parameter_count() * taxels, is_finite);
+         all(parameters, shape.parameter_count() * taxels, is_finite) &&
+         rises_with_conductance(shape, parameters, taxels);
 }
 
 ForceFusion::ForceFusion(ForceNetworks networks)
@@ -53,6 +69,7 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
   force.newtons.resize(taxels);
   if (has(conductance.status, FrameStatus::rejected) || conductance.siemens.size() != taxels) {
     force.status |= FrameStatus::rejected;
+    force.taxels.assign(taxels, TaxelStatus::invalid);
     std::fill(force.newtons.begin(), force.newtons.end(), kNoForce);
     return;
   }
@@ -97,6 +114,8 @@ void ForceFusion::finish(std::size_t taxel, ForceFrame& force) const noexcept {
   if (networks_.dead[taxel] != 0) {
     status = TaxelStatus::dead;
     force.status |= FrameStatus::dead_taxels;
+  } else if (std::isnan(excess_siemens_[taxel])) {
+    status = TaxelStatus::invalid;
   }
   if (status == TaxelStatus::dead || status == TaxelStatus::invalid) {
     newtons = kNoForce;

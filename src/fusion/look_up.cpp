@@ -10,6 +10,7 @@ namespace dermis::fusion {
 namespace {
 
 double interpolate(std::span<const double> x, std::span<const double> y, double at) {
+  if (std::isnan(at)) return at;
   if (at <= x.front()) return y.front();
   if (at >= x.back()) return y.back();
   const auto above = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), at) - x.begin());
@@ -23,8 +24,12 @@ bool LookUpTables::is_consistent() const noexcept {
   const std::size_t taxels = taxel_count();
   if (knots < 2 || knot_signal.size() != taxels * knots || knot_newtons.size() != taxels * knots) return false;
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    const auto first = knot_signal.begin() + static_cast<std::ptrdiff_t>(taxel * knots);
-    if (!std::is_sorted(first, first + static_cast<std::ptrdiff_t>(knots))) return false;
+    const auto first = static_cast<std::ptrdiff_t>(taxel * knots);
+    const auto last = first + static_cast<std::ptrdiff_t>(knots);
+    if (!std::is_sorted(knot_signal.begin() + first, knot_signal.begin() + last) ||
+        !std::is_sorted(knot_newtons.begin() + first, knot_newtons.begin() + last)) {
+      return false;
+    }
   }
   const auto finite = [](const std::vector<double>& values) {
     return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });

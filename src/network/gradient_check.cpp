@@ -31,6 +31,7 @@ double jacobian_deviation(const ResidualFunction& residual_function, std::size_t
     for (std::size_t i = 0; i < residual_count; ++i) {
       const double analytic = jacobian[i * n + k];
       const double numeric = (above[i] - below[i]) / (2.0 * step);
+      if (!std::isfinite(analytic) || !std::isfinite(numeric)) return std::numeric_limits<double>::infinity();
       const double scale = std::max({1.0, std::abs(analytic), std::abs(numeric)});
       deviation = std::max(deviation, std::abs(analytic - numeric) / scale);
     }

@@ -65,7 +65,10 @@ LevenbergMarquardtReport minimise(const ResidualFunction& residual_function, std
       if (!report.converged) linearise();
     } else {
       damping *= kDampingFactor;
-      report.converged = damping > kMaxDamping;  // no direction goes down any more
+      if (damping > kMaxDamping) {  // no direction goes down any more
+        report.converged = std::isfinite(error);
+        break;
+      }
     }
   }
   report.final_error = error;

@@ -174,7 +174,14 @@ Result<Model> read_model(const std::string& path) {
   TensorReader reader(*file);
   model.networks = get_networks(*file, taxels, reader);
   const std::size_t baselines = metadata_count(*file, "baselines");
-  for (std::size_t index = 0; index < baselines && index < kMaxBaselines; ++index) {
+  if (metadata(*file, "baselines") != std::to_string(baselines)) {
+    return bad_input(path + ": does not say how many baselines it holds");
+  }
+  if (baselines > kMaxBaselines) {
+    return bad_input(path + ": has " + std::to_string(baselines) + " baselines, at most " +
+                     std::to_string(kMaxBaselines) + " can be read");
+  }
+  for (std::size_t index = 0; index < baselines; ++index) {
     model.baselines.push_back(get_baseline(*file, index, taxels, reader));
   }
   if (reader.first_error()) return bad_input(path + ": " + reader.first_error()->message);

@@ -7,6 +7,10 @@
 namespace dermis::pipeline {
 
 Result<Pipeline> Pipeline::create(const Model& model) {
+  if (Status valid = model.array.validate(); !valid) return valid.error();
+  if (model.networks.taxel_count() != model.array.taxel_count() || !model.networks.is_consistent()) {
+    return bad_input("the model's networks do not fit its array, or hold values out of range");
+  }
   Result<compensation::Compensator> compensator = compensation::Compensator::create(model.array);
   if (!compensator) return compensator.error();
   return Pipeline(model, std::move(*compensator));

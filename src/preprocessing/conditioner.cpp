@@ -20,6 +20,7 @@ const char* to_string(Rejection rejection) noexcept {
     case Rejection::not_a_number: return "a value that is not a number";
     case Rejection::outside_adc_range: return "a reading outside the ADC range";
     case Rejection::supply_not_positive: return "a supply of 0 V or less";
+    case Rejection::supply_unknown: return "no supply voltage (add supply_v to the frames or to array.toml)";
     case Rejection::time_going_backwards: return "time going backwards";
   }
   return "none";
@@ -34,12 +35,20 @@ Rejection Conditioner::inspect(const RawFrame& raw) const noexcept {
     return Rejection::not_a_number;
   }
   if (raw.supply_v && *raw.supply_v <= 0.0) return Rejection::supply_not_positive;
+  const Readout& readout = array_.readout;
+  const bool needs_supply = readout.adc_reference_v && readout.circuit != Circuit::none;
+  if (needs_supply && !raw.supply_v && !readout.supply_v) return Rejection::supply_unknown;
   for (const float count : raw.counts) {
     if (!std::isfinite(count)) return Rejection::not_a_number;
     if (count < 0.0F || static_cast<double>(count) > full_scale_counts_) return Rejection::outside_adc_range;
   }
   if (last_time_ && raw.time < *last_time_) return Rejection::time_going_backwards;
   return Rejection::none;
+}
+
+bool Conditioner::is_saturated(double counts) const noexcept {
+  constexpr double kHalfCount = 0.5;  // averaged readings
+  return array_.readout.pressure_raises_reading ? counts > full_scale_counts_ - kHalfCount : counts < kHalfCount;
 }
 
 void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
@@ -49,6 +58,7 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   conditioned.ratio.resize(array_.taxel_count());
   conditioned.taxels.resize(array_.taxel_count());
   rejection_ = inspect(raw);
+  if (rejection_ == Rejection::time_going_backwards) last_time_ = raw.time;
   if (rejection_ != Rejection::none) {
     conditioned.status = FrameStatus::rejected;
     std::fill(conditioned.ratio.begin(), conditioned.ratio.end(), 0.0);
@@ -58,14 +68,13 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   last_time_ = raw.time;
 
   const Readout& readout = array_.readout;
-  const double supply_v = raw.supply_v.value_or(readout.supply_v.value_or(1.0));
-  const double reference = readout.adc_reference_v ? *readout.adc_reference_v / supply_v : 1.0;
+  const std::optional<double> supply_v = raw.supply_v ? raw.supply_v : readout.supply_v;
+  const double reference = readout.adc_reference_v && supply_v ? *readout.adc_reference_v / *supply_v : 1.0;
   const double scale = (readout.pressure_raises_reading ? reference : -reference) / full_scale_counts_;
   const double zero = readout.pressure_raises_reading ? 0.0 : 1.0;
-  const float saturated_count = readout.pressure_raises_reading ? static_cast<float>(full_scale_counts_) : 0.0F;
   for (std::size_t taxel = 0; taxel < raw.counts.size(); ++taxel) {
     conditioned.ratio[taxel] = zero + scale * static_cast<double>(raw.counts[taxel]);
-    const bool saturated = raw.counts[taxel] == saturated_count;
+    const bool saturated = is_saturated(static_cast<double>(raw.counts[taxel]));
     conditioned.taxels[taxel] = saturated ? TaxelStatus::saturated : TaxelStatus::ok;
     if (saturated) conditioned.status |= FrameStatus::saturated;
   }

@@ -274,6 +274,48 @@ TEST(CrosstalkInversion, one_ratio_stands_for_the_conductance_of_the_load) {
   EXPECT_DOUBLE_EQ(inversion_for(make_array(2, 2, Circuit::none))->siemens_per_ratio(), 1.0);
 }
 
+TEST(CrosstalkInversion, impossible_readings_are_refused_or_give_numbers_but_never_nan) {
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    auto array = make_array(1 + random.below(16), 1 + random.below(16),
+                            seed % 3 == 0 ? Circuit::transimpedance : Circuit::divider);
+    scatter_resistors(array, random);
+    std::vector<double> ratio(array.taxel_count());
+    for (double& value : ratio) {
+      switch (seed % 4) {
+        case 0: value = 1.0; break;
+        case 1: value = random.uniform(-1.0, 1.2); break;
+        case 2: value = static_cast<double>(random.below(2)); break;
+        default: value = random.uniform(); break;
+      }
+    }
+    for (const double siemens : invert(array, ratio).siemens) ASSERT_TRUE(std::isfinite(siemens));
+  }
+}
+
+TEST(CrosstalkInversion, a_taxel_that_conducts_better_than_its_driver_comes_back) {
+  for (const double drive_ohm : {5.0, 20.0, 100.0}) {
+    for (const double share : {0.3, 0.5, 1.0, 2.0}) {
+      for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        SCOPED_TRACE(testing::Message() << share << " of " << drive_ohm << " ohm, seed " << seed);
+        Random random(seed);
+        const std::size_t size = seed % 2 == 0 ? 4 : 16;
+        const auto array = make_array(size, size, Circuit::divider, drive_ohm);
+        auto siemens = random_siemens(array, random);
+        const std::size_t shorted = random.below(siemens.size());
+        siemens[shorted] = 1.0 / (share * drive_ohm);
+        const auto inverted = invert(array, support::divider_ratios(array, siemens));
+        ASSERT_TRUE(inverted.solved);
+        const auto columns = loaded_columns(array, siemens);
+        for (std::size_t k = 0; k < siemens.size(); ++k) {
+          ASSERT_NEAR(inverted.siemens[k], siemens[k], 1e-5 * columns[k % array.cols]) << "taxel " << k;
+        }
+      }
+    }
+  }
+}
+
 TEST(CrosstalkInversion, transimpedance_beyond_what_a_row_can_carry_has_no_solution) {
   // 16 columns at full scale would draw 16 / 200 of the supply per ohm through a driver of 20 ohm: 1.6 of the supply.
   const auto inverted = invert(make_array(2, 16, Circuit::transimpedance), std::vector<double>(32, 1.0));

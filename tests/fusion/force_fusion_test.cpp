@@ -260,6 +260,15 @@ TEST(ForceFusion, frame_of_another_size_is_rejected) {
   EXPECT_TRUE(has(force.status, FrameStatus::rejected));
   ASSERT_EQ(force.newtons.size(), 2U);
   EXPECT_TRUE(std::isnan(force.newtons[0]) && std::isnan(force.newtons[1]));
+  EXPECT_EQ(force.taxels, std::vector<TaxelStatus>(2, TaxelStatus::invalid));
+}
+
+TEST(ForceFusion, conductance_that_is_not_a_number_makes_its_taxel_invalid) {
+  const auto force = fuse(two_power_laws(), make_frame({kNan, 1e-3 + 1e-5}, 20.0));
+  EXPECT_TRUE(std::isnan(force.newtons[0]));
+  EXPECT_NEAR(force.newtons[1], 10.0, 1e-4);
+  EXPECT_EQ(force.taxels, (std::vector{TaxelStatus::invalid, TaxelStatus::ok}));
+  EXPECT_EQ(force.status, FrameStatus::ok);
 }
 
 TEST(ForceFusion, flags_of_the_units_before_go_through) {
@@ -275,6 +284,14 @@ TEST(ForceNetworks, consistent_networks_are_consistent) {
   EXPECT_TRUE(power_law().is_consistent());
   EXPECT_TRUE(two_power_laws().is_consistent());
   for (const std::size_t inputs : {2U, 3U}) EXPECT_TRUE(support::random_networks(9, inputs, 4, 1).is_consistent());
+}
+
+TEST(ForceNetworks, half_span_is_not_negative_even_where_temperature_is_not_an_input) {
+  ForceNetworks networks = power_law();
+  networks.temperature_half_span_celsius = 0.0;
+  EXPECT_TRUE(networks.is_consistent());
+  networks.temperature_half_span_celsius = -1.0;
+  EXPECT_FALSE(networks.is_consistent());
 }
 
 TEST(ForceNetworks, every_broken_field_is_found) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -68,6 +69,12 @@ TEST(LookUpTables, force_never_falls_with_the_signal) {
   EXPECT_EQ(last, 40.0F);
 }
 
+TEST(LookUpTables, signal_that_is_not_a_number_gives_no_force) {
+  const auto newtons = estimate({std::numeric_limits<double>::quiet_NaN(), 0.5});
+  EXPECT_TRUE(std::isnan(newtons[0]));
+  EXPECT_FLOAT_EQ(newtons[1], 10.0F);
+}
+
 TEST(LookUpTables, knots_of_the_same_signal_are_a_step) {
   LookUpTables tables = make_tables();
   tables.knot_signal = {0.1, 0.3, 0.3, 0.0, 0.0, 0.0};
@@ -98,7 +105,8 @@ TEST(LookUpTables, sizes_and_numbers_are_checked) {
   EXPECT_TRUE(broken([](auto& t) { t.knot_signal[2] = kInfinity; }));
   EXPECT_TRUE(broken([](auto& t) { t.knot_newtons[2] = kNan; }));
   EXPECT_TRUE(broken([](auto& t) { t.temperature_coefficient[0] = kNan; }));
-  EXPECT_TRUE(broken([](auto& t) { t.knot_signal[4] = -1.0; }));  // falls along the knots
+  EXPECT_TRUE(broken([](auto& t) { t.knot_signal[4] = -1.0; }));   // falls along the knots
+  EXPECT_TRUE(broken([](auto& t) { t.knot_newtons[4] = -1.0; }));  // the same
 }
 
 }  // namespace

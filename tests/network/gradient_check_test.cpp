@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <vector>
 
 namespace dermis::network {
@@ -44,6 +45,10 @@ TEST(GradientCheck, judges_large_entries_by_their_relative_error) {
     if (!jacobian.empty()) jacobian[0] = 990.0;
   };
   EXPECT_NEAR(jacobian_deviation(residual, 1, std::vector<double>{1.0}), 0.01, 1e-7);
+}
+
+TEST(GradientCheck, finds_an_entry_that_is_not_a_number) {
+  EXPECT_EQ(jacobian_deviation(with_error(std::nan("")), 2, kPoint), std::numeric_limits<double>::infinity());
 }
 
 TEST(GradientCheck, finds_a_wrong_sign) {

@@ -171,6 +171,16 @@ TEST(LevenbergMarquardt, never_accepts_a_point_whose_residual_is_not_finite) {
   }
 }
 
+TEST(LevenbergMarquardt, a_start_that_is_not_finite_is_not_called_converged) {
+  const ResidualFunction residual = [](std::span<const double>, std::span<double> r, std::span<double> jacobian) {
+    r[0] = std::numeric_limits<double>::quiet_NaN();
+    std::fill(jacobian.begin(), jacobian.end(), 1.0);
+  };
+  std::vector<double> parameters = {1.0};
+  EXPECT_FALSE(minimise(residual, 1, parameters).converged);
+  EXPECT_EQ(parameters, std::vector<double>{1.0});
+}
+
 TEST(LevenbergMarquardt, parameters_without_influence_stay_finite) {
   // Only a + b can be known, c takes no part at all.
   const ResidualFunction residual = [](std::span<const double> p, std::span<double> r, std::span<double> jacobian) {

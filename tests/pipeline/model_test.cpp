@@ -324,6 +324,14 @@ TEST(Model, another_network_shape_than_the_parameters_have_is_refused) {
   }
 }
 
+TEST(Model, more_baselines_than_can_be_read_are_refused) {
+  const TemporaryFolder folder;
+  Model model = make_model();
+  model.baselines.assign(17, make_baseline(6, "look-up", fusion::LookUpSignal::reading));
+  ASSERT_TRUE(write_model(folder.file("m"), model));
+  expect_refused(folder.file("m"), "17 baselines");
+}
+
 TEST(Model, a_folder_that_is_not_there_cannot_be_written_to) {
   const TemporaryFolder folder;
   const auto written = write_model(folder.file("no/such/folder/m"), make_model());

@@ -237,6 +237,37 @@ TEST(Pipeline, circuit_that_cannot_be_inverted_is_refused) {
   EXPECT_EQ(pipeline.error().kind, ErrorKind::bad_input);
 }
 
+TEST(Pipeline, networks_that_do_not_fit_the_array_are_refused) {
+  Model model = hand_made_model(2, 2);
+  model.networks = support::random_networks(5, 3, 1, 1);
+  EXPECT_FALSE(Pipeline::create(model));
+  model = hand_made_model(2, 2);
+  model.networks.gain[0] = 0.0F;
+  EXPECT_FALSE(Pipeline::create(model));
+  model = hand_made_model(2, 2);
+  model.array.readout.load_ohm.pop_back();
+  EXPECT_FALSE(Pipeline::create(model));
+}
+
+TEST(Pipeline, impossible_readings_never_give_a_force_without_a_flag) {
+  const Model model = hand_made_model(8, 8);
+  const auto pipeline = make_pipeline(model);
+  const double full_scale = model.array.readout.full_scale_counts();
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    RawFrame raw;
+    raw.temperature_celsius = 25.0;
+    raw.counts.resize(64);
+    for (float& count : raw.counts) count = static_cast<float>(std::floor(random.uniform() * full_scale));
+    ForceFrame force;
+    pipeline->process(raw, force);
+    for (std::size_t k = 0; k < 64; ++k) {
+      EXPECT_EQ(std::isnan(force.newtons[k]), force.taxels[k] == TaxelStatus::invalid);
+    }
+  }
+}
+
 TEST(AllocationGuard, sees_allocations_of_every_kind) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
   const auto count_of = [](auto allocate) {

@@ -186,6 +186,40 @@ TEST(Conditioner, rejects_time_going_backwards_but_not_time_standing_still) {
   EXPECT_EQ(rejection_at(11), Rejection::none);
 }
 
+TEST(Conditioner, loses_one_frame_where_the_clock_jumps) {
+  Conditioner conditioner(make_array());
+  ConditionedFrame conditioned;
+  RawFrame raw = make_frame({1.0F, 2.0F, 3.0F});
+  std::size_t rejected = 0;
+  for (const int nanoseconds : {1, 2, 1'000'000, 3, 4, 5}) {  // one time far in the future
+    raw.time = Nanos(nanoseconds);
+    conditioner.process(raw, conditioned);
+    if (conditioner.rejection() != Rejection::none) ++rejected;
+  }
+  EXPECT_EQ(rejected, 1U);
+}
+
+TEST(Conditioner, needs_a_supply_where_the_reference_is_in_volts) {
+  ArrayDescription array = make_array();
+  array.readout.adc_reference_v = 5.0;
+  array.readout.supply_v.reset();
+  ConditionedFrame conditioned;
+  Conditioner conditioner(array);
+  RawFrame raw = make_frame({1.0F, 2.0F, 3.0F});
+  raw.supply_v.reset();
+  conditioner.process(raw, conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::supply_unknown);
+  raw.supply_v = 5.0;
+  conditioner.process(raw, conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::none);
+
+  array.readout.circuit = Circuit::none;
+  raw.supply_v.reset();
+  Conditioner unknown_circuit(array);
+  unknown_circuit.process(raw, conditioned);
+  EXPECT_EQ(unknown_circuit.rejection(), Rejection::none);
+}
+
 TEST(Conditioner, a_rejected_frame_leaves_the_clock_untouched) {
   Conditioner conditioner(make_array());
   ConditionedFrame conditioned;

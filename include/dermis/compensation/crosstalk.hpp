@@ -25,7 +25,8 @@ class CrosstalkInversion {
   /// this circuit; `siemens` then holds the best attempt. Allocates nothing.
   [[nodiscard]] virtual bool invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
-  /// Conductance that one count of the ADC stands for at an unloaded taxel [S]: the quantisation of the result.
+  /// Rise of an unloaded taxel's conductance for a rise of its ratio [S], the largest of all columns: what the noise of
+  /// a reading becomes.
   [[nodiscard]] virtual double siemens_per_ratio() const noexcept = 0;
 };
 

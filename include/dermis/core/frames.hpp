@@ -32,7 +32,7 @@ enum class FrameStatus : std::uint8_t {
   above_range = 1U << 2U,           ///< At least one taxel is clamped to its calibrated end.
   dead_taxels = 1U << 3U,           ///< The array has dead taxels.
   temperature_unknown = 1U << 4U,   ///< The frame carries no temperature: the calibration's mean is taken.
-  temperature_clamped = 1U << 5U,   ///< Outside the calibrated temperatures: clamped to the nearest.
+  temperature_clamped = 1U << 5U,   ///< More than 1 C outside the calibrated temperatures: clamped to the nearest.
   not_converged = 1U << 6U,         ///< The crosstalk inversion did not reach its tolerance.
 };
 
@@ -60,7 +60,7 @@ struct ConditionedFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
   std::optional<double> temperature_celsius;
-  std::vector<double> ratio;         ///< Reading / supply, rising with pressure; dimensionless, [0, 1].
+  std::vector<double> ratio;         ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
   std::vector<TaxelStatus> taxels;
 };
 

@@ -17,6 +17,7 @@ enum class Rejection {
   not_a_number,          ///< A reading, the temperature or the supply is NaN or infinite.
   outside_adc_range,     ///< A reading below 0 or above 2^adc_bits - 1.
   supply_not_positive,   ///< A measured supply of 0 V or less.
+  supply_unknown,        ///< The ADC has a reference in volts, and neither the frame nor the array tells the supply.
   time_going_backwards,  ///< Earlier than the frame before it.
 };
 
@@ -25,10 +26,11 @@ enum class Rejection {
 /// Unit 2 of the paper, Data Pre-Processing: validates a raw frame and "converts raw sensor data into the needed data
 /// formats": counts -> ratio of the supply, so that supply fluctuation is gone before the circuit is solved.
 ///
-///   ratio = counts / (2^adc_bits - 1) * adc_reference_v / supply_v     (the reference is the supply: the factor is 1)
+///   ratio = counts / (2^adc_bits - 1) * adc_reference_v / supply_v     (where the reference is the supply, or the circuit
+///                                                                       and the supply are unknown, the factor is 1)
 ///
-/// and 1 - ratio where pressure lowers the reading. Readings at either end of the ADC that pressure drives them to are
-/// marked saturated. Not thread-safe: one conditioner per stream of frames.
+/// and 1 - ratio where pressure lowers the reading. Readings within half a count of the end of the ADC that
+/// pressure drives them to are marked saturated. Not thread-safe: one conditioner per stream of frames.
 class Conditioner {
  public:
   /// The array must be valid (ArrayDescription::validate). A reference in volts needs a supply, either nominal
@@ -36,13 +38,15 @@ class Conditioner {
   explicit Conditioner(ArrayDescription array);
 
   /// Allocates nothing once `conditioned` has the array's size. A rejected frame has the status `rejected` and only
-  /// invalid taxels; the next frame is judged against the last accepted one.
+  /// invalid taxels. Time is judged against the last accepted frame, or the one that went back: a clock that jumps costs
+  /// one frame.
   void process(const RawFrame& raw, ConditionedFrame& conditioned) noexcept;
 
   /// Why the last frame was rejected.
   [[nodiscard]] Rejection rejection() const noexcept { return rejection_; }
 
  private:
+  [[nodiscard]] bool is_saturated(double counts) const noexcept;
   [[nodiscard]] Rejection inspect(const RawFrame& raw) const noexcept;
 
   ArrayDescription array_;
