@@ -5,8 +5,10 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <string>
 
@@ -23,7 +25,7 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 int run(int argc, char** argv) {
   CLI::App app{"dermis: calibrated force (newtons) from resistive tactile arrays", "dermis"};
   app.set_version_flag("--version", DERMIS_VERSION);
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   dermis::app::Action action;
   dermis::app::add_simulate(app, action);
   dermis::app::add_calibrate(app, action);
@@ -36,9 +38,16 @@ int run(int argc, char** argv) {
     fmt::print(stderr, "dermis: {} (see dermis --help)\n", first_line(error.what()));
     return kExitBadInput;
   }
-  const dermis::Status status = action();
+  if (!action) {
+    fmt::print(stderr, "dermis: name a command: simulate, calibrate, run or evaluate (see dermis --help)\n");
+    return kExitBadInput;
+  }
+  dermis::Status status = action();
+  if (status && std::fflush(stdout) != 0) {
+    status = dermis::failed(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
+  }
   if (status) return 0;
-  fmt::print(stderr, "dermis: {}\n", first_line(status.error().message));
+  fmt::print(stderr, "dermis: {}\n", status.error().message);
   return status.error().kind == dermis::ErrorKind::bad_input ? kExitBadInput : kExitFailed;
 }
 

@@ -61,9 +61,14 @@ Status simulate(const SimulateOptions& options) {
     loads.insert(loads.end(), (*simulator)->loads().begin(), (*simulator)->loads().end());
     progress.show(options.scene, static_cast<double>(k + 1) / static_cast<double>(count));
   }
-  if (Status written = store::write_loads((folder / "loads.csv").string(), *array, loads); !written) return written;
-  return frames->commit();
+  if (Status written = frames->commit(); !written) return written;
+  Status written = store::write_loads((folder / "loads.csv").string(), *array, loads);
+  if (!written) std::filesystem::remove(folder / "frames.csv", error);  // worth nothing without its loads
+  return written;
 }
+
+/// CLI11 would wrap a negative number round.
+std::string not_negative(const std::string& text) { return text.starts_with('-') ? "must not be negative" : ""; }
 
 }  // namespace
 
@@ -76,8 +81,10 @@ void add_simulate(CLI::App& app, Action& action) {
   command->add_option("--scene", options->scene, scenes)->required();
   command->add_option("--out", options->out, "Folder for frames.csv and loads.csv")->required();
   command->add_option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise")
+      ->check(not_negative)
       ->capture_default_str();
-  command->add_option("--frames", options->frames, "Length of the scenes multitouch and idle");
+  command->add_option("--frames", options->frames, "Length of the scenes multitouch and idle")
+      ->check(not_negative);
   command->add_option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command->callback([&action, options] { action = [options] { return simulate(*options); }; });
 }

@@ -79,15 +79,16 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
 }
 
 double ForceFusion::temperature_offset(const ConductanceFrame& conductance, ForceFrame& force) const noexcept {
-  const double half_span = networks_.temperature_half_span_celsius;
   if (!conductance.temperature_celsius) {
     if (uses_temperature()) force.status |= FrameStatus::temperature_unknown;
     return 0.0;
   }
+  const double half_span = networks_.temperature_half_span_celsius;
   const double offset = *conductance.temperature_celsius - networks_.temperature_centre_celsius;
   const double clamped = std::clamp(offset, -half_span, half_span);
   constexpr double kSensorNoiseCelsius = 1.0;
-  if (std::abs(offset - clamped) > kSensorNoiseCelsius) force.status |= FrameStatus::temperature_clamped;
+  const bool is_outside = std::abs(offset - clamped) > kSensorNoiseCelsius;
+  if (uses_temperature() && is_outside) force.status |= FrameStatus::temperature_clamped;
   return clamped;
 }
 

@@ -10,7 +10,7 @@ from support import ARRAY, SmallArray, files_limited_to
 
 class Usage(SmallArray):
     def test_no_command(self):
-        self.refuse([], ["subcommand"])
+        self.refuse([], ["name a command"])
 
     def test_unknown_command(self):
         self.refuse(["calibrat"], ["calibrat"])
