@@ -148,9 +148,8 @@ void crosstalk_inversion(benchmark::State& state) {
     const Eigen::Map<const Matrix> ours(siemens.data(), state.range(0), state.range(0));
     checked = checked && (ours - reference).cwiseAbs().maxCoeff() <= 1e-6 * reference.cwiseAbs().maxCoeff();
   }
-  measure_frames(state, [&](std::size_t k) {
-    benchmark::DoNotOptimize((*inversion)->invert(input.frames[k].ratio, siemens));
-  });
+  measure_frames(
+      state, [&](std::size_t k) { benchmark::DoNotOptimize((*inversion)->invert(input.frames[k].ratio, siemens)); });
   state.counters["checked"] = checked ? 1 : 0;
 }
 

@@ -96,9 +96,8 @@ Status calibrate(const CalibrateOptions& options) {
   const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   Progress progress;
-  Result<Calibration> calibration =
-      calibration::calibrate(*array, *frames, *loads, *settle,
-                             [&](const std::string& stage, double share) { progress.show(stage, share); });
+  Result<Calibration> calibration = calibration::calibrate(
+      *array, *frames, *loads, *settle, [&](const std::string& stage, double share) { progress.show(stage, share); });
   if (!calibration) return calibration.error();
   calibration->report.stages.insert(calibration->report.stages.begin(), {"reading", read_s});
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;

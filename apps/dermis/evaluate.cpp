@@ -52,8 +52,7 @@ void print_text(const Evaluation& evaluation) {
 Status evaluate(const EvaluateOptions& options) {
   const Result<pipeline::Model> model = pipeline::read_model(options.model);
   if (!model) return model.error();
-  const Result<std::vector<RawFrame>> frames =
-      store::read_frames(options.frames, model->array.rows, model->array.cols);
+  const Result<std::vector<RawFrame>> frames = store::read_frames(options.frames, model->array.rows, model->array.cols);
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = store::read_loads(options.loads, model->array, frames->size());
   if (!loads) return loads.error();

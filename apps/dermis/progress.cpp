@@ -18,7 +18,9 @@ constexpr int kPlainSteps = 4;
 
 Progress::Progress() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
-Progress::~Progress() { end_line(); }
+Progress::~Progress() {
+  end_line();
+}
 
 void Progress::show(const std::string& stage, double share) {
   if (stage != stage_) {

@@ -25,7 +25,8 @@ struct SimulateOptions {
   std::optional<std::size_t> frames;
 };
 
-Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOptions& options, const ArrayDescription& array) {
+Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOptions& options,
+                                                                const ArrayDescription& array) {
   simulation::SimulationOptions physics;
   if (!options.physics.empty()) {
     Result<simulation::SimulationOptions> read = simulation::read_simulation_options(options.physics);
@@ -68,7 +69,9 @@ Status simulate(const SimulateOptions& options) {
 }
 
 /// CLI11 would wrap a negative number round.
-std::string not_negative(const std::string& text) { return text.starts_with('-') ? "must not be negative" : ""; }
+std::string not_negative(const std::string& text) {
+  return text.starts_with('-') ? "must not be negative" : "";
+}
 
 }  // namespace
 
@@ -83,8 +86,7 @@ void add_simulate(CLI::App& app, Action& action) {
   command->add_option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise")
       ->check(not_negative)
       ->capture_default_str();
-  command->add_option("--frames", options->frames, "Length of the scenes multitouch and idle")
-      ->check(not_negative);
+  command->add_option("--frames", options->frames, "Length of the scenes multitouch and idle")->check(not_negative);
   command->add_option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command->callback([&action, options] { action = [options] { return simulate(*options); }; });
 }

@@ -32,10 +32,9 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
       {"loads", fmt::format("{:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons)},
       {"dead taxels", fmt::format("{}", training.dead_taxels.size())},
       {"fit error", describe_fit(training, array)}};
-  facts["temperature"] =
-      training.uses_temperature
-          ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)
-          : "not an input (the calibration has one temperature, or none)";
+  facts["temperature"] = training.uses_temperature
+                             ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)
+                             : "not an input (the calibration has one temperature, or none)";
   return facts;
 }
 
@@ -53,8 +52,8 @@ Result<Calibration> calibrate(const ArrayDescription& array, std::span<const Raw
   Calibration calibration;
   CalibrationReport& report = calibration.report;
   tell("circuit", 0.0);
-  const Result<SampleDatabase> database = timed(
-      report, "circuit", [&] { return build_sample_database(array, frames, loads, settle_time); });
+  const Result<SampleDatabase> database =
+      timed(report, "circuit", [&] { return build_sample_database(array, frames, loads, settle_time); });
   if (!database) return database.error();
   tell("circuit", 1.0);
   Result<ForceTraining> training = timed(report, "networks", [&] {

@@ -21,9 +21,9 @@ constexpr std::size_t kMaxExamples = 3;
 
 /// Errors of every estimator, gathered while the frames go by.
 struct Errors {
-  std::vector<std::vector<double>> ghost_n;                // [estimators]
-  std::vector<std::vector<double>> total_n;                // [estimators], signed
-  std::vector<std::vector<double>> total_relative;         // [estimators]
+  std::vector<std::vector<double>> ghost_n;         // [estimators]
+  std::vector<std::vector<double>> total_n;         // [estimators], signed
+  std::vector<std::vector<double>> total_relative;  // [estimators]
 
   explicit Errors(std::size_t estimators) : ghost_n(estimators), total_n(estimators), total_relative(estimators) {}
 };
@@ -127,7 +127,9 @@ std::optional<double> root_mean_square(const std::vector<double>& errors) {
   return std::sqrt(square / static_cast<double>(errors.size()));
 }
 
-double relative_error(double estimate, double truth) { return std::abs(estimate / truth - 1.0); }
+double relative_error(double estimate, double truth) {
+  return std::abs(estimate / truth - 1.0);
+}
 
 std::vector<EstimatorResult> summarise_estimators(const pipeline::Model& model, const Evaluation& evaluation,
                                                   Errors& errors) {
@@ -179,7 +181,7 @@ std::vector<BreakdownBin> break_down(const Evaluation& evaluation, const std::ve
 
 /// `count` equal bins over the values that the judged taxels take.
 std::vector<double> equal_edges(const std::vector<JudgedTaxel>& taxels, std::size_t count,
-                                std::optional<double> JudgedTaxel::* quantity) {
+                                std::optional<double> JudgedTaxel::*quantity) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   for (const JudgedTaxel& taxel : taxels) {

@@ -48,13 +48,13 @@ std::vector<double> random_start(const network::PerceptronShape& shape, double n
     free[shape.output_weight(unit)] = positive(0.1);
   }
   free[shape.output_bias()] = std::log(newtons_at_reference);
-  free[shape.direct_weight(0)] = 0.0;                     // a power of exp(0) = 1
+  free[shape.direct_weight(0)] = 0.0;  // a power of exp(0) = 1
   free[shape.direct_weight(1)] = std::log(kLeastWeight);
   return free;
 }
 
-void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals,
-                     std::span<double> jacobian, std::size_t columns) noexcept {
+void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals, std::span<double> jacobian,
+                     std::size_t columns) noexcept {
   const network::PerceptronShape& shape = network.shape;
   for (std::size_t k = 0; k < shape.parameter_count(); ++k) {
     const bool is_level = k == shape.output_bias();

@@ -18,8 +18,8 @@ struct ForceNetwork {
   double reference_siemens = 1.0;
   double heaviest_siemens = 1.0;
   double heaviest_newtons = 0.0;
-  double rms_error = 0.0;           ///< Root mean square relative error on its own samples.
-  std::vector<double> parameters;   ///< [shape.parameter_count()]
+  double rms_error = 0.0;          ///< Root mean square relative error on its own samples.
+  std::vector<double> parameters;  ///< [shape.parameter_count()]
 
   using Inputs = std::array<double, fusion::kInputsWithTemperature>;
 
@@ -40,7 +40,7 @@ struct ForceNetwork {
 /// A Gaussian prior on the parameters, as residuals that are appended to those of the data: hidden weights are about 0,
 /// the power of conductance about 1. `scale`: standard deviation of a data residual.
 /// Fills residuals [parameter_count] and, where it is not empty, jacobian [parameter_count, columns].
-void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals,
-                     std::span<double> jacobian, std::size_t columns) noexcept;
+void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals, std::span<double> jacobian,
+                     std::size_t columns) noexcept;
 
 }  // namespace dermis::calibration

@@ -18,12 +18,12 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr std::size_t kMostHiddenUnits = 4;          // the design's 2-4-1
+constexpr std::size_t kMostHiddenUnits = 4;  // the design's 2-4-1
 constexpr std::size_t kPointsPerParameterOfUnit = 2;
-constexpr std::size_t kLeastPoints = 8;              // for a network of its own
+constexpr std::size_t kLeastPoints = 8;  // for a network of its own
 constexpr std::size_t kLeastForceLevels = 3;
 constexpr double kLeastTemperatureShare = 0.5;
-constexpr double kDetectable = 3.0;                  // in standard deviations of the unloaded reading
+constexpr double kDetectable = 3.0;  // in standard deviations of the unloaded reading
 
 /// What the samples say about each taxel.
 struct Evidence {
@@ -38,9 +38,8 @@ std::vector<TaxelPoint> known_points(const SampleDatabase& database, std::size_t
   for (const Sample& sample : database.samples) {
     const double newtons = sample.known_newtons[taxel];
     if (!(newtons > 0.0)) continue;
-    const double t = evidence.span.is_input
-                         ? temperature_offset(sample, evidence.span) / evidence.span.half_span_celsius
-                         : 0.0;
+    const double t =
+        evidence.span.is_input ? temperature_offset(sample, evidence.span) / evidence.span.half_span_celsius : 0.0;
     points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.span), t, newtons});
   }
   return points;
@@ -85,8 +84,7 @@ bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_tempe
     coldest = std::min(coldest, point.temperature);
     hottest = std::max(hottest, point.temperature);
   }
-  return levels.size() >= kLeastForceLevels &&
-         (!uses_temperature || hottest - coldest >= 2.0 * kLeastTemperatureShare);
+  return levels.size() >= kLeastForceLevels && (!uses_temperature || hottest - coldest >= 2.0 * kLeastTemperatureShare);
 }
 
 /// Hidden units that the given number of points can hold.

@@ -71,8 +71,10 @@ void drop_unsolved(SampleDatabase& database, const Selection& selection) {
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
     if (!database.samples[k].siemens.empty()) continue;
     if (database.frames_rejected++ == 0) {
-      database.first_rejection = fmt::format("frame {}: readings that the circuit of the array cannot give; check "
-                                             "drive_ohm, load_ohm and supply", selection.frame[k]);
+      database.first_rejection = fmt::format(
+          "frame {}: readings that the circuit of the array cannot give; check "
+          "drive_ohm, load_ohm and supply",
+          selection.frame[k]);
     }
   }
   std::erase_if(database.samples, [](const Sample& sample) { return sample.siemens.empty(); });
@@ -82,8 +84,8 @@ Status check_rejected(const SampleDatabase& database) {
   const auto rejected = static_cast<double>(database.frames_rejected);
   const double all = rejected + static_cast<double>(database.samples.size());
   if (rejected > kMaxRejectedShare * all) {
-    return bad_input(fmt::format("{} of {} labelled frames cannot be used, the first: {}", rejected, all,
-                                 database.first_rejection));
+    return bad_input(
+        fmt::format("{} of {} labelled frames cannot be used, the first: {}", rejected, all, database.first_rejection));
   }
   if (database.samples.empty()) return bad_input("no labelled frame is left after settling");
   if (std::none_of(database.samples.begin(), database.samples.end(), [](const Sample& s) { return s.unloaded; })) {
@@ -107,7 +109,8 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   Result<compensation::Compensator> compensator = compensation::Compensator::create(array);
   if (!compensator) return compensator.error();
   const Readout& readout = array.readout;
-  const double reference = readout.adc_reference_v && readout.supply_v ? *readout.adc_reference_v / *readout.supply_v : 1.0;
+  const double reference =
+      readout.adc_reference_v && readout.supply_v ? *readout.adc_reference_v / *readout.supply_v : 1.0;
   database.siemens_per_count = compensator->siemens_per_ratio() * reference / readout.full_scale_counts();
   database.samples.resize(selected);
   parallel_for((selected + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {

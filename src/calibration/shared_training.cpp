@@ -16,10 +16,10 @@ constexpr std::size_t kMostHiddenUnits = 3;
 constexpr std::size_t kStarts = 6;
 constexpr int kMaxIterations = 120;
 constexpr std::size_t kMostSharesForStart = 15'000;  // taxels of all loads together, thinned out evenly beyond:
-constexpr std::size_t kMostShares = 300'000;        // to choose among the starts, and for the final training
-constexpr double kActive = 3.0;                // in standard deviations of the unloaded reading
-constexpr double kExpectedError = 0.05;        // relative error of a load, before the data say better
-constexpr double kGainDeviation = 0.15;        // of ln(gain): literature.md B, taxel-to-taxel 10-20 %
+constexpr std::size_t kMostShares = 300'000;         // to choose among the starts, and for the final training
+constexpr double kActive = 3.0;                      // in standard deviations of the unloaded reading
+constexpr double kExpectedError = 0.05;              // relative error of a load, before the data say better
+constexpr double kGainDeviation = 0.15;              // of ln(gain): literature.md B, taxel-to-taxel 10-20 %
 constexpr std::uint64_t kSeed = 20;
 
 /// The part of a load that one taxel carries.
@@ -186,7 +186,8 @@ class SharedProblem {
   [[nodiscard]] std::vector<double> gains(std::span<const double> log_gains) const {
     std::vector<double> gains(gain_of_taxel_.size(), 1.0);
     for (std::size_t taxel = 0; taxel < gains.size(); ++taxel) {
-      if (gain_of_taxel_[taxel] > 0 && !log_gains.empty()) gains[taxel] = std::exp(log_gains[gain_of_taxel_[taxel] - 1]);
+      if (gain_of_taxel_[taxel] > 0 && !log_gains.empty())
+        gains[taxel] = std::exp(log_gains[gain_of_taxel_[taxel] - 1]);
     }
     return gains;
   }
@@ -221,8 +222,12 @@ void train(const SharedProblem& problem, double expected_error, Candidate& candi
       network::leave_one_out_mean_square(function, problem.load_count(), residuals, candidate.free);
 }
 
-bool has_lower_error(const Candidate& a, const Candidate& b) { return a.error < b.error; }
-bool generalises_better(const Candidate& a, const Candidate& b) { return a.leave_one_out < b.leave_one_out; }
+bool has_lower_error(const Candidate& a, const Candidate& b) {
+  return a.error < b.error;
+}
+bool generalises_better(const Candidate& a, const Candidate& b) {
+  return a.leave_one_out < b.leave_one_out;
+}
 
 /// The best of several starts for every number of hidden units.
 std::vector<Candidate> best_starts(const SharedProblem& problem, bool uses_temperature) {

@@ -13,9 +13,9 @@ namespace dermis::calibration {
 /// One network for all taxels and a gain for each.
 struct SharedNetwork {
   ForceNetwork network;
-  std::vector<double> gain;              ///< [taxels]; all 1 where gains did not help.
+  std::vector<double> gain;  ///< [taxels]; all 1 where gains did not help.
   bool has_gains = false;
-  double leave_one_out_error = 0.0;      ///< Root mean square relative error of a load that is left out.
+  double leave_one_out_error = 0.0;  ///< Root mean square relative error of a load that is left out.
 };
 
 /// Trains through the sum: for every load, sum over its taxels of gain_i f(e_i, t) = newtons. The number of hidden

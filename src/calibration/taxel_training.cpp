@@ -21,7 +21,7 @@ struct TrainingPoint {
   double weight = 0.0;  // 1 / standard deviation of ln(newtons)
 };
 
-double geometric_mean(std::span<const TaxelPoint> points, double TaxelPoint::* member) {
+double geometric_mean(std::span<const TaxelPoint> points, double TaxelPoint::*member) {
   double sum = 0.0;
   for (const TaxelPoint& point : points) sum += std::log(point.*member);
   return std::exp(sum / static_cast<double>(points.size()));

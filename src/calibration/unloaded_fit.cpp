@@ -39,7 +39,8 @@ UnloadedFit fit_unloaded(const SampleDatabase& database, const TemperatureSpan& 
   double mean_offset = 0.0;
   for (const Sample* sample : unloaded) mean_offset += temperature_offset(*sample, span) / frames;
   double variance = 0.0;
-  for (const Sample* sample : unloaded) variance += std::pow(temperature_offset(*sample, span) - mean_offset, 2) / frames;
+  for (const Sample* sample : unloaded)
+    variance += std::pow(temperature_offset(*sample, span) - mean_offset, 2) / frames;
   const bool has_slope = 4.0 * variance >= kLeastSpanCelsius * kLeastSpanCelsius;
 
   UnloadedFit fit;

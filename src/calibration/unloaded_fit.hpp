@@ -24,7 +24,7 @@ struct TemperatureSpan {
 struct UnloadedFit {
   std::vector<double> offset_siemens;      ///< [taxels]
   std::vector<double> offset_per_celsius;  ///< [taxels]
-  std::vector<double> noise_siemens;       ///< Standard deviation of a single frame [taxels], at least a third of a count.
+  std::vector<double> noise_siemens;  ///< Standard deviation of a single frame [taxels], at least a third of a count.
 };
 
 /// Least squares over the frames in which nothing presses anywhere, at least one.

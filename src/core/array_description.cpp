@@ -9,7 +9,9 @@ namespace {
 
 constexpr int kMaxAdcBits = 24;  // Counts are kept in float, which holds 24 bits exactly.
 
-bool is_positive(double value) { return std::isfinite(value) && value > 0.0; }
+bool is_positive(double value) {
+  return std::isfinite(value) && value > 0.0;
+}
 
 Status validate_resistors(const char* field, const std::vector<double>& ohms, std::size_t lines, bool zero_allowed) {
   const std::string name = std::string("readout.") + field;
@@ -42,12 +44,15 @@ Status validate_readout(const Readout& readout, std::size_t rows, std::size_t co
 
 }  // namespace
 
-double Readout::full_scale_counts() const noexcept { return std::ldexp(1.0, adc_bits) - 1.0; }
+double Readout::full_scale_counts() const noexcept {
+  return std::ldexp(1.0, adc_bits) - 1.0;
+}
 
 Status ArrayDescription::validate() const {
   if (rows < 1 || rows > kMaxLines) return bad_input("array.rows: must be 1 to " + std::to_string(kMaxLines));
   if (cols < 1 || cols > kMaxLines) return bad_input("array.cols: must be 1 to " + std::to_string(kMaxLines));
-  if (!is_positive(row_pitch_m) || !is_positive(col_pitch_m)) return bad_input("array.pitch_mm: must be more than 0 mm");
+  if (!is_positive(row_pitch_m) || !is_positive(col_pitch_m))
+    return bad_input("array.pitch_mm: must be more than 0 mm");
   if (taxel_area_m2 && !is_positive(*taxel_area_m2)) return bad_input("array.taxel_area_mm2: must be more than 0 mm2");
   return validate_readout(readout, rows, cols);
 }

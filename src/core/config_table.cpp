@@ -220,7 +220,7 @@ Result<ConfigFile> ConfigFile::parse(std::string_view text, const std::string& n
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
     return bad_input(name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
-                              std::string(error.description()));
+                     std::string(error.description()));
   }
   return file;
 }

@@ -10,7 +10,9 @@ std::string to_string(const TaxelRegion& region, const ArrayDescription& array) 
   return taxel_name(region.first_row, region.first_col) + ":" + taxel_name(region.last_row, region.last_col);
 }
 
-TaxelRegion all_taxels(const ArrayDescription& array) noexcept { return {0, 0, array.rows - 1, array.cols - 1}; }
+TaxelRegion all_taxels(const ArrayDescription& array) noexcept {
+  return {0, 0, array.rows - 1, array.cols - 1};
+}
 
 std::vector<std::size_t> taxel_indices(const TaxelRegion& region, std::size_t cols) {
   std::vector<std::size_t> indices;

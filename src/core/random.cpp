@@ -40,9 +40,13 @@ std::uint64_t Random::bits() noexcept {
   return result;
 }
 
-double Random::uniform() noexcept { return static_cast<double>(bits() >> 11U) * 0x1.0p-53; }
+double Random::uniform() noexcept {
+  return static_cast<double>(bits() >> 11U) * 0x1.0p-53;
+}
 
-double Random::uniform(double low, double high) noexcept { return low + (high - low) * uniform(); }
+double Random::uniform(double low, double high) noexcept {
+  return low + (high - low) * uniform();
+}
 
 double Random::log_uniform(double low, double high) noexcept {
   return low * std::exp(uniform() * std::log(high / low));

@@ -15,8 +15,12 @@ std::string one_line(std::string text) {
 
 }  // namespace
 
-Error bad_input(std::string message) { return {ErrorKind::bad_input, one_line(std::move(message))}; }
+Error bad_input(std::string message) {
+  return {ErrorKind::bad_input, one_line(std::move(message))};
+}
 
-Error failed(std::string message) { return {ErrorKind::failed, one_line(std::move(message))}; }
+Error failed(std::string message) {
+  return {ErrorKind::failed, one_line(std::move(message))};
+}
 
 }  // namespace dermis

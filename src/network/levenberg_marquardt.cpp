@@ -19,8 +19,12 @@ constexpr double kMinDamping = 1e-12;
 constexpr double kMaxLeverage = 0.95;
 constexpr double kDiagonalFloor = 1e-12;  // keeps parameters without influence from making the system singular
 
-std::span<double> view(Vector& vector) { return {vector.data(), static_cast<std::size_t>(vector.size())}; }
-std::span<const double> view(const Vector& vector) { return {vector.data(), static_cast<std::size_t>(vector.size())}; }
+std::span<double> view(Vector& vector) {
+  return {vector.data(), static_cast<std::size_t>(vector.size())};
+}
+std::span<const double> view(const Vector& vector) {
+  return {vector.data(), static_cast<std::size_t>(vector.size())};
+}
 
 }  // namespace
 

@@ -24,7 +24,9 @@ double direct_output(const PerceptronShape& shape, std::span<const double> param
 
 }  // namespace
 
-double sigmoid(double sum) noexcept { return 1.0 / (1.0 + std::exp(-sum)); }
+double sigmoid(double sum) noexcept {
+  return 1.0 / (1.0 + std::exp(-sum));
+}
 
 double output(const PerceptronShape& shape, std::span<const double> parameters, std::span<const double> x) noexcept {
   assert(parameters.size() == shape.parameter_count() && x.size() == shape.inputs);

@@ -9,7 +9,9 @@
 namespace dermis::preprocessing {
 namespace {
 
-bool is_finite_or_absent(const std::optional<double>& value) { return !value || std::isfinite(*value); }
+bool is_finite_or_absent(const std::optional<double>& value) {
+  return !value || std::isfinite(*value);
+}
 
 }  // namespace
 

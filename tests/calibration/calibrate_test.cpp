@@ -137,12 +137,12 @@ TEST(Calibrate, tells_where_the_time_goes_and_shows_progress) {
   const ArrayDescription array = reference_array(3, 3);
   const Recording recording = record(array, "calibration", 1);
   std::vector<std::string> stages;
-  const auto calibration = calibrate(array, recording.frames, recording.loads, Nanos{0},
-                                     [&](const std::string& stage, double share) {
-                                       EXPECT_GE(share, 0.0);
-                                       EXPECT_LE(share, 1.0);
-                                       if (stages.empty() || stages.back() != stage) stages.push_back(stage);
-                                     });
+  const auto calibration =
+      calibrate(array, recording.frames, recording.loads, Nanos{0}, [&](const std::string& stage, double share) {
+        EXPECT_GE(share, 0.0);
+        EXPECT_LE(share, 1.0);
+        if (stages.empty() || stages.back() != stage) stages.push_back(stage);
+      });
   ASSERT_TRUE(calibration);
   EXPECT_EQ(stages, (std::vector<std::string>{"circuit", "networks"}));
   ASSERT_EQ(calibration->report.stages.size(), 3U);

@@ -100,8 +100,8 @@ TEST(Evaluation, breaks_down_every_judged_taxel_once) {
   }
   const auto evaluation = evaluate(model, frames, loads);
   ASSERT_TRUE(evaluation);
-  for (const auto* bins : {&evaluation->by_force, &evaluation->by_temperature, &evaluation->by_supply,
-                           &evaluation->by_contacts}) {
+  for (const auto* bins :
+       {&evaluation->by_force, &evaluation->by_temperature, &evaluation->by_supply, &evaluation->by_contacts}) {
     std::size_t count = 0;
     for (const BreakdownBin& bin : *bins) {
       ASSERT_EQ(bin.relative_error.size(), evaluation->estimators.size());
@@ -130,8 +130,8 @@ TEST(Evaluation, has_the_documented_json_keys_and_no_bare_nan) {
   ASSERT_TRUE(evaluation);
   const std::string json = to_json(*evaluation);
   for (const char* key : {"estimators", "name", "median_relative_error", "p95_relative_error", "p99_relative_error",
-                          "max_relative_error", "ghost_p99_n", "ghost_max_n", "total_rmse_n", "taxels_judged", "by_force",
-                          "by_temperature", "by_supply", "by_contacts"}) {
+                          "max_relative_error", "ghost_p99_n", "ghost_max_n", "total_rmse_n", "taxels_judged",
+                          "by_force", "by_temperature", "by_supply", "by_contacts"}) {
     EXPECT_NE(json.find("\"" + std::string(key) + "\""), std::string::npos) << key;
   }
   EXPECT_EQ(json.find("nan"), std::string::npos);

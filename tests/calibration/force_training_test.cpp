@@ -159,8 +159,7 @@ TEST(ForceTraining, needs_a_load_and_an_answer) {
   const Recording idle = record(array, "idle", 1, {}, 20);
   const auto unloaded = train_force_networks(database_of(array, idle));
   ASSERT_FALSE(unloaded);
-  EXPECT_EQ(unloaded.error().message,
-            "every load is zero: label frames with the force that presses on the array");
+  EXPECT_EQ(unloaded.error().message, "every load is zero: label frames with the force that presses on the array");
 
   Recording deaf = record(array, "calibration", 1);
   for (RawFrame& frame : deaf.frames) frame.counts.assign(4, 3.0F);

@@ -68,7 +68,8 @@ TEST(SampleDatabase, leaves_out_what_comes_before_settling) {
 }
 
 TEST(SampleDatabase, asks_for_an_unloaded_frame) {
-  const auto database = build_sample_database(bare_array(), frames_of(2), std::vector<Load>{{1, LoadKind::force, kAll, 3.0}});
+  const auto database =
+      build_sample_database(bare_array(), frames_of(2), std::vector<Load>{{1, LoadKind::force, kAll, 3.0}});
   ASSERT_FALSE(database);
   EXPECT_EQ(database.error().kind, ErrorKind::bad_input);
   EXPECT_EQ(database.error().message,
@@ -80,11 +81,13 @@ TEST(SampleDatabase, refuses_loads_that_cannot_be_used) {
   ArrayDescription array = bare_array();
   EXPECT_EQ(build_sample_database(array, frames_of(2), {}).error().message,
             "the loads name no frame: known loads are needed");
-  EXPECT_EQ(build_sample_database(array, frames_of(2), std::vector<Load>{{2, LoadKind::force, kAll, 0.0}}).error().message,
-            "a load names frame 2, there are 2 (counted from 0)");
+  EXPECT_EQ(
+      build_sample_database(array, frames_of(2), std::vector<Load>{{2, LoadKind::force, kAll, 0.0}}).error().message,
+      "a load names frame 2, there are 2 (counted from 0)");
   array.taxel_area_m2.reset();
-  EXPECT_EQ(build_sample_database(array, frames_of(2), std::vector<Load>{{1, LoadKind::pressure, kAll, 1.0}}).error().message,
-            "loads given as pressure need array.taxel_area_mm2");
+  EXPECT_EQ(
+      build_sample_database(array, frames_of(2), std::vector<Load>{{1, LoadKind::pressure, kAll, 1.0}}).error().message,
+      "loads given as pressure need array.taxel_area_mm2");
 }
 
 TEST(SampleDatabase, counts_rejected_frames_and_refuses_many_of_them) {

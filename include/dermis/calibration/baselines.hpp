@@ -15,8 +15,9 @@ namespace dermis::calibration {
 ///   temperature_lookup  the same with a linear temperature term per taxel
 ///   crosstalk_lookup    conductance after the crosstalk inversion -> force, with the linear temperature term
 ///
-/// A table has a knot at every calibrated force (at most 64, in equal shares beyond), the mean signal there, made rising
-/// by pooling neighbours. Taxels whose own force is never known get straight lines whose common slope fits the totals.
+/// A table has a knot at every calibrated force (at most 64, in equal shares beyond), the mean signal there, made
+/// rising by pooling neighbours. Taxels whose own force is never known get straight lines whose common slope fits the
+/// totals.
 [[nodiscard]] std::vector<fusion::LookUpTables> make_baselines(const SampleDatabase& database);
 
 }  // namespace dermis::calibration

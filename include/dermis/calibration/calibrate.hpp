@@ -23,7 +23,7 @@ struct StageTime {
 
 /// What a calibration did and how well it fits its own samples.
 struct CalibrationReport {
-  std::size_t frames = 0;           ///< Labelled frames used.
+  std::size_t frames = 0;  ///< Labelled frames used.
   std::size_t frames_rejected = 0;
   std::string first_rejection;
   TrainingReport training;

@@ -32,12 +32,12 @@ struct ErrorSummary {
 
 /// How one estimator did on all frames.
 struct EstimatorResult {
-  std::string name;             ///< "dermis" first, then the baselines.
-  ErrorSummary relative_error;  ///< |estimate / truth - 1| of taxels of at least kJudgedNewtons; dimensionless.
-  ErrorSummary ghost_n;         ///< Force on taxels that are unloaded [N].
-  std::size_t totals_judged = 0;                 ///< `force` loads over several taxels.
-  std::optional<double> total_rmse_n;            ///< Root mean square error of their sums [N].
-  ErrorSummary total_relative_error;             ///< |sum / total - 1| of totals above 0.
+  std::string name;                    ///< "dermis" first, then the baselines.
+  ErrorSummary relative_error;         ///< |estimate / truth - 1| of taxels of at least kJudgedNewtons; dimensionless.
+  ErrorSummary ghost_n;                ///< Force on taxels that are unloaded [N].
+  std::size_t totals_judged = 0;       ///< `force` loads over several taxels.
+  std::optional<double> total_rmse_n;  ///< Root mean square error of their sums [N].
+  ErrorSummary total_relative_error;   ///< |sum / total - 1| of totals above 0.
 };
 
 /// One loaded taxel of one frame, for plots.
@@ -47,8 +47,8 @@ struct JudgedTaxel {
   double true_newtons = 0.0;
   std::optional<double> temperature_celsius;
   std::optional<double> supply_v;
-  std::size_t contacts = 0;        ///< Separate stressed areas in the frame (8-connected).
-  std::vector<float> newtons;      ///< Estimate of each estimator, in their order.
+  std::size_t contacts = 0;    ///< Separate stressed areas in the frame (8-connected).
+  std::vector<float> newtons;  ///< Estimate of each estimator, in their order.
 };
 
 /// One `force` load over several taxels of one frame, for plots.
@@ -56,7 +56,7 @@ struct JudgedTotal {
   std::size_t frame = 0;
   double true_newtons = 0.0;
   std::optional<double> temperature_celsius;
-  std::vector<double> newtons;     ///< Sum of each estimator, in their order.
+  std::vector<double> newtons;  ///< Sum of each estimator, in their order.
 };
 
 /// Errors of all estimators on the judged taxels (totals, where no taxel is judged) that fall into [low, high).
@@ -69,15 +69,15 @@ struct BreakdownBin {
 /// A frame at its stages, for pictures; each [rows, cols].
 struct TactileExample {
   std::size_t frame = 0;
-  std::vector<double> reading;     ///< counts / full scale
-  std::vector<double> siemens;     ///< Crosstalk removed.
-  std::vector<float> newtons;      ///< dermis
+  std::vector<double> reading;  ///< counts / full scale
+  std::vector<double> siemens;  ///< Crosstalk removed.
+  std::vector<float> newtons;   ///< dermis
   std::vector<double> true_newtons;
 };
 
 struct Evaluation {
   ArrayDescription array;
-  std::size_t frames = 0;           ///< Labelled frames judged.
+  std::size_t frames = 0;  ///< Labelled frames judged.
   std::size_t frames_rejected = 0;
   std::vector<EstimatorResult> estimators;
   std::vector<JudgedTaxel> taxels;

@@ -18,18 +18,18 @@ struct TrainingReport {
   std::size_t own_networks = 0;     ///< Taxels with a network of their own.
   std::size_t shared_networks = 0;  ///< Taxels on the shared network with a gain.
   std::vector<std::size_t> dead_taxels;
-  std::size_t hidden_units = 0;         ///< Of each network of its own.
-  std::size_t shared_hidden_units = 0;  ///< Of the shared network.
+  std::size_t hidden_units = 0;             ///< Of each network of its own.
+  std::size_t shared_hidden_units = 0;      ///< Of the shared network.
   double shared_leave_one_out_error = 0.0;  ///< Root mean square relative error of a load left out of the shared fit.
   bool uses_temperature = false;
-  double lowest_celsius = 0.0;      ///< Calibrated temperatures; meaningful where uses_temperature.
+  double lowest_celsius = 0.0;  ///< Calibrated temperatures; meaningful where uses_temperature.
   double highest_celsius = 0.0;
-  double lightest_newtons = 0.0;    ///< Lightest and heaviest calibrated load.
+  double lightest_newtons = 0.0;  ///< Lightest and heaviest calibrated load.
   double heaviest_newtons = 0.0;
-  double median_fit_error = 0.0;    ///< Median over taxels of the root mean square relative error on own samples.
-  double worst_fit_error = 0.0;     ///< The worst taxel.
+  double median_fit_error = 0.0;  ///< Median over taxels of the root mean square relative error on own samples.
+  double worst_fit_error = 0.0;   ///< The worst taxel.
   std::size_t worst_taxel = 0;
-  std::string choice;               ///< One sentence: which networks were trained and what decided it.
+  std::string choice;  ///< One sentence: which networks were trained and what decided it.
 };
 
 /// "median 0.74 %, worst taxel r2c7 1.44 %" of the networks of their own, and what a left-out load of the shared

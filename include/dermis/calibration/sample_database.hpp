@@ -24,20 +24,20 @@ struct TotalForce {
 /// A labelled frame with supply and crosstalk removed.
 struct Sample {
   std::optional<double> temperature_celsius;
-  std::vector<double> reading;          ///< Bare readings [taxels], counts / full scale, for the baselines.
-  std::vector<double> siemens;          ///< Conductances [taxels].
-  std::vector<float> known_newtons;     ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
+  std::vector<double> reading;       ///< Bare readings [taxels], counts / full scale, for the baselines.
+  std::vector<double> siemens;       ///< Conductances [taxels].
+  std::vector<float> known_newtons;  ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
   std::vector<TotalForce> totals;
-  bool unloaded = false;                ///< Nothing presses anywhere.
+  bool unloaded = false;  ///< Nothing presses anywhere.
 };
 
 /// The paper's "sample database": what the networks are trained on.
 struct SampleDatabase {
   ArrayDescription array;
   std::vector<Sample> samples;
-  double siemens_per_count = 0.0;       ///< Conductance of one ADC count at an unloaded taxel [S].
+  double siemens_per_count = 0.0;  ///< Conductance of one ADC count at an unloaded taxel [S].
   std::size_t frames_rejected = 0;
-  std::string first_rejection;          ///< "frame 17: a reading outside the ADC range"; empty when none.
+  std::string first_rejection;  ///< "frame 17: a reading outside the ADC range"; empty when none.
 };
 
 /// Runs labelled frames after `settle_time` through units 2 and 3. Errors: no labelled frame, no unloaded frame (a

@@ -32,8 +32,9 @@ struct Readout {
   Circuit circuit = Circuit::divider;
   IdleRows idle_rows = IdleRows::grounded;
   std::vector<double> drive_ohm;  ///< Resistance of each row driver [ohm], >= 0; size rows (empty for `none`).
-  std::vector<double> load_ohm;   ///< Divider or feedback resistor of each column [ohm], > 0; size cols (empty for `none`).
-  int adc_bits = 12;              ///< Resolution [bit], 1 ... 24.
+  std::vector<double>
+      load_ohm;       ///< Divider or feedback resistor of each column [ohm], > 0; size cols (empty for `none`).
+  int adc_bits = 12;  ///< Resolution [bit], 1 ... 24.
   std::optional<double> adc_reference_v;  ///< Full scale of the ADC [V], > 0; empty: the supply itself (ratiometric).
   std::optional<double> supply_v;         ///< Nominal supply [V], > 0, for frames that carry none.
   bool pressure_raises_reading = true;    ///< false: the reading falls with pressure, and 1 - ratio is used.
@@ -45,10 +46,10 @@ struct Readout {
 /// A resistive tactile array: rows are driven, columns are sensed; r0c0 is the corner next to the connector.
 struct ArrayDescription {
   std::string name = "array";
-  std::size_t rows = 0;              ///< Driven lines, 1 ... kMaxLines.
-  std::size_t cols = 0;              ///< Sensed lines, 1 ... kMaxLines.
-  double row_pitch_m = 0.010;        ///< Distance between neighbouring rows [m], > 0.
-  double col_pitch_m = 0.010;        ///< Distance between neighbouring columns [m], > 0.
+  std::size_t rows = 0;                 ///< Driven lines, 1 ... kMaxLines.
+  std::size_t cols = 0;                 ///< Sensed lines, 1 ... kMaxLines.
+  double row_pitch_m = 0.010;           ///< Distance between neighbouring rows [m], > 0.
+  double col_pitch_m = 0.010;           ///< Distance between neighbouring columns [m], > 0.
   std::optional<double> taxel_area_m2;  ///< Pressed area of a taxel [m2], > 0; needed for loads given as pressure.
   Readout readout;
 

@@ -27,19 +27,21 @@ enum class TaxelStatus : std::uint8_t {
 /// Outcome of a frame: a set of flags, empty when all is well.
 enum class FrameStatus : std::uint8_t {
   ok = 0,
-  rejected = 1U << 0U,              ///< Wrong shape, not a number, out of ADC range or time going backwards.
-  saturated = 1U << 1U,             ///< At least one taxel is saturated.
-  above_range = 1U << 2U,           ///< At least one taxel is clamped to its calibrated end.
-  dead_taxels = 1U << 3U,           ///< The array has dead taxels.
-  temperature_unknown = 1U << 4U,   ///< The frame carries no temperature: the calibration's mean is taken.
-  temperature_clamped = 1U << 5U,   ///< More than 1 C outside the calibrated temperatures: clamped to the nearest.
-  not_converged = 1U << 6U,         ///< The crosstalk inversion did not reach its tolerance.
+  rejected = 1U << 0U,             ///< Wrong shape, not a number, out of ADC range or time going backwards.
+  saturated = 1U << 1U,            ///< At least one taxel is saturated.
+  above_range = 1U << 2U,          ///< At least one taxel is clamped to its calibrated end.
+  dead_taxels = 1U << 3U,          ///< The array has dead taxels.
+  temperature_unknown = 1U << 4U,  ///< The frame carries no temperature: the calibration's mean is taken.
+  temperature_clamped = 1U << 5U,  ///< More than 1 C outside the calibrated temperatures: clamped to the nearest.
+  not_converged = 1U << 6U,        ///< The crosstalk inversion did not reach its tolerance.
 };
 
 [[nodiscard]] constexpr FrameStatus operator|(FrameStatus a, FrameStatus b) noexcept {
   return static_cast<FrameStatus>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
-constexpr FrameStatus& operator|=(FrameStatus& a, FrameStatus b) noexcept { return a = a | b; }
+constexpr FrameStatus& operator|=(FrameStatus& a, FrameStatus b) noexcept {
+  return a = a | b;
+}
 [[nodiscard]] constexpr bool has(FrameStatus status, FrameStatus flag) noexcept {
   return (static_cast<unsigned>(status) & static_cast<unsigned>(flag)) != 0;
 }
@@ -60,7 +62,7 @@ struct ConditionedFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
   std::optional<double> temperature_celsius;
-  std::vector<double> ratio;         ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
+  std::vector<double> ratio;  ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
   std::vector<TaxelStatus> taxels;
 };
 
@@ -69,7 +71,7 @@ struct ConductanceFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
   std::optional<double> temperature_celsius;
-  std::vector<double> siemens;       ///< Taxel conductance [S], >= 0 up to noise; the bare ratio for `circuit = "none"`.
+  std::vector<double> siemens;  ///< Taxel conductance [S], >= 0 up to noise; the bare ratio for `circuit = "none"`.
   std::vector<TaxelStatus> taxels;
 };
 
@@ -77,7 +79,7 @@ struct ConductanceFrame {
 struct ForceFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
-  std::vector<float> newtons;        ///< Normal force per taxel [N], >= 0; NaN where `taxels` says dead or invalid.
+  std::vector<float> newtons;  ///< Normal force per taxel [N], >= 0; NaN where `taxels` says dead or invalid.
   std::vector<TaxelStatus> taxels;
 };
 

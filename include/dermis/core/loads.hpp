@@ -34,7 +34,7 @@ struct Load {
   std::size_t frame = 0;  ///< Index of the frame, from 0.
   LoadKind kind = LoadKind::force;
   TaxelRegion where;
-  double value = 0.0;     ///< [N] for force, [Pa] for pressure; >= 0.
+  double value = 0.0;  ///< [N] for force, [Pa] for pressure; >= 0.
 };
 
 /// "r3c5", "r0c0:r3c3", or "all" where the region is the whole array.

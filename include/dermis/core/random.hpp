@@ -16,10 +16,10 @@ class Random {
   [[nodiscard]] static Random stream(std::uint64_t seed, std::uint64_t stream) noexcept;
 
   [[nodiscard]] std::uint64_t bits() noexcept;
-  [[nodiscard]] double uniform() noexcept;                        ///< [0, 1)
-  [[nodiscard]] double uniform(double low, double high) noexcept; ///< [low, high)
+  [[nodiscard]] double uniform() noexcept;                             ///< [0, 1)
+  [[nodiscard]] double uniform(double low, double high) noexcept;      ///< [low, high)
   [[nodiscard]] double log_uniform(double low, double high) noexcept;  ///< density ~ 1/x on [low, high), low > 0
-  [[nodiscard]] double normal() noexcept;                         ///< mean 0, standard deviation 1
+  [[nodiscard]] double normal() noexcept;                              ///< mean 0, standard deviation 1
   [[nodiscard]] std::uint64_t below(std::uint64_t bound) noexcept;     ///< 0 ... bound - 1, 1 <= bound <= 2^32
 
  private:

@@ -25,9 +25,9 @@ struct LookUpTables {
   std::string name;
   LookUpSignal signal = LookUpSignal::reading;
   double reference_celsius = 20.0;
-  std::size_t knots = 0;                      ///< >= 2
-  std::vector<double> knot_signal;            ///< [taxels, knots], rising along the knots
-  std::vector<double> knot_newtons;           ///< [taxels, knots], rising along the knots
+  std::size_t knots = 0;                        ///< >= 2
+  std::vector<double> knot_signal;              ///< [taxels, knots], rising along the knots
+  std::vector<double> knot_newtons;             ///< [taxels, knots], rising along the knots
   std::vector<double> temperature_coefficient;  ///< [taxels], 1/C; 0 for none
 
   [[nodiscard]] std::size_t taxel_count() const noexcept { return temperature_coefficient.size(); }

@@ -9,13 +9,15 @@ namespace dermis::network {
 
 /// A three-layer BP network (the paper's Fig. 8) with one output and direct connections from the inputs to it:
 ///
-///   y = c + sum_i s_i x_i + sum_h v_h f(b_h + sum_i w_hi x_i),   f(z) = 1 / (1 + exp(-z))     eq. (3), (4) of the paper
+///   y = c + sum_i s_i x_i + sum_h v_h f(b_h + sum_i w_hi x_i),   f(z) = 1 / (1 + exp(-z))     eq. (3), (4) of the
+///   paper
 ///
 /// We deviate from the paper in the output layer: it is linear (as in the paper's own Fig. 5), so that the range of
 /// the output needs no scaling to (0, 1); and the direct connections carry what is linear, so that few hidden units are
 /// left with what is not.
 ///
-/// Parameters are one flat vector: for every hidden unit b_h, w_h0, w_h1, ...; then c; then v_0, v_1, ...; then s_0, ...
+/// Parameters are one flat vector: for every hidden unit b_h, w_h0, w_h1, ...; then c; then v_0, v_1, ...; then s_0,
+/// ...
 struct PerceptronShape {
   std::size_t inputs = 1;         ///< >= 1
   std::size_t hidden = 1;         ///< 0 ... 64
@@ -23,10 +25,14 @@ struct PerceptronShape {
 
   [[nodiscard]] std::size_t parameter_count() const noexcept { return hidden * (inputs + 2) + 1 + inputs; }
   [[nodiscard]] std::size_t bias(std::size_t unit) const noexcept { return unit * (inputs + 1); }
-  [[nodiscard]] std::size_t weight(std::size_t unit, std::size_t input) const noexcept { return bias(unit) + 1 + input; }
+  [[nodiscard]] std::size_t weight(std::size_t unit, std::size_t input) const noexcept {
+    return bias(unit) + 1 + input;
+  }
   [[nodiscard]] std::size_t output_bias() const noexcept { return hidden * (inputs + 1); }
   [[nodiscard]] std::size_t output_weight(std::size_t unit) const noexcept { return output_bias() + 1 + unit; }
-  [[nodiscard]] std::size_t direct_weight(std::size_t input) const noexcept { return output_bias() + 1 + hidden + input; }
+  [[nodiscard]] std::size_t direct_weight(std::size_t input) const noexcept {
+    return output_bias() + 1 + hidden + input;
+  }
 
   bool operator==(const PerceptronShape&) const = default;
 };

@@ -26,7 +26,8 @@ enum class Rejection {
 /// Unit 2 of the paper, Data Pre-Processing: validates a raw frame and "converts raw sensor data into the needed data
 /// formats": counts -> ratio of the supply, so that supply fluctuation is gone before the circuit is solved.
 ///
-///   ratio = counts / (2^adc_bits - 1) * adc_reference_v / supply_v     (where the reference is the supply, or the circuit
+///   ratio = counts / (2^adc_bits - 1) * adc_reference_v / supply_v     (where the reference is the supply, or the
+///   circuit
 ///                                                                       and the supply are unknown, the factor is 1)
 ///
 /// and 1 - ratio where pressure lowers the reading. Readings within half a count of the end of the ADC that
@@ -38,8 +39,8 @@ class Conditioner {
   explicit Conditioner(ArrayDescription array);
 
   /// Allocates nothing once `conditioned` has the array's size. A rejected frame has the status `rejected` and only
-  /// invalid taxels. Time is judged against the last accepted frame, or the one that went back: a clock that jumps costs
-  /// one frame.
+  /// invalid taxels. Time is judged against the last accepted frame, or the one that went back: a clock that jumps
+  /// costs one frame.
   void process(const RawFrame& raw, ConditionedFrame& conditioned) noexcept;
 
   /// Why the last frame was rejected.
