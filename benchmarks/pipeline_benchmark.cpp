@@ -21,9 +21,9 @@
 #include "support/allocation_guard.hpp"
 #include "support/random_networks.hpp"
 
+namespace dermis {
 namespace {
 
-using namespace dermis;
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Clock = std::chrono::steady_clock;
 
@@ -216,10 +216,11 @@ bool write_rows(const nlohmann::ordered_json& rows) {
 }
 
 }  // namespace
+}  // namespace dermis
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  TableReporter reporter;
+  dermis::TableReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
-  return write_rows(reporter.rows()) ? 0 : 1;
+  return dermis::write_rows(reporter.rows()) ? 0 : 1;
 }

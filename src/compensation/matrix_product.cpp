@@ -12,42 +12,42 @@ HWY_BEFORE_NAMESPACE();
 namespace dermis::compensation::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Rows row ... row + kRows - 1 of the product, columns col ... col + 2 lanes(d) - 1 (or lanes(d), without `kPair`),
+/// Rows row ... row + Rows - 1 of the product, columns col ... col + 2 lanes(d) - 1 (or lanes(d), without `Pair`),
 /// held in registers while the inner dimension goes by.
-template <std::size_t kRows, bool kPair, class D>
+template <std::size_t Rows, bool Pair, class D>
 HWY_INLINE void multiply_block(D d, const StridedMatrix& a, const double* HWY_RESTRICT b, std::size_t row,
                                std::size_t col, std::size_t inner, std::size_t cols, double* HWY_RESTRICT out) {
   const std::size_t lanes = hn::Lanes(d);
-  hn::Vec<D> left[kRows];
-  hn::Vec<D> right[kRows];
-  for (std::size_t r = 0; r < kRows; ++r) left[r] = right[r] = hn::Zero(d);
+  hn::Vec<D> left[Rows];
+  hn::Vec<D> right[Rows];
+  for (std::size_t r = 0; r < Rows; ++r) left[r] = right[r] = hn::Zero(d);
   for (std::size_t l = 0; l < inner; ++l) {
     const double* b_row = b + l * cols + col;
     const auto b_left = hn::LoadU(d, b_row);
-    const auto b_right = kPair ? hn::LoadU(d, b_row + lanes) : b_left;
-    for (std::size_t r = 0; r < kRows; ++r) {
+    const auto b_right = Pair ? hn::LoadU(d, b_row + lanes) : b_left;
+    for (std::size_t r = 0; r < Rows; ++r) {
       const auto factor = hn::Set(d, a.data[(row + r) * a.row_stride + l * a.col_stride]);
       left[r] = hn::MulAdd(factor, b_left, left[r]);
-      if constexpr (kPair) right[r] = hn::MulAdd(factor, b_right, right[r]);
+      if constexpr (Pair) right[r] = hn::MulAdd(factor, b_right, right[r]);
     }
   }
-  for (std::size_t r = 0; r < kRows; ++r) {
+  for (std::size_t r = 0; r < Rows; ++r) {
     double* out_row = out + (row + r) * cols + col;
     hn::StoreU(left[r], d, out_row);
-    if constexpr (kPair) hn::StoreU(right[r], d, out_row + lanes);
+    if constexpr (Pair) hn::StoreU(right[r], d, out_row + lanes);
   }
 }
 
-template <std::size_t kRows>
+template <std::size_t Rows>
 HWY_INLINE void multiply_rows(const StridedMatrix& a, const double* b, std::size_t row, std::size_t inner,
                               std::size_t cols, double* out) {
   const hn::ScalableTag<double> d;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t col = 0;
-  for (; col + 2 * lanes <= cols; col += 2 * lanes) multiply_block<kRows, true>(d, a, b, row, col, inner, cols, out);
-  for (; col + lanes <= cols; col += lanes) multiply_block<kRows, false>(d, a, b, row, col, inner, cols, out);
+  for (; col + 2 * lanes <= cols; col += 2 * lanes) multiply_block<Rows, true>(d, a, b, row, col, inner, cols, out);
+  for (; col + lanes <= cols; col += lanes) multiply_block<Rows, false>(d, a, b, row, col, inner, cols, out);
   const hn::CappedTag<double, 1> one;
-  for (; col < cols; ++col) multiply_block<kRows, false>(one, a, b, row, col, inner, cols, out);
+  for (; col < cols; ++col) multiply_block<Rows, false>(one, a, b, row, col, inner, cols, out);
 }
 
 void multiply_matrices(const StridedMatrix& a, const double* b, std::size_t rows, std::size_t inner, std::size_t cols,

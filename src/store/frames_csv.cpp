@@ -190,7 +190,7 @@ Result<std::unique_ptr<FramesCsvReader>> FramesCsvReader::open(std::unique_ptr<s
                                                                std::size_t cols) {
   assert(rows > 0 && cols > 0);
   std::istream& stream = *in;
-  auto state = std::unique_ptr<State>(new State{std::move(in), CsvReader(stream, name), rows, cols, {}});
+  auto state = std::make_unique<State>(State{std::move(in), CsvReader(stream, name), rows, cols, {}});
   if (const Status header = state->read_header(); !header) return header.error();
   return std::unique_ptr<FramesCsvReader>(new FramesCsvReader(std::move(state)));
 }

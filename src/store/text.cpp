@@ -59,7 +59,7 @@ void append_shortest(std::string& text, Number value) {
     text += "nan";
     return;
   }
-  std::array<char, 32> digits;
+  std::array<char, 32> digits{};
   const auto [end, error] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
   text.append(digits.data(), end);
 }

@@ -102,7 +102,7 @@ TEST(Random, draws_every_number_below_a_bound_equally_often) {
   Random random(1);
   std::vector<int> counts(10, 0);
   for (int i = 0; i < kSamples; ++i) ++counts.at(static_cast<std::size_t>(random.below(10)));
-  for (const int count : counts) EXPECT_NEAR(count, kSamples / 10, 700);
+  for (const int count : counts) EXPECT_NEAR(count, 0.1 * kSamples, 700);
   EXPECT_EQ(random.below(1), 0U);
 }
 

@@ -111,7 +111,7 @@ TEST(ForceFusion, force_rises_with_conductance_throughout) {
       std::vector<double> siemens(kTaxels);
       for (std::size_t k = 0; k < kTaxels; ++k) {
         // From below the unloaded conductance to beyond the heaviest load, denser towards small loads.
-        const double heaviest = static_cast<double>(networks.heaviest_siemens[k]);
+        const auto heaviest = static_cast<double>(networks.heaviest_siemens[k]);
         siemens[k] = networks.offset_siemens[k] + 1.3 * heaviest * std::pow(step / 4000.0, 3) - 1e-6;
       }
       fusion.process(make_frame(siemens, 31.0), force);

@@ -3,9 +3,9 @@
 #include "dermis/pipeline/model.hpp"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -46,7 +46,7 @@ fusion::LookUpTables make_baseline(std::size_t taxels, const char* name, fusion:
   tables.reference_celsius = 23.5;
   tables.knots = 3;
   for (std::size_t k = 0; k < taxels; ++k) {
-    const double at = static_cast<double>(k);
+    const auto at = static_cast<double>(k);
     tables.knot_signal.insert(tables.knot_signal.end(), {0.1 * at, 0.1 * at + 0.25, 0.1 * at + 1.0 / 3.0});
     tables.knot_newtons.insert(tables.knot_newtons.end(), {0.0, 1.0 + at, 1e3 / 7.0});
     tables.temperature_coefficient.push_back(-1e-3 * at);

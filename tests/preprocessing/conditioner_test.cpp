@@ -76,7 +76,7 @@ TEST(Conditioner, ratio_follows_the_resolution_of_the_adc) {
   for (int bits = 1; bits <= 24; ++bits) {
     ArrayDescription array = make_array();
     array.readout.adc_bits = bits;
-    const double full_scale = static_cast<double>((1L << bits) - 1);
+    const auto full_scale = static_cast<double>((1L << bits) - 1);
     const auto conditioned = condition(array, make_frame({0.0F, 1.0F, static_cast<float>(full_scale)}));
     EXPECT_NEAR(conditioned.ratio[1] * full_scale, 1.0, 1e-12) << bits << " bit";
     EXPECT_NEAR(conditioned.ratio[2], 1.0, 1e-15) << bits << " bit";

@@ -90,8 +90,10 @@ inline calibration::TactileExample sample_example(std::size_t rows, std::size_t 
     const double col = random.uniform(0.1, 0.9) * extent(cols);
     const double peak = random.uniform(8.0, 40.0);
     for (std::size_t i = 0; i < force.size(); ++i) {
-      const double r = static_cast<double>(i / cols) - row;
-      const double c = static_cast<double>(i % cols) - col;
+      const std::size_t at_row = i / cols;
+      const std::size_t at_col = i % cols;
+      const double r = static_cast<double>(at_row) - row;
+      const double c = static_cast<double>(at_col) - col;
       const double share = std::exp(-(r * r + c * c) / 3.0);
       if (share > 0.05) force[i] += peak * share;
     }

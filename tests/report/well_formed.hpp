@@ -61,7 +61,7 @@ class WellFormed {
   std::string name() {
     std::size_t size = 0;
     while (size < rest_.size() && (std::isalnum(static_cast<unsigned char>(rest_[size])) || rest_[size] == '-')) ++size;
-    const std::string word(rest_.substr(0, size));
+    std::string word(rest_.substr(0, size));
     if (word.empty()) fail("name expected");
     rest_.remove_prefix(size);
     return word;
@@ -139,7 +139,7 @@ inline bool has_bad_number(std::string_view text) {
 /// How often `part` stands in `text`.
 inline std::size_t occurrences(std::string_view text, std::string_view part) {
   std::size_t count = 0;
-  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + part.size())) ++count;
+  for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + part.size())) ++count;
   return count;
 }
 

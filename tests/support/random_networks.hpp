@@ -45,7 +45,7 @@ inline fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inp
 inline double reference_newtons(const fusion::ForceNetworks& networks, std::size_t taxel, double siemens,
                                 double temperature_offset) {
   const std::size_t taxels = networks.taxel_count();
-  const double heaviest = static_cast<double>(networks.heaviest_siemens[taxel]);
+  const auto heaviest = static_cast<double>(networks.heaviest_siemens[taxel]);
   const double excess =
       siemens - (networks.offset_siemens[taxel] + networks.offset_per_celsius[taxel] * temperature_offset);
   if (excess <= 0.0) return 0.0;
