@@ -12,6 +12,7 @@
 #include "dermis/core/version.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/store/array_toml.hpp"
+#include "dermis/store/atomic_file.hpp"
 #include "dermis/store/content_hash.hpp"
 #include "dermis/store/frames_csv.hpp"
 #include "dermis/store/loads_csv.hpp"
@@ -88,6 +89,10 @@ Status calibrate(const CalibrateOptions& options) {
   if (!settle) return settle.error();
   const Result<ArrayDescription> array = store::read_array(options.array);
   if (!array) return array.error();
+  // A folder that is missing or full is told before the work, not after it.
+  if (const Result<store::AtomicFile> writable = store::AtomicFile::create(options.out); !writable) {
+    return writable.error();
+  }
   const auto start = std::chrono::steady_clock::now();
   const Result<std::vector<RawFrame>> frames = store::read_frames(options.frames, array->rows, array->cols);
   if (!frames) return frames.error();

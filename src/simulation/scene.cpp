@@ -15,6 +15,7 @@
 namespace dermis::simulation {
 namespace {
 
+constexpr std::size_t kMostFrames = 10'000'000;
 constexpr std::array kNames = {"calibration", "uniform", "paper", "multitouch",
                                "idle"};  // In the order of Scene::Kind.
 
@@ -92,7 +93,9 @@ Result<Scene> Scene::create(std::string_view name, const ArrayDescription& array
   if (frames && kind != Kind::multitouch && kind != Kind::idle) {
     return bad_input("scene \"" + std::string(name) + "\": has a fixed number of frames");
   }
-  if (frames && *frames == 0) return bad_input("scene \"" + std::string(name) + "\": needs at least 1 frame");
+  if (frames && (*frames == 0 || *frames > kMostFrames)) {
+    return bad_input("scene \"" + std::string(name) + "\": needs 1 to " + std::to_string(kMostFrames) + " frames");
+  }
   scene.frame_count_ = frames.value_or(scene.default_frame_count());
   if (kind == Kind::paper) scene.choose_paper_taxels();
   return scene;

@@ -57,8 +57,8 @@ struct SceneFrame {
 /// Thread-safe: frame() only reads, and a frame depends on the seed and its index alone.
 class Scene {
  public:
-  /// Fails on an unknown name, options out of range, a frame count for a scene of fixed length (or of 0), and where the
-  /// array does not suit: uniform needs taxel_area_m2, paper at least 16 taxels.
+  /// Fails on an unknown name, options out of range, a frame count for a scene of fixed length (or one that is not 1
+  /// ... 10 million), and where the array does not suit: uniform needs taxel_area_m2, paper at least 16 taxels.
   [[nodiscard]] static Result<Scene> create(std::string_view name, const ArrayDescription& array,
                                             const EnvironmentOptions& environment, std::uint64_t seed,
                                             std::optional<std::size_t> frames = {});
