@@ -26,7 +26,7 @@ class ForcesCsvWriter {
   ForcesCsvWriter(AtomicFile file, std::size_t taxel_count);
 
   AtomicFile file_;
-  std::size_t taxel_count_;
+  [[maybe_unused]] std::size_t taxel_count_;  ///< What write() asserts.
   std::string line_;
 };
 

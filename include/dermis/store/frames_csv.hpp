@@ -65,7 +65,7 @@ class FramesCsvWriter {
   FramesCsvWriter(AtomicFile file, std::size_t taxel_count, const FramesCsvColumns& columns);
 
   AtomicFile file_;
-  std::size_t taxel_count_;
+  [[maybe_unused]] std::size_t taxel_count_;  ///< What write() asserts.
   FramesCsvColumns columns_;
   std::string line_;
 };
