@@ -4,7 +4,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -24,6 +26,8 @@ namespace {
 
 using calibration::Calibration;
 using calibration::CalibrationReport;
+
+constexpr double kPoorFit = 0.1;  // relative error
 
 struct CalibrateOptions {
   std::string array;
@@ -53,6 +57,10 @@ void print_text(const CalibrationReport& report, const ArrayDescription& array) 
   fmt::print("loads {:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons);
   if (training.uses_temperature) fmt::print(", {:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius);
   fmt::print("\nfit: {}\n", calibration::describe_fit(training, array));
+  if (std::max(training.median_fit_error, training.shared_leave_one_out_error) > kPoorFit) {
+    fmt::print(stderr,
+               "warning: a poor fit; do frames and loads belong together, and are circuit and polarity right?\n");
+  }
   for (const std::size_t taxel : training.dead_taxels) {
     fmt::print("dead taxel {}: it does not answer to its loads\n", taxel_name(taxel / array.cols, taxel % array.cols));
   }
@@ -90,8 +98,10 @@ Status calibrate(const CalibrateOptions& options) {
   const Result<ArrayDescription> array = store::read_array(options.array);
   if (!array) return array.error();
   // A folder that is missing or full is told before the work, not after it.
-  if (const Result<store::AtomicFile> writable = store::AtomicFile::create(options.out); !writable) {
-    return writable.error();
+  const bool is_special = std::filesystem::exists(options.out) && !std::filesystem::is_regular_file(options.out);
+  if (!is_special) {
+    const Result<store::AtomicFile> writable = store::AtomicFile::create(options.out);
+    if (!writable) return writable.error();
   }
   const auto start = std::chrono::steady_clock::now();
   const Result<std::vector<RawFrame>> frames = store::read_frames(options.frames, array->rows, array->cols);

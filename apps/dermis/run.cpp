@@ -39,6 +39,7 @@ Status run(const RunOptions& options) {
   preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
   std::size_t frames = 0;
   std::size_t rejected = 0;
+  std::size_t unsolved = 0;
   std::string first_rejection;
   RawFrame raw;
   ForceFrame force;
@@ -50,6 +51,7 @@ Status run(const RunOptions& options) {
     pipeline->process(raw, force);
     if (Status written = forces->write(force); !written) return written;
     ++frames;
+    if (has(force.status, FrameStatus::not_converged)) ++unsolved;
     if (!has(force.status, FrameStatus::rejected)) continue;
     if (rejected++ == 0) {
       first_rejection =
@@ -59,6 +61,10 @@ Status run(const RunOptions& options) {
   if (Status written = forces->commit(); !written) return written;
   if (rejected > 0) {
     fmt::print(stderr, "{} of {} frames rejected, the first: {}\n", rejected, frames, first_rejection);
+  }
+  if (unsolved > 0) {
+    fmt::print(stderr, "{} of {} frames without forces: their readings do not fit the circuit of the array\n", unsolved,
+               frames);
   }
   return Done{};
 }

@@ -11,6 +11,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr std::size_t kMaxKnots = 64;
+constexpr double kLevelWidth = 1.03;  // heaviest over lightest force of one level
 
 /// Signal of one taxel at a known force.
 struct Point {
@@ -35,28 +36,29 @@ std::vector<Point> known_points(const SampleDatabase& database, std::size_t taxe
   std::vector<Point> points;
   for (const Sample& sample : database.samples) {
     const double newtons = sample.known_newtons[taxel];
-    if (!(newtons > 0.0) && !sample.unloaded) continue;
+    const bool is_unloaded = sample.unloaded && newtons == 0.0;
+    if (!(newtons > 0.0) && !is_unloaded) continue;  // NaN: unknown, or the reading is saturated
     points.push_back({newtons, signal_of(sample, taxel, signal), temperature_offset(sample, span)});
   }
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.newtons < b.newtons; });
   return points;
 }
 
-/// Calls visit(first, last) for every run of points of equal force.
+/// Calls visit(level) for every run of points of about equal force: labels weighed by a load cell scatter.
 template <typename Visit>
 void for_each_level(std::span<Point> points, Visit visit) {
   for (std::size_t first = 0; first < points.size();) {
-    std::size_t last = first;
-    while (last < points.size() && points[last].newtons == points[first].newtons) ++last;
+    std::size_t last = first + 1;
+    while (last < points.size() && points[last].newtons <= kLevelWidth * points[first].newtons) ++last;
     visit(points.subspan(first, last - first));
     first = last;
   }
 }
 
-double mean_signal(std::span<const Point> level) {
-  double mean = 0.0;
-  for (const Point& point : level) mean += point.signal / static_cast<double>(level.size());
-  return mean;
+double mean(std::span<const Point> level, double Point::*member) {
+  double sum = 0.0;
+  for (const Point& point : level) sum += point.*member;
+  return sum / static_cast<double>(level.size());
 }
 
 /// The k of signal * (1 + k dT) that makes the signals of equal force agree best.
@@ -64,10 +66,10 @@ double temperature_coefficient(std::span<Point> points) {
   double covariance = 0.0;
   double variance = 0.0;
   for_each_level(points, [&](std::span<const Point> level) {
-    const double mean = mean_signal(level);
-    if (level.front().newtons <= 0.0 || mean <= 0.0) return;
+    const double signal = mean(level, &Point::signal);
+    if (level.front().newtons <= 0.0 || signal <= 0.0) return;
     for (const Point& point : level) {
-      covariance += (point.signal / mean - 1.0) * point.temperature_offset;
+      covariance += (point.signal / signal - 1.0) * point.temperature_offset;
       variance += point.temperature_offset * point.temperature_offset;
     }
   });
@@ -111,7 +113,7 @@ std::vector<Knot> table_of_levels(std::vector<Point>& points, double coefficient
   for (Point& point : points) point.signal *= 1.0 + coefficient * point.temperature_offset;
   std::vector<Knot> knots;
   for_each_level(points, [&](std::span<const Point> level) {
-    knots.push_back({mean_signal(level), level.front().newtons, static_cast<double>(level.size())});
+    knots.push_back({mean(level, &Point::signal), mean(level, &Point::newtons), static_cast<double>(level.size())});
   });
   thin_out(knots);
   pool_adjacent_violators(knots);
@@ -143,11 +145,11 @@ class SharedLine {
       for (const Sample& sample : database.samples) {
         const double value = signal_of(sample, taxel, signal);
         highest_[taxel] = std::max(highest_[taxel], value);
-        if (!sample.unloaded) continue;
+        if (!sample.unloaded || sample.known_newtons[taxel] != 0.0F) continue;
         unloaded_[taxel] += value;
         frames += 1.0;
       }
-      unloaded_[taxel] /= frames;
+      if (frames > 0.0) unloaded_[taxel] /= frames;
     }
   }
 
@@ -172,9 +174,13 @@ class SharedLine {
       }
     }
     const double determinant = ss * tt - st * st;
-    const bool two_unknowns = with_temperature && determinant > 1e-9 * ss * tt;
-    slope_ = two_unknowns ? (sy * tt - ty * st) / determinant : ss > 0.0 ? sy / ss : 0.0;
-    if (two_unknowns && slope_ > 0.0) coefficient_ = (ty * ss - sy * st) / determinant / slope_;
+    const double slope_at_centre = sy * tt - ty * st;
+    if (with_temperature && determinant > 1e-9 * ss * tt && slope_at_centre > 0.0) {
+      slope_ = slope_at_centre / determinant;
+      coefficient_ = (ty * ss - sy * st) / slope_at_centre;
+    } else if (ss > 0.0) {
+      slope_ = std::max(sy / ss, 0.0);
+    }
   }
 
   std::vector<double> unloaded_;
@@ -196,7 +202,7 @@ fusion::LookUpTables make_tables(const SampleDatabase& database, const char* nam
   std::vector<std::vector<Knot>> knots(taxels);
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     std::vector<Point> points = known_points(database, taxel, signal, span);
-    const bool is_known = points.back().newtons > 0.0;
+    const bool is_known = !points.empty() && points.back().newtons > 0.0;
     double& coefficient = tables.temperature_coefficient[taxel];
     if (with_temperature) coefficient = is_known ? temperature_coefficient(points) : shared.coefficient();
     knots[taxel] = is_known ? table_of_levels(points, coefficient) : shared.table(taxel);

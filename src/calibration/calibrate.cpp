@@ -34,7 +34,7 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
       {"fit error", describe_fit(training, array)}};
   facts["temperature"] = training.uses_temperature
                              ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)
-                             : "not an input (the calibration has one temperature, or none)";
+                             : "not an input (less than 3 C apart, or missing in many frames)";
   return facts;
 }
 

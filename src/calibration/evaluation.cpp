@@ -90,13 +90,20 @@ std::size_t count_contacts(const std::vector<float>& known_newtons, std::size_t 
   return contacts;
 }
 
+double relative_error(double estimate, double truth) {
+  return std::abs(estimate / truth - 1.0);
+}
+
 void judge_taxels(std::size_t frame, const RawFrame& raw, const Sample& truth, const EstimatorRow& row,
                   Evaluation& evaluation, Errors& errors) {
   const std::size_t contacts = count_contacts(truth.known_newtons, evaluation.array.rows, evaluation.array.cols);
   for (std::size_t taxel = 0; taxel < truth.known_newtons.size(); ++taxel) {
     const double newtons = truth.known_newtons[taxel];
     if (newtons == 0.0) {
-      for (std::size_t k = 0; k < row.newtons().size(); ++k) errors.ghost_n[k].push_back(row.newtons()[k][taxel]);
+      for (std::size_t k = 0; k < row.newtons().size(); ++k) {
+        const float ghost = row.newtons()[k][taxel];
+        if (!std::isnan(ghost)) errors.ghost_n[k].push_back(ghost);  // no force is no ghost
+      }
     } else if (newtons >= kJudgedNewtons) {
       JudgedTaxel judged{frame, taxel, newtons, raw.temperature_celsius, raw.supply_v, contacts, {}};
       for (const std::vector<float>& forces : row.newtons()) judged.newtons.push_back(forces[taxel]);
@@ -111,9 +118,12 @@ void judge_totals(std::size_t frame, const RawFrame& raw, const Sample& truth, c
     JudgedTotal judged{frame, total.newtons, raw.temperature_celsius, {}};
     for (std::size_t k = 0; k < row.newtons().size(); ++k) {
       double sum = 0.0;
-      for (const std::size_t taxel : total.taxels) sum += static_cast<double>(row.newtons()[k][taxel]);
+      for (const std::size_t taxel : total.taxels) {
+        const auto newtons = static_cast<double>(row.newtons()[k][taxel]);
+        if (!std::isnan(newtons)) sum += newtons;  // a dead taxel carries what it carries: the total is short of it
+      }
       errors.total_n[k].push_back(sum - total.newtons);
-      errors.total_relative[k].push_back(std::abs(sum / total.newtons - 1.0));
+      errors.total_relative[k].push_back(relative_error(sum, total.newtons));
       judged.newtons.push_back(sum);
     }
     evaluation.totals.push_back(std::move(judged));
@@ -125,10 +135,6 @@ std::optional<double> root_mean_square(const std::vector<double>& errors) {
   double square = 0.0;
   for (const double error : errors) square += error * error;
   return std::sqrt(square / static_cast<double>(errors.size()));
-}
-
-double relative_error(double estimate, double truth) {
-  return std::abs(estimate / truth - 1.0);
 }
 
 std::vector<EstimatorResult> summarise_estimators(const pipeline::Model& model, const Evaluation& evaluation,
@@ -209,9 +215,9 @@ std::vector<double> contact_edges(const std::vector<JudgedTaxel>& taxels) {
 void break_down_all(Evaluation& evaluation) {
   const auto force = [](const auto& judged) { return std::optional<double>(judged.true_newtons); };
   const auto temperature = [](const auto& judged) { return judged.temperature_celsius; };
-  evaluation.by_force = break_down(evaluation, {0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50.0001, 100, 200, 500, 1000}, force);
+  evaluation.by_force = break_down(evaluation, {0, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 1e6}, force);
   evaluation.by_temperature =
-      break_down(evaluation, {-40, -20, -10, 0, 10, 20, 30, 40, 50, 60, 70, 85, 100, 125}, temperature);
+      break_down(evaluation, {-273, -20, -10, 0, 10, 20, 30, 40, 50, 60, 70, 85, 100, 1000}, temperature);
   if (evaluation.taxels.empty()) return;
   const auto of_taxel = [&](auto quantity, const std::vector<double>& edges) {
     return break_down(evaluation, edges, [&](const auto& judged) -> std::optional<double> {

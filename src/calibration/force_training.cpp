@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "calibration/shared_training.hpp"
 #include "calibration/taxel_training.hpp"
@@ -18,10 +17,12 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr std::size_t kMostHiddenUnits = 4;  // the design's 2-4-1
+constexpr std::size_t kMostHiddenUnits = 4;  // the design's size
 constexpr std::size_t kPointsPerParameterOfUnit = 2;
 constexpr std::size_t kLeastPoints = 8;  // for a network of its own
 constexpr std::size_t kLeastForceLevels = 3;
+constexpr double kLevelWidth = 1.05;      // labels weighed by a load cell scatter about their level
+constexpr double kLeastForceRange = 2.0;  // heaviest over lightest load
 constexpr double kLeastTemperatureShare = 0.5;
 constexpr double kDetectable = 3.0;  // in standard deviations of the unloaded reading
 
@@ -66,7 +67,7 @@ Evidence gather_evidence(const SampleDatabase& database) {
   parallel_for(taxels, [&](std::size_t taxel) {
     std::vector<TaxelPoint> points = known_points(database, taxel, evidence);
     const double noise = evidence.unloaded.noise_siemens[taxel];
-    dead[taxel] = is_dead(points, noise) ? 1 : 0;
+    dead[taxel] = evidence.unloaded.is_stuck[taxel] || is_dead(points, noise) ? 1 : 0;
     std::erase_if(points, [&](const TaxelPoint& point) { return point.excess_siemens < kDetectable * noise; });
     evidence.points[taxel] = std::move(points);
   });
@@ -74,17 +75,30 @@ Evidence gather_evidence(const SampleDatabase& database) {
   return evidence;
 }
 
+std::size_t count_levels(const std::vector<double>& rising_newtons) {
+  std::size_t levels = 0;
+  double level = 0.0;
+  for (const double newtons : rising_newtons) {
+    if (levels > 0 && newtons <= kLevelWidth * level) continue;
+    level = newtons;
+    ++levels;
+  }
+  return levels;
+}
+
 bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_temperature) {
   if (points.size() < kLeastPoints) return false;
-  std::set<double> levels;
+  std::vector<double> newtons;
   double coldest = 1.0;
   double hottest = -1.0;
   for (const TaxelPoint& point : points) {
-    levels.insert(point.newtons);
+    newtons.push_back(point.newtons);
     coldest = std::min(coldest, point.temperature);
     hottest = std::max(hottest, point.temperature);
   }
-  return levels.size() >= kLeastForceLevels && (!uses_temperature || hottest - coldest >= 2.0 * kLeastTemperatureShare);
+  std::sort(newtons.begin(), newtons.end());
+  return count_levels(newtons) >= kLeastForceLevels && newtons.back() >= kLeastForceRange * newtons.front() &&
+         (!uses_temperature || hottest - coldest >= 2.0 * kLeastTemperatureShare);
 }
 
 /// Hidden units that the given number of points can hold.
@@ -163,7 +177,6 @@ struct Division {
   std::vector<std::size_t> own;
   std::vector<std::size_t> shared;
   std::vector<std::size_t> dead;
-  std::size_t least_points = std::numeric_limits<std::size_t>::max();  ///< of the taxels with a network of their own
 };
 
 Division divide(const Evidence& evidence) {
@@ -173,7 +186,6 @@ Division divide(const Evidence& evidence) {
       division.dead.push_back(taxel);
     } else if (supports_own_network(evidence.points[taxel], evidence.span.is_input)) {
       division.own.push_back(taxel);
-      division.least_points = std::min(division.least_points, evidence.points[taxel].size());
     } else {
       division.shared.push_back(taxel);
     }
@@ -183,13 +195,14 @@ Division divide(const Evidence& evidence) {
 
 std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& division,
                                     const std::function<void(double)>& progress) {
-  const network::PerceptronShape shape =
-      force_shape(evidence.span.is_input, hidden_units(division.least_points, evidence.span.is_input));
   std::vector<ForceNetwork> networks(division.own.size());
   std::atomic<std::size_t> done = 0;
   parallel_for(division.own.size(), [&](std::size_t k) {
     const std::size_t taxel = division.own[k];
-    networks[k] = train_taxel(shape, evidence.points[taxel], evidence.unloaded.noise_siemens[taxel], taxel);
+    const std::vector<TaxelPoint>& points = evidence.points[taxel];
+    const bool uses_temperature = evidence.span.is_input;
+    networks[k] = train_taxel(force_shape(uses_temperature, hidden_units(points.size(), uses_temperature)), points,
+                              evidence.unloaded.noise_siemens[taxel], taxel);
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(division.own.size()));
   });
   return networks;
@@ -251,7 +264,7 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
     return bad_input("no taxel answers to its loads: check that frames and loads belong together, and the circuit");
   }
   if (has_shared) report.shared_hidden_units = shared.network.shape.hidden;
-  if (!own.empty()) report.hidden_units = own.front().shape.hidden;
+  for (const ForceNetwork& network : own) report.hidden_units = std::max(report.hidden_units, network.shape.hidden);
   report.shared_leave_one_out_error = shared.leave_one_out_error;
 
   training.networks = make_networks(

@@ -49,9 +49,10 @@ Selection select_and_condition(SampleDatabase& database, std::span<const RawFram
   return selection;
 }
 
-Sample make_sample(const ArrayDescription& array, const RawFrame& raw, std::span<const Load> loads,
+Sample make_sample(const ArrayDescription& array, std::size_t frame, const RawFrame& raw, std::span<const Load> loads,
                    ConductanceFrame& conductance) {
   Sample sample;
+  sample.frame = frame;
   sample.temperature_celsius = conductance.temperature_celsius;
   sample.reading.resize(array.taxel_count());
   preprocessing::bare_readings(array, raw, sample.reading);
@@ -63,21 +64,35 @@ Sample make_sample(const ArrayDescription& array, const RawFrame& raw, std::span
       sample.known_newtons[taxel] = std::numeric_limits<float>::quiet_NaN();
     }
   }
+  std::erase_if(sample.totals, [&](const TotalForce& total) {
+    return std::any_of(total.taxels.begin(), total.taxels.end(),
+                       [&](std::size_t taxel) { return conductance.taxels[taxel] != TaxelStatus::ok; });
+  });
   return sample;
 }
 
-/// Removes the samples whose readings have no solution in the array's circuit.
-void drop_unsolved(SampleDatabase& database, const Selection& selection) {
-  for (std::size_t k = 0; k < database.samples.size(); ++k) {
-    if (!database.samples[k].siemens.empty()) continue;
-    if (database.frames_rejected++ == 0) {
-      database.first_rejection = fmt::format(
-          "frame {}: readings that the circuit of the array cannot give; check "
-          "drive_ohm, load_ohm and supply",
-          selection.frame[k]);
-    }
+/// Leaves out the samples for which `is_bad` holds, and counts them.
+template <typename Predicate>
+void reject_if(SampleDatabase& database, Predicate is_bad, const char* reason) {
+  for (const Sample& sample : database.samples) {
+    if (!is_bad(sample)) continue;
+    if (database.frames_rejected++ == 0) database.first_rejection = fmt::format("frame {}: {}", sample.frame, reason);
   }
-  std::erase_if(database.samples, [](const Sample& sample) { return sample.siemens.empty(); });
+  std::erase_if(database.samples, is_bad);
+}
+
+void reject_unsolved(SampleDatabase& database) {
+  reject_if(
+      database, [](const Sample& sample) { return sample.siemens.empty(); },
+      "readings that the circuit of the array cannot give; check drive_ohm, load_ohm, supply and stuck lines");
+}
+
+/// A few samples without a temperature among many with one are left out, so that temperature stays an input.
+void reject_without_temperature(SampleDatabase& database) {
+  const auto lacks_temperature = [](const Sample& sample) { return !sample.temperature_celsius; };
+  const auto lacking = std::count_if(database.samples.begin(), database.samples.end(), lacks_temperature);
+  if (static_cast<double>(lacking) > kMaxRejectedShare * static_cast<double>(database.samples.size())) return;
+  reject_if(database, lacks_temperature, "no temperature, where most frames have one");
 }
 
 Status check_rejected(const SampleDatabase& database) {
@@ -119,12 +134,14 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
     for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
       ConductanceFrame conductance;
       solver->process(selection.conditioned[k], conductance);
-      if (has(conductance.status, FrameStatus::not_converged)) continue;
       const std::size_t frame = selection.frame[k];
-      database.samples[k] = make_sample(array, frames[frame], loads_of[frame], conductance);
+      database.samples[k].frame = frame;
+      if (has(conductance.status, FrameStatus::not_converged)) continue;
+      database.samples[k] = make_sample(array, frame, frames[frame], loads_of[frame], conductance);
     }
   });
-  drop_unsolved(database, selection);
+  reject_unsolved(database);
+  reject_without_temperature(database);
   if (Status checked = check_rejected(database); !checked) return checked.error();
   return database;
 }

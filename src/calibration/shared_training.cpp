@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "calibration/shared_training.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,12 +16,18 @@ namespace {
 constexpr std::size_t kMostHiddenUnits = 3;
 constexpr std::size_t kStarts = 6;
 constexpr int kMaxIterations = 120;
+constexpr std::size_t kMostPresses = 12;             // of one taxel alone; more tell little about all
 constexpr std::size_t kMostSharesForStart = 15'000;  // taxels of all loads together, thinned out evenly beyond:
-constexpr std::size_t kMostShares = 300'000;         // to choose among the starts, and for the final training
+constexpr std::size_t kMostShares = 200'000;         // to choose among the starts, and for the final training
 constexpr double kActive = 3.0;                      // in standard deviations of the unloaded reading
-constexpr double kExpectedError = 0.05;              // relative error of a load, before the data say better
-constexpr double kGainDeviation = 0.15;              // of ln(gain): literature.md B, taxel-to-taxel 10-20 %
+constexpr double kGainDeviation = 0.15;              // of a gain: literature.md B, taxel-to-taxel 10-20 %
+constexpr double kMostGain = 4.0;
+constexpr int kGainRounds = 3;
+constexpr std::size_t kFolds = 5;
 constexpr std::uint64_t kSeed = 20;
+// A residual is the error over newtons + typical load: about half the relative error of a typical load.
+constexpr double kRelativeErrorOfResidual = 2.0;
+constexpr double kExpectedResidual = 0.05 / kRelativeErrorOfResidual;  // scale of the prior, before the data say better
 
 /// The part of a load that one taxel carries.
 struct Share {
@@ -46,14 +53,15 @@ class LoadCollector {
  public:
   LoadCollector(const SampleDatabase& database, const TemperatureSpan& span, const UnloadedFit& unloaded,
                 const std::vector<bool>& dead)
-      : span_(span), unloaded_(unloaded), dead_(dead) {
+      : span_(span), unloaded_(unloaded), dead_(dead), presses_(dead.size()) {
     for (const Sample& sample : database.samples) {
       for (const TotalForce& total : sample.totals) add(sample, total.taxels, total.newtons);
       for (std::size_t taxel = 0; taxel < dead.size(); ++taxel) {
         const double newtons = sample.known_newtons[taxel];
-        if (newtons > 0.0) add(sample, {taxel}, newtons);
+        if (newtons > 0.0) presses_[taxel].push_back({&sample, newtons});
       }
     }
+    for (std::size_t taxel = 0; taxel < dead.size(); ++taxel) add_presses(taxel);
   }
 
   /// All loads, or as many of them, evenly, as hold about `most_shares` taxels.
@@ -68,6 +76,21 @@ class LoadCollector {
   }
 
  private:
+  struct Press {
+    const Sample* sample;
+    double newtons;
+  };
+
+  /// At most kMostPresses of the presses on one taxel alone, evenly.
+  void add_presses(std::size_t taxel) {
+    const std::vector<Press>& presses = presses_[taxel];
+    const std::size_t count = std::min(presses.size(), kMostPresses);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Press& press = presses[k * presses.size() / count];
+      add(*press.sample, {taxel}, press.newtons);
+    }
+  }
+
   void add(const Sample& sample, const std::vector<std::size_t>& taxels, double newtons) {
     RawLoad load;
     load.newtons = newtons;
@@ -86,14 +109,15 @@ class LoadCollector {
   const TemperatureSpan& span_;
   const UnloadedFit& unloaded_;
   const std::vector<bool>& dead_;
+  std::vector<std::vector<Press>> presses_;  // [taxels]
   std::vector<RawLoad> loads_;
 };
 
-/// The least-squares problem: parameters are those of the network (free values), then ln(gain) of every taxel that some
-/// load presses, where there are gains.
+/// The least-squares problem for given gains; its parameters are the free values of the network.
 class SharedProblem {
  public:
-  SharedProblem(const std::vector<RawLoad>& raw, const UnloadedFit& unloaded) {
+  SharedProblem(const std::vector<RawLoad>& raw, const UnloadedFit& unloaded)
+      : gain_(unloaded.noise_siemens.size(), 1.0) {
     double log_newtons = 0.0;
     double active = 0.0;
     double active_siemens = 0.0;
@@ -106,33 +130,33 @@ class SharedProblem {
         active_siemens += siemens;
       }
     }
-    typical_newtons_ = std::exp(log_newtons);
+    const double typical_newtons = std::exp(log_newtons);
     reference_siemens_ = active_siemens / active;
-    typical_share_newtons_ = typical_newtons_ * static_cast<double>(raw.size()) / active;
+    typical_share_newtons_ = typical_newtons * static_cast<double>(raw.size()) / active;
     ForceNetwork scale;
     scale.reference_siemens = reference_siemens_;
-    gain_of_taxel_.assign(unloaded.noise_siemens.size(), 0);
     for (const RawLoad& load : raw) {
       SharedLoad& shared = loads_.emplace_back();
       shared.newtons = load.newtons;
-      shared.weight = 1.0 / (load.newtons + typical_newtons_);
+      shared.weight = 1.0 / (load.newtons + typical_newtons);
       for (const auto& [taxel, siemens] : load.excess) {
         shared.shares.push_back({taxel, scale.inputs(siemens, load.temperature)});
-        if (gain_of_taxel_[taxel] == 0) gain_of_taxel_[taxel] = ++gain_count_;
       }
     }
   }
 
-  [[nodiscard]] std::size_t load_count() const { return loads_.size(); }
-  [[nodiscard]] std::size_t gain_count() const { return gain_count_; }
+  [[nodiscard]] const std::vector<SharedLoad>& loads() const { return loads_; }
+  [[nodiscard]] const std::vector<double>& gain() const { return gain_; }
+  void set_gain(std::vector<double> gain) { gain_ = std::move(gain); }
 
-  [[nodiscard]] ForceNetwork empty_network(const network::PerceptronShape& shape) const {
+  [[nodiscard]] ForceNetwork network(const network::PerceptronShape& shape, std::span<const double> free) const {
     ForceNetwork network;
     network.shape = shape;
     network.reference_siemens = reference_siemens_;
     network.heaviest_siemens = heaviest_siemens_;
     network.heaviest_newtons = std::numeric_limits<double>::infinity();
     network.parameters.resize(shape.parameter_count());
+    network::monotone::parameters(shape, free, network.parameters);
     return network;
   }
 
@@ -141,86 +165,45 @@ class SharedProblem {
     return random_start(shape, typical_share_newtons_, random);
   }
 
-  [[nodiscard]] std::size_t residual_count(std::size_t parameters) const { return loads_.size() + parameters; }
-
-  /// Residuals of the loads, then of the prior. `error`: expected relative error of a load.
-  [[nodiscard]] network::ResidualFunction residual_function(const network::PerceptronShape& shape, bool with_gains,
-                                                            double error) const {
-    return [this, shape, with_gains, error, network = empty_network(shape), gradient = std::vector<double>()](
+  /// Residuals of the loads, then of the prior.
+  [[nodiscard]] network::ResidualFunction residual_function(const network::PerceptronShape& shape) const {
+    return [this, shape, gradient = std::vector<double>(shape.parameter_count())](
                std::span<const double> free, std::span<double> residuals, std::span<double> jacobian) mutable {
       const std::size_t n = shape.parameter_count();
-      const std::size_t columns = free.size();
-      gradient.resize(n);
-      network::monotone::parameters(shape, free.first(n), network.parameters);
+      const ForceNetwork network = this->network(shape, free);
       for (std::size_t k = 0; k < loads_.size(); ++k) {
         const SharedLoad& load = loads_[k];
-        const std::span<double> row = jacobian.empty() ? jacobian : jacobian.subspan(k * columns, columns);
+        const std::span<double> row = jacobian.empty() ? jacobian : jacobian.subspan(k * n, n);
         std::fill(row.begin(), row.end(), 0.0);
         double sum = 0.0;
         for (const Share& share : load.shares) {
-          const std::size_t gain_place = n + gain_of_taxel_[share.taxel] - 1;
-          const double gain = with_gains ? std::exp(free[gain_place]) : 1.0;
-          const double newtons =
-              gain * std::exp(network.log_newtons(share.inputs, row.empty() ? row : std::span<double>(gradient)));
+          const double log_newtons = network.log_newtons(share.inputs, row.empty() ? row : std::span<double>(gradient));
+          const double newtons = gain_[share.taxel] * std::exp(log_newtons);
           sum += newtons;
-          if (row.empty()) continue;
-          for (std::size_t p = 0; p < n; ++p) row[p] += load.weight * newtons * gradient[p];
-          if (with_gains) row[gain_place] += load.weight * newtons;
+          for (std::size_t p = 0; p < row.size(); ++p) row[p] += load.weight * newtons * gradient[p];
         }
         residuals[k] = load.weight * (sum - load.newtons);
       }
-      // A load's residual is its error over newtons + typical: about half the relative error.
-      const double scale = 0.5 * error;
-      const std::span<double> prior = jacobian.empty() ? jacobian : jacobian.subspan(loads_.size() * columns);
-      prior_residuals(network, scale, residuals.subspan(loads_.size(), n), prior, columns);
-      for (std::size_t k = n; k < columns; ++k) {
-        residuals[loads_.size() + k] = scale / kGainDeviation * free[k];
-        if (jacobian.empty()) continue;
-        const std::span<double> row = prior.subspan(k * columns, columns);
-        std::fill(row.begin(), row.end(), 0.0);
-        row[k] = scale / kGainDeviation;
-      }
+      prior_residuals(network, kExpectedResidual, residuals.subspan(loads_.size(), n),
+                      jacobian.empty() ? jacobian : jacobian.subspan(loads_.size() * n), n);
     };
-  }
-
-  [[nodiscard]] std::vector<double> gains(std::span<const double> log_gains) const {
-    std::vector<double> gains(gain_of_taxel_.size(), 1.0);
-    for (std::size_t taxel = 0; taxel < gains.size(); ++taxel) {
-      if (gain_of_taxel_[taxel] > 0 && !log_gains.empty())
-        gains[taxel] = std::exp(log_gains[gain_of_taxel_[taxel] - 1]);
-    }
-    return gains;
   }
 
  private:
   std::vector<SharedLoad> loads_;
-  std::vector<std::size_t> gain_of_taxel_;  // 1 + place among the gains; 0: never pressed
-  std::size_t gain_count_ = 0;
+  std::vector<double> gain_;  // [taxels]
   double reference_siemens_ = 1.0;
   double heaviest_siemens_ = 0.0;
-  double typical_newtons_ = 1.0;
   double typical_share_newtons_ = 1.0;
 };
 
 /// A trained set of free parameters.
 struct Candidate {
   network::PerceptronShape shape;
-  bool with_gains = false;
   std::vector<double> free;
   double error = std::numeric_limits<double>::infinity();          // of the training
   double leave_one_out = std::numeric_limits<double>::infinity();  // mean square
 };
-
-void train(const SharedProblem& problem, double expected_error, Candidate& candidate) {
-  const auto function = problem.residual_function(candidate.shape, candidate.with_gains, expected_error);
-  const std::size_t residuals = problem.residual_count(candidate.free.size());
-  network::LevenbergMarquardtOptions options;
-  options.relative_reduction = 1e-6;
-  options.max_iterations = kMaxIterations;
-  candidate.error = network::minimise(function, residuals, candidate.free, options).final_error;
-  candidate.leave_one_out =
-      network::leave_one_out_mean_square(function, problem.load_count(), residuals, candidate.free);
-}
 
 bool has_lower_error(const Candidate& a, const Candidate& b) {
   return a.error < b.error;
@@ -229,13 +212,24 @@ bool generalises_better(const Candidate& a, const Candidate& b) {
   return a.leave_one_out < b.leave_one_out;
 }
 
+void train(const SharedProblem& problem, Candidate& candidate) {
+  const auto function = problem.residual_function(candidate.shape);
+  const std::size_t loads = problem.loads().size();
+  const std::size_t residuals = loads + candidate.free.size();
+  network::LevenbergMarquardtOptions options;
+  options.relative_reduction = 1e-6;
+  options.max_iterations = kMaxIterations;
+  candidate.error = network::minimise(function, residuals, candidate.free, options).final_error;
+  candidate.leave_one_out = network::leave_one_out_mean_square(function, loads, residuals, candidate.free);
+}
+
 /// The best of several starts for every number of hidden units.
 std::vector<Candidate> best_starts(const SharedProblem& problem, bool uses_temperature) {
   std::vector<Candidate> candidates((kMostHiddenUnits + 1) * kStarts);
   parallel_for(candidates.size(), [&](std::size_t k) {
     candidates[k].shape = force_shape(uses_temperature, k / kStarts);
     candidates[k].free = problem.start(candidates[k].shape, kSeed + k % kStarts);
-    train(problem, kExpectedError, candidates[k]);
+    train(problem, candidates[k]);
   });
   std::vector<Candidate> best;
   for (auto first = candidates.begin(); first != candidates.end(); first += kStarts) {
@@ -244,20 +238,73 @@ std::vector<Candidate> best_starts(const SharedProblem& problem, bool uses_tempe
   return best;
 }
 
-/// Trains every candidate to the end, without gains and with them, and keeps what generalises best.
-Candidate choose(const SharedProblem& problem, std::vector<Candidate> candidates) {
-  parallel_for(candidates.size(), [&](std::size_t k) { train(problem, kExpectedError, candidates[k]); });
-  const auto plain = std::min_element(candidates.begin(), candidates.end(), generalises_better);
-  const double seen_error = 2.0 * std::sqrt(plain->leave_one_out);
-  std::vector<Candidate> with_gains = candidates;
-  parallel_for(with_gains.size(), [&](std::size_t k) {
-    with_gains[k].with_gains = true;
-    with_gains[k].free.resize(with_gains[k].free.size() + problem.gain_count(), 0.0);
-    train(problem, seen_error, with_gains[k]);
-  });
-  const auto gained = std::min_element(with_gains.begin(), with_gains.end(), generalises_better);
-  return generalises_better(*gained, *plain) ? *gained : *plain;
+/// Trains every size on, and gives the one that generalises best.
+Candidate choose_size(const SharedProblem& problem, std::vector<Candidate>& candidates) {
+  parallel_for(candidates.size(), [&](std::size_t k) { train(problem, candidates[k]); });
+  return *std::min_element(candidates.begin(), candidates.end(), generalises_better);
 }
+
+/// Gains for a given network: ridge regression of the loads on the forces of their taxels.
+class GainFit {
+ public:
+  GainFit(const SharedProblem& problem, const ForceNetwork& network, double residual)
+      : problem_(problem), ridge_(std::pow(residual / kGainDeviation, 2)) {
+    for (const SharedLoad& load : problem.loads()) {
+      std::vector<double>& row = forces_.emplace_back();
+      for (const Share& share : load.shares)
+        row.push_back(load.weight * std::exp(network.log_newtons(share.inputs, {})));
+    }
+  }
+
+  /// Fitted to the loads that are not in fold `held_out` of kFolds; kFolds holds out none.
+  [[nodiscard]] std::vector<double> gains(std::size_t held_out) const {
+    const std::size_t taxels = problem_.gain().size();
+    Eigen::MatrixXd normal = ridge_ * Eigen::MatrixXd::Identity(index(taxels), index(taxels));
+    Eigen::VectorXd right = Eigen::VectorXd::Constant(index(taxels), ridge_);
+    for (std::size_t k = 0; k < forces_.size(); ++k) {
+      if (k % kFolds == held_out) continue;
+      const SharedLoad& load = problem_.loads()[k];
+      for (std::size_t i = 0; i < load.shares.size(); ++i) {
+        const Eigen::Index row = index(load.shares[i].taxel);
+        right[row] += forces_[k][i] * load.weight * load.newtons;
+        for (std::size_t j = 0; j <= i; ++j) {  // shares are in rising order: the lower triangle
+          normal(row, index(load.shares[j].taxel)) += forces_[k][i] * forces_[k][j];
+        }
+      }
+    }
+    const Eigen::VectorXd solution = normal.selfadjointView<Eigen::Lower>().llt().solve(right);
+    std::vector<double> gains(solution.begin(), solution.end());
+    for (double& gain : gains) gain = std::clamp(gain, 1.0 / kMostGain, kMostGain);
+    return gains;
+  }
+
+  /// Mean square residual of loads that the gains were not fitted to.
+  [[nodiscard]] double held_out_mean_square() const {
+    std::vector<double> squares(kFolds);
+    parallel_for(kFolds, [&](std::size_t fold) { squares[fold] = mean_square(gains(fold), fold); });
+    double sum = 0.0;
+    for (const double square : squares) sum += square;
+    return sum / static_cast<double>(forces_.size());
+  }
+
+ private:
+  static Eigen::Index index(std::size_t value) { return static_cast<Eigen::Index>(value); }
+
+  [[nodiscard]] double mean_square(const std::vector<double>& gains, std::size_t fold) const {
+    double sum = 0.0;
+    for (std::size_t k = fold; k < forces_.size(); k += kFolds) {
+      const SharedLoad& load = problem_.loads()[k];
+      double residual = -load.weight * load.newtons;
+      for (std::size_t i = 0; i < load.shares.size(); ++i) residual += gains[load.shares[i].taxel] * forces_[k][i];
+      sum += residual * residual;
+    }
+    return sum;
+  }
+
+  const SharedProblem& problem_;
+  double ridge_;
+  std::vector<std::vector<double>> forces_;  // weighted, of every share
+};
 
 }  // namespace
 
@@ -268,17 +315,24 @@ SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan
   SharedNetwork shared;
   shared.gain.assign(dead.size(), 1.0);
   if (loads.empty()) return shared;
-  const SharedProblem problem(loads, unloaded);
 
+  SharedProblem problem(loads, unloaded);
   const SharedProblem thinned(collector.loads(kMostSharesForStart), unloaded);
-  const Candidate chosen = choose(problem, best_starts(thinned, span.is_input));
-
-  const std::size_t n = chosen.shape.parameter_count();
-  shared.network = problem.empty_network(chosen.shape);
-  network::monotone::parameters(chosen.shape, std::span<const double>(chosen.free).first(n), shared.network.parameters);
-  shared.gain = problem.gains(std::span<const double>(chosen.free).subspan(n));
-  shared.has_gains = chosen.with_gains;
-  shared.leave_one_out_error = 2.0 * std::sqrt(chosen.leave_one_out);
+  std::vector<Candidate> candidates = best_starts(thinned, span.is_input);
+  Candidate chosen = choose_size(problem, candidates);
+  double mean_square = chosen.leave_one_out;
+  for (int round = 0; round < kGainRounds; ++round) {
+    const GainFit fit(problem, problem.network(chosen.shape, chosen.free), std::sqrt(mean_square));
+    const double with_gains = fit.held_out_mean_square();
+    if (with_gains >= mean_square) break;
+    mean_square = with_gains;
+    shared.has_gains = true;
+    problem.set_gain(fit.gains(kFolds));
+    chosen = choose_size(problem, candidates);
+  }
+  shared.network = problem.network(chosen.shape, chosen.free);
+  shared.gain = problem.gain();
+  shared.leave_one_out_error = kRelativeErrorOfResidual * std::sqrt(mean_square);
   return shared;
 }
 

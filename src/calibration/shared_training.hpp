@@ -15,13 +15,14 @@ struct SharedNetwork {
   ForceNetwork network;
   std::vector<double> gain;  ///< [taxels]; all 1 where gains did not help.
   bool has_gains = false;
-  double leave_one_out_error = 0.0;  ///< Root mean square relative error of a load that is left out.
+  double leave_one_out_error = 0.0;  ///< Root mean square relative error of a load that is held out.
 };
 
 /// Trains through the sum: for every load, sum over its taxels of gain_i f(e_i, t) = newtons. The number of hidden
-/// units (0 ... 3) and whether there are gains are chosen by the analytic leave-one-out error; of several random starts
-/// the one with the lowest error is kept. Gains have a log-normal prior about 1, as wide as taxels are known to differ.
-/// Every live taxel counts as answering to the shared law. Deterministic, whatever the number of threads.
+/// units (0 ... 3) is chosen by the analytic leave-one-out error, each trained from the best of several random starts.
+/// Gains, with a prior about 1 as wide as taxels are known to differ, are fitted in turn with the network as long as
+/// they lower the error of loads that are held out. Large calibrations are thinned out evenly (12 presses of a taxel
+/// alone, 200,000 taxels of all loads together). Deterministic, whatever the number of threads.
 [[nodiscard]] SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan& span,
                                          const UnloadedFit& unloaded, const std::vector<bool>& dead);
 

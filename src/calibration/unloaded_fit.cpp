@@ -8,62 +8,90 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr double kLeastSpanCelsius = 2.0;      // less than this does not show a temperature coefficient
+constexpr double kLeastSpanCelsius = 3.0;      // less is the noise of a sensor, not a temperature coefficient
+constexpr double kGlitches = 0.01;             // share of the samples at either end that does not count
 constexpr double kLeastNoiseCounts = 1.0 / 3;  // quantisation alone gives 1 / sqrt(12)
 constexpr std::size_t kLeastFramesForNoise = 5;
+
+/// Conductance of one taxel and the temperature, in a frame in which nothing presses.
+struct UnloadedPoint {
+  double siemens = 0.0;
+  double temperature_offset = 0.0;
+};
+
+std::vector<UnloadedPoint> unloaded_points(const SampleDatabase& database, std::size_t taxel,
+                                           const TemperatureSpan& span) {
+  std::vector<UnloadedPoint> points;
+  for (const Sample& sample : database.samples) {
+    if (!sample.unloaded || sample.known_newtons[taxel] != 0.0F) continue;
+    points.push_back({sample.siemens[taxel], temperature_offset(sample, span)});
+  }
+  return points;
+}
+
+struct Line {
+  double level = 0.0;  // at the centre temperature
+  double slope = 0.0;
+  double deviation = 0.0;
+};
+
+Line fit_line(const std::vector<UnloadedPoint>& points) {
+  const auto count = static_cast<double>(points.size());
+  double mean_y = 0.0;
+  double mean_x = 0.0;
+  for (const UnloadedPoint& point : points) {
+    mean_y += point.siemens / count;
+    mean_x += point.temperature_offset / count;
+  }
+  double covariance = 0.0;
+  double variance = 0.0;
+  for (const UnloadedPoint& point : points) {
+    covariance += (point.siemens - mean_y) * (point.temperature_offset - mean_x) / count;
+    variance += std::pow(point.temperature_offset - mean_x, 2) / count;
+  }
+  const bool has_slope = 4.0 * variance >= kLeastSpanCelsius * kLeastSpanCelsius;
+  const double slope = has_slope ? covariance / variance : 0.0;
+  double square = 0.0;
+  for (const UnloadedPoint& point : points) {
+    square += std::pow(point.siemens - mean_y - slope * (point.temperature_offset - mean_x), 2) / count;
+  }
+  return {mean_y - slope * mean_x, slope, std::sqrt(square)};
+}
 
 }  // namespace
 
 TemperatureSpan temperature_span(const SampleDatabase& database) {
-  double lowest = 1e9;
-  double highest = -1e9;
+  std::vector<double> temperatures;
   for (const Sample& sample : database.samples) {
     if (!sample.temperature_celsius) return {};
-    lowest = std::min(lowest, *sample.temperature_celsius);
-    highest = std::max(highest, *sample.temperature_celsius);
+    temperatures.push_back(*sample.temperature_celsius);
   }
+  std::sort(temperatures.begin(), temperatures.end());
+  const auto glitches = static_cast<std::size_t>(kGlitches * static_cast<double>(temperatures.size()));
+  const double lowest = temperatures[glitches];
+  const double highest = temperatures[temperatures.size() - 1 - glitches];
   return {0.5 * (lowest + highest), 0.5 * (highest - lowest), highest - lowest >= kLeastSpanCelsius};
 }
 
 double temperature_offset(const Sample& sample, const TemperatureSpan& span) {
-  return span.is_input ? *sample.temperature_celsius - span.centre_celsius : 0.0;
+  if (!span.is_input) return 0.0;
+  return std::clamp(*sample.temperature_celsius - span.centre_celsius, -span.half_span_celsius, span.half_span_celsius);
 }
 
 UnloadedFit fit_unloaded(const SampleDatabase& database, const TemperatureSpan& span) {
   const std::size_t taxels = database.array.taxel_count();
-  std::vector<const Sample*> unloaded;
-  for (const Sample& sample : database.samples) {
-    if (sample.unloaded) unloaded.push_back(&sample);
-  }
-  const auto frames = static_cast<double>(unloaded.size());
-  double mean_offset = 0.0;
-  for (const Sample* sample : unloaded) mean_offset += temperature_offset(*sample, span) / frames;
-  double variance = 0.0;
-  for (const Sample* sample : unloaded)
-    variance += std::pow(temperature_offset(*sample, span) - mean_offset, 2) / frames;
-  const bool has_slope = 4.0 * variance >= kLeastSpanCelsius * kLeastSpanCelsius;
-
-  UnloadedFit fit;
-  fit.offset_siemens.resize(taxels);
-  fit.offset_per_celsius.resize(taxels);
-  fit.noise_siemens.resize(taxels);
+  const double least_noise = kLeastNoiseCounts * database.siemens_per_count;
+  UnloadedFit fit{std::vector<double>(taxels), std::vector<double>(taxels), std::vector<double>(taxels, least_noise),
+                  std::vector<bool>(taxels)};
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    double mean = 0.0;
-    double covariance = 0.0;
-    for (const Sample* sample : unloaded) {
-      mean += sample->siemens[taxel] / frames;
-      covariance += sample->siemens[taxel] * (temperature_offset(*sample, span) - mean_offset) / frames;
-    }
-    const double slope = has_slope ? covariance / variance : 0.0;
-    double square = 0.0;
-    for (const Sample* sample : unloaded) {
-      square += std::pow(sample->siemens[taxel] - mean - slope * (temperature_offset(*sample, span) - mean_offset), 2);
-    }
-    const double least_noise = kLeastNoiseCounts * database.siemens_per_count;
-    fit.offset_siemens[taxel] = mean - slope * mean_offset;
-    fit.offset_per_celsius[taxel] = slope;
+    const std::vector<UnloadedPoint> points = unloaded_points(database, taxel, span);
+    fit.is_stuck[taxel] = points.empty();
+    if (points.empty()) continue;
+    const Line line = fit_line(points);
+    fit.offset_siemens[taxel] = line.level;
+    fit.offset_per_celsius[taxel] = line.slope;
     fit.noise_siemens[taxel] =
-        unloaded.size() < kLeastFramesForNoise ? least_noise * 3.0 : std::max(least_noise, std::sqrt(square / frames));
+        points.size() < kLeastFramesForNoise ? 3.0 * least_noise : std::max(least_noise, line.deviation);
   }
   return fit;
 }

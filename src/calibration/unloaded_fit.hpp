@@ -8,7 +8,7 @@
 
 namespace dermis::calibration {
 
-/// The temperatures of a calibration.
+/// The temperatures of a calibration: its 1st to 99th percentile, so that a glitch of the sensor does not stretch it.
 struct TemperatureSpan {
   double centre_celsius = 20.0;
   double half_span_celsius = 0.0;
@@ -17,7 +17,7 @@ struct TemperatureSpan {
 
 [[nodiscard]] TemperatureSpan temperature_span(const SampleDatabase& database);
 
-/// Sample temperature from the centre [C]; 0 where temperature is not an input.
+/// Sample temperature from the centre [C], clamped to the span; 0 where temperature is not an input.
 [[nodiscard]] double temperature_offset(const Sample& sample, const TemperatureSpan& span);
 
 /// Unloaded conductance of every taxel, offset + per_celsius * dT, and the noise of one frame about it.
@@ -25,6 +25,7 @@ struct UnloadedFit {
   std::vector<double> offset_siemens;      ///< [taxels]
   std::vector<double> offset_per_celsius;  ///< [taxels]
   std::vector<double> noise_siemens;  ///< Standard deviation of a single frame [taxels], at least a third of a count.
+  std::vector<bool> is_stuck;         ///< Saturated although nothing presses [taxels].
 };
 
 /// Least squares over the frames in which nothing presses anywhere, at least one.

@@ -147,6 +147,7 @@ bool is_consistent(const Model& model) {
 }  // namespace
 
 Status write_model(const std::string& path, const Model& model) {
+  if (!is_consistent(model)) return failed("cannot write '" + path + "': the model holds values out of range");
   SafetensorsFile file;
   file.metadata["format"] = kFormat;
   file.metadata["array"] = store::array_to_toml(model.array);

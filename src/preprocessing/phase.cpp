@@ -5,8 +5,9 @@
 namespace dermis::preprocessing {
 
 Phase PhaseSelector::phase_at(Nanos time) noexcept {
-  if (!start_) start_ = time;
-  return time - *start_ < settle_time_ ? Phase::settle : after_settling_;
+  if (!start_ || time < *start_) start_ = time;
+  settled_ = settled_ || time - *start_ >= settle_time_;
+  return settled_ ? after_settling_ : Phase::settle;
 }
 
 Destination PhaseSelector::select(Nanos time, bool labelled) noexcept {

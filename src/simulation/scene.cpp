@@ -15,7 +15,7 @@
 namespace dermis::simulation {
 namespace {
 
-constexpr std::size_t kMostFrames = 10'000'000;
+constexpr std::size_t kMostFrames = 200'000;
 constexpr std::array kNames = {"calibration", "uniform", "paper", "multitouch",
                                "idle"};  // In the order of Scene::Kind.
 

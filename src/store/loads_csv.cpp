@@ -21,6 +21,7 @@ namespace dermis::store {
 namespace {
 
 constexpr std::string_view kHeader = "frame,kind,where,value";
+constexpr double kMostLoad = 1e6;  // N or kPa
 constexpr double kPascalPerKilopascal = 1000.0;
 
 struct NumberedLoad {
@@ -72,10 +73,10 @@ Result<std::size_t> parse_frame(std::string_view text, std::size_t frame_count) 
 Result<double> parse_value(std::string_view text, LoadKind kind) {
   double value = 0.0;
   if (!parse_number(text, value)) return bad_input("value " + in_quotes(text) + " is not a number");
-  if (kind == LoadKind::pressure) value *= kPascalPerKilopascal;
-  if (!std::isfinite(value) || value < 0.0) {
-    return bad_input("value " + in_quotes(text) + " must be finite and 0 or more");
+  if (!(value >= 0.0 && value <= kMostLoad)) {
+    return bad_input("value " + in_quotes(text) + " must be 0 to 1000000 (N or kPa)");
   }
+  if (kind == LoadKind::pressure) value *= kPascalPerKilopascal;
   return value;
 }
 

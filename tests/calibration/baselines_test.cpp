@@ -121,5 +121,28 @@ TEST(Baselines, fit_one_slope_where_only_totals_are_known) {
   EXPECT_NEAR(newtons[0] / newtons[1], 1.5, 1e-4);
 }
 
+TEST(Baselines, keep_their_temperature_term_where_labels_scatter) {
+  SampleDatabase database = linear_database(1);
+  int k = 0;
+  for (const double temperature : {10.0, 20.0, 30.0}) {
+    database.samples.push_back(unloaded_sample(1, temperature));
+    for (const double newtons : {1.0, 2.0, 4.0, 8.0}) {
+      const double weighed = newtons * (1.0 + 0.002 * (k++ % 5 - 2));
+      Sample sample = pressed_sample(1, 0, weighed, 20.0);
+      sample.temperature_celsius = temperature;
+      sample.reading[0] *= 1.0 + 0.005 * (temperature - 20.0);
+      database.samples.push_back(sample);
+    }
+  }
+  EXPECT_NEAR(make_baselines(database)[1].temperature_coefficient[0], -0.005, 0.0005);
+}
+
+TEST(Baselines, pass_over_a_saturated_reading_of_an_unloaded_frame) {
+  SampleDatabase database = linear_database(1);
+  database.samples = {unloaded_sample(1, 20.0), unloaded_sample(1, 20.0), pressed_sample(1, 0, 4.0, 20.0)};
+  database.samples[1].known_newtons[0] = kUnknown;
+  for (const auto& table : make_baselines(database)) EXPECT_TRUE(table.is_consistent());
+}
+
 }  // namespace
 }  // namespace dermis::calibration

@@ -145,5 +145,20 @@ TEST(Evaluation, refuses_loads_without_frames) {
   EXPECT_EQ(evaluation.error().message, "a load names frame 0, there are 0 (counted from 0)");
 }
 
+TEST(Evaluation, judges_totals_by_the_live_taxels_and_no_force_as_no_ghost) {
+  pipeline::Model model = exact_model();
+  model.networks.dead[1] = 1;
+  const std::vector<RawFrame> frames = {frame_under(model, {5.0, 0.0, 3.0, 0.0})};
+  const auto total = evaluate(model, frames, std::vector<Load>{{0, LoadKind::force, {0, 0, 1, 1}, 8.0}});
+  ASSERT_TRUE(total);
+  EXPECT_NEAR(*total->estimators.front().total_rmse_n, 0.0, 0.01);
+  const auto taxels =
+      evaluate(model, frames,
+               std::vector<Load>{{0, LoadKind::force, {0, 0, 0, 0}, 5.0}, {0, LoadKind::force, {1, 0, 1, 0}, 3.0}});
+  ASSERT_TRUE(taxels);
+  EXPECT_EQ(taxels->estimators.front().ghost_n.count, 1U);
+  EXPECT_LT(*taxels->estimators.front().ghost_n.max, 0.01);
+}
+
 }  // namespace
 }  // namespace dermis::calibration

@@ -169,5 +169,52 @@ TEST(ForceTraining, needs_a_load_and_an_answer) {
             "no taxel answers to its loads: check that frames and loads belong together, and the circuit");
 }
 
+TEST(ForceTraining, does_not_take_the_noise_of_a_temperature_sensor_for_temperature) {
+  const ArrayDescription array = reference_array(3, 3);
+  Recording recording = record(array, "calibration", 1);
+  Random random(1);
+  for (RawFrame& frame : recording.frames) frame.temperature_celsius = 25.0 + 0.4 * random.normal();
+  recording.frames[100].temperature_celsius = 85.0;  // a glitch
+  const auto training = train_force_networks(database_of(array, recording));
+  ASSERT_TRUE(training);
+  EXPECT_FALSE(training->report.uses_temperature);
+  EXPECT_EQ(training->report.own_networks, 9U);
+}
+
+TEST(ForceTraining, finds_a_taxel_that_is_stuck_at_the_end_of_the_adc) {
+  ArrayDescription array = reference_array(3, 3);
+  array.readout.circuit = Circuit::transimpedance;
+  Recording recording = record(array, "calibration", 1);
+  for (RawFrame& frame : recording.frames) frame.counts[4] = 4095.0F;
+  const auto training = train_force_networks(database_of(array, recording));
+  ASSERT_TRUE(training) << training.error().message;
+  EXPECT_EQ(training->report.dead_taxels, (std::vector<std::size_t>{4}));
+}
+
+TEST(ForceTraining, gives_a_taxel_the_hidden_units_that_its_own_samples_hold) {
+  const ArrayDescription array = reference_array(2, 2);
+  Recording recording = record(array, "calibration", 1);
+  std::size_t kept = 0;  // every eighth press of taxel 0: nine over all temperatures
+  std::erase_if(recording.loads, [&](const Load& load) {
+    return load.where == TaxelRegion{0, 0, 0, 0} && kept++ % 8 != 0;
+  });
+  const auto training = train_force_networks(database_of(array, recording));
+  ASSERT_TRUE(training);
+  EXPECT_EQ(training->report.own_networks, 4U);
+  EXPECT_EQ(training->report.hidden_units, 4U);  // the others are not held back
+}
+
+TEST(ForceTraining, needs_forces_that_differ_for_a_network_of_its_own) {
+  const ArrayDescription array = reference_array(2, 2);
+  Recording recording = record(array, "calibration", 1);
+  Random random(3);
+  std::erase_if(recording.loads,
+                [](const Load& load) { return load.value > 0.0 && (load.value < 6.0 || load.value > 9.0); });
+  for (Load& load : recording.loads) load.value *= 1.0 + 0.002 * random.normal();  // weighed, about one level
+  const auto training = train_force_networks(database_of(array, recording));
+  ASSERT_TRUE(training);
+  EXPECT_EQ(training->report.own_networks, 0U);
+}
+
 }  // namespace
 }  // namespace dermis::calibration

@@ -149,5 +149,35 @@ TEST(SampleDatabase, removes_crosstalk_and_supply) {
   }
 }
 
+TEST(SampleDatabase, drops_a_total_that_a_saturated_taxel_makes_incomplete) {
+  std::vector<RawFrame> frames = frames_of(3);
+  frames[1].counts[0] = 1023.0F;
+  const std::vector<Load> loads = {
+      {0, LoadKind::force, kAll, 0.0}, {1, LoadKind::force, kAll, 50.0}, {2, LoadKind::force, kAll, 20.0}};
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database);
+  EXPECT_TRUE(database->samples[1].totals.empty());
+  EXPECT_EQ(database->samples[2].totals.size(), 1U);
+}
+
+TEST(SampleDatabase, leaves_out_the_few_frames_without_a_temperature) {
+  std::vector<RawFrame> frames = frames_of(20);
+  std::vector<Load> loads;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    frames[k].counts.assign(6, 1.0F);
+    if (k != 7) frames[k].temperature_celsius = 20.0 + static_cast<double>(k);
+    loads.push_back({k, LoadKind::force, kAll, 0.0});
+  }
+  const auto few = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(few);
+  EXPECT_EQ(few->samples.size(), 19U);
+  EXPECT_EQ(few->first_rejection, "frame 7: no temperature, where most frames have one");
+
+  for (std::size_t k = 0; k < 10; ++k) frames[k].temperature_celsius.reset();
+  const auto many = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(many);
+  EXPECT_EQ(many->samples.size(), 20U);
+}
+
 }  // namespace
 }  // namespace dermis::calibration

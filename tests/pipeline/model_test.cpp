@@ -339,5 +339,15 @@ TEST(Model, a_folder_that_is_not_there_cannot_be_written_to) {
   EXPECT_EQ(written.error().message.find('\n'), std::string::npos);
 }
 
+TEST(Model, is_not_written_from_a_model_that_could_not_be_read_back) {
+  Model model = support::hand_made_model(2, 2);
+  model.networks.gain[1] = -1.0F;
+  const std::string path = (std::filesystem::temp_directory_path() / "dermis_inconsistent.safetensors").string();
+  const Status written = write_model(path, model);
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().message, "cannot write '" + path + "': the model holds values out of range");
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
 }  // namespace
 }  // namespace dermis::pipeline

@@ -55,5 +55,18 @@ TEST(PhaseSelector, every_frame_reaches_the_pipeline_while_operating) {
   EXPECT_EQ(selector.select(seconds(2), false), Destination::pipeline);
 }
 
+TEST(Phase, stays_settled_when_the_clock_goes_back) {
+  PhaseSelector at_once(Nanos(0), Phase::operate);
+  EXPECT_EQ(at_once.phase_at(Nanos(100)), Phase::operate);
+  EXPECT_EQ(at_once.phase_at(Nanos(5)), Phase::operate);
+
+  PhaseSelector later(Nanos(10), Phase::calibrate);
+  EXPECT_EQ(later.phase_at(Nanos(100)), Phase::settle);
+  EXPECT_EQ(later.phase_at(Nanos(0)), Phase::settle);  // the clock starts anew
+  EXPECT_EQ(later.phase_at(Nanos(9)), Phase::settle);
+  EXPECT_EQ(later.phase_at(Nanos(10)), Phase::calibrate);
+  EXPECT_EQ(later.phase_at(Nanos(3)), Phase::calibrate);
+}
+
 }  // namespace
 }  // namespace dermis::preprocessing

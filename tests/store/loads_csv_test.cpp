@@ -113,9 +113,9 @@ TEST(LoadsCsv, refuses_a_reversed_region) {
 TEST(LoadsCsv, refuses_a_value_that_is_no_load) {
   EXPECT_EQ(error_of("0,force,all,1N"), "loads.csv:2: value '1N' is not a number");
   for (const std::string value : {"-1", "nan", "inf"}) {
-    EXPECT_EQ(error_of("0,force,all," + value), "loads.csv:2: value '" + value + "' must be finite and 0 or more");
+    EXPECT_EQ(error_of("0,force,all," + value), "loads.csv:2: value '" + value + "' must be 0 to 1000000 (N or kPa)");
   }
-  EXPECT_EQ(error_of("0,pressure,all,1e308"), "loads.csv:2: value '1e308' must be finite and 0 or more");
+  EXPECT_EQ(error_of("0,pressure,all,1e308"), "loads.csv:2: value '1e308' must be 0 to 1000000 (N or kPa)");
 }
 
 TEST(LoadsCsv, refuses_loads_that_share_a_taxel_and_names_both_lines) {

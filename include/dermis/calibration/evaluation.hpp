@@ -34,9 +34,9 @@ struct ErrorSummary {
 struct EstimatorResult {
   std::string name;                    ///< "dermis" first, then the baselines.
   ErrorSummary relative_error;         ///< |estimate / truth - 1| of taxels of at least kJudgedNewtons; dimensionless.
-  ErrorSummary ghost_n;                ///< Force on taxels that are unloaded [N].
+  ErrorSummary ghost_n;                ///< Force on unloaded taxels that give one [N].
   std::size_t totals_judged = 0;       ///< `force` loads over several taxels.
-  std::optional<double> total_rmse_n;  ///< Root mean square error of their sums [N].
+  std::optional<double> total_rmse_n;  ///< Root mean square error of their sums over live taxels [N].
   ErrorSummary total_relative_error;   ///< |sum / total - 1| of totals above 0.
 };
 

@@ -18,7 +18,7 @@ struct TrainingReport {
   std::size_t own_networks = 0;     ///< Taxels with a network of their own.
   std::size_t shared_networks = 0;  ///< Taxels on the shared network with a gain.
   std::vector<std::size_t> dead_taxels;
-  std::size_t hidden_units = 0;             ///< Of each network of its own.
+  std::size_t hidden_units = 0;             ///< Most of a network of its own; fewer where its samples are few.
   std::size_t shared_hidden_units = 0;      ///< Of the shared network.
   double shared_leave_one_out_error = 0.0;  ///< Root mean square relative error of a load left out of the shared fit.
   bool uses_temperature = false;

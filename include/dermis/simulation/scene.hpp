@@ -58,7 +58,7 @@ struct SceneFrame {
 class Scene {
  public:
   /// Fails on an unknown name, options out of range, a frame count for a scene of fixed length (or one that is not 1
-  /// ... 10 million), and where the array does not suit: uniform needs taxel_area_m2, paper at least 16 taxels.
+  /// ... 200,000), and where the array does not suit: uniform needs taxel_area_m2, paper at least 16 taxels.
   [[nodiscard]] static Result<Scene> create(std::string_view name, const ArrayDescription& array,
                                             const EnvironmentOptions& environment, std::uint64_t seed,
                                             std::optional<std::size_t> frames = {});
