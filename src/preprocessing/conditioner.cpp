@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace dermis::preprocessing {
@@ -48,11 +49,6 @@ Rejection Conditioner::inspect(const RawFrame& raw) const noexcept {
   return Rejection::none;
 }
 
-bool Conditioner::is_saturated(double counts) const noexcept {
-  constexpr double kHalfCount = 0.5;  // averaged readings
-  return array_.readout.pressure_raises_reading ? counts > full_scale_counts_ - kHalfCount : counts < kHalfCount;
-}
-
 void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
   conditioned.time = raw.time;
   conditioned.temperature_celsius = raw.temperature_celsius;
@@ -68,18 +64,27 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
     return;
   }
   last_time_ = raw.time;
+  convert(raw, conditioned);
+}
 
+void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept {
   const Readout& readout = array_.readout;
   const std::optional<double> supply_v = raw.supply_v ? raw.supply_v : readout.supply_v;
   const double reference = readout.adc_reference_v && supply_v ? *readout.adc_reference_v / *supply_v : 1.0;
   const double scale = (readout.pressure_raises_reading ? reference : -reference) / full_scale_counts_;
   const double zero = readout.pressure_raises_reading ? 0.0 : 1.0;
+  constexpr float kHalfCount = 0.5F;  // averaged readings
+  constexpr float kNever = std::numeric_limits<float>::infinity();
+  const float highest = readout.pressure_raises_reading ? static_cast<float>(full_scale_counts_) - kHalfCount : kNever;
+  const float lowest = readout.pressure_raises_reading ? -kNever : kHalfCount;
+  bool any_saturated = false;
   for (std::size_t taxel = 0; taxel < raw.counts.size(); ++taxel) {
     conditioned.ratio[taxel] = zero + scale * static_cast<double>(raw.counts[taxel]);
-    const bool saturated = is_saturated(static_cast<double>(raw.counts[taxel]));
+    const bool saturated = raw.counts[taxel] > highest || raw.counts[taxel] < lowest;
     conditioned.taxels[taxel] = saturated ? TaxelStatus::saturated : TaxelStatus::ok;
-    if (saturated) conditioned.status |= FrameStatus::saturated;
+    any_saturated = any_saturated || saturated;
   }
+  if (any_saturated) conditioned.status |= FrameStatus::saturated;
 }
 
 void bare_readings(const ArrayDescription& array, const RawFrame& raw, std::span<double> reading) noexcept {

@@ -47,8 +47,8 @@ class Conditioner {
   [[nodiscard]] Rejection rejection() const noexcept { return rejection_; }
 
  private:
-  [[nodiscard]] bool is_saturated(double counts) const noexcept;
   [[nodiscard]] Rejection inspect(const RawFrame& raw) const noexcept;
+  void convert(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
 
   ArrayDescription array_;
   double full_scale_counts_;
