@@ -23,7 +23,7 @@ struct TotalForce {
 
 /// A labelled frame with supply and crosstalk removed.
 struct Sample {
-  std::size_t frame = 0;                ///< Index in the recording.
+  std::size_t frame = 0;  ///< Index in the recording.
   std::optional<double> temperature_celsius;
   std::vector<double> reading;       ///< Bare readings [taxels], counts / full scale, for the baselines.
   std::vector<double> siemens;       ///< Conductances [taxels].
