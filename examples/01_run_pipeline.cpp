@@ -40,7 +40,6 @@ int main(int argc, char** argv) {
     std::printf("%.3f s  %-12s total %7.2f N  strongest %s %6.2f N\n",
                 std::chrono::duration<double>(force.time).count(), dermis::to_string(force.status).c_str(),
                 std::accumulate(force.newtons.begin(), force.newtons.end(), 0.0),
-                dermis::taxel_name(taxel / model->array.cols, taxel % model->array.cols).c_str(),
-                static_cast<double>(force.newtons[taxel]));
+                model->array.taxel_name(taxel).c_str(), static_cast<double>(force.newtons[taxel]));
   }
 }

@@ -62,7 +62,7 @@ void print_text(const CalibrationReport& report, const ArrayDescription& array) 
                "warning: a poor fit; do frames and loads belong together, and are circuit and polarity right?\n");
   }
   for (const std::size_t taxel : training.dead_taxels) {
-    fmt::print("dead taxel {}: it does not answer to its loads\n", taxel_name(taxel / array.cols, taxel % array.cols));
+    fmt::print("dead taxel {}: it does not answer to its loads\n", array.taxel_name(taxel));
   }
   fmt::print("time:");
   for (const calibration::StageTime& stage : report.stages) fmt::print(" {} {:.2f} s", stage.stage, stage.seconds);
@@ -86,7 +86,7 @@ void print_json(const CalibrationReport& report, const ArrayDescription& array) 
                                  {"dead_taxels", nlohmann::ordered_json::array()},
                                  {"seconds", nlohmann::ordered_json::object()}};
   for (const std::size_t taxel : training.dead_taxels) {
-    json["dead_taxels"].push_back(taxel_name(taxel / array.cols, taxel % array.cols));
+    json["dead_taxels"].push_back(array.taxel_name(taxel));
   }
   for (const calibration::StageTime& stage : report.stages) json["seconds"][stage.stage] = stage.seconds;
   fmt::print("{}\n", json.dump(2));

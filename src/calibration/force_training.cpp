@@ -34,14 +34,13 @@ struct Evidence {
   std::vector<bool> dead;                       ///< [taxels]
 };
 
-std::vector<TaxelPoint> known_points(const SampleDatabase& database, std::size_t taxel, const Evidence& evidence) {
+std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size_t taxel, const Evidence& evidence) {
   std::vector<TaxelPoint> points;
   for (const Sample& sample : database.samples) {
     const double newtons = sample.known_newtons[taxel];
     if (!(newtons > 0.0)) continue;
-    const double t =
-        evidence.span.is_input ? temperature_offset(sample, evidence.span) / evidence.span.half_span_celsius : 0.0;
-    points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.span), t, newtons});
+    points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.span),
+                      normalised_temperature(sample, evidence.span), newtons});
   }
   return points;
 }
@@ -65,7 +64,7 @@ Evidence gather_evidence(const SampleDatabase& database) {
   evidence.points.resize(taxels);
   std::vector<char> dead(taxels);
   parallel_for(taxels, [&](std::size_t taxel) {
-    std::vector<TaxelPoint> points = known_points(database, taxel, evidence);
+    std::vector<TaxelPoint> points = pressed_points(database, taxel, evidence);
     const double noise = evidence.unloaded.noise_siemens[taxel];
     dead[taxel] = evidence.unloaded.is_stuck[taxel] || is_dead(points, noise) ? 1 : 0;
     std::erase_if(points, [&](const TaxelPoint& point) { return point.excess_siemens < kDetectable * noise; });
@@ -228,8 +227,7 @@ std::string describe_fit(const TrainingReport& report, const ArrayDescription& a
   std::string text;
   if (report.own_networks > 0) {
     text = fmt::format("median {:.2f} %, worst taxel {} {:.2f} % on their own samples", 100.0 * report.median_fit_error,
-                       taxel_name(report.worst_taxel / array.cols, report.worst_taxel % array.cols),
-                       100.0 * report.worst_fit_error);
+                       array.taxel_name(report.worst_taxel), 100.0 * report.worst_fit_error);
   }
   if (report.shared_networks > 0) {
     text += fmt::format("{}shared network {:.2f} % on loads left out", text.empty() ? "" : "; ",

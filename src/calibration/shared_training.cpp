@@ -94,7 +94,7 @@ class LoadCollector {
   void add(const Sample& sample, const std::vector<std::size_t>& taxels, double newtons) {
     RawLoad load;
     load.newtons = newtons;
-    if (span_.is_input) load.temperature = temperature_offset(sample, span_) / span_.half_span_celsius;
+    load.temperature = normalised_temperature(sample, span_);
     bool is_felt = false;
     for (const std::size_t taxel : taxels) {
       if (dead_[taxel]) continue;

@@ -78,6 +78,10 @@ double temperature_offset(const Sample& sample, const TemperatureSpan& span) {
   return std::clamp(*sample.temperature_celsius - span.centre_celsius, -span.half_span_celsius, span.half_span_celsius);
 }
 
+double normalised_temperature(const Sample& sample, const TemperatureSpan& span) {
+  return span.is_input ? temperature_offset(sample, span) / span.half_span_celsius : 0.0;
+}
+
 UnloadedFit fit_unloaded(const SampleDatabase& database, const TemperatureSpan& span) {
   const std::size_t taxels = database.array.taxel_count();
   const double least_noise = kLeastNoiseCounts * database.siemens_per_count;

@@ -20,6 +20,9 @@ struct TemperatureSpan {
 /// Sample temperature from the centre [C], clamped to the span; 0 where temperature is not an input.
 [[nodiscard]] double temperature_offset(const Sample& sample, const TemperatureSpan& span);
 
+/// The same as an input of a network, in [-1, 1].
+[[nodiscard]] double normalised_temperature(const Sample& sample, const TemperatureSpan& span);
+
 /// Unloaded conductance of every taxel, offset + per_celsius * dT, and the noise of one frame about it.
 struct UnloadedFit {
   std::vector<double> offset_siemens;      ///< [taxels]

@@ -48,6 +48,10 @@ double Readout::full_scale_counts() const noexcept {
   return std::ldexp(1.0, adc_bits) - 1.0;
 }
 
+std::string ArrayDescription::taxel_name(std::size_t taxel) const {
+  return dermis::taxel_name(taxel / cols, taxel % cols);
+}
+
 Status ArrayDescription::validate() const {
   if (rows < 1 || rows > kMaxLines) return bad_input("array.rows: must be 1 to " + std::to_string(kMaxLines));
   if (cols < 1 || cols > kMaxLines) return bad_input("array.cols: must be 1 to " + std::to_string(kMaxLines));

@@ -140,8 +140,8 @@ class OverlapCheck {
 
   [[nodiscard]] Error overlap(const NumberedLoad& numbered, std::size_t earlier, std::size_t taxel) const {
     return bad_input(name_ + ":" + std::to_string(numbered.line) + ": overlaps line " + std::to_string(earlier) +
-                     " at " + taxel_name(taxel / array_.cols, taxel % array_.cols) + " of frame " +
-                     std::to_string(numbered.load.frame) + "; name each taxel once per frame");
+                     " at " + array_.taxel_name(taxel) + " of frame " + std::to_string(numbered.load.frame) +
+                     "; name each taxel once per frame");
   }
 
   const std::string& name_;

@@ -91,5 +91,12 @@ TEST(ArrayDescription, has_names_as_in_files) {
   EXPECT_STREQ(to_string(IdleRows::floating), "floating");
 }
 
+TEST(ArrayDescription, names_a_taxel_by_its_row_major_index) {
+  ArrayDescription array;
+  array.rows = 3;
+  array.cols = 4;
+  EXPECT_EQ(array.taxel_name(array.index(2, 1)), "r2c1");
+}
+
 }  // namespace
 }  // namespace dermis

@@ -18,26 +18,14 @@
 
 #include "dermis/core/random.hpp"
 #include "dermis/store/safetensors.hpp"
+#include "store/temporary_folder.hpp"
 #include "support/hand_made_model.hpp"
 #include "support/random_networks.hpp"
 
 namespace dermis::pipeline {
 namespace {
 
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = testing::TempDir() + "dermis_pipeline_XXXXXX";
-    path_ = ::mkdtemp(pattern.data());
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-  [[nodiscard]] std::string file(const char* name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
-};
+using store::TemporaryFolder;
 
 fusion::LookUpTables make_baseline(std::size_t taxels, const char* name, fusion::LookUpSignal signal) {
   fusion::LookUpTables tables;
@@ -342,11 +330,12 @@ TEST(Model, a_folder_that_is_not_there_cannot_be_written_to) {
 TEST(Model, is_not_written_from_a_model_that_could_not_be_read_back) {
   Model model = support::hand_made_model(2, 2);
   model.networks.gain[1] = -1.0F;
-  const std::string path = (std::filesystem::temp_directory_path() / "dermis_inconsistent.safetensors").string();
+  const TemporaryFolder folder;
+  const std::string path = folder.file("model.safetensors");
   const Status written = write_model(path, model);
   ASSERT_FALSE(written);
   EXPECT_EQ(written.error().message, "cannot write '" + path + "': the model holds values out of range");
-  EXPECT_FALSE(std::filesystem::exists(path));
+  EXPECT_EQ(folder.file_count(), 0U);
 }
 
 }  // namespace

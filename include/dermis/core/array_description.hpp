@@ -56,6 +56,9 @@ struct ArrayDescription {
   [[nodiscard]] std::size_t taxel_count() const noexcept { return rows * cols; }
   [[nodiscard]] std::size_t index(std::size_t row, std::size_t col) const noexcept { return row * cols + col; }
 
+  /// "r3c5" for a row-major index.
+  [[nodiscard]] std::string taxel_name(std::size_t taxel) const;
+
   /// Names the first field that is out of its range, as "readout.load_ohm: ...".
   [[nodiscard]] Status validate() const;
 };
