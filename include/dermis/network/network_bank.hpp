@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dermis/network/network_shape.hpp"
+
+namespace dermis::network {
+
+/// A training step of a bank on a database of patterns that all networks share; each network draws its own batch.
+struct BankBatch {
+  std::size_t batch = 0;                   ///< Patterns a network and step.
+  std::span<const float> inputs;           ///< The database, [patterns, inputs].
+  std::span<const float> targets;          ///< [patterns, networks * outputs].
+  std::span<const std::uint32_t> chosen;   ///< Rows of the database, [networks, batch].
+  std::span<const float> weights;          ///< Of the chosen patterns, [networks, batch]; empty: all 1.
+};
+
+/// How a step moves the parameters against the gradient of 1/batch times eq. (6) of the batch.
+struct BankStep {
+  enum class Rule : std::uint8_t { gradient_descent, adam };
+  Rule rule = Rule::gradient_descent;
+  float rate = 0.1F;          ///< > 0
+  float first_decay = 0.9F;   ///< Adam (Kingma and Ba 2015): beta 1, beta 2, epsilon.
+  float second_decay = 0.999F;
+  float epsilon = 1e-8F;
+};
+
+/// Many networks of one shape and different weights, evaluated and trained side by side, single precision.
+/// The paper's bank is one N-N-N-1 network a taxel. Results do not depend on the number of threads.
+class NetworkBank {
+ public:
+  /// All parameters 0. The shape must be valid.
+  NetworkBank(NetworkShape shape, std::size_t networks);
+
+  [[nodiscard]] const NetworkShape& shape() const noexcept;
+  [[nodiscard]] std::size_t network_count() const noexcept;
+  /// Unknowns of all networks together.
+  [[nodiscard]] std::size_t parameter_count() const noexcept;
+
+  /// Parameters of one network as NetworkShape orders them, [shape.parameter_count()].
+  void set_parameters(std::size_t network, std::span<const float> parameters);
+  void parameters(std::size_t network, std::span<float> parameters) const;
+
+  /// One frame: inputs [inputs], the same for all networks -> outputs [networks, outputs].
+  void evaluate(std::span<const float> inputs, std::span<float> outputs);
+  /// inputs [count, inputs] -> outputs [count, networks, outputs].
+  void evaluate_batch(std::span<const float> inputs, std::span<float> outputs);
+
+  /// One training step of every network; the error of each before the step, 1/batch times eq. (6), in `errors`
+  /// [networks].
+  void train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors);
+};
+
+}  // namespace dermis::network
