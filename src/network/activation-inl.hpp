@@ -49,11 +49,17 @@ struct PowerOfTwo<double> {
                                        7.072561162989455e-09,  4.4455223771342466e-10};
 };
 
-/// z within the powers of two that numbers have. NaN stays NaN: the bound comes first.
+/// z within the powers of two that numbers have. NaN stays NaN: x86 gives the second operand then; elsewhere Min and
+/// Max may swallow it.
 template <class D>
 HWY_INLINE hn::Vec<D> bounded_power(D d, hn::Vec<D> z) {
   const auto largest = hn::Set(d, PowerOfTwo<hn::TFromD<D>>::kLargest);
+#if HWY_TARGET <= HWY_SSSE3
   return hn::Max(hn::Neg(largest), hn::Min(largest, z));
+#else
+  const auto not_above = hn::IfThenElse(hn::Gt(z, largest), largest, z);
+  return hn::IfThenElse(hn::Lt(z, hn::Neg(largest)), hn::Neg(largest), not_above);
+#endif
 }
 
 /// (2^r - 1) / r for |r| <= 1/2.

@@ -26,11 +26,11 @@ using Lanes = hn::CappedTag<Real, kCacheLineBytes / sizeof(Real)>;
 /// Vectors that a kernel works on at a time: sums and what they are made of fit the registers.
 constexpr std::size_t kVectors = HWY_TARGET <= HWY_AVX3 || HWY_ARCH_ARM ? 4 : 2;
 
-/// Calls body(first, std::integral_constant<n>) for first = 0, kAtOnce, ...; n = kAtOnce, for the rest 1.
-template <std::size_t kAtOnce, class Body>
+/// Calls body(first, std::integral_constant<n>) for first = 0, AtOnce, ...; n = AtOnce, for the rest 1.
+template <std::size_t AtOnce, class Body>
 HWY_INLINE void in_blocks(std::size_t count, const Body& body) {
   std::size_t first = 0;
-  for (; first + kAtOnce <= count; first += kAtOnce) body(first, std::integral_constant<std::size_t, kAtOnce>());
+  for (; first + AtOnce <= count; first += AtOnce) body(first, std::integral_constant<std::size_t, AtOnce>());
   for (; first < count; ++first) body(first, std::integral_constant<std::size_t, 1>());
 }
 
@@ -77,8 +77,8 @@ void prepare(const PlacedShape& shape, const Real* parameters, Real* prepared) {
 }
 
 /// The outputs of neurons, from their scaled sums, in place.
-template <std::size_t kCount, class D>
-HWY_INLINE void activate_all(D d, Activation activation, hn::Vec<D> (&values)[kCount]) {
+template <std::size_t Count, class D>
+HWY_INLINE void activate_all(D d, Activation activation, hn::Vec<D> (&values)[Count]) {
   switch (activation) {
     case Activation::log_sigmoid:
       for (auto& value : values) value = log_sigmoid_of_power(d, value);
@@ -87,34 +87,34 @@ HWY_INLINE void activate_all(D d, Activation activation, hn::Vec<D> (&values)[kC
       for (auto& value : values) value = tanh_of_power(d, value);
       break;
     case Activation::relu:
-      for (auto& value : values) value = hn::Max(hn::Zero(d), value);
+      for (auto& value : values) value = hn::IfThenZeroElse(hn::Lt(value, hn::Zero(d)), value);
       break;
     case Activation::linear: break;
   }
 }
 
-/// Eq. (4) for kUnits neurons and kCount vectors of samples.
-template <std::size_t kUnits, std::size_t kCount, class D, typename Real = hn::TFromD<D>>
+/// Eq. (4) for Units neurons and Count vectors of samples.
+template <std::size_t Units, std::size_t Count, class D, typename Real = hn::TFromD<D>>
 HWY_INLINE void forward_block(D d, const PlacedLayer& layer, const Real* prepared, std::size_t unit, const Real* below,
                               Real* outputs) {
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  hn::Vec<D> sums[kUnits * kCount];
-  for (std::size_t u = 0; u < kUnits; ++u) {
-    for (std::size_t v = 0; v < kCount; ++v) sums[u * kCount + v] = hn::Set(d, prepared[layer.thresholds + unit + u]);
+  hn::Vec<D> sums[Units * Count];
+  for (std::size_t u = 0; u < Units; ++u) {
+    for (std::size_t v = 0; v < Count; ++v) sums[u * Count + v] = hn::Set(d, prepared[layer.thresholds + unit + u]);
   }
   const Real* weights = prepared + layer.weights + unit * layer.fan_in;
   for (std::size_t k = 0; k < layer.fan_in; ++k) {
-    hn::Vec<D> x[kCount];
-    for (std::size_t v = 0; v < kCount; ++v) x[v] = hn::Load(d, below + k * kTile + v * kLanes);
-    for (std::size_t u = 0; u < kUnits; ++u) {
+    hn::Vec<D> x[Count];
+    for (std::size_t v = 0; v < Count; ++v) x[v] = hn::Load(d, below + k * kTile + v * kLanes);
+    for (std::size_t u = 0; u < Units; ++u) {
       const auto weight = hn::Set(d, weights[u * layer.fan_in + k]);
-      for (std::size_t v = 0; v < kCount; ++v) sums[u * kCount + v] = hn::MulAdd(weight, x[v], sums[u * kCount + v]);
+      for (std::size_t v = 0; v < Count; ++v) sums[u * Count + v] = hn::MulAdd(weight, x[v], sums[u * Count + v]);
     }
   }
   activate_all(d, layer.activation, sums);
-  for (std::size_t u = 0; u < kUnits; ++u) {
-    for (std::size_t v = 0; v < kCount; ++v) {
-      hn::Store(sums[u * kCount + v], d, outputs + (unit + u) * kTile + v * kLanes);
+  for (std::size_t u = 0; u < Units; ++u) {
+    for (std::size_t v = 0; v < Count; ++v) {
+      hn::Store(sums[u * Count + v], d, outputs + (unit + u) * kTile + v * kLanes);
     }
   }
 }
@@ -179,27 +179,27 @@ double output_error(D d, const PlacedLayer& top, const Real* outputs, const Real
   return 0.5 * error;
 }
 
-/// sums [kUnits, fan_in, kLine] of kUnits neurons += delta times what is below, for inputs k ... k + kInputs - 1.
-template <std::size_t kUnits, std::size_t kInputs, class D, typename Real = hn::TFromD<D>>
+/// sums [Units, fan_in, kLine] of Units neurons += delta times what is below, for inputs k ... k + Inputs - 1.
+template <std::size_t Units, std::size_t Inputs, class D, typename Real = hn::TFromD<D>>
 HWY_INLINE void weight_gradient_block(D d, const Real* deltas, const Real* below, std::size_t vectors,
                                       std::size_t fan_in, Real* sums) {
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  hn::Vec<D> block[kUnits * kInputs];
+  hn::Vec<D> block[Units * Inputs];
   for (auto& sum : block) sum = hn::Zero(d);
   for (std::size_t v = 0; v < vectors; ++v) {
-    hn::Vec<D> delta[kUnits];
-    for (std::size_t u = 0; u < kUnits; ++u) delta[u] = hn::Load(d, deltas + u * kTile + v * kLanes);
-    for (std::size_t k = 0; k < kInputs; ++k) {
+    hn::Vec<D> delta[Units];
+    for (std::size_t u = 0; u < Units; ++u) delta[u] = hn::Load(d, deltas + u * kTile + v * kLanes);
+    for (std::size_t k = 0; k < Inputs; ++k) {
       const auto x = hn::Load(d, below + k * kTile + v * kLanes);
-      for (std::size_t u = 0; u < kUnits; ++u) {
-        block[u * kInputs + k] = hn::MulAdd(delta[u], x, block[u * kInputs + k]);
+      for (std::size_t u = 0; u < Units; ++u) {
+        block[u * Inputs + k] = hn::MulAdd(delta[u], x, block[u * Inputs + k]);
       }
     }
   }
-  for (std::size_t u = 0; u < kUnits; ++u) {
-    for (std::size_t k = 0; k < kInputs; ++k) {
+  for (std::size_t u = 0; u < Units; ++u) {
+    for (std::size_t k = 0; k < Inputs; ++k) {
       Real* sum = sums + (u * fan_in + k) * WorkSpace<Real>::kLine;
-      hn::Store(hn::Add(hn::Load(d, sum), block[u * kInputs + k]), d, sum);
+      hn::Store(hn::Add(hn::Load(d, sum), block[u * Inputs + k]), d, sum);
     }
   }
 }
@@ -223,28 +223,28 @@ void layer_gradient(D d, const PlacedLayer& layer, const Real* deltas, const Rea
   }
 }
 
-/// dE/dsum of kUnits neurons of the layer below, whose outputs are `outputs`, for kCount vectors of samples.
-template <std::size_t kUnits, std::size_t kCount, class D, typename Real = hn::TFromD<D>>
+/// dE/dsum of Units neurons of the layer below, whose outputs are `outputs`, for Count vectors of samples.
+template <std::size_t Units, std::size_t Count, class D, typename Real = hn::TFromD<D>>
 HWY_INLINE void deltas_block(D d, const Real* weights, const PlacedLayer& layer, Activation activation_below,
                              const Real* deltas, const Real* outputs, Real* deltas_below) {
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  hn::Vec<D> sums[kUnits * kCount];
+  hn::Vec<D> sums[Units * Count];
   for (auto& sum : sums) sum = hn::Zero(d);
   for (std::size_t above = 0; above < layer.units; ++above) {
-    hn::Vec<D> delta[kCount];
-    for (std::size_t v = 0; v < kCount; ++v) delta[v] = hn::Load(d, deltas + above * kTile + v * kLanes);
-    for (std::size_t u = 0; u < kUnits; ++u) {
+    hn::Vec<D> delta[Count];
+    for (std::size_t v = 0; v < Count; ++v) delta[v] = hn::Load(d, deltas + above * kTile + v * kLanes);
+    for (std::size_t u = 0; u < Units; ++u) {
       const auto weight = hn::Set(d, weights[above * layer.fan_in + u]);
-      for (std::size_t v = 0; v < kCount; ++v) {
-        sums[u * kCount + v] = hn::MulAdd(weight, delta[v], sums[u * kCount + v]);
+      for (std::size_t v = 0; v < Count; ++v) {
+        sums[u * Count + v] = hn::MulAdd(weight, delta[v], sums[u * Count + v]);
       }
     }
   }
-  for (std::size_t u = 0; u < kUnits; ++u) {
-    for (std::size_t v = 0; v < kCount; ++v) {
+  for (std::size_t u = 0; u < Units; ++u) {
+    for (std::size_t v = 0; v < Count; ++v) {
       const std::size_t place = u * kTile + v * kLanes;
       const auto output = hn::Load(d, outputs + place);
-      hn::Store(through(d, activation_below, sums[u * kCount + v], output), d, deltas_below + place);
+      hn::Store(through(d, activation_below, sums[u * Count + v], output), d, deltas_below + place);
     }
   }
 }
@@ -448,7 +448,7 @@ HWY_INLINE void add_sums(Lanes<double> d, const hn::Vec<Lanes<double>>* v, doubl
 
 /// products [kBlock, kBlock] += rows a times rows b, summed over samples; of a block on the diagonal only the lower
 /// triangle. The last rows of a matrix may be fewer than kBlock.
-template <std::size_t kRows, bool kDiagonal, class D, typename Real = hn::TFromD<D>>
+template <std::size_t Rows, bool Diagonal, class D, typename Real = hn::TFromD<D>>
 HWY_INLINE void product_block(D d, const Real* a, const Real* b, std::size_t vectors, Real* products) {
   constexpr std::size_t kBlock = WorkSpace<Real>::kBlock;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
@@ -456,27 +456,27 @@ HWY_INLINE void product_block(D d, const Real* a, const Real* b, std::size_t vec
   for (auto& sum : sums) sum = hn::Zero(d);
   for (std::size_t v = 0; v < vectors; ++v) {
     hn::Vec<D> x[kBlock];
-    for (std::size_t j = 0; j < (kDiagonal ? kRows : kBlock); ++j) x[j] = hn::Load(d, b + j * kTile + v * kLanes);
-    for (std::size_t i = 0; i < kRows; ++i) {
-      const auto y = kDiagonal ? x[i] : hn::Load(d, a + i * kTile + v * kLanes);
-      for (std::size_t j = 0; j < (kDiagonal ? i + 1 : kBlock); ++j) {
+    for (std::size_t j = 0; j < (Diagonal ? Rows : kBlock); ++j) x[j] = hn::Load(d, b + j * kTile + v * kLanes);
+    for (std::size_t i = 0; i < Rows; ++i) {
+      const auto y = Diagonal ? x[i] : hn::Load(d, a + i * kTile + v * kLanes);
+      for (std::size_t j = 0; j < (Diagonal ? i + 1 : kBlock); ++j) {
         sums[i * kBlock + j] = hn::MulAdd(y, x[j], sums[i * kBlock + j]);
       }
     }
   }
-  for (std::size_t k = 0; k < kRows * kBlock; k += 8) add_sums(d, sums + k, products + k);
+  for (std::size_t k = 0; k < Rows * kBlock; k += 8) add_sums(d, sums + k, products + k);
 }
 
 /// A row of blocks of the lower triangle of rows rows^T.
-template <std::size_t kRows, class D, typename Real = hn::TFromD<D>>
+template <std::size_t Rows, class D, typename Real = hn::TFromD<D>>
 void product_row(D d, const Real* rows, std::size_t block_row, std::size_t vectors, Real* products) {
   constexpr std::size_t kBlock = WorkSpace<Real>::kBlock;
   const Real* a = rows + block_row * kBlock * kTile;
   for (std::size_t block = 0; block < block_row; ++block) {
-    product_block<kRows, false>(d, a, rows + block * kBlock * kTile, vectors, products);
+    product_block<Rows, false>(d, a, rows + block * kBlock * kTile, vectors, products);
     products += kBlock * kBlock;
   }
-  product_block<kRows, true>(d, a, a, vectors, products);
+  product_block<Rows, true>(d, a, a, vectors, products);
 }
 
 template <class D, typename Real = hn::TFromD<D>>

@@ -55,14 +55,14 @@ struct WorkSpace {
   /// Rows and columns of a block of the normal matrix.
   static constexpr std::size_t kBlock = 4;
 
-  std::size_t prepared;   ///< The parameters, scaled for the activation functions.
-  std::size_t inputs;     ///< Of one tile [inputs, kTile], where they are not packed.
-  std::size_t outputs;    ///< Of every layer [units, kTile].
-  std::size_t deltas[2];  ///< dE/dsum of two layers in turn [units, kTile].
-  std::size_t sums;       ///< The gradient, still apart in lanes [parameters, kLine].
-  std::size_t rows;       ///< Parameters that one output depends on, and one for its residual.
-  std::size_t jacobian;   ///< Of one output [rows, kTile].
-  std::size_t products;   ///< Its J^T J, lower triangle of blocks [kBlock, kBlock].
+  std::size_t prepared;        ///< The parameters, scaled for the activation functions.
+  std::size_t inputs;          ///< Of one tile [inputs, kTile], where they are not packed.
+  std::size_t outputs;         ///< Of every layer [units, kTile].
+  std::size_t deltas[2] = {};  ///< dE/dsum of two layers in turn [units, kTile].
+  std::size_t sums;            ///< The gradient, still apart in lanes [parameters, kLine].
+  std::size_t rows;            ///< Parameters that one output depends on, and one for its residual.
+  std::size_t jacobian;        ///< Of one output [rows, kTile].
+  std::size_t products;        ///< Its J^T J, lower triangle of blocks [kBlock, kBlock].
   std::size_t evaluate_size;
   std::size_t gradient_size;
   std::size_t normal_size;
