@@ -4,7 +4,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cassert>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 namespace dermis::network {
@@ -19,65 +21,155 @@ constexpr double kMinDamping = 1e-12;
 constexpr double kMaxLeverage = 0.95;
 constexpr double kDiagonalFloor = 1e-12;  // keeps parameters without influence from making the system singular
 
-std::span<double> view(Vector& vector) {
-  return {vector.data(), static_cast<std::size_t>(vector.size())};
+template <typename Dense>
+std::span<double> view(Dense& dense) {
+  return {dense.data(), static_cast<std::size_t>(dense.size())};
 }
-std::span<const double> view(const Vector& vector) {
-  return {vector.data(), static_cast<std::size_t>(vector.size())};
+template <typename Dense>
+std::span<const double> view(const Dense& dense) {
+  return {dense.data(), static_cast<std::size_t>(dense.size())};
 }
+
+/// Half the sum of squared residuals.
+class ResidualProblem {
+ public:
+  ResidualProblem(const ResidualFunction& residual_function, std::size_t residual_count, std::size_t parameter_count)
+      : residual_function_(residual_function),
+        residuals_(static_cast<Eigen::Index>(residual_count)),
+        jacobian_(residuals_.size(), static_cast<Eigen::Index>(parameter_count)) {}
+
+  double error(const Vector& point) {
+    residual_function_(view(point), view(residuals_), {});
+    return 0.5 * residuals_.squaredNorm();
+  }
+
+  double linearise(const Vector& point, Vector& gradient, Matrix& normal) {
+    residual_function_(view(point), view(residuals_), view(jacobian_));
+    normal.setZero();
+    normal.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.transpose());
+    gradient.noalias() = jacobian_.transpose() * residuals_;
+    return 0.5 * residuals_.squaredNorm();
+  }
+
+ private:
+  const ResidualFunction& residual_function_;
+  Vector residuals_;
+  Matrix jacobian_;
+};
+
+/// The error of a network over samples.
+class NetworkProblem {
+ public:
+  NetworkProblem(FeedForward<double>& network, const PackedSamples<double>& samples)
+      : network_(network), samples_(samples) {}
+
+  double error(const Vector& point) { return network_.error(view(point), samples_); }
+
+  double linearise(const Vector& point, Vector& gradient, Matrix& normal) {
+    return network_.normal_equations(view(point), samples_, view(gradient), view(normal));
+  }
+
+ private:
+  FeedForward<double>& network_;
+  const PackedSamples<double>& samples_;
+};
+
+/// The damping loop. Problem: error(point), and linearise(point, gradient, normal), which gives the error, its gradient
+/// and the lower triangle of J^T J.
+template <typename Problem>
+class DampedDescent {
+ public:
+  DampedDescent(Problem problem, std::vector<double>& parameters, const LevenbergMarquardtOptions& options)
+      : problem_(std::move(problem)),
+        parameters_(parameters.data(), static_cast<Eigen::Index>(parameters.size())),
+        options_(options),
+        point_(parameters_),
+        gradient_(point_.size()),
+        normal_(point_.size(), point_.size()),
+        damping_(options.initial_damping) {}
+
+  LevenbergMarquardtReport run() {
+    LevenbergMarquardtReport report;
+    error_ = problem_.linearise(point_, gradient_, normal_);
+    report.initial_error = error_;
+    std::optional<Stop> stop = stop_at_start();
+    while (!stop && report.iterations < options_.max_iterations) {
+      ++report.iterations;
+      stop = iterate();
+      if (options_.observer && !options_.observer(report.iterations, error_) && !stop) stop = Stop::observer;
+    }
+    report.stop = stop.value_or(Stop::max_iterations);
+    report.final_error = error_;
+    return report;
+  }
+
+ private:
+  using Stop = LevenbergMarquardtStop;
+
+  [[nodiscard]] std::optional<Stop> stop_at_start() const {
+    if (!std::isfinite(error_)) return Stop::not_finite;
+    if (error_ <= options_.error_goal) return Stop::error_goal;
+    return stop_at_gradient();
+  }
+
+  [[nodiscard]] std::optional<Stop> stop_at_gradient() const {
+    if (!gradient_.allFinite() || !normal_.diagonal().allFinite()) return Stop::not_finite;
+    if (gradient_.lpNorm<Eigen::Infinity>() <= options_.gradient_limit) return Stop::gradient_limit;
+    return std::nullopt;
+  }
+
+  std::optional<Stop> iterate() {
+    set_trial();
+    const double trial_error = problem_.error(trial_);
+    const double reduction = error_ - trial_error;
+    if (!(reduction > 0.0)) {
+      damping_ *= kDampingFactor;
+      return damping_ > kMaxDamping ? std::optional(Stop::no_descent) : std::nullopt;
+    }
+    const bool slow = reduction <= options_.relative_reduction * error_;
+    point_.swap(trial_);
+    parameters_ = point_;
+    error_ = trial_error;
+    damping_ = std::max(damping_ / kDampingFactor, kMinDamping);
+    if (error_ <= options_.error_goal) return Stop::error_goal;
+    if (slow) return Stop::relative_reduction;
+    problem_.linearise(point_, gradient_, normal_);
+    return stop_at_gradient();
+  }
+
+  void set_trial() {
+    damped_ = normal_;
+    const double floor = kDiagonalFloor * std::max(normal_.diagonal().maxCoeff(), 1e-300);
+    damped_.diagonal() += damping_ * normal_.diagonal().cwiseMax(floor);
+    factors_.compute(damped_);
+    trial_ = point_ - factors_.solve(gradient_);
+  }
+
+  Problem problem_;
+  Eigen::Map<Vector> parameters_;
+  const LevenbergMarquardtOptions& options_;
+  Vector point_;
+  Vector trial_;
+  Vector gradient_;
+  Matrix normal_;
+  Matrix damped_;
+  Eigen::LDLT<Matrix> factors_;
+  double error_ = 0.0;
+  double damping_;
+};
 
 }  // namespace
 
 LevenbergMarquardtReport minimise(const ResidualFunction& residual_function, std::size_t residual_count,
                                   std::vector<double>& parameters, const LevenbergMarquardtOptions& options) {
-  const auto m = static_cast<Eigen::Index>(residual_count);
-  const auto n = static_cast<Eigen::Index>(parameters.size());
-  Vector point = Eigen::Map<const Vector>(parameters.data(), n);
-  Vector residuals(m);
-  Vector trial_residuals(m);
-  Matrix jacobian(m, n);
-  Matrix normal(n, n);
-  Vector gradient(n);
+  return DampedDescent(ResidualProblem(residual_function, residual_count, parameters.size()), parameters, options)
+      .run();
+}
 
-  const auto linearise = [&] {
-    residual_function(view(std::as_const(point)), view(residuals),
-                      {jacobian.data(), static_cast<std::size_t>(jacobian.size())});
-    normal.setZero();
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.transpose());
-    gradient.noalias() = jacobian.transpose() * residuals;
-  };
-
-  LevenbergMarquardtReport report;
-  linearise();
-  double error = 0.5 * residuals.squaredNorm();
-  report.initial_error = error;
-  double damping = options.initial_damping;
-  while (report.iterations < options.max_iterations && !report.converged) {
-    ++report.iterations;
-    Matrix damped = normal;
-    const double floor = kDiagonalFloor * std::max(normal.diagonal().maxCoeff(), 1e-300);
-    damped.diagonal() += damping * normal.diagonal().cwiseMax(floor);
-    const Vector step = damped.selfadjointView<Eigen::Lower>().ldlt().solve(-gradient);
-    const Vector trial = point + step;
-    residual_function(view(trial), view(trial_residuals), {});
-    const double trial_error = 0.5 * trial_residuals.squaredNorm();
-    if (std::isfinite(trial_error) && trial_error < error) {
-      report.converged = error - trial_error <= options.relative_reduction * error;
-      point = trial;
-      error = trial_error;
-      damping = std::max(damping / kDampingFactor, kMinDamping);
-      if (!report.converged) linearise();
-    } else {
-      damping *= kDampingFactor;
-      if (damping > kMaxDamping) {  // no direction goes down any more
-        report.converged = std::isfinite(error);
-        break;
-      }
-    }
-  }
-  report.final_error = error;
-  Eigen::Map<Vector>(parameters.data(), n) = point;
-  return report;
+LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamples<double>& samples,
+                                  std::vector<double>& parameters, const LevenbergMarquardtOptions& options) {
+  assert(parameters.size() == network.shape().parameter_count());
+  return DampedDescent(NetworkProblem(network, samples), parameters, options).run();
 }
 
 double leave_one_out_mean_square(const ResidualFunction& residual_function, std::size_t data_count,

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
+
+#include "dermis/network/feed_forward.hpp"
 
 namespace dermis::network {
 
@@ -14,24 +17,49 @@ namespace dermis::network {
 using ResidualFunction =
     std::function<void(std::span<const double> parameters, std::span<double> residuals, std::span<double> jacobian)>;
 
+/// Called after each iteration with its number from 1 and the error of the best point so far, which is what the
+/// parameters being minimised then hold; false stops.
+using LevenbergMarquardtObserver = std::function<bool(int iteration, double error)>;
+
+/// Errors are those of eq. (6) of the paper: half the sum of squares.
 struct LevenbergMarquardtOptions {
   int max_iterations = 200;          ///< Accepted or refused steps, >= 1.
-  double relative_reduction = 1e-9;  ///< Stop when an accepted step lowers the error by less than this share, > 0.
+  double error_goal = 0.0;           ///< Stop at an error this small, >= 0.
+  double gradient_limit = 0.0;       ///< Stop where no |dE/dparameter| is greater, >= 0.
+  double relative_reduction = 1e-9;  ///< Stop when a step lowers the error by at most this share, >= 0; 0: never.
   double initial_damping = 1e-2;     ///< mu at the start, relative to the diagonal of J^T J, > 0.
+  LevenbergMarquardtObserver observer = {};  ///< May be empty.
+};
+
+enum class LevenbergMarquardtStop : std::uint8_t {
+  error_goal,
+  gradient_limit,
+  relative_reduction,
+  no_descent,      ///< No step goes down, however short.
+  max_iterations,  ///< This and what follows: not converged.
+  observer,        ///< It said so.
+  not_finite,      ///< The error of the start, or a derivative on the way.
 };
 
 struct LevenbergMarquardtReport {
-  double initial_error = 0.0;  ///< Half the sum of squared residuals at the start, eq. (6) of the paper.
+  double initial_error = 0.0;
   double final_error = 0.0;
   int iterations = 0;
-  bool converged = false;  ///< false: stopped at max_iterations, or the start itself is not finite.
+  LevenbergMarquardtStop stop = LevenbergMarquardtStop::max_iterations;
+
+  [[nodiscard]] bool converged() const noexcept { return stop < LevenbergMarquardtStop::max_iterations; }
 };
 
 /// Minimises half the sum of `residual_count` squared residuals over `parameters`, in place; the best point seen is
 /// kept, and a point with a residual that is not finite is never accepted. Marquardt's scaling: (J^T J + mu
 /// diag(J^T J)) step = -J^T r, mu divided by 10 after a good step and multiplied by 10 after a bad one.
-/// Levenberg 1944, Marquardt 1963; Hagan and Menhaj 1994 for networks. Thread-safe.
+/// Levenberg 1944, Marquardt 1963. Thread-safe.
 LevenbergMarquardtReport minimise(const ResidualFunction& residual_function, std::size_t residual_count,
+                                  std::vector<double>& parameters, const LevenbergMarquardtOptions& options = {});
+
+/// The same for the weighted error of a network over samples, eq. (6): Hagan and Menhaj 1994. The Jacobian is never
+/// stored. `parameters` [network.shape().parameter_count()].
+LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamples<double>& samples,
                                   std::vector<double>& parameters, const LevenbergMarquardtOptions& options = {});
 
 /// Mean square of the first `data_count` residuals, each as it would be with its own datum left out of the fit:
