@@ -13,19 +13,19 @@ namespace dermis::network {
 
 /// A training step of a bank on a database of patterns that all networks share; each network draws its own batch.
 struct BankBatch {
-  std::size_t batch = 0;                   ///< Patterns a network and step.
-  std::span<const float> inputs;           ///< The database, [patterns, inputs].
-  std::span<const float> targets;          ///< [patterns, networks * outputs].
-  std::span<const std::uint32_t> chosen;   ///< Rows of the database, [networks, batch].
-  std::span<const float> weights;          ///< Of the chosen patterns, [networks, batch]; empty: all 1.
+  std::size_t batch = 0;                  ///< Patterns a network and step.
+  std::span<const float> inputs;          ///< The database, [patterns, inputs].
+  std::span<const float> targets;         ///< [patterns, networks * outputs].
+  std::span<const std::uint32_t> chosen;  ///< Rows of the database, [networks, batch].
+  std::span<const float> weights;         ///< Of the chosen patterns, [networks, batch]; empty: all 1.
 };
 
 /// How a step moves the parameters against the gradient of 1/batch times eq. (6) of the batch.
 struct BankStep {
   enum class Rule : std::uint8_t { gradient_descent, adam };
   Rule rule = Rule::gradient_descent;
-  float rate = 0.1F;          ///< > 0
-  float first_decay = 0.9F;   ///< Adam (Kingma and Ba 2015): beta 1, beta 2, epsilon.
+  float rate = 0.1F;         ///< > 0
+  float first_decay = 0.9F;  ///< Adam (Kingma and Ba 2015): beta 1, beta 2, epsilon.
   float second_decay = 0.999F;
   float epsilon = 1e-8F;
 };
