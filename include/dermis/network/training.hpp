@@ -88,7 +88,7 @@ struct ErrorCurve {
 };
 
 /// All that a training knows between two epochs: plain data. Stopped and resumed, on the same samples and options, it
-/// gives the same bits as in one run. made by start_training(), moved on by train().
+/// gives the same bits as in one run. Made by start_training(), moved on by train().
 template <std::floating_point Real>
 struct TrainingState {
   NetworkShape shape;
@@ -106,8 +106,8 @@ struct TrainingState {
   /// What the algorithm remembers, in rows of parameter_count(): gradient_descent, adaptive_rate: the last step;
   /// resilient_propagation: last derivatives, step sizes; conjugate_gradient: direction; adam: first and second moment.
   std::vector<Real> memory;
-  /// adaptive_rate: rate; conjugate_gradient: lambda, its rise in this direction, curvature (0: to be measured), steps
-  /// since the last restart; levenberg_marquardt: damping; adam: steps.
+  /// adaptive_rate: rate; conjugate_gradient: lambda, curvature (0: to be measured), steps since the last restart;
+  /// levenberg_marquardt: damping; adam: steps.
   std::vector<double> numbers;
 
   bool operator==(const TrainingState&) const = default;
