@@ -371,13 +371,6 @@ std::size_t row_stride(std::size_t values) {
   return (round_up(values + 1, kLanes) / kLanes | 1U) * kLanes;
 }
 
-/// A pattern as a row: its inputs, the 1 that the thresholds weigh, and zeros.
-void pack_row(std::span<const float> inputs, std::span<float> row) {
-  auto end = std::copy(inputs.begin(), inputs.end(), row.begin());
-  *end++ = 1.0F;
-  std::fill(end, row.end(), 0.0F);
-}
-
 }  // namespace
 
 PatternSpace::PatternSpace(const PanelLayout& layout, std::size_t patterns)
@@ -424,14 +417,10 @@ void PanelBank::parameters(std::size_t network, std::span<float> parameters) con
 
 void PanelBank::evaluate(std::span<const float> inputs, std::span<float> outputs) {
   const std::size_t workers = worker_count(values_.size());
-  const std::size_t space = 2 * layout_.widest();
-  inputs_.resize(std::max(inputs_.size(), row_stride(inputs.size())));
-  pack_row(inputs, std::span(inputs_).first(row_stride(inputs.size())));
-  frame_space_.resize(workers * space);
+  frame_.prepare(layout_, inputs, workers);
   share_among_workers(networks_, workers, [&](std::size_t network, std::size_t worker) {
     HWY_DYNAMIC_DISPATCH(evaluate_frame)
-    (layout_, values_.data() + network * layout_.size(), inputs_.data(), frame_space_.data() + worker * space,
-     outputs.data() + network * layout_.outputs());
+    (layout_, of(network).values, frame_.inputs(), frame_.rows(worker), outputs.data() + network * layout_.outputs());
   });
 }
 
@@ -448,18 +437,17 @@ void PanelBank::evaluate_batch(std::span<const float> inputs, std::span<float> o
   reserve_spaces(workers, kBlock);
   for (std::size_t first = 0; first < count; first += kPackedPatterns) {
     const std::size_t packed = std::min(kPackedPatterns, count - first);
-    inputs_.resize(std::max(inputs_.size(), round_up(packed, kLanes) * stride));
+    packed_.resize(std::max(packed_.size(), round_up(packed, kLanes) * stride));
     for (std::size_t p = 0; p < packed; ++p) {
       pack_row(inputs.subspan((first + p) * layout_.inputs(), layout_.inputs()),
-               std::span(inputs_).subspan(p * stride, stride));
+               std::span(packed_).subspan(p * stride, stride));
     }
     share_among_workers(networks_, workers, [&](std::size_t network, std::size_t worker) {
       PatternSpace& own = spaces_[worker];
       for (std::size_t block = 0; block < packed; block += kBlock) {
         const std::size_t rows = std::min(kBlock, packed - block);
         HWY_DYNAMIC_DISPATCH(evaluate_patterns)
-        (layout_, values_.data() + network * layout_.size(), inputs_.data() + block * stride, stride, round_up(rows, 8),
-         own);
+        (layout_, of(network).values, packed_.data() + block * stride, stride, round_up(rows, 8), own);
         const std::size_t top = layout_.layers().size();
         for (std::size_t p = 0; p < rows; ++p) {
           std::copy_n(own.level(top) + p * own.stride(top), layout_.outputs(),

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "network/bank_storage.hpp"
+#include "network/frame_space.hpp"
 #include "network/huge_vector.hpp"
 #include "network/panel_layout.hpp"
 
@@ -70,9 +71,6 @@ class PanelBank final : public BankStorage {
   void evaluate_batch(std::span<const float> inputs, std::span<float> outputs) override;
   void train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors) override;
 
-  [[nodiscard]] const PanelLayout& layout() const { return layout_; }
-  [[nodiscard]] std::span<const float> values() const { return values_; }
-
  private:
   void reserve_spaces(std::size_t workers, std::size_t patterns);
   PanelParameters of(std::size_t network);
@@ -84,9 +82,9 @@ class PanelBank final : public BankStorage {
   HugeVector<float> first_moments_;  ///< Of the same form; empty before the first step of Adam.
   HugeVector<float> second_moments_;
   std::vector<std::size_t> adam_steps_;  ///< [networks]
-  HugeVector<float> inputs_;             ///< Of the frame, or of a block of patterns, each ended by its 1.
-  HugeVector<float> frame_space_;        ///< [workers, 2, layout.widest]
-  std::vector<PatternSpace> spaces_;     ///< One a worker, for `space_patterns_` patterns.
+  FrameSpace frame_;
+  HugeVector<float> packed_;          ///< Patterns of evaluate_batch(), each as pack_row() leaves it.
+  std::vector<PatternSpace> spaces_;  ///< One a worker, for `space_patterns_` patterns.
   std::size_t space_patterns_ = 0;
 };
 

@@ -19,6 +19,13 @@ inline constexpr std::size_t kPanelUnits = 32;
   return (count + granule - 1) / granule * granule;
 }
 
+/// A pattern as the layers read it: its inputs, the 1 that the thresholds weigh, and zeros.
+inline void pack_row(std::span<const float> inputs, std::span<float> row) {
+  auto end = std::copy(inputs.begin(), inputs.end(), row.begin());
+  *end++ = 1.0F;
+  std::fill(end, row.end(), 0.0F);
+}
+
 /// A layer of PanelLayout. The threshold of a unit is the weight of one more input that is always 1: `steps` inputs.
 struct PanelLayer {
   std::size_t fan_in;
