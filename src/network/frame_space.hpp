@@ -19,6 +19,13 @@ class FrameSpace {
     pack_row(inputs, inputs_);
     rows_each_ = 2 * layout.widest();
     rows_.resize(std::max(rows_.size(), workers * rows_each_));
+    backwards_ = !backwards_;
+  }
+
+  /// The network to take as number `item` of the frame: every other frame goes backwards, and so begins with the
+  /// parameters that the frame before has left in the cache.
+  [[nodiscard]] std::size_t network(std::size_t item, std::size_t networks) const {
+    return backwards_ ? networks - 1 - item : item;
   }
 
   [[nodiscard]] const float* inputs() const { return inputs_.data(); }
@@ -26,6 +33,7 @@ class FrameSpace {
   [[nodiscard]] float* rows(std::size_t worker) { return rows_.data() + worker * rows_each_; }
 
  private:
+  bool backwards_ = false;
   std::size_t rows_each_ = 0;
   HugeVector<float> inputs_;
   HugeVector<float> rows_;

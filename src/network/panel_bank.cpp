@@ -418,7 +418,8 @@ void PanelBank::parameters(std::size_t network, std::span<float> parameters) con
 void PanelBank::evaluate(std::span<const float> inputs, std::span<float> outputs) {
   const std::size_t workers = worker_count(values_.size());
   frame_.prepare(layout_, inputs, workers);
-  share_among_workers(networks_, workers, [&](std::size_t network, std::size_t worker) {
+  share_among_workers(networks_, workers, [&](std::size_t item, std::size_t worker) {
+    const std::size_t network = frame_.network(item, networks_);
     HWY_DYNAMIC_DISPATCH(evaluate_frame)
     (layout_, of(network).values, frame_.inputs(), frame_.rows(worker), outputs.data() + network * layout_.outputs());
   });
