@@ -75,7 +75,7 @@ void expect_resumable_through_a_file(TrainingAlgorithm algorithm) {
   const std::string path = folder.file("training.safetensors");
   TrainingState<Real> whole = fresh_state<Real>(algorithm);
   train_to(whole, 20);
-  for (const std::uint64_t stop : {0, 1, 7, 20}) {
+  for (const std::uint64_t stop : {0U, 1U, 7U, 20U}) {
     TrainingState<Real> stopped = fresh_state<Real>(algorithm);
     if (stop > 0) train_to(stopped, stop);
     ASSERT_TRUE(write_training_checkpoint(path, stopped));

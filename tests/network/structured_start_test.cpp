@@ -123,7 +123,7 @@ TEST(StructuredStart, each_neuron_gives_a_quarter_unexcited_and_three_quarters_e
     for (std::size_t excited = 0; excited < n; ++excited) {
       Numbers inputs(n, 0.0);
       inputs[excited] = 3.0;
-      for (const std::size_t layer : {0, 1}) {
+      for (const std::size_t layer : {0U, 1U}) {
         const Numbers outputs = outputs_of_layer(start, parameters, layer, inputs);
         for (std::size_t neuron = 0; neuron < n; ++neuron) {
           EXPECT_NEAR(outputs[neuron], neuron == excited ? 0.75 : 0.25, 1e-12);

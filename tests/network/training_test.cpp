@@ -250,7 +250,7 @@ TEST(Training, batches_find_the_parameters_that_made_the_data) {
     for (std::size_t i = 0; i < 3; ++i) problem.data.targets[p] += truth[i] * problem.data.inputs[3 * p + i];
   }
   for (const TrainingAlgorithm algorithm : {TrainingAlgorithm::gradient_descent, TrainingAlgorithm::adam}) {
-    for (const std::size_t batch : {1, 7, 39}) {
+    for (const std::size_t batch : {1U, 7U, 39U}) {
       SCOPED_TRACE(testing::Message() << name(algorithm) << ", batch " << batch);
       const TrainingOptions options{
           .algorithm = algorithm, .batch = batch, .rate = 0.005, .epochs = 5000, .error_goal = 1e-12};
@@ -265,7 +265,7 @@ void expect_all_learn_a_wave() {
   const Data<Real> data = waves<Real>(60, 1, 1, 2);
   const NetworkShape shape{1, {{6, Activation::tanh}, {1, Activation::linear}}};
   for (const TrainingAlgorithm algorithm : kAlgorithms) {
-    for (const std::size_t batch : {0, 1, 8}) {
+    for (const std::size_t batch : {0U, 1U, 8U}) {
       const bool takes_batches =
           algorithm == TrainingAlgorithm::gradient_descent || algorithm == TrainingAlgorithm::adam;
       if (batch != 0 && !takes_batches) continue;
@@ -458,7 +458,7 @@ TEST(Training, conjugate_gradient_takes_the_steps_of_moller) {
 }
 
 TEST(Training, conjugate_gradient_minimises_a_quadratic_in_as_many_steps_as_it_has_unknowns) {
-  for (const std::size_t inputs : {3, 7, 15}) {
+  for (const std::size_t inputs : {3U, 7U, 15U}) {
     SCOPED_TRACE(inputs);
     const Data<double> data = waves<double>(100, inputs, 1, inputs);
     const NetworkShape shape{inputs, {{1, Activation::linear}}};
@@ -513,7 +513,7 @@ TEST(Training, gradient_descent_takes_its_steps_batch_by_batch) {
   for (const bool weighted : {false, true}) {
     Data<double> data = waves<double>(23, 3, 2, 4);
     for (std::size_t p = 0; weighted && p < 23; ++p) data.weights.push_back(0.1 * static_cast<double>(p % 5));
-    for (const std::size_t batch : {0, 1, 5, 22}) {
+    for (const std::size_t batch : {0U, 1U, 5U, 22U}) {
       SCOPED_TRACE(testing::Message() << "batch " << batch << ", weighted " << weighted);
       const TrainingOptions options{.algorithm = TrainingAlgorithm::gradient_descent,
                                     .batch = batch,
@@ -540,7 +540,7 @@ TEST(Training, gradient_descent_takes_its_steps_batch_by_batch) {
 
 TEST(Training, adam_takes_its_steps_batch_by_batch) {
   const Data<double> data = waves<double>(23, 3, 2, 4);
-  for (const std::size_t batch : {0, 1, 5}) {
+  for (const std::size_t batch : {0U, 1U, 5U}) {
     SCOPED_TRACE(testing::Message() << "batch " << batch);
     const TrainingOptions options{
         .algorithm = TrainingAlgorithm::adam, .batch = batch, .rate = 0.02, .epochs = 10, .seed = 9};
@@ -620,7 +620,7 @@ void expect_resumable_at_every_epoch(const TrainingOptions& options, bool valida
 
 TEST(Training, stopped_and_resumed_gives_the_same_bits_as_one_run) {
   for (const TrainingAlgorithm algorithm : kAlgorithms) {
-    for (const std::size_t batch : {0, 1, 6}) {
+    for (const std::size_t batch : {0U, 1U, 6U}) {
       const bool takes_batches =
           algorithm == TrainingAlgorithm::gradient_descent || algorithm == TrainingAlgorithm::adam;
       if (batch != 0 && !takes_batches) continue;
@@ -657,7 +657,7 @@ TEST(Training, the_callback_sees_states_that_can_be_resumed) {
 TEST(Training, the_order_of_patterns_follows_the_seed) {
   const Data<float> data = waves<float>(40, 2, 1, 4);
   for (const TrainingAlgorithm algorithm : {TrainingAlgorithm::gradient_descent, TrainingAlgorithm::adam}) {
-    for (const std::size_t batch : {1, 8}) {
+    for (const std::size_t batch : {1U, 8U}) {
       TrainingOptions options{.algorithm = algorithm, .batch = batch, .epochs = 3, .seed = 5};
       const auto state = trained(kSmall, data, options);
       EXPECT_EQ(trained(kSmall, data, options), state);
@@ -745,7 +745,7 @@ TEST(Training, allocates_nothing_between_the_first_epoch_and_the_last) {
   const Data<float> data = waves<float>(50, 3, 2, 7);
   for (const TrainingAlgorithm algorithm : kAlgorithms) {
     if (algorithm == TrainingAlgorithm::levenberg_marquardt) continue;
-    for (const std::size_t batch : {0, 1, 8}) {
+    for (const std::size_t batch : {0U, 1U, 8U}) {
       const bool takes_batches =
           algorithm == TrainingAlgorithm::gradient_descent || algorithm == TrainingAlgorithm::adam;
       if (batch != 0 && !takes_batches) continue;
@@ -826,7 +826,7 @@ TEST(Training, at_a_minimum_no_step_goes_down) {
 TEST(Training, divergence_stops_with_the_best_finite_point) {
   const Data<double> data = waves<double>(50, 2, 1, 7);
   const NetworkShape shape{2, {{4, Activation::relu}, {1, Activation::linear}}};
-  for (const std::size_t batch : {0, 1, 10}) {
+  for (const std::size_t batch : {0U, 1U, 10U}) {
     SCOPED_TRACE(batch);
     const TrainingOptions options{.algorithm = TrainingAlgorithm::gradient_descent, .batch = batch, .rate = 100.0};
     TrainingState<double> state = start_training(shape, xavier_start<double>(shape, 3), options);
