@@ -81,10 +81,10 @@ class Reader {
   }
 
   /// A tensor of so many elements.
-  template <typename T, std::size_t count>
-  std::array<T, count> take_row(const std::string& name) {
-    const std::vector<T> values = elements<T>(name, {count});
-    std::array<T, count> row{};
+  template <typename T, std::size_t Count>
+  std::array<T, Count> take_row(const std::string& name) {
+    const std::vector<T> values = elements<T>(name, {Count});
+    std::array<T, Count> row{};
     std::copy(values.begin(), values.end(), row.begin());
     return row;
   }

@@ -354,7 +354,7 @@ class Run {
     double& curvature = state_.numbers[1];
     const std::vector<Real>& p = state_.memory;
     double mu = -dot(p, gradient_);
-    if (mu <= 0.0) {  // by rounding
+    if (mu == 0.0) {
       go_downhill();
       mu = dot(p, p);
     }

@@ -131,7 +131,7 @@ enum class StopReason : std::uint8_t {
   validation,   ///< Patience is at its end.
   epoch_limit,  ///< The goal was not met.
   callback,     ///< It said so.
-  diverged,     ///< The error is not finite; the best point is kept, the state cannot be resumed.
+  diverged,     ///< The error is not finite; the best point is kept; train on from that one.
 };
 
 /// "error_goal", "gradient_limit" and so on.
@@ -149,7 +149,7 @@ using TrainingCallback = std::function<bool(const TrainingState<Real>& state)>;
 
 /// Trains from `state` on; what was learned is state.best_parameters. Errors: options, samples (check_samples) or
 /// state (check_state) that cannot be used; the state is then as it was. Allocates nothing between the first epoch and
-/// the last. Uses one thread; thread-safe for different states.
+/// the last, levenberg_marquardt excepted. Uses one thread; thread-safe for different states.
 template <std::floating_point Real>
 [[nodiscard]] Result<TrainingReport> train(TrainingState<Real>& state, const Samples<Real>& samples,
                                            const TrainingOptions& options, const Samples<Real>& validation = {},
