@@ -11,6 +11,8 @@
 
 namespace dermis::network {
 
+class BankStorage;
+
 /// A training step of a bank on a database of patterns that all networks share; each network draws its own batch.
 struct BankBatch {
   std::size_t batch = 0;                  ///< Patterns a network and step, >= 1.
@@ -44,10 +46,10 @@ class NetworkBank {
   NetworkBank(NetworkBank&&) noexcept;
   NetworkBank& operator=(NetworkBank&&) noexcept;
 
-  [[nodiscard]] const NetworkShape& shape() const noexcept;
-  [[nodiscard]] std::size_t network_count() const noexcept;
+  [[nodiscard]] const NetworkShape& shape() const noexcept { return shape_; }
+  [[nodiscard]] std::size_t network_count() const noexcept { return networks_; }
   /// Unknowns of all networks together.
-  [[nodiscard]] std::size_t parameter_count() const noexcept;
+  [[nodiscard]] std::size_t parameter_count() const noexcept { return networks_ * shape_.parameter_count(); }
 
   /// Parameters of one network as NetworkShape orders them, [shape.parameter_count()]. Its moments of Adam start anew.
   void set_parameters(std::size_t network, std::span<const float> parameters);
@@ -63,8 +65,9 @@ class NetworkBank {
   void train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors);
 
  private:
-  class State;
-  std::unique_ptr<State> state_;
+  NetworkShape shape_;
+  std::size_t networks_;
+  std::unique_ptr<BankStorage> storage_;
 };
 
 }  // namespace dermis::network
