@@ -5,8 +5,17 @@
 #include <cerrno>
 
 namespace dermis::support {
+namespace {
 
 thread_local std::size_t allocations_of_this_thread = 0;
+
+}  // namespace
+
+AllocationGuard::AllocationGuard() noexcept : start_(allocations_of_this_thread) {}
+
+std::size_t AllocationGuard::count() const noexcept {
+  return allocations_of_this_thread - start_;
+}
 
 }  // namespace dermis::support
 

@@ -26,15 +26,15 @@
 namespace dermis::support {
 
 inline constexpr bool kAllocationsAreCounted = DERMIS_COUNTS_ALLOCATIONS == 1;
-extern thread_local std::size_t allocations_of_this_thread;
 
-/// Allocations of this thread since it was made.
+/// Allocations of this thread since it was made. Not inline: g++ takes it that malloc changes no variable.
 class AllocationGuard {
  public:
-  [[nodiscard]] std::size_t count() const noexcept { return allocations_of_this_thread - start_; }
+  AllocationGuard() noexcept;
+  [[nodiscard]] std::size_t count() const noexcept;
 
  private:
-  std::size_t start_ = allocations_of_this_thread;
+  std::size_t start_;
 };
 
 }  // namespace dermis::support
