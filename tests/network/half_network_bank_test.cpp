@@ -71,12 +71,12 @@ TEST(HalfNetworkBank, outputs_are_within_a_thousandth_of_full_scale) {
 TEST(HalfNetworkBank, parameters_that_16_bits_hold_give_the_outputs_of_single_precision) {
   const NetworkShape shape{2, {{1, Activation::linear}}};
   NetworkBank bank(shape, 1);
-  bank.set_parameters(0, std::vector<float>{65'504.0F, -0.25F, 1024.5F});
+  bank.set_parameters(0, std::vector<float>{65'504.0F, -0.25F, 512.5F});
   auto half = HalfNetworkBank::from(bank);
   ASSERT_TRUE(half);
   std::vector<float> output(1);
   half->evaluate(std::vector<float>{1.0F, 2.0F}, output);
-  EXPECT_EQ(output[0], 65'504.0F - 0.5F + 1024.5F);
+  EXPECT_EQ(output[0], 65'504.0F - 0.5F + 512.5F);
 }
 
 TEST(HalfNetworkBank, a_parameter_that_does_not_fit_is_named) {
