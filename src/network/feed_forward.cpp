@@ -7,56 +7,582 @@
 #include <numeric>
 #include <utility>
 
+#include "network/feed_forward_kernels.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "network/feed_forward.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h comes first: it includes this file again for every instruction set.
+#include "hwy/highway.h"
+#include "network/activation-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace dermis::network::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <typename Real>
+using Lanes = hn::CappedTag<Real, kCacheLineBytes / sizeof(Real)>;
+
+/// Vectors that a kernel works on at a time: sums and what they are made of fit the registers.
+constexpr std::size_t kVectors = HWY_TARGET <= HWY_AVX3 || HWY_ARCH_ARM ? 4 : 2;
+
+/// Calls body(first, std::integral_constant<n>) for first = 0, AtOnce, ...; n = AtOnce, for the rest 1.
+template <std::size_t AtOnce, class Body>
+HWY_INLINE void in_blocks(std::size_t count, const Body& body) {
+  std::size_t first = 0;
+  for (; first + AtOnce <= count; first += AtOnce) body(first, std::integral_constant<std::size_t, AtOnce>());
+  for (; first < count; ++first) body(first, std::integral_constant<std::size_t, 1>());
+}
+
+// ---- rows <-> columns ----
+
+/// rows(p) points to `columns` values of sample p -> out [columns, kTile], samples 0 ... count - 1.
+template <typename Real, class Rows>
+void to_columns(std::size_t columns, std::size_t count, const Rows& rows, Real* out) {
+  for (std::size_t p = 0; p < count; ++p) {
+    const Real* row = rows(p);
+    for (std::size_t k = 0; k < columns; ++k) out[k * kTile + p] = row[k];
+  }
+}
+
+/// in [columns, kTile] -> out [count, columns].
+template <typename Real>
+void to_rows(std::size_t columns, std::size_t count, const Real* in, Real* out) {
+  for (std::size_t p = 0; p < count; ++p) {
+    for (std::size_t k = 0; k < columns; ++k) out[p * columns + k] = in[k * kTile + p];
+  }
+}
+
+// ---- forward ----
+
+double power_scale(Activation activation) {
+  switch (activation) {
+    case Activation::log_sigmoid: return kLogSigmoidPower;
+    case Activation::tanh: return kTanhPower;
+    case Activation::relu:
+    case Activation::linear: break;
+  }
+  return 1.0;
+}
+
+/// The parameters, those of each layer scaled as its activation function wants them.
+template <typename Real>
+void prepare(const PlacedShape& shape, const Real* parameters, Real* prepared) {
+  for (std::size_t l = 0; l < shape.layer_count; ++l) {
+    const PlacedLayer& layer = shape.layers[l];
+    const auto scale = static_cast<Real>(power_scale(layer.activation));
+    const std::size_t end = layer.thresholds + layer.units;
+    for (std::size_t k = layer.weights; k < end; ++k) prepared[k] = scale * parameters[k];
+  }
+}
+
+/// The outputs of neurons, from their scaled sums, in place.
+template <std::size_t Count, class D>
+HWY_INLINE void activate_all(D d, Activation activation, hn::Vec<D> (&values)[Count]) {
+  switch (activation) {
+    case Activation::log_sigmoid:
+      for (auto& value : values) value = log_sigmoid_of_power(d, value);
+      break;
+    case Activation::tanh:
+      for (auto& value : values) value = tanh_of_power(d, value);
+      break;
+    case Activation::relu:
+      for (auto& value : values) value = hn::IfThenZeroElse(hn::Lt(value, hn::Zero(d)), value);
+      break;
+    case Activation::linear: break;
+  }
+}
+
+/// Eq. (4) for Units neurons and Count vectors of samples.
+template <std::size_t Units, std::size_t Count, class D, typename Real = hn::TFromD<D>>
+HWY_INLINE void forward_block(D d, const PlacedLayer& layer, const Real* prepared, std::size_t unit, const Real* below,
+                              Real* outputs) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  hn::Vec<D> sums[Units * Count];
+  for (std::size_t u = 0; u < Units; ++u) {
+    for (std::size_t v = 0; v < Count; ++v) sums[u * Count + v] = hn::Set(d, prepared[layer.thresholds + unit + u]);
+  }
+  const Real* weights = prepared + layer.weights + unit * layer.fan_in;
+  for (std::size_t k = 0; k < layer.fan_in; ++k) {
+    hn::Vec<D> x[Count];
+    for (std::size_t v = 0; v < Count; ++v) x[v] = hn::Load(d, below + k * kTile + v * kLanes);
+    for (std::size_t u = 0; u < Units; ++u) {
+      const auto weight = hn::Set(d, weights[u * layer.fan_in + k]);
+      for (std::size_t v = 0; v < Count; ++v) sums[u * Count + v] = hn::MulAdd(weight, x[v], sums[u * Count + v]);
+    }
+  }
+  activate_all(d, layer.activation, sums);
+  for (std::size_t u = 0; u < Units; ++u) {
+    for (std::size_t v = 0; v < Count; ++v) {
+      hn::Store(sums[u * Count + v], d, outputs + (unit + u) * kTile + v * kLanes);
+    }
+  }
+}
+
+/// The outputs of all layers [units, kTile] for `vectors` vectors of samples; returns those of the output layer.
+template <class D, typename Real = hn::TFromD<D>>
+const Real* forward(D d, const PlacedShape& shape, const Real* prepared, const Real* inputs, std::size_t vectors,
+                    Real* outputs) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  const Real* below = inputs;
+  for (std::size_t l = 0; l < shape.layer_count; ++l) {
+    const PlacedLayer& layer = shape.layers[l];
+    Real* layer_outputs = outputs + layer.first_unit * kTile;
+    in_blocks<4>(layer.units, [&](std::size_t unit, auto units) HWY_ATTR {
+      in_blocks<kVectors>(vectors, [&](std::size_t v, auto count) HWY_ATTR {
+        forward_block<units(), count()>(d, layer, prepared, unit, below + v * kLanes, layer_outputs + v * kLanes);
+      });
+    });
+    below = layer_outputs;
+  }
+  return below;
+}
+
+// ---- backward ----
+
+/// dE/dsum of a neuron from dE/doutput and its output.
+template <class D>
+HWY_INLINE hn::Vec<D> through(D d, Activation activation, hn::Vec<D> delta, hn::Vec<D> output) {
+  switch (activation) {
+    case Activation::log_sigmoid: {
+      const auto product = hn::Mul(delta, output);
+      return hn::NegMulAdd(product, output, product);
+    }
+    case Activation::tanh: return hn::NegMulAdd(hn::Mul(delta, output), output, delta);
+    case Activation::relu: return hn::IfThenElseZero(hn::Gt(output, hn::Zero(d)), delta);
+    case Activation::linear: break;
+  }
+  return delta;
+}
+
+/// Half the weighted squares of a tile, and dE/dsum of the output layer where `deltas` is not null. Lanes are summed
+/// in double precision: a long sum of floats would drift.
+template <class D, typename Real = hn::TFromD<D>>
+double output_error(D d, const PlacedLayer& top, const Real* outputs, const Real* targets, const Real* weights,
+                    std::size_t vectors, Real* deltas) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  auto sum = hn::Zero(d);
+  for (std::size_t k = 0; k < top.units; ++k) {
+    for (std::size_t v = 0; v < vectors; ++v) {
+      const std::size_t place = k * kTile + v * kLanes;
+      const auto output = hn::Load(d, outputs + place);
+      const auto difference = hn::Sub(output, hn::Load(d, targets + place));
+      const auto weighted = hn::Mul(difference, hn::Load(d, weights + v * kLanes));
+      sum = hn::MulAdd(weighted, difference, sum);
+      if (deltas != nullptr) hn::Store(through(d, top.activation, weighted, output), d, deltas + place);
+    }
+  }
+  alignas(kCacheLineBytes) Real lanes[kLanes];
+  hn::Store(sum, d, lanes);
+  double error = 0.0;
+  for (const Real lane : lanes) error += double{lane};
+  return 0.5 * error;
+}
+
+/// sums [Units, fan_in, kLine] of Units neurons += delta times what is below, for inputs k ... k + Inputs - 1.
+template <std::size_t Units, std::size_t Inputs, class D, typename Real = hn::TFromD<D>>
+HWY_INLINE void weight_gradient_block(D d, const Real* deltas, const Real* below, std::size_t vectors,
+                                      std::size_t fan_in, Real* sums) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  hn::Vec<D> block[Units * Inputs];
+  for (auto& sum : block) sum = hn::Zero(d);
+  for (std::size_t v = 0; v < vectors; ++v) {
+    hn::Vec<D> delta[Units];
+    for (std::size_t u = 0; u < Units; ++u) delta[u] = hn::Load(d, deltas + u * kTile + v * kLanes);
+    for (std::size_t k = 0; k < Inputs; ++k) {
+      const auto x = hn::Load(d, below + k * kTile + v * kLanes);
+      for (std::size_t u = 0; u < Units; ++u) {
+        block[u * Inputs + k] = hn::MulAdd(delta[u], x, block[u * Inputs + k]);
+      }
+    }
+  }
+  for (std::size_t u = 0; u < Units; ++u) {
+    for (std::size_t k = 0; k < Inputs; ++k) {
+      Real* sum = sums + (u * fan_in + k) * WorkSpace<Real>::kLine;
+      hn::Store(hn::Add(hn::Load(d, sum), block[u * Inputs + k]), d, sum);
+    }
+  }
+}
+
+template <class D, typename Real = hn::TFromD<D>>
+void layer_gradient(D d, const PlacedLayer& layer, const Real* deltas, const Real* below, std::size_t vectors,
+                    Real* sums) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  constexpr std::size_t kLine = WorkSpace<Real>::kLine;
+  in_blocks<4>(layer.units, [&](std::size_t unit, auto units) HWY_ATTR {
+    in_blocks<kVectors>(layer.fan_in, [&](std::size_t k, auto inputs) HWY_ATTR {
+      weight_gradient_block<units(), inputs()>(d, deltas + unit * kTile, below + k * kTile, vectors, layer.fan_in,
+                                               sums + (layer.weights + unit * layer.fan_in + k) * kLine);
+    });
+  });
+  for (std::size_t unit = 0; unit < layer.units; ++unit) {
+    Real* sum = sums + (layer.thresholds + unit) * kLine;
+    auto total = hn::Load(d, sum);
+    for (std::size_t v = 0; v < vectors; ++v) total = hn::Add(total, hn::Load(d, deltas + unit * kTile + v * kLanes));
+    hn::Store(total, d, sum);
+  }
+}
+
+/// dE/dsum of Units neurons of the layer below, whose outputs are `outputs`, for Count vectors of samples.
+template <std::size_t Units, std::size_t Count, class D, typename Real = hn::TFromD<D>>
+HWY_INLINE void deltas_block(D d, const Real* weights, const PlacedLayer& layer, Activation activation_below,
+                             const Real* deltas, const Real* outputs, Real* deltas_below) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  hn::Vec<D> sums[Units * Count];
+  for (auto& sum : sums) sum = hn::Zero(d);
+  for (std::size_t above = 0; above < layer.units; ++above) {
+    hn::Vec<D> delta[Count];
+    for (std::size_t v = 0; v < Count; ++v) delta[v] = hn::Load(d, deltas + above * kTile + v * kLanes);
+    for (std::size_t u = 0; u < Units; ++u) {
+      const auto weight = hn::Set(d, weights[above * layer.fan_in + u]);
+      for (std::size_t v = 0; v < Count; ++v) {
+        sums[u * Count + v] = hn::MulAdd(weight, delta[v], sums[u * Count + v]);
+      }
+    }
+  }
+  for (std::size_t u = 0; u < Units; ++u) {
+    for (std::size_t v = 0; v < Count; ++v) {
+      const std::size_t place = u * kTile + v * kLanes;
+      const auto output = hn::Load(d, outputs + place);
+      hn::Store(through(d, activation_below, sums[u * Count + v], output), d, deltas_below + place);
+    }
+  }
+}
+
+template <class D, typename Real = hn::TFromD<D>>
+void layer_deltas(D d, const PlacedLayer& layer, const PlacedLayer& below, const Real* parameters, const Real* deltas,
+                  const Real* outputs, std::size_t vectors, Real* deltas_below) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  in_blocks<4>(below.units, [&](std::size_t unit, auto units) HWY_ATTR {
+    in_blocks<kVectors>(vectors, [&](std::size_t v, auto count) HWY_ATTR {
+      const std::size_t place = unit * kTile + v * kLanes;
+      deltas_block<units(), count()>(d, parameters + layer.weights + unit, layer, below.activation, deltas + v * kLanes,
+                                     outputs + below.first_unit * kTile + place, deltas_below + place);
+    });
+  });
+}
+
+// ---- a pass over all tiles ----
+
+/// Calls body(inputs, targets, weights, vectors) for each tile.
+template <class D, typename Real, class Body>
+HWY_INLINE void for_each_tile(D d, const PlacedShape& shape, const Real* tiles, std::size_t count, const Body& body) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  for (std::size_t first = 0; first < count; first += kTile) {
+    const std::size_t vectors = (std::min(count - first, kTile) + kLanes - 1) / kLanes;
+    const Real* targets = tiles + shape.inputs * kTile;
+    body(tiles, targets, targets + shape.outputs() * kTile, vectors);
+    tiles += packed_rows(shape) * kTile;
+  }
+}
+
+template <typename Real>
+void pack(const PlacedShape& shape, const Samples<Real>& samples, std::span<const std::size_t> indices, Real* tiles) {
+  for (std::size_t first = 0; first < indices.size(); first += kTile) {
+    const std::size_t count = std::min(indices.size() - first, kTile);
+    const auto pattern = [&](std::size_t p) { return indices[first + std::min(p, count - 1)]; };
+    const auto input = [&](std::size_t p) { return samples.inputs.data() + pattern(p) * shape.inputs; };
+    const auto target = [&](std::size_t p) { return samples.targets.data() + pattern(p) * shape.outputs(); };
+    to_columns(shape.inputs, kTile, input, tiles);
+    to_columns(shape.outputs(), kTile, target, tiles + shape.inputs * kTile);
+    Real* weights = tiles + (shape.inputs + shape.outputs()) * kTile;
+    for (std::size_t p = 0; p < count; ++p)
+      weights[p] = samples.weights.empty() ? Real{1} : samples.weights[pattern(p)];
+    std::fill(weights + count, weights + kTile, Real{0});
+    tiles += packed_rows(shape) * kTile;
+  }
+}
+
+template <typename Real>
+void evaluate(const PlacedShape& shape, const Real* parameters, const Real* inputs, std::size_t count, Real* outputs,
+              Real* work) {
+  const Lanes<Real> d;
+  const WorkSpace<Real> space(shape);
+  prepare(shape, parameters, work + space.prepared);
+  for (std::size_t first = 0; first < count; first += kTile) {
+    const std::size_t in_tile = std::min(count - first, kTile);
+    const std::size_t vectors = (in_tile + hn::MaxLanes(d) - 1) / hn::MaxLanes(d);
+    const auto row = [&](std::size_t p) { return inputs + (first + p) * shape.inputs; };
+    to_columns(shape.inputs, in_tile, row, work + space.inputs);
+    const Real* top = forward(d, shape, work + space.prepared, work + space.inputs, vectors, work + space.outputs);
+    to_rows(shape.outputs(), in_tile, top, outputs + first * shape.outputs());
+  }
+}
+
+template <typename Real>
+double error(const PlacedShape& shape, const Real* parameters, const Real* tiles, std::size_t count, Real* work) {
+  const Lanes<Real> d;
+  const WorkSpace<Real> space(shape);
+  prepare(shape, parameters, work + space.prepared);
+  double sum = 0.0;
+  for_each_tile(d, shape, tiles, count,
+                [&](const Real* inputs, const Real* targets, const Real* weights, std::size_t vectors) HWY_ATTR {
+                  const Real* top = forward(d, shape, work + space.prepared, inputs, vectors, work + space.outputs);
+                  sum += output_error(d, shape.top(), top, targets, weights, vectors, static_cast<Real*>(nullptr));
+                });
+  return sum;
+}
+
+/// The backward pass of Fig. 9 for one tile; deltas[0] holds those of the output layer.
+template <class D, typename Real = hn::TFromD<D>>
+void backward(D d, const PlacedShape& shape, const Real* parameters, const Real* inputs, std::size_t vectors,
+              const WorkSpace<Real>& space, Real* work) {
+  Real* deltas = work + space.deltas[0];
+  Real* deltas_below = work + space.deltas[1];
+  const Real* outputs = work + space.outputs;
+  for (std::size_t l = shape.layer_count - 1; l > 0; --l) {
+    const PlacedLayer& layer = shape.layers[l];
+    const PlacedLayer& below = shape.layers[l - 1];
+    layer_gradient(d, layer, deltas, outputs + below.first_unit * kTile, vectors, work + space.sums);
+    layer_deltas(d, layer, below, parameters, deltas, outputs, vectors, deltas_below);
+    std::swap(deltas, deltas_below);
+  }
+  layer_gradient(d, shape.layers[0], deltas, inputs, vectors, work + space.sums);
+}
+
+template <typename Real>
+double error_and_gradient(const PlacedShape& shape, const Real* parameters, const Real* tiles, std::size_t count,
+                          Real* gradient, Real* work) {
+  const Lanes<Real> d;
+  const WorkSpace<Real> space(shape);
+  prepare(shape, parameters, work + space.prepared);
+  Real* sums = work + space.sums;
+  std::fill_n(sums, shape.parameters * space.kLine, Real{0});
+  double error = 0.0;
+  for_each_tile(d, shape, tiles, count,
+                [&](const Real* inputs, const Real* targets, const Real* weights, std::size_t vectors) HWY_ATTR {
+                  const Real* top = forward(d, shape, work + space.prepared, inputs, vectors, work + space.outputs);
+                  error += output_error(d, shape.top(), top, targets, weights, vectors, work + space.deltas[0]);
+                  backward(d, shape, parameters, inputs, vectors, space, work);
+                });
+  for (std::size_t k = 0; k < shape.parameters; ++k) {
+    gradient[k] = hn::GetLane(hn::SumOfLanes(d, hn::Load(d, sums + k * space.kLine)));
+  }
+  return error;
+}
+
+// ---- normal equations ----
+
+/// out [units, fan_in] rows = delta of each unit times each row below: dE/dweight of each sample.
+template <class D, typename Real = hn::TFromD<D>>
+void outer_products(D d, const Real* deltas, std::size_t units, const Real* below, std::size_t fan_in,
+                    std::size_t vectors, Real* out) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  for (std::size_t u = 0; u < units; ++u) {
+    for (std::size_t k = 0; k < fan_in; ++k) {
+      for (std::size_t v = 0; v < vectors; ++v) {
+        const auto delta = hn::Load(d, deltas + u * kTile + v * kLanes);
+        const auto x = hn::Load(d, below + k * kTile + v * kLanes);
+        hn::Store(hn::Mul(delta, x), d, out);
+        out += kLanes;
+      }
+      out += kTile - vectors * kLanes;
+    }
+  }
+}
+
+template <typename Real>
+void copy_rows(const Real* rows, std::size_t count, Real* out) {
+  std::copy_n(rows, count * kTile, out);
+}
+
+/// The rows of one output's Jacobian for a tile, each sample times the root of its weight: parameters of the lower
+/// layers, weights and threshold of the output, and as the last row the residual.
+template <class D, typename Real = hn::TFromD<D>>
+void jacobian_rows(D d, const PlacedShape& shape, std::size_t output, const Real* parameters, const Real* inputs,
+                   const Real* targets, const Real* weights, std::size_t vectors, const WorkSpace<Real>& space,
+                   Real* work) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  const PlacedLayer& top = shape.top();
+  const Real* outputs = work + space.outputs;
+  Real* deltas = work + space.deltas[0];
+  Real* deltas_below = work + space.deltas[1];
+  Real* jacobian = work + space.jacobian;
+  Real* residuals = jacobian + (space.rows - 1) * kTile;
+  for (std::size_t v = 0; v < vectors; ++v) {
+    const auto root = hn::Sqrt(hn::Load(d, weights + v * kLanes));
+    const auto y = hn::Load(d, outputs + (top.first_unit + output) * kTile + v * kLanes);
+    hn::Store(through(d, top.activation, root, y), d, deltas + v * kLanes);
+    const auto target = hn::Load(d, targets + output * kTile + v * kLanes);
+    hn::Store(hn::Mul(root, hn::Sub(y, target)), d, residuals + v * kLanes);
+  }
+  Real* top_rows = jacobian + top.weights * kTile;
+  const auto below_of = [&](std::size_t l) {
+    return l == 0 ? inputs : outputs + shape.layers[l - 1].first_unit * kTile;
+  };
+  outer_products(d, deltas, 1, below_of(shape.layer_count - 1), top.fan_in, vectors, top_rows);
+  copy_rows(deltas, 1, top_rows + top.fan_in * kTile);
+  PlacedLayer layer = top;  // of which only the one output takes part
+  layer.weights += output * top.fan_in;
+  layer.units = 1;
+  for (std::size_t l = shape.layer_count - 1; l > 0; --l) {
+    const PlacedLayer& below = shape.layers[l - 1];
+    layer_deltas(d, layer, below, parameters, deltas, outputs, vectors, deltas_below);
+    std::swap(deltas, deltas_below);
+    layer = below;
+    outer_products(d, deltas, layer.units, below_of(l - 1), layer.fan_in, vectors, jacobian + layer.weights * kTile);
+    copy_rows(deltas, layer.units, jacobian + layer.thresholds * kTile);
+  }
+}
+
+/// out [8] += the sum of the lanes of each of eight vectors.
+template <class D, typename Real = hn::TFromD<D>>
+HWY_INLINE void add_sums(D d, const hn::Vec<D>* v, Real* out) {
+  for (std::size_t k = 0; k < 8; ++k) out[k] += hn::GetLane(hn::SumOfLanes(d, v[k]));
+}
+
+#if HWY_TARGET <= HWY_AVX3
+/// The same for eight lanes: 21 additions and moves in place of 8 times 6.
+HWY_INLINE void add_sums(Lanes<double> d, const hn::Vec<Lanes<double>>* v, double* out) {
+  const auto pairs = [d](auto a, auto b)
+                         HWY_ATTR { return hn::Add(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b)); };
+  const auto quads = [&](std::size_t a, std::size_t b) HWY_ATTR {
+    const auto low = pairs(v[a], v[a + 1]);
+    const auto high = pairs(v[b], v[b + 1]);
+    const auto sum = hn::Add(hn::ConcatLowerLower(d, high, low), hn::ConcatUpperUpper(d, high, low));
+    return hn::Add(sum, hn::SwapAdjacentBlocks(sum));  // sums of a, a + 1 twice, of b, b + 1 twice
+  };
+  hn::Store(hn::Add(hn::Load(d, out), hn::OddEvenBlocks(quads(2, 6), quads(0, 4))), d, out);
+}
+#endif
+
+/// products [kBlock, kBlock] += rows a times rows b, summed over samples; of a block on the diagonal only the lower
+/// triangle. The last rows of a matrix may be fewer than kBlock.
+template <std::size_t Rows, bool Diagonal, class D, typename Real = hn::TFromD<D>>
+HWY_INLINE void product_block(D d, const Real* a, const Real* b, std::size_t vectors, Real* products) {
+  constexpr std::size_t kBlock = WorkSpace<Real>::kBlock;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  hn::Vec<D> sums[kBlock * kBlock];
+  for (auto& sum : sums) sum = hn::Zero(d);
+  for (std::size_t v = 0; v < vectors; ++v) {
+    hn::Vec<D> x[kBlock];
+    for (std::size_t j = 0; j < (Diagonal ? Rows : kBlock); ++j) x[j] = hn::Load(d, b + j * kTile + v * kLanes);
+    for (std::size_t i = 0; i < Rows; ++i) {
+      const auto y = Diagonal ? x[i] : hn::Load(d, a + i * kTile + v * kLanes);
+      for (std::size_t j = 0; j < (Diagonal ? i + 1 : kBlock); ++j) {
+        sums[i * kBlock + j] = hn::MulAdd(y, x[j], sums[i * kBlock + j]);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < Rows * kBlock; k += 8) add_sums(d, sums + k, products + k);
+}
+
+/// A row of blocks of the lower triangle of rows rows^T.
+template <std::size_t Rows, class D, typename Real = hn::TFromD<D>>
+void product_row(D d, const Real* rows, std::size_t block_row, std::size_t vectors, Real* products) {
+  constexpr std::size_t kBlock = WorkSpace<Real>::kBlock;
+  const Real* a = rows + block_row * kBlock * kTile;
+  for (std::size_t block = 0; block < block_row; ++block) {
+    product_block<Rows, false>(d, a, rows + block * kBlock * kTile, vectors, products);
+    products += kBlock * kBlock;
+  }
+  product_block<Rows, true>(d, a, a, vectors, products);
+}
+
+template <class D, typename Real = hn::TFromD<D>>
+void add_products(D d, const Real* rows, std::size_t count, std::size_t vectors, Real* products) {
+  constexpr std::size_t kBlock = WorkSpace<Real>::kBlock;
+  std::size_t block_row = 0;
+  for (; (block_row + 1) * kBlock <= count; ++block_row) {
+    product_row<kBlock>(d, rows, block_row, vectors, products);
+    products += (block_row + 1) * kBlock * kBlock;
+  }
+  switch (count % kBlock) {
+    case 1: product_row<1>(d, rows, block_row, vectors, products); break;
+    case 2: product_row<2>(d, rows, block_row, vectors, products); break;
+    case 3: product_row<3>(d, rows, block_row, vectors, products); break;
+    default: break;
+  }
+}
+
+/// Adds the products of one output to the normal equations of all parameters; returns its part of the error.
+template <typename Real>
+double add_to_normal(const PlacedShape& shape, std::size_t output, const WorkSpace<Real>& space, const Real* products,
+                     Real* gradient, Real* normal) {
+  constexpr std::size_t kBlock = WorkSpace<Real>::kBlock;
+  const PlacedLayer& top = shape.top();
+  const auto place = [&](std::size_t row) {  // of a row of the Jacobian in the parameters
+    if (row < top.weights) return row;
+    const std::size_t k = row - top.weights;
+    return k < top.fan_in ? top.weights + output * top.fan_in + k : top.thresholds + output;
+  };
+  const auto product = [&](std::size_t i, std::size_t j) {
+    const std::size_t block_row = i / kBlock;
+    const std::size_t block = block_row * (block_row + 1) / 2 + j / kBlock;
+    return products[block * kBlock * kBlock + i % kBlock * kBlock + j % kBlock];
+  };
+  const std::size_t last = space.rows - 1;
+  for (std::size_t i = 0; i < last; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      normal[place(i) * shape.parameters + place(j)] += product(i, j);
+      if (i != j) normal[place(j) * shape.parameters + place(i)] += product(i, j);
+    }
+    gradient[place(i)] += product(last, i);
+  }
+  return 0.5 * double{product(last, last)};
+}
+
+template <typename Real>
+double normal_equations(const PlacedShape& shape, const Real* parameters, const Real* tiles, std::size_t count,
+                        Real* gradient, Real* normal, Real* work) {
+  const Lanes<Real> d;
+  const WorkSpace<Real> space(shape);
+  prepare(shape, parameters, work + space.prepared);
+  std::fill_n(gradient, shape.parameters, Real{0});
+  std::fill_n(normal, shape.parameters * shape.parameters, Real{0});
+  double error = 0.0;
+  for (std::size_t output = 0; output < shape.outputs(); ++output) {
+    std::fill(work + space.products, work + space.normal_size, Real{0});
+    for_each_tile(d, shape, tiles, count,
+                  [&](const Real* inputs, const Real* targets, const Real* weights, std::size_t vectors) HWY_ATTR {
+                    forward(d, shape, work + space.prepared, inputs, vectors, work + space.outputs);
+                    jacobian_rows(d, shape, output, parameters, inputs, targets, weights, vectors, space, work);
+                    add_products(d, work + space.jacobian, space.rows, vectors, work + space.products);
+                  });
+    error += add_to_normal(shape, output, space, work + space.products, gradient, normal);
+  }
+  return error;
+}
+
+template <typename Real>
+FeedForwardKernels<Real> kernels() {
+  return {&pack<Real>, &evaluate<Real>, &error<Real>, &error_and_gradient<Real>, &normal_equations<Real>};
+}
+
+FeedForwardKernels<float> float_kernels() {
+  return kernels<float>();
+}
+FeedForwardKernels<double> double_kernels() {
+  return kernels<double>();
+}
+
+}  // namespace dermis::network::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace dermis::network {
+
+HWY_EXPORT(float_kernels);
+HWY_EXPORT(double_kernels);
+
 namespace {
 
-/// The outputs of every layer for one pattern, one after the other.
 template <typename Real>
-void forward(const NetworkShape& shape, std::span<const Real> parameters, const Real* inputs, Real* outputs) {
-  const Real* below = inputs;
-  for (std::size_t layer = 0; layer < shape.layers.size(); ++layer) {
-    const std::size_t fan_in = shape.fan_in(layer);
-    const Real* weights = &parameters[shape.weights(layer)];
-    const Real* thresholds = &parameters[shape.thresholds(layer)];
-    for (std::size_t unit = 0; unit < shape.layers[layer].units; ++unit) {
-      const Real sum = std::inner_product(below, below + fan_in, weights + unit * fan_in, thresholds[unit]);
-      outputs[unit] = activate(shape.layers[layer].activation, sum);
-    }
-    below = outputs;
-    outputs += shape.layers[layer].units;
+FeedForwardKernels<Real> kernels() {
+  if constexpr (std::is_same_v<Real, float>) {
+    return HWY_DYNAMIC_DISPATCH(float_kernels)();
+  } else {
+    return HWY_DYNAMIC_DISPATCH(double_kernels)();
   }
 }
 
-std::size_t unit_count(const NetworkShape& shape) {
-  std::size_t units = 0;
-  for (const Layer& layer : shape.layers) units += layer.units;
-  return units;
-}
-
-/// deltas: at the output layer d error / d output on entry; d error / d sum of every neuron on return.
-template <typename Real>
-void backward(const NetworkShape& shape, std::span<const Real> parameters, const Real* inputs, const Real* outputs,
-              Real* deltas, Real* gradient) {
-  std::size_t first = unit_count(shape);
-  for (std::size_t layer = shape.layers.size(); layer-- > 0;) {
-    const std::size_t units = shape.layers[layer].units;
-    const std::size_t fan_in = shape.fan_in(layer);
-    first -= units;
-    const Real* below = layer == 0 ? inputs : outputs + first - fan_in;
-    Real* below_deltas = layer == 0 ? nullptr : deltas + first - fan_in;
-    if (below_deltas != nullptr) std::fill_n(below_deltas, fan_in, Real{0});
-    for (std::size_t unit = 0; unit < units; ++unit) {
-      const Real delta =
-          deltas[first + unit] * slope_from_output(shape.layers[layer].activation, outputs[first + unit]);
-      const Real* weights = &parameters[shape.weights(layer) + unit * fan_in];
-      Real* weight_gradient = gradient + shape.weights(layer) + unit * fan_in;
-      for (std::size_t k = 0; k < fan_in; ++k) {
-        weight_gradient[k] += delta * below[k];
-        if (below_deltas != nullptr) below_deltas[k] += delta * weights[k];
-      }
-      gradient[shape.thresholds(layer) + unit] += delta;
-    }
-  }
+/// The values of a vector of cache lines that holds at least `size` of them.
+template <typename Line>
+auto* grow(std::vector<Line>& lines, std::size_t size) {
+  constexpr std::size_t kLine = sizeof(Line) / sizeof(Line::values[0]);
+  const std::size_t needed = (size + kLine - 1) / kLine;
+  if (lines.size() < needed) lines.resize(needed);
+  return lines.data()->values;
 }
 
 }  // namespace
@@ -71,91 +597,62 @@ PackedSamples<Real>::PackedSamples(const NetworkShape& shape, const Samples<Real
 template <std::floating_point Real>
 void PackedSamples<Real>::pack(const NetworkShape& shape, const Samples<Real>& samples,
                                std::span<const std::size_t> indices) {
+  const PlacedShape placed(shape);
+  const std::size_t tiles = (indices.size() + kTile - 1) / kTile;
   count_ = indices.size();
-  inputs_.clear();
-  targets_.clear();
-  weights_.clear();
-  for (const std::size_t p : indices) {
-    const auto input = samples.inputs.subspan(p * shape.inputs, shape.inputs);
-    const auto target = samples.targets.subspan(p * shape.outputs(), shape.outputs());
-    inputs_.insert(inputs_.end(), input.begin(), input.end());
-    targets_.insert(targets_.end(), target.begin(), target.end());
-    weights_.push_back(samples.weights.empty() ? Real{1} : samples.weights[p]);
-  }
+  rows_ = packed_rows(placed);
+  if (count_ == 0) return;
+  kernels<Real>().pack(placed, samples, indices, grow(tiles_, tiles * rows_ * kTile));
+}
+
+template <std::floating_point Real>
+const Real* PackedSamples<Real>::tiles() const noexcept {
+  return tiles_.empty() ? nullptr : tiles_.data()->values;
 }
 
 template <std::floating_point Real>
 FeedForward<Real>::FeedForward(NetworkShape shape) : shape_(std::move(shape)) {
   assert(shape_.validate());
-  work_.resize(2 * unit_count(shape_) + shape_.parameter_count());
 }
 
 template <std::floating_point Real>
 void FeedForward<Real>::evaluate(std::span<const Real> parameters, std::span<const Real> inputs,
                                  std::span<Real> outputs) {
-  const std::size_t count = inputs.size() / shape_.inputs;
-  assert(parameters.size() == shape_.parameter_count() && outputs.size() == count * shape_.outputs());
-  for (std::size_t p = 0; p < count; ++p) {
-    forward(shape_, parameters, &inputs[p * shape_.inputs], work_.data());
-    std::copy_n(work_.data() + unit_count(shape_) - shape_.outputs(), shape_.outputs(), &outputs[p * shape_.outputs()]);
-  }
+  const PlacedShape shape(shape_);
+  const std::size_t count = inputs.size() / shape.inputs;
+  assert(parameters.size() == shape.parameters && outputs.size() == count * shape.outputs());
+  Real* work = grow(work_, WorkSpace<Real>(shape).evaluate_size);
+  kernels<Real>().evaluate(shape, parameters.data(), inputs.data(), count, outputs.data(), work);
 }
 
 template <std::floating_point Real>
 double FeedForward<Real>::error(std::span<const Real> parameters, const PackedSamples<Real>& samples) {
-  const Real* outputs = work_.data() + unit_count(shape_) - shape_.outputs();
-  double sum = 0.0;
-  for (std::size_t p = 0; p < samples.count(); ++p) {
-    forward(shape_, parameters, &samples.inputs()[p * shape_.inputs], work_.data());
-    for (std::size_t k = 0; k < shape_.outputs(); ++k) {
-      const double difference = double{samples.targets()[p * shape_.outputs() + k]} - double{outputs[k]};
-      sum += double{samples.weights()[p]} * difference * difference;
-    }
-  }
-  return 0.5 * sum;
+  const PlacedShape shape(shape_);
+  assert(parameters.size() == shape.parameters && samples.rows_ == packed_rows(shape));
+  Real* work = grow(work_, WorkSpace<Real>(shape).evaluate_size);
+  return kernels<Real>().error(shape, parameters.data(), samples.tiles(), samples.count(), work);
 }
 
 template <std::floating_point Real>
 double FeedForward<Real>::error_and_gradient(std::span<const Real> parameters, const PackedSamples<Real>& samples,
                                              std::span<Real> gradient) {
-  const std::size_t units = unit_count(shape_);
-  Real* deltas = work_.data() + units;
-  std::fill(gradient.begin(), gradient.end(), Real{0});
-  double sum = 0.0;
-  for (std::size_t p = 0; p < samples.count(); ++p) {
-    forward(shape_, parameters, &samples.inputs()[p * shape_.inputs], work_.data());
-    for (std::size_t k = 0; k < shape_.outputs(); ++k) {
-      const std::size_t unit = units - shape_.outputs() + k;
-      const Real difference = work_[unit] - samples.targets()[p * shape_.outputs() + k];
-      deltas[unit] = samples.weights()[p] * difference;
-      sum += double{deltas[unit]} * double{difference};
-    }
-    backward(shape_, parameters, &samples.inputs()[p * shape_.inputs], work_.data(), deltas, gradient.data());
-  }
-  return 0.5 * sum;
+  const PlacedShape shape(shape_);
+  assert(parameters.size() == shape.parameters && samples.rows_ == packed_rows(shape));
+  assert(gradient.size() == shape.parameters);
+  Real* work = grow(work_, WorkSpace<Real>(shape).gradient_size);
+  return kernels<Real>().error_and_gradient(shape, parameters.data(), samples.tiles(), samples.count(), gradient.data(),
+                                            work);
 }
 
 template <std::floating_point Real>
 double FeedForward<Real>::normal_equations(std::span<const Real> parameters, const PackedSamples<Real>& samples,
                                            std::span<Real> gradient, std::span<Real> normal) {
-  const std::size_t n = shape_.parameter_count();
-  const std::size_t units = unit_count(shape_);
-  const std::span<Real> row = std::span(work_).subspan(2 * units, n);
-  std::fill(normal.begin(), normal.end(), Real{0});
-  for (std::size_t p = 0; p < samples.count(); ++p) {
-    forward(shape_, parameters, &samples.inputs()[p * shape_.inputs], work_.data());
-    for (std::size_t k = 0; k < shape_.outputs(); ++k) {
-      Real* deltas = work_.data() + units;
-      std::fill_n(deltas, units, Real{0});
-      deltas[units - shape_.outputs() + k] = Real{1};
-      std::fill(row.begin(), row.end(), Real{0});
-      backward(shape_, parameters, &samples.inputs()[p * shape_.inputs], work_.data(), deltas, row.data());
-      for (std::size_t i = 0; i < n; ++i) {
-        for (std::size_t j = 0; j < n; ++j) normal[i * n + j] += samples.weights()[p] * row[i] * row[j];
-      }
-    }
-  }
-  return error_and_gradient(parameters, samples, gradient);
+  const PlacedShape shape(shape_);
+  assert(parameters.size() == shape.parameters && samples.rows_ == packed_rows(shape));
+  assert(gradient.size() == shape.parameters && normal.size() == shape.parameters * shape.parameters);
+  Real* work = grow(work_, WorkSpace<Real>(shape).normal_size);
+  return kernels<Real>().normal_equations(shape, parameters.data(), samples.tiles(), samples.count(), gradient.data(),
+                                          normal.data(), work);
 }
 
 template class PackedSamples<float>;
@@ -164,3 +661,4 @@ template class FeedForward<float>;
 template class FeedForward<double>;
 
 }  // namespace dermis::network
+#endif

@@ -6,7 +6,6 @@ namespace dermis::network {
 namespace {
 
 constexpr std::size_t kMaxUnits = 65'536;
-constexpr std::size_t kMaxLayers = 64;
 
 bool is_size(std::size_t units) {
   return units >= 1 && units <= kMaxUnits;

@@ -237,7 +237,7 @@ TEST(LevenbergMarquardt, the_observer_sees_each_iteration_and_the_parameters_so_
   std::vector<double> parameters = {-1.2, 1.0};
   int calls = 0;
   LevenbergMarquardtOptions options;
-  options.observer = [&](int iteration, double error) {
+  options.observer = [&](int iteration, double error, double) {
     EXPECT_EQ(iteration, ++calls);
     EXPECT_DOUBLE_EQ(error, half_square(rosenbrock, 2, parameters));
     return iteration < 7;
@@ -253,8 +253,8 @@ TEST(LevenbergMarquardt, the_observer_sees_each_iteration_and_the_parameters_so_
 TEST(LevenbergMarquardt, a_network_follows_the_path_of_its_residual_function) {
   const NetworkShape shape{2, {{4, Activation::log_sigmoid}, {2, Activation::linear}}};
   Random random(11);
-  std::vector<double> inputs(2 * 30);
-  std::vector<double> targets(2 * 30);
+  std::vector<double> inputs(60);
+  std::vector<double> targets(60);
   std::vector<double> weights(30);
   std::vector<double> start(shape.parameter_count());
   for (double& value : inputs) value = random.normal();

@@ -12,7 +12,17 @@
 
 namespace dermis::network {
 
-/// Samples in the layout of the engine; packed once, used in every epoch.
+template <std::floating_point Real>
+class FeedForward;
+
+/// A cache line of values: a vector of them begins where SIMD loads are fastest.
+template <std::floating_point Real>
+struct alignas(64) CacheLine {
+  Real values[64 / sizeof(Real)];
+};
+
+/// Samples in the layout of the engine; packed once, used in every epoch. Belongs to networks with as many inputs and
+/// outputs as the one it was packed for.
 template <std::floating_point Real>
 class PackedSamples {
  public:
@@ -24,15 +34,14 @@ class PackedSamples {
   void pack(const NetworkShape& shape, const Samples<Real>& samples, std::span<const std::size_t> indices);
 
   [[nodiscard]] std::size_t count() const noexcept { return count_; }
-  [[nodiscard]] std::span<const Real> inputs() const noexcept { return inputs_; }
-  [[nodiscard]] std::span<const Real> targets() const noexcept { return targets_; }
-  [[nodiscard]] std::span<const Real> weights() const noexcept { return weights_; }
 
  private:
+  friend class FeedForward<Real>;
+  [[nodiscard]] const Real* tiles() const noexcept;
+
   std::size_t count_ = 0;
-  std::vector<Real> inputs_;
-  std::vector<Real> targets_;
-  std::vector<Real> weights_;
+  std::size_t rows_ = 0;
+  std::vector<CacheLine<Real>> tiles_;
 };
 
 /// The BP network: forward and backward passes over batches of samples for networks of any depth.
@@ -62,7 +71,7 @@ class FeedForward {
 
  private:
   NetworkShape shape_;
-  std::vector<Real> work_;
+  std::vector<CacheLine<Real>> work_;
 };
 
 }  // namespace dermis::network

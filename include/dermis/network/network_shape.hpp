@@ -11,6 +11,8 @@
 
 namespace dermis::network {
 
+inline constexpr std::size_t kMaxLayers = 64;
+
 /// Neurons side by side, each connected to all outputs of the layer below.
 struct Layer {
   std::size_t units = 1;  ///< 1 ... 65,536
@@ -25,7 +27,7 @@ struct Layer {
 /// thresholds [units].
 struct NetworkShape {
   std::size_t inputs = 1;     ///< 1 ... 65,536
-  std::vector<Layer> layers;  ///< From the first above the inputs to the output layer; 1 ... 64.
+  std::vector<Layer> layers;  ///< From the first above the inputs to the output layer; 1 ... kMaxLayers.
 
   [[nodiscard]] std::size_t outputs() const noexcept { return layers.back().units; }
   /// Inputs of each neuron of a layer, the threshold not counted.
