@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dermis/core/random.hpp"
-#include "hwy/targets.h"
+#include "support/simd_targets.hpp"
 
 namespace dermis::network {
 namespace {
@@ -45,14 +45,12 @@ TEST(HalfNetworkBank, outputs_are_within_a_thousandth_of_full_scale) {
       {257, {{33, kLogSigmoid}, {17, Activation::tanh}, {3, kLogSigmoid}}},
       {3, {{5, Activation::relu}, {1, kLogSigmoid}}},
   };
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    for (const NetworkShape& shape : shapes) {
-      for (std::size_t networks = 1; networks <= 7; networks += 3) {
-        SCOPED_TRACE(testing::Message() << hwy::TargetName(target) << ", " << shape.describe() << ", networks and seed "
-                                        << networks);
-        Random random(networks);
-        const Example example(shape, networks, random);
+  for (const NetworkShape& shape : shapes) {
+    for (std::size_t networks = 1; networks <= 7; networks += 3) {
+      SCOPED_TRACE(testing::Message() << shape.describe() << ", networks and seed " << networks);
+      Random random(networks);
+      const Example example(shape, networks, random);
+      support::for_each_simd_target([&] {
         auto half = HalfNetworkBank::from(example.bank);
         ASSERT_TRUE(half) << half.error().message;
         ASSERT_EQ(half->network_count(), networks);
@@ -62,10 +60,9 @@ TEST(HalfNetworkBank, outputs_are_within_a_thousandth_of_full_scale) {
           half->evaluate(example.inputs, outputs);
           for (std::size_t k = 0; k < outputs.size(); ++k) EXPECT_NEAR(outputs[k], example.outputs[k], 1e-3F);
         }
-      }
+      });
     }
   }
-  hwy::SetSupportedTargetsForTest(0);
 }
 
 TEST(HalfNetworkBank, parameters_that_16_bits_hold_give_the_outputs_of_single_precision) {

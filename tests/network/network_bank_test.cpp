@@ -14,7 +14,7 @@
 
 #include "dermis/core/random.hpp"
 #include "dermis/network/feed_forward.hpp"
-#include "hwy/targets.h"
+#include "support/simd_targets.hpp"
 
 namespace dermis::network {
 namespace {
@@ -170,17 +170,6 @@ void for_every_problem(std::size_t batch, const Check& check) {
   }
 }
 
-/// Calls check() with every instruction set of this machine.
-template <class Check>
-void for_every_target(const Check& check) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
-    hwy::SetSupportedTargetsForTest(target);
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
-
 TEST(NetworkBank, the_bank_of_the_paper_has_33751296_unknowns) {
   const NetworkBank bank({256, {{256, kLogSigmoid}, {256, kLogSigmoid}, {1, kLogSigmoid}}}, 256);
   EXPECT_EQ(bank.parameter_count(), 33'751'296U);
@@ -217,7 +206,7 @@ TEST(NetworkBank, every_network_gives_what_it_gives_alone) {
           expected[i / outputs * each + network * outputs + i % outputs] = static_cast<float>(own[i]);
         }
       }
-      for_every_target([&] {
+      support::for_each_simd_target([&] {
         NetworkBank bank = problem.bank();
         constexpr float kGuard = 12345.0F;
         std::vector<float> batch(count * each + 1, kGuard);
@@ -271,7 +260,7 @@ void expect_steps(const Problem& problem, const BankStep& step, int steps, doubl
       move_alone(alone[network], gradient, step);
     }
   }
-  for_every_target([&] {
+  support::for_each_simd_target([&] {
     NetworkBank bank = problem.bank();
     std::vector<float> errors(networks);
     for (const auto& expected : expected_errors) {
@@ -408,60 +397,64 @@ TEST(NetworkBank, a_diverged_network_says_so_and_its_neighbours_do_not_notice) {
     SCOPED_TRACE(shape.describe());
     Random random(8);
     const Problem problem(shape, 19, 5, random);
-    NetworkBank healthy = problem.bank();
-    NetworkBank bank = problem.bank();
-    auto diverged = problem.parameters[3];
-    std::fill(diverged.begin(), diverged.end(), std::numeric_limits<float>::quiet_NaN());
-    bank.set_parameters(3, diverged);
-    std::vector<float> errors(19);
-    std::vector<float> expected(19);
-    const BankStep step{.rule = BankStep::Rule::adam, .rate = 0.01F};
-    for (int t = 0; t < 2; ++t) {
+    support::for_each_simd_target([&] {
+      NetworkBank healthy = problem.bank();
+      NetworkBank bank = problem.bank();
+      auto diverged = problem.parameters[3];
+      std::fill(diverged.begin(), diverged.end(), std::numeric_limits<float>::quiet_NaN());
+      bank.set_parameters(3, diverged);
+      std::vector<float> errors(19);
+      std::vector<float> expected(19);
+      const BankStep step{.rule = BankStep::Rule::adam, .rate = 0.01F};
+      for (int t = 0; t < 2; ++t) {
+        healthy.train_step(problem.batch(), step, expected);
+        bank.train_step(problem.batch(), step, errors);
+      }
+      std::vector<float> outputs(19 * shape.outputs());
+      bank.evaluate(std::span(problem.inputs).first(shape.inputs), outputs);
+      for (std::size_t network = 0; network < 19; ++network) {
+        SCOPED_TRACE(network);
+        EXPECT_EQ(std::isfinite(errors[network]), network != 3);
+        EXPECT_EQ(std::isfinite(outputs[network * shape.outputs()]), network != 3);
+        if (network == 3) continue;
+        EXPECT_EQ(errors[network], expected[network]);
+        EXPECT_EQ(parameters_of(bank, network), parameters_of(healthy, network));
+      }
+      // New parameters mend it.
+      bank.set_parameters(3, problem.parameters[3]);
+      healthy.set_parameters(3, problem.parameters[3]);
       healthy.train_step(problem.batch(), step, expected);
       bank.train_step(problem.batch(), step, errors);
-    }
-    std::vector<float> outputs(19 * shape.outputs());
-    bank.evaluate(std::span(problem.inputs).first(shape.inputs), outputs);
-    for (std::size_t network = 0; network < 19; ++network) {
-      SCOPED_TRACE(network);
-      EXPECT_EQ(std::isfinite(errors[network]), network != 3);
-      EXPECT_EQ(std::isfinite(outputs[network * shape.outputs()]), network != 3);
-      if (network == 3) continue;
-      EXPECT_EQ(errors[network], expected[network]);
-      EXPECT_EQ(parameters_of(bank, network), parameters_of(healthy, network));
-    }
-    // New parameters mend it.
-    bank.set_parameters(3, problem.parameters[3]);
-    healthy.set_parameters(3, problem.parameters[3]);
-    healthy.train_step(problem.batch(), step, expected);
-    bank.train_step(problem.batch(), step, errors);
-    EXPECT_EQ(errors, expected);
-    EXPECT_EQ(parameters_of(bank, 3), parameters_of(healthy, 3));
+      EXPECT_EQ(errors, expected);
+      EXPECT_EQ(parameters_of(bank, 3), parameters_of(healthy, 3));
+    });
   }
 }
 
 TEST(NetworkBank, extreme_sums_saturate) {
-  for (const float sum : {1e3F, 1e30F, std::numeric_limits<float>::max()}) {
-    for (const std::size_t networks : {1U, 20U}) {
-      for (const std::size_t units : {3U, 100U}) {
-        NetworkBank bank({1, {{units, kLogSigmoid}, {units, kTanh}}}, networks);
-        std::vector<float> parameters(units * 2 + units * (units + 1));
-        // Up, then down; the second layer looks at the first two units, and the last unit at none.
-        parameters[0] = sum;
-        parameters[1] = -sum;
-        parameters[units * 2] = 100.0F;
-        parameters[units * 3 + 1] = 100.0F;
-        for (std::size_t k = 0; k < networks; ++k) bank.set_parameters(k, parameters);
-        std::vector<float> outputs(networks * units);
-        bank.evaluate(std::vector<float>{1.0F}, outputs);
-        for (std::size_t k = 0; k < networks; ++k) {
-          EXPECT_NEAR(outputs[k * units], 1.0F, 1e-6F);
-          EXPECT_NEAR(outputs[k * units + 1], 0.0F, 1e-6F);
-          EXPECT_NEAR(outputs[k * units + units - 1], 0.0F, 1e-6F);
+  support::for_each_simd_target([] {
+    for (const float sum : {1e3F, 1e30F, std::numeric_limits<float>::max()}) {
+      for (const std::size_t networks : {1U, 20U}) {
+        for (const std::size_t units : {3U, 100U}) {
+          NetworkBank bank({1, {{units, kLogSigmoid}, {units, kTanh}}}, networks);
+          std::vector<float> parameters(units * 2 + units * (units + 1));
+          // Up, then down; the second layer looks at the first two units, and the last unit at none.
+          parameters[0] = sum;
+          parameters[1] = -sum;
+          parameters[units * 2] = 100.0F;
+          parameters[units * 3 + 1] = 100.0F;
+          for (std::size_t k = 0; k < networks; ++k) bank.set_parameters(k, parameters);
+          std::vector<float> outputs(networks * units);
+          bank.evaluate(std::vector<float>{1.0F}, outputs);
+          for (std::size_t k = 0; k < networks; ++k) {
+            EXPECT_NEAR(outputs[k * units], 1.0F, 1e-6F);
+            EXPECT_NEAR(outputs[k * units + 1], 0.0F, 1e-6F);
+            EXPECT_NEAR(outputs[k * units + units - 1], 0.0F, 1e-6F);
+          }
         }
       }
     }
-  }
+  });
 }
 
 }  // namespace
