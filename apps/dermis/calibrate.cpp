@@ -11,8 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "dermis/calibration/bank_training.hpp"
 #include "dermis/core/version.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/pipeline/paper_bank_file.hpp"
 #include "dermis/store/array_toml.hpp"
 #include "dermis/store/atomic_file.hpp"
 #include "dermis/store/content_hash.hpp"
@@ -28,12 +30,15 @@ using calibration::Calibration;
 using calibration::CalibrationReport;
 
 constexpr double kPoorFit = 0.1;  // relative error
+constexpr std::size_t kBankSteps = 2500;
+constexpr std::uint64_t kBankSeed = 1;
 
 struct CalibrateOptions {
   std::string array;
   std::string frames;
   std::string loads;
   std::string out;
+  std::string bank;
   double settle_s = 0.0;
   bool json = false;
 };
@@ -92,16 +97,30 @@ void print_json(const CalibrationReport& report, const ArrayDescription& array) 
   fmt::print("{}\n", json.dump(2));
 }
 
+/// A folder that is missing or full is told before the work, not after it.
+Status check_writable(const std::string& path) {
+  const bool is_special = std::filesystem::exists(path) && !std::filesystem::is_regular_file(path);
+  if (is_special) return Done{};
+  const Result<store::AtomicFile> writable = store::AtomicFile::create(path);
+  if (!writable) return writable.error();
+  return Done{};
+}
+
+Status train_bank(const CalibrateOptions& options, const calibration::SampleDatabase& database, Progress& progress) {
+  const Result<calibration::TrainedBank> trained = calibration::train_paper_bank(
+      database, kBankSteps, kBankSeed, [&](double share) { progress.show("bank", share); });
+  if (!trained) return trained.error();
+  return pipeline::write_paper_bank(options.bank, trained->bank);
+}
+
 Status calibrate(const CalibrateOptions& options) {
   const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
   if (!settle) return settle.error();
   const Result<ArrayDescription> array = store::read_array(options.array);
   if (!array) return array.error();
-  // A folder that is missing or full is told before the work, not after it.
-  const bool is_special = std::filesystem::exists(options.out) && !std::filesystem::is_regular_file(options.out);
-  if (!is_special) {
-    const Result<store::AtomicFile> writable = store::AtomicFile::create(options.out);
-    if (!writable) return writable.error();
+  if (Status writable = check_writable(options.out); !writable) return writable;
+  if (!options.bank.empty()) {
+    if (Status writable = check_writable(options.bank); !writable) return writable;
   }
   const auto start = std::chrono::steady_clock::now();
   const Result<std::vector<RawFrame>> frames = store::read_frames(options.frames, array->rows, array->cols);
@@ -117,6 +136,11 @@ Status calibrate(const CalibrateOptions& options) {
   calibration->report.stages.insert(calibration->report.stages.begin(), {"reading", read_s});
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
   if (Status written = pipeline::write_model(options.out, calibration->model); !written) return written;
+  if (!options.bank.empty()) {
+    const auto database = calibration::build_sample_database(*array, *frames, *loads, *settle);
+    if (!database) return database.error();
+    if (Status trained = train_bank(options, *database, progress); !trained) return trained;
+  }
   options.json ? print_json(calibration->report, *array) : print_text(calibration->report, *array);
   return Done{};
 }
@@ -130,6 +154,8 @@ void add_calibrate(CLI::App& app, Action& action) {
   command->add_option("--frames", options->frames, "frames.csv: raw counts")->required();
   command->add_option("--loads", options->loads, "loads.csv: which load pressed where in which frame")->required();
   command->add_option("--out", options->out, "Model file to write (safetensors)")->required();
+  command->add_option("--bank", options->bank,
+                      "Also train the paper's bank of N-N-N-1 networks and write it here (16x16: minutes, 135 MB)");
   command->add_option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
       ->capture_default_str();
   command->add_flag("--json", options->json, "Print the report as JSON");

@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/pipeline/paper_bank_file.hpp"
 #include "dermis/report/evaluation_report.hpp"
 #include "dermis/store/frames_csv.hpp"
 #include "dermis/store/loads_csv.hpp"
@@ -22,6 +23,7 @@ struct EvaluateOptions {
   std::string frames;
   std::string loads;
   std::string report;
+  std::string bank;
   bool json = false;
 };
 
@@ -56,7 +58,13 @@ Status evaluate(const EvaluateOptions& options) {
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = store::read_loads(options.loads, model->array, frames->size());
   if (!loads) return loads.error();
-  const Result<Evaluation> evaluation = calibration::evaluate(*model, *frames, *loads);
+  std::optional<fusion::PaperBank> bank;
+  if (!options.bank.empty()) {
+    Result<fusion::PaperBank> read = pipeline::read_paper_bank(options.bank);
+    if (!read) return read.error();
+    bank = std::move(*read);
+  }
+  const Result<Evaluation> evaluation = calibration::evaluate(*model, *frames, *loads, bank ? &*bank : nullptr);
   if (!evaluation) return evaluation.error();
   if (!options.report.empty()) {
     if (Status written = report::write_evaluation_report(options.report, *evaluation, *model); !written) return written;
@@ -73,6 +81,7 @@ void add_evaluate(CLI::App& app, Action& action) {
   command->add_option("--model", options->model, "Model file of 'dermis calibrate'")->required();
   command->add_option("--frames", options->frames, "frames.csv: raw counts")->required();
   command->add_option("--loads", options->loads, "loads.csv: the truth")->required();
+  command->add_option("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
   command->add_flag("--json", options->json, "Print the result as JSON");
   command->add_option("--report", options->report, "Folder for an HTML report with pictures");
   command->callback([&action, options] { action = [options] { return evaluate(*options); }; });

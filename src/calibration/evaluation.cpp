@@ -31,10 +31,12 @@ struct Errors {
 /// All estimators on one frame.
 class EstimatorRow {
  public:
-  EstimatorRow(const pipeline::Model& model, pipeline::Pipeline pipeline)
-      : model_(model), pipeline_(std::move(pipeline)), reading_(model.array.taxel_count()) {
-    newtons_.resize(1 + model.baselines.size());
-    for (std::vector<float>& forces : newtons_) forces.resize(model.array.taxel_count());
+  EstimatorRow(const pipeline::Model& model, pipeline::Pipeline pipeline, fusion::PaperBank* bank)
+      : model_(model), pipeline_(std::move(pipeline)), bank_(bank), reading_(model.array.taxel_count()) {
+    names_.emplace_back("dermis");
+    for (const fusion::LookUpTables& tables : model.baselines) names_.push_back(tables.name);
+    if (bank != nullptr) names_.emplace_back(kPaperBankName);
+    newtons_.assign(names_.size(), std::vector<float>(model.array.taxel_count()));
   }
 
   /// Returns false where the frame is rejected.
@@ -48,9 +50,11 @@ class EstimatorRow {
       const bool bare = tables.signal == fusion::LookUpSignal::reading;
       tables.estimate(bare ? reading_ : pipeline_.conductance().siemens, raw.temperature_celsius, newtons_[k + 1]);
     }
+    if (bank_ != nullptr) bank_->estimate(pipeline_.conditioned().ratio, raw.temperature_celsius, newtons_.back());
     return true;
   }
 
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const std::vector<std::vector<float>>& newtons() const { return newtons_; }
   [[nodiscard]] const std::vector<double>& reading() const { return reading_; }
   [[nodiscard]] const std::vector<double>& siemens() const { return pipeline_.conductance().siemens; }
@@ -58,7 +62,9 @@ class EstimatorRow {
  private:
   const pipeline::Model& model_;
   pipeline::Pipeline pipeline_;
+  fusion::PaperBank* bank_;
   ForceFrame force_;
+  std::vector<std::string> names_;  // [estimators]
   std::vector<double> reading_;
   std::vector<std::vector<float>> newtons_;  // [estimators][taxels]
 };
@@ -137,12 +143,12 @@ std::optional<double> root_mean_square(const std::vector<double>& errors) {
   return std::sqrt(square / static_cast<double>(errors.size()));
 }
 
-std::vector<EstimatorResult> summarise_estimators(const pipeline::Model& model, const Evaluation& evaluation,
+std::vector<EstimatorResult> summarise_estimators(const std::vector<std::string>& names, const Evaluation& evaluation,
                                                   Errors& errors) {
   std::vector<EstimatorResult> results;
-  for (std::size_t k = 0; k < 1 + model.baselines.size(); ++k) {
+  for (std::size_t k = 0; k < names.size(); ++k) {
     EstimatorResult result;
-    result.name = k == 0 ? "dermis" : model.baselines[k - 1].name;
+    result.name = names[k];
     std::vector<double> relative;
     for (const JudgedTaxel& taxel : evaluation.taxels) {
       relative.push_back(relative_error(static_cast<double>(taxel.newtons[k]), taxel.true_newtons));
@@ -277,16 +283,20 @@ ErrorSummary summarise(std::vector<double> errors) {
   return summary;
 }
 
-Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFrame> frames,
-                            std::span<const Load> loads) {
+Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFrame> frames, std::span<const Load> loads,
+                            fusion::PaperBank* bank) {
   if (Status checked = check_loads(model.array, frames.size(), loads); !checked) return checked.error();
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
+  if (bank != nullptr && bank->taxel_count() != model.array.taxel_count()) {
+    return bad_input(fmt::format("the paper's bank is for {} taxels, the model for {}", bank->taxel_count(),
+                                 model.array.taxel_count()));
+  }
 
   Evaluation evaluation;
   evaluation.array = model.array;
-  EstimatorRow row(model, std::move(*pipeline));
-  Errors errors(1 + model.baselines.size());
+  EstimatorRow row(model, std::move(*pipeline), bank);
+  Errors errors(row.names().size());
   ExampleChoice examples;
   const std::vector<std::vector<Load>> loads_of = group_by_frame(loads, frames.size());
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
@@ -304,7 +314,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
     examples.offer(frame, truth, row);
   }
   if (evaluation.frames == 0) return bad_input("no labelled frame fits the model's array");
-  evaluation.estimators = summarise_estimators(model, evaluation, errors);
+  evaluation.estimators = summarise_estimators(row.names(), evaluation, errors);
   evaluation.examples = std::move(examples).chosen();
   break_down_all(evaluation);
   return evaluation;

@@ -50,12 +50,13 @@ Selection select_and_condition(SampleDatabase& database, std::span<const RawFram
 }
 
 Sample make_sample(const ArrayDescription& array, std::size_t frame, const RawFrame& raw, std::span<const Load> loads,
-                   ConductanceFrame& conductance) {
+                   const ConditionedFrame& conditioned, ConductanceFrame& conductance) {
   Sample sample;
   sample.frame = frame;
   sample.temperature_celsius = conductance.temperature_celsius;
   sample.reading.resize(array.taxel_count());
   preprocessing::bare_readings(array, raw, sample.reading);
+  sample.ratio = conditioned.ratio;
   sample.siemens = std::move(conductance.siemens);
   expand_loads(array, loads, sample);
   // A reading at the end of the ADC no longer tells its force.
@@ -137,7 +138,8 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
       const std::size_t frame = selection.frame[k];
       database.samples[k].frame = frame;
       if (has(conductance.status, FrameStatus::not_converged)) continue;
-      database.samples[k] = make_sample(array, frame, frames[frame], loads_of[frame], conductance);
+      database.samples[k] =
+          make_sample(array, frame, frames[frame], loads_of[frame], selection.conditioned[k], conductance);
     }
   });
   reject_unsolved(database);

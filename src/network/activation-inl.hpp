@@ -119,6 +119,31 @@ HWY_INLINE hn::Vec<D> tanh(D d, hn::Vec<D> sum) {
   return tanh_of_power(d, hn::Mul(sum, hn::Set(d, static_cast<hn::TFromD<D>>(kTanhPower))));
 }
 
+/// f(sum).
+template <class D>
+HWY_INLINE hn::Vec<D> activate(D d, Activation activation, hn::Vec<D> sum) {
+  switch (activation) {
+    case Activation::log_sigmoid: return log_sigmoid(d, sum);
+    case Activation::tanh: return tanh(d, sum);
+    case Activation::relu: return hn::IfThenZeroElse(hn::Lt(sum, hn::Zero(d)), sum);
+    case Activation::linear: break;
+  }
+  return sum;
+}
+
+/// f'(sum) as a function of f(sum).
+template <class D>
+HWY_INLINE hn::Vec<D> slope_from_output(D d, Activation activation, hn::Vec<D> output) {
+  const auto one = hn::Set(d, hn::TFromD<D>{1});
+  switch (activation) {
+    case Activation::log_sigmoid: return hn::NegMulAdd(output, output, output);
+    case Activation::tanh: return hn::NegMulAdd(output, output, one);
+    case Activation::relu: return hn::IfThenElseZero(hn::Gt(output, hn::Zero(d)), one);
+    case Activation::linear: break;
+  }
+  return one;
+}
+
 }  // namespace dermis::network::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -96,7 +96,7 @@ class DampedDescent {
     while (!stop && report.iterations < options_.max_iterations) {
       ++report.iterations;
       stop = iterate();
-      if (options_.observer && !options_.observer(report.iterations, error_) && !stop) stop = Stop::observer;
+      if (options_.observer && !options_.observer(report.iterations, error_, damping_) && !stop) stop = Stop::observer;
     }
     report.stop = stop.value_or(Stop::max_iterations);
     report.final_error = error_;
@@ -133,7 +133,7 @@ class DampedDescent {
     damping_ = std::max(damping_ / kDampingFactor, kMinDamping);
     if (error_ <= options_.error_goal) return Stop::error_goal;
     if (slow) return Stop::relative_reduction;
-    problem_.linearise(point_, gradient_, normal_);
+    error_ = problem_.linearise(point_, gradient_, normal_);  // as a call that begins here has it, to the last bit
     return stop_at_gradient();
   }
 

@@ -2,39 +2,72 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "dermis/calibration/evaluation.hpp"
-#include "dermis/core/array_description.hpp"
-#include "dermis/pipeline/model.hpp"
 #include "report/figures.hpp"
 
 namespace dermis::report {
 
-/// The page of an evaluation, written from top to bottom. Well-formed as XML, too.
+/// A large number with its name above and a remark below.
+struct Tile {
+  std::string name;
+  std::string value;
+  std::string note;
+};
+
+/// A name and what is to be said about it.
+using Fact = std::pair<std::string, std::string>;
+
+struct Cell {
+  std::string words;
+  std::string style;  ///< "best" is bold.
+};
+
+struct Row {
+  std::optional<std::size_t> series;  ///< Mark of a series of the figures before the name.
+  std::string name;
+  std::vector<Cell> cells;
+};
+
+struct Table {
+  /// Stands above neighbouring columns.
+  struct Group {
+    std::string name;
+    std::size_t columns = 1;
+  };
+
+  std::string style = "numbers";   ///< Or "claims": sentences, which stand below each other on a narrow screen.
+  std::vector<Group> groups;       ///< Of the columns after the first; none, or over all of them.
+  std::vector<std::string> heads;  ///< The first is that of the names.
+  std::vector<Row> rows;
+};
+
+/// A page with numbered figures, written from top to bottom. All words are plain text. Well-formed as XML, too.
 class Page {
  public:
-  explicit Page(const std::string& array_name);
+  /// `window` names the page in lists of pages.
+  Page(std::string_view window, std::string_view title);
 
-  /// The result of the first estimator in large numbers, and what it was judged on.
-  void add_summary(const calibration::Evaluation& evaluation);
-  /// The table of all estimators, and what each of them is.
-  void add_estimators(const calibration::Evaluation& evaluation, const pipeline::Model& model);
-  void add_figure(const Figure& figure);
+  void heading(std::string_view words);
+  /// `style`: "", "muted" or "note".
+  void paragraph(std::string_view words, std::string_view style = "");
+  void tiles(const std::vector<Tile>& tiles);
+  void table(const Table& table);
+  /// `style`: "facts" or "facts note".
+  void facts(const std::vector<Fact>& facts, std::string_view style = "facts");
+  void figure(const Figure& figure);
   /// Figures of one size, beside each other where there is room.
-  void add_figures(const std::vector<Figure>& figures);
-  void add_array(const ArrayDescription& array);
-  void add_provenance(const pipeline::Model& model);
+  void figures(const std::vector<Figure>& figures);
 
   [[nodiscard]] std::string html() &&;
 
  private:
-  void add_legend(const calibration::Evaluation& evaluation, const pipeline::Model& model);
   void element(std::string_view tag, std::string_view style, std::string_view words);
-  void tile(std::string_view name, std::string_view value, std::string_view note);
-  void row(std::string_view name, std::string_view value);
 
   std::string html_;
   std::size_t figures_ = 0;

@@ -16,8 +16,8 @@ namespace dermis::simulation {
 namespace {
 
 constexpr std::size_t kMostFrames = 200'000;
-constexpr std::array kNames = {"calibration", "uniform", "paper", "multitouch",
-                               "idle"};  // In the order of Scene::Kind.
+constexpr std::array kNames = {"calibration", "uniform",    "paper_calibration",
+                               "paper",       "multitouch", "idle"};  // In the order of Scene::Kind.
 
 constexpr double kDefaultSupplyV = 5.0;
 constexpr double kRestS = 1.0;
@@ -115,6 +115,7 @@ std::size_t Scene::default_frame_count() const {
   switch (kind_) {
     case Kind::calibration: return kTemperatures * (kUnloadedFrames + kLevels * array_.taxel_count());
     case Kind::uniform: return kTemperatures * (kUnloadedFrames + kLevels * kFramesPerPressure);
+    case Kind::paper_calibration: return kUnloadedFrames + kLevels * array_.taxel_count();
     case Kind::paper: return kPaperForcesN.size() * kPaperPoints;
     case Kind::multitouch:
     case Kind::idle: break;
@@ -144,7 +145,8 @@ void Scene::frame(std::size_t index, SceneFrame& out) const {
   const double nominal_v = array_.readout.supply_v.value_or(kDefaultSupplyV);
   out.supply_v = nominal_v * (1.0 + supply_variation_ * random.uniform(-1.0, 1.0));
   switch (kind_) {
-    case Kind::calibration: press_each_taxel(index, out); break;
+    case Kind::calibration:
+    case Kind::paper_calibration: press_each_taxel(index, out); break;
     case Kind::uniform: inflate_bladder(index, out); break;
     case Kind::paper: press_as_in_paper(index, out); break;
     case Kind::multitouch: touch(random, out); break;
@@ -157,7 +159,8 @@ void Scene::press_each_taxel(std::size_t index, SceneFrame& out) const {
   const std::size_t taxels = array_.taxel_count();
   const std::size_t per_temperature = kUnloadedFrames + kLevels * taxels;
   const std::size_t step = index % per_temperature;
-  out.temperature_celsius = calibration_celsius(index / per_temperature);
+  out.temperature_celsius =
+      kind_ == Kind::paper_calibration ? kPaperCelsius : calibration_celsius(index / per_temperature);
   if (step == 0) out.rest_s = kSoakS;
   if (step < kUnloadedFrames) return;
   const std::size_t press = step - kUnloadedFrames;

@@ -237,7 +237,7 @@ TEST(LevenbergMarquardt, the_observer_sees_each_iteration_and_the_parameters_so_
   std::vector<double> parameters = {-1.2, 1.0};
   int calls = 0;
   LevenbergMarquardtOptions options;
-  options.observer = [&](int iteration, double error) {
+  options.observer = [&](int iteration, double error, double) {
     EXPECT_EQ(iteration, ++calls);
     EXPECT_DOUBLE_EQ(error, half_square(rosenbrock, 2, parameters));
     return iteration < 7;

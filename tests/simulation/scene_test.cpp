@@ -98,6 +98,17 @@ TEST(Scene, CalibrationOfTheReferenceArrayHas17920Presses) {
   EXPECT_EQ(scene.frame_count(), 17'920U + 100U);
 }
 
+TEST(Scene, PaperCalibrationIsTheCalibrationAt20Celsius) {
+  const ArrayDescription array = make_array(3, 4);
+  const auto frames = play("paper_calibration", array);
+  const auto all_temperatures = play("calibration", array);
+  ASSERT_EQ(frames.size(), 20 + 14 * 12);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].temperature_celsius, 20.0);
+    EXPECT_EQ(frames[i].force_n, all_temperatures[i].force_n);
+  }
+}
+
 TEST(Scene, UniformLabelsPressureOnAllTaxels) {
   const ArrayDescription array = make_array(3, 3);
   const auto frames = play("uniform", array);

@@ -11,12 +11,16 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/fusion/paper_bank.hpp"
 #include "dermis/pipeline/model.hpp"
 
 namespace dermis::calibration {
 
 /// Taxels are judged by relative error from this true force on [N].
 inline constexpr double kJudgedNewtons = 1.0;
+
+/// The name of the paper's bank among the estimators.
+inline constexpr const char* kPaperBankName = "paper_bank";
 
 /// Percentiles of a set of errors; all empty where nothing was judged.
 struct ErrorSummary {
@@ -32,7 +36,7 @@ struct ErrorSummary {
 
 /// How one estimator did on all frames.
 struct EstimatorResult {
-  std::string name;                    ///< "dermis" first, then the baselines.
+  std::string name;                    ///< "dermis" first, then the baselines, then kPaperBankName.
   ErrorSummary relative_error;         ///< |estimate / truth - 1| of taxels of at least kJudgedNewtons; dimensionless.
   ErrorSummary ghost_n;                ///< Force on unloaded taxels that give one [N].
   std::size_t totals_judged = 0;       ///< `force` loads over several taxels.
@@ -89,11 +93,11 @@ struct Evaluation {
   std::vector<TactileExample> examples;      ///< A few loaded frames with known taxel forces.
 };
 
-/// Runs the model and its baselines on frames whose loads are known. Unlabelled frames pass through the pipeline but
-/// are not judged. Errors: frames that do not fit the model's array, no labelled frame, loads given as pressure without
-/// a taxel area.
+/// Runs the model and its baselines on frames whose loads are known, and the paper's bank where there is one, as the
+/// last estimator. Unlabelled frames pass through the pipeline but are not judged. Errors: frames or a bank that do not
+/// fit the model's array, no labelled frame, loads given as pressure without a taxel area.
 [[nodiscard]] Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFrame> frames,
-                                          std::span<const Load> loads);
+                                          std::span<const Load> loads, fusion::PaperBank* bank = nullptr);
 
 /// The result as in `dermis evaluate --json` (docs/command-line.md).
 [[nodiscard]] std::string to_json(const Evaluation& evaluation);

@@ -26,6 +26,7 @@ struct Sample {
   std::size_t frame = 0;  ///< Index in the recording.
   std::optional<double> temperature_celsius;
   std::vector<double> reading;       ///< Bare readings [taxels], counts / full scale, for the baselines.
+  std::vector<double> ratio;         ///< Reading / supply [taxels], for the paper's bank.
   std::vector<double> siemens;       ///< Conductances [taxels].
   std::vector<float> known_newtons;  ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
   std::vector<TotalForce> totals;

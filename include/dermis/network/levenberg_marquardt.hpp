@@ -17,9 +17,10 @@ namespace dermis::network {
 using ResidualFunction =
     std::function<void(std::span<const double> parameters, std::span<double> residuals, std::span<double> jacobian)>;
 
-/// Called after each iteration with its number from 1 and the error of the best point so far, which is what the
-/// parameters being minimised then hold; false stops.
-using LevenbergMarquardtObserver = std::function<bool(int iteration, double error)>;
+/// Called after each iteration with its number from 1, the error of the best point so far, which is what the parameters
+/// being minimised then hold, and the damping of the next: with it as initial_damping and from these parameters,
+/// another call goes on as this one would. false stops.
+using LevenbergMarquardtObserver = std::function<bool(int iteration, double error, double damping)>;
 
 /// Errors are those of eq. (6) of the paper: half the sum of squares.
 struct LevenbergMarquardtOptions {

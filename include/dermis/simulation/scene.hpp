@@ -39,21 +39,22 @@ struct SceneFrame {
 
 /// A script of loads for an array. The supply is drawn anew each frame around Readout::supply_v (5 V where empty).
 ///
-/// name         loads                                                                      frames
-/// calibration  each taxel alone at 14 forces, 0.5 ... 50 N in equal ratios, at 0, 12.5,   5 (20 + 14 taxels)
-///              25, 37.5 and 50 C; the whole array at one force before the next force;
-///              each temperature starts with 20 unloaded frames
-/// uniform      an air bladder: 14 pressures, 15 ... 700 kPa in equal ratios, rising       5 (20 + 14 x 5)
-///              without venting, 5 frames each, same temperatures and unloaded frames;
-///              force = pressure times taxel area, labelled as pressure
-/// paper        10, 20, 50 N at 16 different random taxels each, alone, 20 C               48
-/// multitouch   1-4 contacts of 1-50 N (log-uniform): 40 % on one taxel, the others        1000 or as asked
-///              Gaussians of 0.7-2.5 pitches sigma centred anywhere, cut below 0.02 N;
-///              at most 50 N a taxel; 0-50 C uniform; each frame is independent
-/// idle         unloaded; 0 to 50 C and back over the scene, as a cosine                   1000 or as asked
+/// name               loads                                                                      frames
+/// calibration        each taxel alone at 14 forces, 0.5 ... 50 N in equal ratios, at 0, 12.5,   5 (20 + 14 taxels)
+///                    25, 37.5 and 50 C; the whole array at one force before the next force;
+///                    each temperature starts with 20 unloaded frames
+/// uniform            an air bladder: 14 pressures, 15 ... 700 kPa in equal ratios, rising       5 (20 + 14 x 5)
+///                    without venting, 5 frames each, same temperatures and unloaded frames;
+///                    force = pressure times taxel area, labelled as pressure
+/// paper_calibration  as calibration, at 20 C alone                                              20 + 14 taxels
+/// paper              10, 20, 50 N at 16 different random taxels each, alone, 20 C               48
+/// multitouch         1-4 contacts of 1-50 N (log-uniform): 40 % on one taxel, the others        1000 or as asked
+///                    Gaussians of 0.7-2.5 pitches sigma centred anywhere, cut below 0.02 N;
+///                    at most 50 N a taxel; 0-50 C uniform; each frame is independent
+/// idle               unloaded; 0 to 50 C and back over the scene, as a cosine                   1000 or as asked
 ///
 /// A press is 1 s of rest and 1 s of hold; uniform and multitouch change the load without rest, every 1 s; idle takes a
-/// frame every 10 s. Each temperature of calibration and uniform starts with 600 s of rest.
+/// frame every 10 s. Each temperature of calibration, paper_calibration and uniform starts with 600 s of rest.
 /// Thread-safe: frame() only reads, and a frame depends on the seed and its index alone.
 class Scene {
  public:
@@ -69,7 +70,7 @@ class Scene {
   void frame(std::size_t index, SceneFrame& out) const;
 
  private:
-  enum class Kind { calibration, uniform, paper, multitouch, idle };
+  enum class Kind { calibration, uniform, paper_calibration, paper, multitouch, idle };
 
   Scene(Kind kind, const ArrayDescription& array, const EnvironmentOptions& environment, std::uint64_t seed);
   [[nodiscard]] Status check_array() const;

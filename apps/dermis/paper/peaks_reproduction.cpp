@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "paper/peaks_reproduction.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "dermis/core/parallel.hpp"
+#include "dermis/core/random.hpp"
+#include "dermis/network/initialisation.hpp"
+#include "dermis/network/levenberg_marquardt.hpp"
+#include "dermis/network/peaks.hpp"
+#include "dermis/network/training.hpp"
+
+namespace dermis::app {
+namespace {
+
+using network::Activation;
+using network::NetworkShape;
+using network::PeaksSamples;
+using report::HiddenLayerFit;
+using report::PeaksReproduction;
+
+constexpr double kGoal = 0.001;  // epsilon of eq. (2)
+constexpr std::size_t kPaperHidden = 5;
+constexpr std::size_t kStartsAtOnce = 8;
+
+/// Fig. 5: log-sigmoid hidden units, purelin output.
+NetworkShape peaks_shape(std::size_t hidden) {
+  return {2, {{hidden, Activation::log_sigmoid}, {1, Activation::linear}}};
+}
+
+/// One trained network.
+struct Fit {
+  double mse = std::numeric_limits<double>::infinity();  // eq. (2)
+  std::vector<double> parameters;
+};
+
+class PeaksExperiment {
+ public:
+  PeaksExperiment() : peaks_(network::peaks_samples()) {
+    const auto [least, greatest] = std::minmax_element(peaks_.targets.begin(), peaks_.targets.end());
+    range_ = *greatest - *least;
+  }
+
+  [[nodiscard]] const PeaksSamples& peaks() const { return peaks_; }
+  [[nodiscard]] double range() const { return range_; }
+
+  [[nodiscard]] double variance() const {
+    const auto count = static_cast<double>(PeaksSamples::kCount);
+    const double mean = std::accumulate(peaks_.targets.begin(), peaks_.targets.end(), 0.0) / count;
+    const double square =
+        std::inner_product(peaks_.targets.begin(), peaks_.targets.end(), peaks_.targets.begin(), 0.0) / count;
+    return square - mean * mean;
+  }
+
+  [[nodiscard]] std::vector<double> output(const NetworkShape& shape, const std::vector<double>& parameters) const {
+    std::vector<double> output(PeaksSamples::kCount);
+    network::FeedForward<double>(shape).evaluate(parameters, peaks_.inputs, output);
+    return output;
+  }
+
+  /// Levenberg-Marquardt from one random start.
+  [[nodiscard]] Fit levenberg_marquardt(std::size_t hidden, std::size_t start, int iterations) const {
+    const NetworkShape shape = peaks_shape(hidden);
+    network::FeedForward<double> engine(shape);
+    const network::PackedSamples<double> packed(shape, samples());
+    Fit fit;
+    fit.parameters = start_parameters(hidden, start);
+    network::LevenbergMarquardtOptions options;
+    options.max_iterations = iterations;
+    options.error_goal = 0.5 * kGoal * static_cast<double>(PeaksSamples::kCount);  // eq. (2) in terms of eq. (6)
+    options.relative_reduction = 1e-7;
+    const auto report = network::minimise(engine, packed, fit.parameters, options);
+    fit.mse = 2.0 * report.final_error / static_cast<double>(PeaksSamples::kCount);
+    return fit;
+  }
+
+  /// The paper's algorithm from one random start.
+  [[nodiscard]] network::TrainingState<double> adaptive_rate(std::size_t start, std::uint64_t epochs) const {
+    network::TrainingOptions options;
+    options.epochs = epochs;
+    options.error_goal = kGoal;
+    auto state = network::start_training(peaks_shape(kPaperHidden), start_parameters(kPaperHidden, start), options);
+    // The samples are Peaks itself: train() has nothing to refuse.
+    static_cast<void>(network::train(state, samples(), options));
+    return state;
+  }
+
+ private:
+  [[nodiscard]] network::Samples<double> samples() const {
+    return {PeaksSamples::kCount, peaks_.inputs, peaks_.targets, {}};
+  }
+
+  [[nodiscard]] static std::vector<double> start_parameters(std::size_t hidden, std::size_t start) {
+    const std::vector<network::InputRange> ranges(2, {-3.0, 3.0});
+    const std::uint64_t seed = Random::stream(hidden, start).bits();
+    return network::nguyen_widrow_start<double>(peaks_shape(hidden), ranges, seed);
+  }
+
+  PeaksSamples peaks_;
+  double range_ = 0.0;
+};
+
+void note(const Fit& best, const PeaksExperiment& experiment, HiddenLayerFit& result) {
+  result.best_mse = best.mse;
+  result.best_mse_normalised = best.mse / (experiment.range() * experiment.range());
+}
+
+/// The best of random starts first ... last - 1; ends early once one has reached the goal.
+void try_starts(const PeaksExperiment& experiment, std::size_t first, std::size_t last, int iterations,
+                HiddenLayerFit& result, Fit& best) {
+  for (; first < last && best.mse > kGoal; first += kStartsAtOnce) {
+    std::vector<Fit> fits(std::min(kStartsAtOnce, last - first));
+    parallel_for(fits.size(), [&](std::size_t k) {
+      fits[k] = experiment.levenberg_marquardt(result.hidden, first + k, iterations);
+    });
+    result.starts += fits.size();
+    for (Fit& fit : fits) {
+      if (fit.mse < best.mse) best = std::move(fit);
+    }
+  }
+  note(best, experiment, result);
+}
+
+struct SizeSearch {
+  std::vector<HiddenLayerFit> fits;  // from kPaperHidden on, one by one
+  std::vector<Fit> best;
+};
+
+std::optional<std::size_t> smallest(const SizeSearch& search, double HiddenLayerFit::*mse) {
+  for (const HiddenLayerFit& fit : search.fits) {
+    if (fit.*mse <= kGoal) return fit.hidden;
+  }
+  return std::nullopt;
+}
+
+/// The sizes just below the smallest that reached the goal are given further starts, as long as that brings it down.
+void try_harder_below_goal(const PeaksExperiment& experiment, const PeaksEffort& effort, double HiddenLayerFit::*mse,
+                           SizeSearch& search) {
+  for (std::optional<std::size_t> reached = smallest(search, mse); reached && *reached > kPaperHidden;) {
+    const std::size_t below = *reached - 1 - kPaperHidden;
+    HiddenLayerFit& fit = search.fits[below];
+    try_starts(experiment, fit.starts, effort.last_starts, effort.iterations, fit, search.best[below]);
+    if (fit.*mse > kGoal) return;
+    reached = smallest(search, mse);
+  }
+}
+
+SizeSearch search_sizes(const PeaksExperiment& experiment, const PeaksEffort& effort,
+                        const std::function<void(double)>& progress) {
+  SizeSearch search;
+  for (std::size_t hidden = kPaperHidden; hidden <= effort.most_hidden; ++hidden) {
+    search.fits.push_back({hidden, 0, 0.0, 0.0});
+    search.best.emplace_back();
+    const std::size_t starts = hidden == kPaperHidden ? effort.paper_size_starts : effort.starts;
+    try_starts(experiment, 0, starts, effort.iterations, search.fits.back(), search.best.back());
+    progress(static_cast<double>(hidden) / static_cast<double>(effort.most_hidden));
+    if (search.fits.back().best_mse <= kGoal) break;
+  }
+  try_harder_below_goal(experiment, effort, &HiddenLayerFit::best_mse_normalised, search);
+  try_harder_below_goal(experiment, effort, &HiddenLayerFit::best_mse, search);
+  return search;
+}
+
+report::TrainingCurve drawn(const network::ErrorCurve& curve, std::string name) {
+  constexpr std::size_t kPoints = 500;
+  report::TrainingCurve drawn{std::move(name), {}, {}};
+  const std::size_t step = std::max<std::size_t>(1, curve.errors.size() / kPoints);
+  for (std::size_t k = step; k < curve.errors.size(); k += step) {
+    drawn.step.push_back(static_cast<double>(k * curve.stride));
+    drawn.value.push_back(curve.errors[k]);
+  }
+  return drawn;
+}
+
+void reproduce_adaptive_rate(const PeaksExperiment& experiment, const PeaksEffort& effort, Fit& best,
+                             HiddenLayerFit& fit_of_paper_size, PeaksReproduction& found) {
+  std::vector<network::TrainingState<double>> states(effort.adaptive_rate_starts);
+  parallel_for(states.size(), [&](std::size_t start) {
+    states[start] = experiment.adaptive_rate(start, effort.adaptive_rate_epochs);
+  });
+  const auto& winner = *std::min_element(states.begin(), states.end(),
+                                         [](const auto& a, const auto& b) { return a.best_error < b.best_error; });
+  found.adaptive_rate_starts = states.size();
+  found.adaptive_rate_epochs = effort.adaptive_rate_epochs;
+  found.adaptive_rate_best_mse = winner.best_error;
+  found.adaptive_rate_curve = drawn(winner.curve, "2-5-1, adaptive rate with momentum");
+  if (winner.best_error >= best.mse) return;
+  best = {winner.best_error, winner.best_parameters};
+  note(best, experiment, fit_of_paper_size);
+}
+
+}  // namespace
+
+PeaksReproduction reproduce_peaks(const PeaksEffort& effort, const std::function<void(double)>& progress) {
+  const PeaksExperiment experiment;
+  PeaksReproduction found;
+  found.goal = kGoal;
+  found.variance = experiment.variance();
+  found.range = experiment.range();
+  SizeSearch search = search_sizes(experiment, effort, progress);
+  Fit& best = search.best.front();
+  reproduce_adaptive_rate(experiment, effort, best, search.fits.front(), found);
+  found.side = PeaksSamples::kSide;
+  found.target = experiment.peaks().targets;
+  found.output = experiment.output(peaks_shape(kPaperHidden), best.parameters);
+  found.smallest_hidden_raw = smallest(search, &HiddenLayerFit::best_mse);
+  found.smallest_hidden_normalised = smallest(search, &HiddenLayerFit::best_mse_normalised);
+  found.by_hidden = std::move(search.fits);
+  progress(1.0);
+  return found;
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include "dermis/calibration/evaluation.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "report/page.hpp"
+
+namespace dermis::report {
+
+/// The result of the first estimator in large numbers, and what it was judged on.
+void add_summary(Page& page, const calibration::Evaluation& evaluation);
+
+/// Errors of all estimators side by side, what each of them is, and the heading of the figures that follow. Nothing
+/// where nothing was judged.
+void add_estimators(Page& page, const calibration::Evaluation& evaluation, const pipeline::Model& model);
+
+/// The table alone, and how to read it; without rows where nothing was judged.
+[[nodiscard]] Table estimator_table(const calibration::Evaluation& evaluation);
+void add_reading_note(Page& page);
+
+void add_array(Page& page, const ArrayDescription& array);
+void add_provenance(Page& page, const pipeline::Model& model);
+
+}  // namespace dermis::report
