@@ -340,13 +340,13 @@ HWY_INLINE void deltas_block(D d, const Real* weights, const PlacedLayer& layer,
 }
 
 template <class D, typename Real = hn::TFromD<D>>
-void layer_deltas(D d, const PlacedLayer& layer, const PlacedLayer& below, const Real* parameters, const Real* deltas,
+void layer_deltas(D d, const PlacedLayer& layer, const PlacedLayer& below, const Real* weights, const Real* deltas,
                   const Real* outputs, std::size_t vectors, Real* deltas_below) {
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   in_blocks<4>(below.units, [&](std::size_t unit, auto units) HWY_ATTR {
     in_blocks<kVectors>(vectors, [&](std::size_t v, auto count) HWY_ATTR {
       const std::size_t place = unit * kTile + v * kLanes;
-      deltas_block<units(), count()>(d, parameters + layer.weights + unit, layer, below.activation, deltas + v * kLanes,
+      deltas_block<units(), count()>(d, weights + unit, layer, below.activation, deltas + v * kLanes,
                                      outputs + below.first_unit * kTile + place, deltas_below + place);
     });
   });
@@ -487,7 +487,7 @@ void backward(D d, const PlacedShape& shape, const Real* parameters, const Real*
     const PlacedLayer& layer = shape.layers[l];
     const PlacedLayer& below = shape.layers[l - 1];
     layer_gradient(d, layer, deltas, outputs + below.first_unit * kTile, vectors, work + space.sums);
-    layer_deltas(d, layer, below, parameters, deltas, outputs, vectors, deltas_below);
+    layer_deltas(d, layer, below, parameters + layer.weights, deltas, outputs, vectors, deltas_below);
     std::swap(deltas, deltas_below);
   }
   layer_gradient(d, shape.layers[0], deltas, inputs, vectors, work + space.sums);
@@ -534,13 +534,9 @@ void outer_products(D d, const Real* deltas, std::size_t units, const Real* belo
   }
 }
 
-template <typename Real>
-void copy_rows(const Real* rows, std::size_t count, Real* out) {
-  std::copy_n(rows, count * kTile, out);
-}
-
 /// The rows of one output's Jacobian for a tile, each sample times the root of its weight: parameters of the lower
-/// layers, weights and threshold of the output, and as the last row the residual.
+/// layers, weights and threshold of the output, and as the last row the residual. The derivatives by the thresholds are
+/// the deltas, so these are made in place.
 template <class D, typename Real = hn::TFromD<D>>
 void jacobian_rows(D d, const PlacedShape& shape, std::size_t output, const Real* parameters, const Real* inputs,
                    const Real* targets, const Real* weights, std::size_t vectors, const WorkSpace<Real>& space,
@@ -548,10 +544,9 @@ void jacobian_rows(D d, const PlacedShape& shape, std::size_t output, const Real
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   const PlacedLayer& top = shape.top();
   const Real* outputs = work + space.outputs;
-  Real* deltas = work + space.deltas[0];
-  Real* deltas_below = work + space.deltas[1];
   Real* jacobian = work + space.jacobian;
   Real* residuals = jacobian + (space.rows - 1) * kTile;
+  Real* deltas = residuals - kTile;
   for (std::size_t v = 0; v < vectors; ++v) {
     const auto root = hn::Sqrt(hn::Load(d, weights + v * kLanes));
     const auto y = hn::Load(d, outputs + (top.first_unit + output) * kTile + v * kLanes);
@@ -559,23 +554,19 @@ void jacobian_rows(D d, const PlacedShape& shape, std::size_t output, const Real
     const auto target = hn::Load(d, targets + output * kTile + v * kLanes);
     hn::Store(hn::Mul(root, hn::Sub(y, target)), d, residuals + v * kLanes);
   }
-  Real* top_rows = jacobian + top.weights * kTile;
-  const auto below_of = [&](std::size_t l) {
-    return l == 0 ? inputs : outputs + shape.layers[l - 1].first_unit * kTile;
-  };
-  outer_products(d, deltas, 1, below_of(shape.layer_count - 1), top.fan_in, vectors, top_rows);
-  copy_rows(deltas, 1, top_rows + top.fan_in * kTile);
   PlacedLayer layer = top;  // of which only the one output takes part
-  layer.weights += output * top.fan_in;
   layer.units = 1;
   for (std::size_t l = shape.layer_count - 1; l > 0; --l) {
     const PlacedLayer& below = shape.layers[l - 1];
-    layer_deltas(d, layer, below, parameters, deltas, outputs, vectors, deltas_below);
-    std::swap(deltas, deltas_below);
+    outer_products(d, deltas, layer.units, outputs + below.first_unit * kTile, layer.fan_in, vectors,
+                   jacobian + layer.weights * kTile);
+    const std::size_t skipped = l + 1 == shape.layer_count ? output * layer.fan_in : 0;
+    Real* deltas_below = jacobian + below.thresholds * kTile;
+    layer_deltas(d, layer, below, parameters + layer.weights + skipped, deltas, outputs, vectors, deltas_below);
+    deltas = deltas_below;
     layer = below;
-    outer_products(d, deltas, layer.units, below_of(l - 1), layer.fan_in, vectors, jacobian + layer.weights * kTile);
-    copy_rows(deltas, layer.units, jacobian + layer.thresholds * kTile);
   }
+  outer_products(d, deltas, layer.units, inputs, layer.fan_in, vectors, jacobian + layer.weights * kTile);
 }
 
 /// out [8] += the sum of the lanes of each of eight vectors.
@@ -619,35 +610,49 @@ HWY_INLINE void product_block(D d, const Real* a, const Real* b, std::size_t vec
   unroll<(Rows * kBlock + 7) / 8>([&](auto k) HWY_ATTR { add_sums(d, sums + 8 * k, products + 8 * k); });
 }
 
-/// A row of blocks of the lower triangle of rows rows^T.
+/// Block [block_row, block_column] of rows rows^T, whose blocks are stored row by row up to the diagonal.
 template <std::size_t Rows, class D, typename Real = hn::TFromD<D>>
-void product_row(D d, const Real* rows, std::size_t block_row, std::size_t vectors, Real* products) {
+HWY_INLINE void add_block(D d, const Real* rows, std::size_t block_row, std::size_t block_column, std::size_t vectors,
+                          Real* products) {
   constexpr std::size_t kBlock = WorkSpace<Real>::kBlock;
   const Real* a = rows + block_row * kBlock * kTile;
-  for (std::size_t block = 0; block < block_row; ++block) {
-    product_block<Rows, false>(d, a, rows + block * kBlock * kTile, vectors, products);
-    products += kBlock * kBlock;
+  const Real* b = rows + block_column * kBlock * kTile;
+  Real* block = products + (block_row * (block_row + 1) / 2 + block_column) * kBlock * kBlock;
+  if (block_row == block_column) {
+    product_block<Rows, true>(d, a, a, vectors, block);
+  } else {
+    product_block<Rows, false>(d, a, b, vectors, block);
   }
-  product_block<Rows, true>(d, a, a, vectors, products);
 }
 
+/// products += rows rows^T, the lower triangle. Some rows of blocks at a time, which stay in the L1 cache while the
+/// columns pass by.
 template <class D, typename Real = hn::TFromD<D>>
 void add_products(D d, const Real* rows, std::size_t count, std::size_t vectors, Real* products) {
   constexpr std::size_t kBlock = WorkSpace<Real>::kBlock;
-  std::size_t block_row = 0;
-  for (; (block_row + 1) * kBlock <= count; ++block_row) {
-    product_row<kBlock>(d, rows, block_row, vectors, products);
-    products += (block_row + 1) * kBlock * kBlock;
+  constexpr std::size_t kTogether = 4;
+  const std::size_t full = count / kBlock;
+  for (std::size_t first = 0; first < full; first += kTogether) {
+    const std::size_t end = std::min(first + kTogether, full);
+    for (std::size_t column = 0; column < end; ++column) {
+      for (std::size_t row = std::max(first, column); row < end; ++row) {
+        add_block<kBlock>(d, rows, row, column, vectors, products);
+      }
+    }
   }
+  const auto last = [&](auto rest) HWY_ATTR {
+    for (std::size_t column = 0; column <= full; ++column) add_block<rest()>(d, rows, full, column, vectors, products);
+  };
   switch (count % kBlock) {
-    case 1: product_row<1>(d, rows, block_row, vectors, products); break;
-    case 2: product_row<2>(d, rows, block_row, vectors, products); break;
-    case 3: product_row<3>(d, rows, block_row, vectors, products); break;
+    case 1: return last(std::integral_constant<std::size_t, 1>());
+    case 2: return last(std::integral_constant<std::size_t, 2>());
+    case 3: return last(std::integral_constant<std::size_t, 3>());
     default: break;
   }
 }
 
-/// Adds the products of one output to the normal equations of all parameters; returns its part of the error.
+/// Adds the products of one output to the gradient and the lower triangle of the normal equations of all parameters;
+/// returns its part of the error.
 template <typename Real>
 double add_to_normal(const PlacedShape& shape, std::size_t output, const WorkSpace<Real>& space, const Real* products,
                      Real* gradient, Real* normal) {
@@ -658,20 +663,18 @@ double add_to_normal(const PlacedShape& shape, std::size_t output, const WorkSpa
     const std::size_t k = row - top.weights;
     return k < top.fan_in ? top.weights + output * top.fan_in + k : top.thresholds + output;
   };
-  const auto product = [&](std::size_t i, std::size_t j) {
-    const std::size_t block_row = i / kBlock;
-    const std::size_t block = block_row * (block_row + 1) / 2 + j / kBlock;
-    return products[block * kBlock * kBlock + i % kBlock * kBlock + j % kBlock];
+  const auto products_of = [&](std::size_t row) {  // with row 0, the others follow in blocks
+    const std::size_t block_row = row / kBlock;
+    return products + block_row * (block_row + 1) / 2 * kBlock * kBlock + row % kBlock * kBlock;
   };
+  const auto in_blocks = [](std::size_t column) { return column / kBlock * kBlock * kBlock + column % kBlock; };
   const std::size_t last = space.rows - 1;
   for (std::size_t i = 0; i < last; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      normal[place(i) * shape.parameters + place(j)] += product(i, j);
-      if (i != j) normal[place(j) * shape.parameters + place(i)] += product(i, j);
-    }
-    gradient[place(i)] += product(last, i);
+    Real* row = normal + place(i) * shape.parameters;
+    for (std::size_t j = 0; j <= i; ++j) row[place(j)] += products_of(i)[in_blocks(j)];
+    gradient[place(i)] += products_of(last)[in_blocks(i)];
   }
-  return 0.5 * double{product(last, last)};
+  return 0.5 * double{products_of(last)[in_blocks(last)]};
 }
 
 template <typename Real>
@@ -692,6 +695,9 @@ double normal_equations(const PlacedShape& shape, const Real* parameters, const 
                     add_products(d, work + space.jacobian, space.rows, vectors, work + space.products);
                   });
     error += add_to_normal(shape, output, space, work + space.products, gradient, normal);
+  }
+  for (std::size_t i = 0; i < shape.parameters; ++i) {
+    for (std::size_t j = 0; j < i; ++j) normal[j * shape.parameters + i] = normal[i * shape.parameters + j];
   }
   return error;
 }
