@@ -3,7 +3,7 @@
 #pragma once
 
 // Counts what this thread allocates, by taking the place of malloc and its relatives in the test binary: operator new,
-// Eigen's and Highway's own allocators and the C library all end there. Include it in exactly one source of a binary.
+// Eigen's and Highway's own allocators and the C library all end there. Weak, so that several sources may include it.
 // Works with glibc; where a sanitizer owns malloc, kAllocationsAreCounted is false and tests skip with a message.
 
 #include <cerrno>
@@ -49,31 +49,31 @@ void* __libc_calloc(std::size_t count, std::size_t size) noexcept;        // NOL
 void* __libc_realloc(void* memory, std::size_t size) noexcept;            // NOLINT(bugprone-reserved-identifier)
 void* __libc_memalign(std::size_t alignment, std::size_t size) noexcept;  // NOLINT(bugprone-reserved-identifier)
 
-void* malloc(std::size_t size) noexcept {
+[[gnu::weak]] void* malloc(std::size_t size) noexcept {
   ++dermis::support::allocations_of_this_thread;
   return __libc_malloc(size);
 }
 
-void* calloc(std::size_t count, std::size_t size) noexcept {
+[[gnu::weak]] void* calloc(std::size_t count, std::size_t size) noexcept {
   ++dermis::support::allocations_of_this_thread;
   return __libc_calloc(count, size);
 }
 
-void* realloc(void* memory, std::size_t size) noexcept {
+[[gnu::weak]] void* realloc(void* memory, std::size_t size) noexcept {
   ++dermis::support::allocations_of_this_thread;
   return __libc_realloc(memory, size);
 }
 
-void* memalign(std::size_t alignment, std::size_t size) noexcept {
+[[gnu::weak]] void* memalign(std::size_t alignment, std::size_t size) noexcept {
   ++dermis::support::allocations_of_this_thread;
   return __libc_memalign(alignment, size);
 }
 
-void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+[[gnu::weak]] void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
   return memalign(alignment, size);
 }
 
-int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+[[gnu::weak]] int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
   void* const block = memalign(alignment, size);
   if (block == nullptr) return ENOMEM;
   *memory = block;
