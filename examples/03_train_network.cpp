@@ -20,8 +20,7 @@ int main() {
   options.algorithm = TrainingAlgorithm::levenberg_marquardt;
   options.epochs = 200;
   options.error_goal = 0.05;  // the mean square of eq. (2); Peaks has a variance of 3.52
-  const std::vector<InputRange> ranges = input_ranges(samples, shape.inputs);
-  auto state = start_training(shape, nguyen_widrow_start<double>(shape, ranges, 1), options);
+  auto state = start_training(shape, uniform_start<double>(shape, 3.0, 1), options);
   const dermis::Result<TrainingReport> report = train(state, samples, options);
   if (!report) {
     std::fprintf(stderr, "%s\n", report.error().message.c_str());

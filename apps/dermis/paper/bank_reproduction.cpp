@@ -30,7 +30,7 @@ using report::TrainingCurve;
 constexpr std::uint64_t kCalibrationSeed = 1;
 constexpr std::uint64_t kPointsSeed = 3;
 constexpr std::uint64_t kBankSeed = 1;
-constexpr float kDescentRate = 1.0F;
+constexpr float kDescentRate = 2.0F;
 
 struct Recording {
   std::vector<RawFrame> frames;
