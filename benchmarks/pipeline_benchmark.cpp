@@ -11,13 +11,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/simulation/simulator.hpp"
+#include "rows.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/random_networks.hpp"
 
@@ -206,15 +205,6 @@ class TableReporter final : public benchmark::BenchmarkReporter {
   nlohmann::ordered_json rows_ = nlohmann::ordered_json::array();
 };
 
-bool write_rows(const nlohmann::ordered_json& rows) {
-  const char* folder = std::getenv("DERMIS_BENCH_FOLDER");
-  const std::filesystem::path path = std::filesystem::path(folder != nullptr ? folder : "bench") / "pipeline.json";
-  std::filesystem::create_directories(path.parent_path());
-  std::ofstream(path) << rows.dump(2) << "\n";
-  fmt::print("written: {}\n", path.string());
-  return std::all_of(rows.begin(), rows.end(), [](const auto& row) { return row["checked"].template get<bool>(); });
-}
-
 }  // namespace
 }  // namespace dermis
 
@@ -222,5 +212,5 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   dermis::TableReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
-  return dermis::write_rows(reporter.rows()) ? 0 : 1;
+  return dermis::benchmarks::write_rows("pipeline", reporter.rows()) ? 0 : 1;
 }

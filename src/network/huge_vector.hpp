@@ -15,7 +15,7 @@ namespace dermis::network {
 template <typename T>
 class HugePageAllocator {
  public:
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): the name that allocators have
 
   HugePageAllocator() = default;
   template <typename Other>

@@ -3,7 +3,6 @@
 #include "network/panel_bank.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "network/bank_workers.hpp"
 
@@ -12,6 +11,7 @@
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first: it includes this file again for every instruction set.
 #include "hwy/highway.h"
+#include "network/adam-inl.hpp"
 #include "network/panel_evaluate-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -190,10 +190,10 @@ void propagate(const PanelLayer& layer, const float* parameters, PatternSpace& s
 }
 
 /// w -= rate * gradient.
-class Descent {
+class DescentRule {
  public:
-  Descent(const PanelParameters& parameters, const StepConstants& step)
-      : values_(parameters.values), rate_(hn::Set(FullTag(), step.rate)) {}
+  DescentRule(const PanelParameters& parameters, float rate)
+      : values_(parameters.values), rate_(hn::Set(FullTag(), rate)) {}
 
   HWY_INLINE void move(std::size_t place, FullVector gradient) const {
     const FullTag d;
@@ -205,37 +205,20 @@ class Descent {
   FullVector rate_;
 };
 
-/// Algorithm 1 of Kingma and Ba (2015).
-class Adam {
+class AdamRule {
  public:
-  Adam(const PanelParameters& parameters, const StepConstants& step)
+  AdamRule(const PanelParameters& parameters, const BankStep& step, const AdamScales& scales)
       : parameters_(parameters),
-        rate_(hn::Set(FullTag(), step.rate)),
-        first_rest_(hn::Set(FullTag(), 1.0F - step.first_decay)),
-        second_rest_(hn::Set(FullTag(), 1.0F - step.second_decay)),
-        second_scale_(hn::Set(FullTag(), step.second_scale)),
-        epsilon_(hn::Set(FullTag(), step.epsilon)) {}
+        step_(FullTag(), hn::Set(FullTag(), scales.rate), hn::Set(FullTag(), scales.second_scale), step) {}
 
   HWY_INLINE void move(std::size_t place, FullVector gradient) const {
-    const FullTag d;
-    auto first = hn::Load(d, parameters_.first_moments + place);
-    auto second = hn::Load(d, parameters_.second_moments + place);
-    first = hn::MulAdd(first_rest_, hn::Sub(gradient, first), first);
-    second = hn::MulAdd(second_rest_, hn::MulSub(gradient, gradient, second), second);
-    hn::Store(first, d, parameters_.first_moments + place);
-    hn::Store(second, d, parameters_.second_moments + place);
-    const auto deviation = hn::Add(hn::Sqrt(hn::Mul(second, second_scale_)), epsilon_);
-    const auto value = hn::Load(d, parameters_.values + place);
-    hn::Store(hn::Sub(value, hn::Div(hn::Mul(rate_, first), deviation)), d, parameters_.values + place);
+    step_.move(gradient, parameters_.values + place, parameters_.first_moments + place,
+               parameters_.second_moments + place);
   }
 
  private:
   PanelParameters parameters_;
-  FullVector rate_;
-  FullVector first_rest_;
-  FullVector second_rest_;
-  FullVector second_scale_;
-  FullVector epsilon_;
+  AdamStep<FullTag> step_;
 };
 
 /// The gradient of every weight, sum over the patterns of x_pk delta_pj, tile by tile, each applied at once.
@@ -336,15 +319,15 @@ void evaluate_patterns(const PanelLayout& layout, const float* parameters, const
 }
 
 /// One step on the patterns that the space holds; the error before it.
-float train_patterns(const PanelLayout& layout, const PanelParameters& parameters, const StepConstants& step,
-                     std::size_t patterns, PatternSpace& space) {
+float train_patterns(const PanelLayout& layout, const PanelParameters& parameters, const BankStep& step,
+                     const AdamScales& scales, std::size_t patterns, PatternSpace& space) {
   forward(layout, parameters.values, space.level(0), space.stride(0), space.rows(), space);
   const std::size_t top = layout.layers().size();
   const float error = take_error(layout.layers().back(), {space.level(top), space.stride(top)}, space, patterns);
   if (step.rule == BankStep::Rule::adam) {
-    backward(layout, parameters.values, Adam(parameters, step), space, patterns);
+    backward(layout, parameters.values, AdamRule(parameters, step, scales), space, patterns);
   } else {
-    backward(layout, parameters.values, Descent(parameters, step), space, patterns);
+    backward(layout, parameters.values, DescentRule(parameters, step.rate), space, patterns);
   }
   return error;
 }
@@ -481,13 +464,9 @@ float PanelBank::train_network(const BankBatch& batch, const BankStep& step, std
     const float weight = batch.weights.empty() ? 1.0F : batch.weights[network * batch.batch + p];
     space.weights[p] = weight / static_cast<float>(batch.batch);
   }
-  StepConstants constants{step.rule, step.rate, step.first_decay, step.second_decay, 1.0F, step.epsilon};
-  if (step.rule == BankStep::Rule::adam) {
-    const auto t = static_cast<double>(++adam_steps_[network]);
-    constants.rate = static_cast<float>(double{step.rate} / (1.0 - std::pow(double{step.first_decay}, t)));
-    constants.second_scale = static_cast<float>(1.0 / (1.0 - std::pow(double{step.second_decay}, t)));
-  }
-  return HWY_DYNAMIC_DISPATCH(train_patterns)(layout_, of(network), constants, batch.batch, space);
+  const bool is_adam = step.rule == BankStep::Rule::adam;
+  const AdamScales scales = is_adam ? adam_scales(step, ++adam_steps_[network]) : AdamScales{step.rate};
+  return HWY_DYNAMIC_DISPATCH(train_patterns)(layout_, of(network), step, scales, batch.batch, space);
 }
 
 }  // namespace dermis::network

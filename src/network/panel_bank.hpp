@@ -43,16 +43,6 @@ class PatternSpace {
   HugeVector<float> values_;
 };
 
-/// The constants of a training step of one network.
-struct StepConstants {
-  BankStep::Rule rule;
-  float rate;  ///< Adam: over 1 - first_decay^t.
-  float first_decay;
-  float second_decay;
-  float second_scale;  ///< 1 over (1 - second_decay^t).
-  float epsilon;
-};
-
 /// The parameters of one network and, for Adam, the moments of their gradients.
 struct PanelParameters {
   float* values;

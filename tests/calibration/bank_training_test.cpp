@@ -67,9 +67,9 @@ TEST(BankTraining, every_start_lowers_its_error_under_gradient_descent) {
 
 TEST(BankTraining, the_same_seed_gives_the_same_bank_and_another_seed_another) {
   const SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
-  const fusion::PaperBank bank = train_paper_bank(database, 5, 1)->bank;
-  EXPECT_EQ(parameters_of(train_paper_bank(database, 5, 1)->bank, 3), parameters_of(bank, 3));
-  EXPECT_NE(parameters_of(train_paper_bank(database, 5, 2)->bank, 3), parameters_of(bank, 3));
+  const TrainedBank trained = train_paper_bank(database, 5, 1).value();
+  EXPECT_EQ(parameters_of(train_paper_bank(database, 5, 1)->bank, 3), parameters_of(trained.bank, 3));
+  EXPECT_NE(parameters_of(train_paper_bank(database, 5, 2)->bank, 3), parameters_of(trained.bank, 3));
 }
 
 TEST(BankTraining, reaches_the_papers_five_percent_on_its_points) {

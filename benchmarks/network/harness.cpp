@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "harness.hpp"
+
+#include <fmt/core.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+namespace dermis::benchmarks {
+namespace {
+
+double seconds_of(const std::function<void()>& body) {
+  const auto start = std::chrono::steady_clock::now();
+  body();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// One thread: on the last core. More: on as many cores as the program was given.
+class Placement {
+ public:
+  explicit Placement(int threads) {
+    sched_getaffinity(0, sizeof before_, &before_);
+    if (threads > 1) return;
+    int last = 0;
+    for (int core = 0; core < CPU_SETSIZE; ++core) {
+      if (CPU_ISSET(core, &before_)) last = core;
+    }
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(last, &one);
+    sched_setaffinity(0, sizeof one, &one);
+  }
+  Placement(const Placement&) = delete;
+  Placement& operator=(const Placement&) = delete;
+  ~Placement() { sched_setaffinity(0, sizeof before_, &before_); }
+
+ private:
+  cpu_set_t before_{};
+};
+
+/// Seconds of one step: the mean over as many as fill a sample, after one that is not timed.
+double sample(const Entry& entry, const Work& work, const Effort& effort) {
+  entry.engine->use_threads(work.threads);
+  if (entry.run.limit_seconds) return entry.run.limit_seconds();
+  if (work.threads > 1) std::this_thread::sleep_for(std::chrono::duration<double>(effort.seconds_between));
+  const double once = seconds_of(entry.run.step);
+  const int steps = std::max(1, static_cast<int>(std::lround(effort.seconds_a_sample / once)));
+  return seconds_of([&] {
+           for (int step = 0; step < steps; ++step) entry.run.step();
+         }) /
+         steps;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+void print_row(const nlohmann::ordered_json& row) {
+  const auto times_faster =
+      row.contains("times_faster") ? fmt::format("{:.2f}", row["times_faster"].get<double>()) : "";
+  fmt::print("{:<22}{:>3}  {:<10}{:>10.3f} {:<3}{:>10.3f}{:>10}  {:<4}", row["work"].get<std::string>(),
+             row["threads"].get<int>(), row["engine"].get<std::string>(), row["median"].get<double>(),
+             row["unit"].get<std::string>(), row["fastest"].get<double>(), times_faster,
+             row["checked"].get<bool>() ? "yes" : "NO");
+  if (row.contains("deviation")) {
+    fmt::print("{:.1e} of {:.0e}: {}", row["deviation"].get<double>(), row["tolerance"].get<double>(),
+               row["compared"].get<std::string>());
+  }
+  if (row.contains("note")) fmt::print("  [{}]", row["note"].get<std::string>());
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+void print_header() {
+  fmt::print("{:<22}{:>3}  {:<10}{:>10} {:<3}{:>10}{:>10}  {}\n", "work", "thr", "engine", "median", "", "fastest",
+             "dermis x", "checked");
+}
+
+void measure(const Work& work, std::vector<Entry> entries, const Effort& effort, nlohmann::ordered_json& rows) {
+  const Placement placement(work.threads);
+  std::vector<std::vector<double>> samples(entries.size());
+  for (int round = 0; round < effort.rounds; ++round) {
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      samples[k].push_back(work.scale * sample(entries[k], work, effort));
+    }
+  }
+  double dermis = 0.0;
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    if (entries[k].engine->name() == "dermis") dermis = median(samples[k]);
+  }
+  for (std::size_t k = 0; k < entries.size(); ++k) {
+    const Run& run = entries[k].run;
+    nlohmann::ordered_json row{{"work", work.name},
+                               {"engine", entries[k].engine->name()},
+                               {"threads", work.threads},
+                               {"median", median(samples[k])},
+                               {"unit", work.unit},
+                               {"checked", run.check.passed()},
+                               {"fastest", *std::min_element(samples[k].begin(), samples[k].end())},
+                               {"rounds", effort.rounds}};
+    if (!run.check.what.empty()) {
+      row["compared"] = run.check.what;
+      row["deviation"] = run.check.deviation;
+      row["tolerance"] = run.check.tolerance;
+    }
+    if (row["engine"] != "dermis" && dermis > 0.0) row["times_faster"] = row["median"].get<double>() / dermis;
+    if (!run.note.empty()) row["note"] = run.note;
+    print_row(row);
+    rows.push_back(std::move(row));
+  }
+}
+
+}  // namespace dermis::benchmarks
