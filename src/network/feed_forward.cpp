@@ -26,6 +26,14 @@ using Lanes = hn::CappedTag<Real, kCacheLineBytes / sizeof(Real)>;
 /// Vectors that a kernel works on at a time: sums and what they are made of fit the registers.
 constexpr std::size_t kVectors = HWY_TARGET <= HWY_AVX3 || HWY_ARCH_ARM ? 4 : 2;
 
+/// Calls body(0) ... body(Count - 1) with constants, so that what they index stays in registers.
+template <std::size_t Count, class Body>
+HWY_INLINE void unroll(const Body& body) {
+  const auto call = [&]<std::size_t... K>(std::index_sequence<K...>)
+                        HWY_ATTR { (body(std::integral_constant<std::size_t, K>()), ...); };
+  call(std::make_index_sequence<Count>());
+}
+
 /// Calls body(first, std::integral_constant<n>) for first = 0, AtOnce, ...; n = AtOnce, for the rest 1.
 template <std::size_t AtOnce, class Body>
 HWY_INLINE void in_blocks(std::size_t count, const Body& body) {
@@ -36,21 +44,89 @@ HWY_INLINE void in_blocks(std::size_t count, const Body& body) {
 
 // ---- rows <-> columns ----
 
+#if HWY_TARGET == HWY_SCALAR
+template <typename Real>
+constexpr std::size_t kSquare = 1;
+
+template <typename Real>
+HWY_INLINE void transpose_square(const Real* const (&in)[1], Real* const (&out)[1]) {
+  *out[0] = *in[0];
+}
+#else
+/// Rows and columns that fill 128 bits: shuffles within them are cheap everywhere.
+template <typename Real>
+constexpr std::size_t kSquare = 16 / sizeof(Real);
+
+HWY_INLINE void transpose_square(const float* const (&in)[4], float* const (&out)[4]) {
+  const hn::FixedTag<float, 4> d;
+  const hn::FixedTag<double, 2> pairs;
+  const auto interleave = [d, pairs](const float* above, const float* below, auto& low, auto& high) HWY_ATTR {
+    const auto a = hn::LoadU(d, above);
+    const auto b = hn::LoadU(d, below);
+    low = hn::BitCast(pairs, hn::InterleaveLower(d, a, b));
+    high = hn::BitCast(pairs, hn::InterleaveUpper(d, a, b));
+  };
+  hn::Vec<decltype(pairs)> low01;
+  hn::Vec<decltype(pairs)> high01;
+  hn::Vec<decltype(pairs)> low23;
+  hn::Vec<decltype(pairs)> high23;
+  interleave(in[0], in[1], low01, high01);
+  interleave(in[2], in[3], low23, high23);
+  hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, low01, low23)), d, out[0]);
+  hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, low01, low23)), d, out[1]);
+  hn::StoreU(hn::BitCast(d, hn::InterleaveLower(pairs, high01, high23)), d, out[2]);
+  hn::StoreU(hn::BitCast(d, hn::InterleaveUpper(pairs, high01, high23)), d, out[3]);
+}
+
+HWY_INLINE void transpose_square(const double* const (&in)[2], double* const (&out)[2]) {
+  const hn::FixedTag<double, 2> d;
+  const auto a = hn::LoadU(d, in[0]);
+  const auto b = hn::LoadU(d, in[1]);
+  hn::StoreU(hn::InterleaveLower(d, a, b), d, out[0]);
+  hn::StoreU(hn::InterleaveUpper(d, a, b), d, out[1]);
+}
+#endif
+
+/// in(row) [columns] -> out(column) [rows].
+template <typename Real, class In, class Out>
+HWY_INLINE void transpose(std::size_t rows, std::size_t columns, const In& in, const Out& out) {
+  constexpr std::size_t kSide = kSquare<Real>;
+  const auto one = [&](std::size_t row, std::size_t column) HWY_ATTR { out(column)[row] = in(row)[column]; };
+  std::size_t row = 0;
+  for (; row + kSide <= rows; row += kSide) {
+    std::size_t column = 0;
+    for (; column + kSide <= columns; column += kSide) {
+      const Real* from[kSide];
+      Real* to[kSide];
+      unroll<kSide>([&](auto k) HWY_ATTR {
+        from[k] = in(row + k) + column;
+        to[k] = out(column + k) + row;
+      });
+      transpose_square(from, to);
+    }
+    for (; column < columns; ++column) unroll<kSide>([&](auto k) HWY_ATTR { one(row + k, column); });
+  }
+  for (; row < rows; ++row) {
+    for (std::size_t column = 0; column < columns; ++column) one(row, column);
+  }
+}
+
 /// rows(p) points to `columns` values of sample p -> out [columns, kTile], samples 0 ... count - 1.
 template <typename Real, class Rows>
-void to_columns(std::size_t columns, std::size_t count, const Rows& rows, Real* out) {
-  for (std::size_t p = 0; p < count; ++p) {
-    const Real* row = rows(p);
-    for (std::size_t k = 0; k < columns; ++k) out[k * kTile + p] = row[k];
-  }
+HWY_INLINE void to_columns(std::size_t columns, std::size_t count, const Rows& rows, Real* out) {
+  transpose<Real>(count, columns, rows, [out](std::size_t k) HWY_ATTR { return out + k * kTile; });
 }
 
 /// in [columns, kTile] -> out [count, columns].
 template <typename Real>
-void to_rows(std::size_t columns, std::size_t count, const Real* in, Real* out) {
-  for (std::size_t p = 0; p < count; ++p) {
-    for (std::size_t k = 0; k < columns; ++k) out[p * columns + k] = in[k * kTile + p];
+HWY_INLINE void to_rows(std::size_t columns, std::size_t count, const Real* in, Real* out) {
+  if (columns == 1) {
+    std::copy_n(in, count, out);
+    return;
   }
+  transpose<Real>(
+      columns, count, [in](std::size_t k) HWY_ATTR { return in + k * kTile; },
+      [out, columns](std::size_t p) HWY_ATTR { return out + p * columns; });
 }
 
 // ---- forward ----
@@ -81,13 +157,12 @@ template <std::size_t Count, class D>
 HWY_INLINE void activate_all(D d, Activation activation, hn::Vec<D> (&values)[Count]) {
   switch (activation) {
     case Activation::log_sigmoid:
-      for (auto& value : values) value = log_sigmoid_of_power(d, value);
+      unroll<Count>([&](auto k) HWY_ATTR { values[k] = log_sigmoid_of_power(d, values[k]); });
       break;
-    case Activation::tanh:
-      for (auto& value : values) value = tanh_of_power(d, value);
-      break;
+    case Activation::tanh: unroll<Count>([&](auto k) HWY_ATTR { values[k] = tanh_of_power(d, values[k]); }); break;
     case Activation::relu:
-      for (auto& value : values) value = hn::IfThenZeroElse(hn::Lt(value, hn::Zero(d)), value);
+      unroll<Count>([&](auto k)
+                        HWY_ATTR { values[k] = hn::IfThenZeroElse(hn::Lt(values[k], hn::Zero(d)), values[k]); });
       break;
     case Activation::linear: break;
   }
@@ -99,24 +174,24 @@ HWY_INLINE void forward_block(D d, const PlacedLayer& layer, const Real* prepare
                               Real* outputs) {
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   hn::Vec<D> sums[Units * Count];
-  for (std::size_t u = 0; u < Units; ++u) {
-    for (std::size_t v = 0; v < Count; ++v) sums[u * Count + v] = hn::Set(d, prepared[layer.thresholds + unit + u]);
-  }
+  unroll<Units>([&](auto u) HWY_ATTR {
+    const auto threshold = hn::Set(d, prepared[layer.thresholds + unit + u]);
+    unroll<Count>([&](auto v) HWY_ATTR { sums[u * Count + v] = threshold; });
+  });
   const Real* weights = prepared + layer.weights + unit * layer.fan_in;
   for (std::size_t k = 0; k < layer.fan_in; ++k) {
     hn::Vec<D> x[Count];
-    for (std::size_t v = 0; v < Count; ++v) x[v] = hn::Load(d, below + k * kTile + v * kLanes);
-    for (std::size_t u = 0; u < Units; ++u) {
+    unroll<Count>([&](auto v) HWY_ATTR { x[v] = hn::Load(d, below + k * kTile + v * kLanes); });
+    unroll<Units>([&](auto u) HWY_ATTR {
       const auto weight = hn::Set(d, weights[u * layer.fan_in + k]);
-      for (std::size_t v = 0; v < Count; ++v) sums[u * Count + v] = hn::MulAdd(weight, x[v], sums[u * Count + v]);
-    }
+      unroll<Count>([&](auto v) HWY_ATTR { sums[u * Count + v] = hn::MulAdd(weight, x[v], sums[u * Count + v]); });
+    });
   }
   activate_all(d, layer.activation, sums);
-  for (std::size_t u = 0; u < Units; ++u) {
-    for (std::size_t v = 0; v < Count; ++v) {
-      hn::Store(sums[u * Count + v], d, outputs + (unit + u) * kTile + v * kLanes);
-    }
-  }
+  unroll<Units>([&](auto u) HWY_ATTR {
+    unroll<Count>([&](auto v)
+                      HWY_ATTR { hn::Store(sums[u * Count + v], d, outputs + (unit + u) * kTile + v * kLanes); });
+  });
 }
 
 /// The outputs of all layers [units, kTile] for `vectors` vectors of samples; returns those of the output layer.
@@ -155,6 +230,21 @@ HWY_INLINE hn::Vec<D> through(D d, Activation activation, hn::Vec<D> delta, hn::
   return delta;
 }
 
+/// The same for many, in place.
+template <std::size_t Count, class D>
+HWY_INLINE void through_all(D d, Activation activation, hn::Vec<D> (&deltas)[Count],
+                            const hn::Vec<D> (&outputs)[Count]) {
+  const auto all = [&](auto constant) HWY_ATTR {
+    unroll<Count>([&](auto k) HWY_ATTR { deltas[k] = through(d, constant(), deltas[k], outputs[k]); });
+  };
+  switch (activation) {  // outside the unrolled loop
+    case Activation::log_sigmoid: return all(std::integral_constant<Activation, Activation::log_sigmoid>());
+    case Activation::tanh: return all(std::integral_constant<Activation, Activation::tanh>());
+    case Activation::relu: return all(std::integral_constant<Activation, Activation::relu>());
+    case Activation::linear: break;
+  }
+}
+
 /// Half the weighted squares of a tile, and dE/dsum of the output layer where `deltas` is not null. Lanes are summed
 /// in double precision: a long sum of floats would drift.
 template <class D, typename Real = hn::TFromD<D>>
@@ -185,42 +275,46 @@ HWY_INLINE void weight_gradient_block(D d, const Real* deltas, const Real* below
                                       std::size_t fan_in, Real* sums) {
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   hn::Vec<D> block[Units * Inputs];
-  for (auto& sum : block) sum = hn::Zero(d);
+  unroll<Units * Inputs>([&](auto k) HWY_ATTR { block[k] = hn::Zero(d); });
   for (std::size_t v = 0; v < vectors; ++v) {
     hn::Vec<D> delta[Units];
-    for (std::size_t u = 0; u < Units; ++u) delta[u] = hn::Load(d, deltas + u * kTile + v * kLanes);
-    for (std::size_t k = 0; k < Inputs; ++k) {
+    unroll<Units>([&](auto u) HWY_ATTR { delta[u] = hn::Load(d, deltas + u * kTile + v * kLanes); });
+    unroll<Inputs>([&](auto k) HWY_ATTR {
       const auto x = hn::Load(d, below + k * kTile + v * kLanes);
-      for (std::size_t u = 0; u < Units; ++u) {
-        block[u * Inputs + k] = hn::MulAdd(delta[u], x, block[u * Inputs + k]);
-      }
-    }
+      unroll<Units>([&](auto u) HWY_ATTR { block[u * Inputs + k] = hn::MulAdd(delta[u], x, block[u * Inputs + k]); });
+    });
   }
-  for (std::size_t u = 0; u < Units; ++u) {
-    for (std::size_t k = 0; k < Inputs; ++k) {
+  unroll<Units>([&](auto u) HWY_ATTR {
+    unroll<Inputs>([&](auto k) HWY_ATTR {
       Real* sum = sums + (u * fan_in + k) * WorkSpace<Real>::kLine;
       hn::Store(hn::Add(hn::Load(d, sum), block[u * Inputs + k]), d, sum);
+    });
+  });
+}
+
+template <class D, typename Real = hn::TFromD<D>>
+void threshold_gradient(D d, const PlacedLayer& layer, const Real* deltas, std::size_t vectors, Real* sums) {
+  for (std::size_t unit = 0; unit < layer.units; ++unit) {
+    auto total = hn::Zero(d);
+    for (std::size_t v = 0; v < vectors; ++v) {
+      total = hn::Add(total, hn::Load(d, deltas + unit * kTile + v * hn::MaxLanes(d)));
     }
+    Real* sum = sums + (layer.thresholds + unit) * WorkSpace<Real>::kLine;
+    hn::Store(hn::Add(hn::Load(d, sum), total), d, sum);
   }
 }
 
 template <class D, typename Real = hn::TFromD<D>>
 void layer_gradient(D d, const PlacedLayer& layer, const Real* deltas, const Real* below, std::size_t vectors,
                     Real* sums) {
-  constexpr std::size_t kLanes = hn::MaxLanes(d);
-  constexpr std::size_t kLine = WorkSpace<Real>::kLine;
   in_blocks<4>(layer.units, [&](std::size_t unit, auto units) HWY_ATTR {
     in_blocks<kVectors>(layer.fan_in, [&](std::size_t k, auto inputs) HWY_ATTR {
+      const std::size_t first = layer.weights + unit * layer.fan_in + k;
       weight_gradient_block<units(), inputs()>(d, deltas + unit * kTile, below + k * kTile, vectors, layer.fan_in,
-                                               sums + (layer.weights + unit * layer.fan_in + k) * kLine);
+                                               sums + first * WorkSpace<Real>::kLine);
     });
   });
-  for (std::size_t unit = 0; unit < layer.units; ++unit) {
-    Real* sum = sums + (layer.thresholds + unit) * kLine;
-    auto total = hn::Load(d, sum);
-    for (std::size_t v = 0; v < vectors; ++v) total = hn::Add(total, hn::Load(d, deltas + unit * kTile + v * kLanes));
-    hn::Store(total, d, sum);
-  }
+  threshold_gradient(d, layer, deltas, vectors, sums);
 }
 
 /// dE/dsum of Units neurons of the layer below, whose outputs are `outputs`, for Count vectors of samples.
@@ -229,24 +323,20 @@ HWY_INLINE void deltas_block(D d, const Real* weights, const PlacedLayer& layer,
                              const Real* deltas, const Real* outputs, Real* deltas_below) {
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   hn::Vec<D> sums[Units * Count];
-  for (auto& sum : sums) sum = hn::Zero(d);
+  unroll<Units * Count>([&](auto k) HWY_ATTR { sums[k] = hn::Zero(d); });
   for (std::size_t above = 0; above < layer.units; ++above) {
     hn::Vec<D> delta[Count];
-    for (std::size_t v = 0; v < Count; ++v) delta[v] = hn::Load(d, deltas + above * kTile + v * kLanes);
-    for (std::size_t u = 0; u < Units; ++u) {
+    unroll<Count>([&](auto v) HWY_ATTR { delta[v] = hn::Load(d, deltas + above * kTile + v * kLanes); });
+    unroll<Units>([&](auto u) HWY_ATTR {
       const auto weight = hn::Set(d, weights[above * layer.fan_in + u]);
-      for (std::size_t v = 0; v < Count; ++v) {
-        sums[u * Count + v] = hn::MulAdd(weight, delta[v], sums[u * Count + v]);
-      }
-    }
+      unroll<Count>([&](auto v) HWY_ATTR { sums[u * Count + v] = hn::MulAdd(weight, delta[v], sums[u * Count + v]); });
+    });
   }
-  for (std::size_t u = 0; u < Units; ++u) {
-    for (std::size_t v = 0; v < Count; ++v) {
-      const std::size_t place = u * kTile + v * kLanes;
-      const auto output = hn::Load(d, outputs + place);
-      hn::Store(through(d, activation_below, sums[u * Count + v], output), d, deltas_below + place);
-    }
-  }
+  hn::Vec<D> y[Units * Count];
+  unroll<Units * Count>([&](auto k) HWY_ATTR { y[k] = hn::Load(d, outputs + k / Count * kTile + k % Count * kLanes); });
+  through_all(d, activation_below, sums, y);
+  unroll<Units * Count>([&](auto k)
+                            HWY_ATTR { hn::Store(sums[k], d, deltas_below + k / Count * kTile + k % Count * kLanes); });
 }
 
 template <class D, typename Real = hn::TFromD<D>>
@@ -259,6 +349,59 @@ void layer_deltas(D d, const PlacedLayer& layer, const PlacedLayer& below, const
       deltas_block<units(), count()>(d, parameters + layer.weights + unit, layer, below.activation, deltas + v * kLanes,
                                      outputs + below.first_unit * kTile + place, deltas_below + place);
     });
+  });
+}
+
+/// A network of one hidden layer on few inputs with one output, as in Fig. 5 of the paper: the gradient of both layers
+/// in one pass over the hidden neurons unit ... unit + Units - 1, whose deltas are never stored. The weight between
+/// output and hidden neuron is common to all samples: it multiplies the sums.
+template <std::size_t Units, std::size_t Inputs, class D, typename Real = hn::TFromD<D>>
+HWY_INLINE void one_output_block(D d, const PlacedShape& shape, std::size_t unit, const Real* parameters,
+                                 const Real* inputs, const Real* outputs, const Real* deltas, std::size_t vectors,
+                                 Real* sums) {
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  constexpr std::size_t kLine = WorkSpace<Real>::kLine;
+  const PlacedLayer& hidden = shape.layers[0];
+  hn::Vec<D> top[Units];
+  hn::Vec<D> threshold[Units];
+  hn::Vec<D> weight[Units * Inputs];
+  unroll<Units>([&](auto u) HWY_ATTR { top[u] = threshold[u] = hn::Zero(d); });
+  unroll<Units * Inputs>([&](auto k) HWY_ATTR { weight[k] = hn::Zero(d); });
+  for (std::size_t v = 0; v < vectors; ++v) {
+    const auto delta = hn::Load(d, deltas + v * kLanes);
+    hn::Vec<D> y[Units];
+    hn::Vec<D> back[Units];
+    unroll<Units>([&](auto u) HWY_ATTR {
+      y[u] = hn::Load(d, outputs + (unit + u) * kTile + v * kLanes);
+      top[u] = hn::MulAdd(delta, y[u], top[u]);
+      back[u] = delta;
+    });
+    through_all(d, hidden.activation, back, y);
+    unroll<Units>([&](auto u) HWY_ATTR { threshold[u] = hn::Add(threshold[u], back[u]); });
+    unroll<Inputs>([&](auto k) HWY_ATTR {
+      const auto x = hn::Load(d, inputs + k * kTile + v * kLanes);
+      unroll<Units>([&](auto u) HWY_ATTR { weight[u * Inputs + k] = hn::MulAdd(back[u], x, weight[u * Inputs + k]); });
+    });
+  }
+  const auto add = [&](std::size_t parameter, auto factor, auto sum) HWY_ATTR {
+    Real* place = sums + parameter * kLine;
+    hn::Store(hn::MulAdd(factor, sum, hn::Load(d, place)), d, place);
+  };
+  unroll<Units>([&](auto u) HWY_ATTR {
+    const std::size_t above = shape.top().weights + unit + u;
+    const auto factor = hn::Set(d, parameters[above]);
+    add(above, hn::Set(d, Real{1}), top[u]);
+    add(hidden.thresholds + unit + u, factor, threshold[u]);
+    unroll<Inputs>([&](auto k)
+                       HWY_ATTR { add(hidden.weights + (unit + u) * Inputs + k, factor, weight[u * Inputs + k]); });
+  });
+}
+
+template <std::size_t Inputs, class D, typename Real = hn::TFromD<D>>
+void one_output_gradient(D d, const PlacedShape& shape, const Real* parameters, const Real* inputs, const Real* outputs,
+                         const Real* deltas, std::size_t vectors, Real* sums) {
+  in_blocks<kVectors>(shape.layers[0].units, [&](std::size_t unit, auto units) HWY_ATTR {
+    one_output_block<units(), Inputs>(d, shape, unit, parameters, inputs, outputs, deltas, vectors, sums);
   });
 }
 
@@ -330,6 +473,16 @@ void backward(D d, const PlacedShape& shape, const Real* parameters, const Real*
   Real* deltas = work + space.deltas[0];
   Real* deltas_below = work + space.deltas[1];
   const Real* outputs = work + space.outputs;
+  if (shape.layer_count == 2 && shape.outputs() == 1 && shape.inputs <= 4) {
+    Real* sums = work + space.sums;
+    threshold_gradient(d, shape.top(), deltas, vectors, sums);
+    switch (shape.inputs) {
+      case 1: return one_output_gradient<1>(d, shape, parameters, inputs, outputs, deltas, vectors, sums);
+      case 2: return one_output_gradient<2>(d, shape, parameters, inputs, outputs, deltas, vectors, sums);
+      case 3: return one_output_gradient<3>(d, shape, parameters, inputs, outputs, deltas, vectors, sums);
+      default: return one_output_gradient<4>(d, shape, parameters, inputs, outputs, deltas, vectors, sums);
+    }
+  }
   for (std::size_t l = shape.layer_count - 1; l > 0; --l) {
     const PlacedLayer& layer = shape.layers[l];
     const PlacedLayer& below = shape.layers[l - 1];
@@ -453,18 +606,17 @@ HWY_INLINE void product_block(D d, const Real* a, const Real* b, std::size_t vec
   constexpr std::size_t kBlock = WorkSpace<Real>::kBlock;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
   hn::Vec<D> sums[kBlock * kBlock];
-  for (auto& sum : sums) sum = hn::Zero(d);
+  unroll<kBlock * kBlock>([&](auto k) HWY_ATTR { sums[k] = hn::Zero(d); });
   for (std::size_t v = 0; v < vectors; ++v) {
     hn::Vec<D> x[kBlock];
-    for (std::size_t j = 0; j < (Diagonal ? Rows : kBlock); ++j) x[j] = hn::Load(d, b + j * kTile + v * kLanes);
-    for (std::size_t i = 0; i < Rows; ++i) {
+    unroll<(Diagonal ? Rows : kBlock)>([&](auto j) HWY_ATTR { x[j] = hn::Load(d, b + j * kTile + v * kLanes); });
+    unroll<Rows>([&](auto i) HWY_ATTR {
       const auto y = Diagonal ? x[i] : hn::Load(d, a + i * kTile + v * kLanes);
-      for (std::size_t j = 0; j < (Diagonal ? i + 1 : kBlock); ++j) {
-        sums[i * kBlock + j] = hn::MulAdd(y, x[j], sums[i * kBlock + j]);
-      }
-    }
+      unroll<(Diagonal ? i + 1 : kBlock)>(
+          [&](auto j) HWY_ATTR { sums[i * kBlock + j] = hn::MulAdd(y, x[j], sums[i * kBlock + j]); });
+    });
   }
-  for (std::size_t k = 0; k < Rows * kBlock; k += 8) add_sums(d, sums + k, products + k);
+  unroll<(Rows * kBlock + 7) / 8>([&](auto k) HWY_ATTR { add_sums(d, sums + 8 * k, products + 8 * k); });
 }
 
 /// A row of blocks of the lower triangle of rows rows^T.
