@@ -136,8 +136,8 @@ class Walker {
     }
   }
 
-  static constexpr D d_{};
   static constexpr std::size_t kLanes = hn::MaxLanes(D());
+  D d_;
   std::span<const LaneLayer<Real>> layers_;
   const PatternWalk<Real>& walk_;
   Vector rate_;
@@ -147,6 +147,7 @@ class Walker {
 template <typename Real>
 void walk_patterns(std::span<const LaneLayer<Real>> layers, const PatternWalk<Real>& walk) {
   const auto has_few = [](const LaneLayer<Real>& layer) { return layer.columns() <= kFewLanes; };
+  // NOLINTNEXTLINE(bugprone-branch-clone): the same only where vectors are short
   if (std::all_of(layers.begin(), layers.end(), has_few)) {
     Walker<hn::CappedTag<Real, kFewLanes>>(layers, walk).run();
   } else {

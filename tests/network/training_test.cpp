@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/core/parallel.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/network/initialisation.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
@@ -594,6 +595,20 @@ TEST(Training, the_callback_sees_states_that_can_be_resumed) {
       ASSERT_TRUE(train(state, data.view(), options));
       EXPECT_EQ(state, whole);
     }
+  }
+}
+
+TEST(Training, trainings_side_by_side_give_the_bits_of_one_after_the_other) {
+  const Data<float> data = waves<float>(40, 3, 2, 4);
+  for (const std::size_t batch : {0U, 1U, 6U}) {
+    const auto train_one = [&](std::uint64_t seed) {
+      const TrainingOptions options{
+          .algorithm = TrainingAlgorithm::gradient_descent, .batch = batch, .epochs = 30, .seed = seed};
+      return trained(kDeep, data, options);
+    };
+    std::vector<TrainingState<float>> side_by_side(8);
+    parallel_for(8, [&](std::size_t k) { side_by_side[k] = train_one(k); });
+    for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(side_by_side[k], train_one(k));
   }
 }
 
