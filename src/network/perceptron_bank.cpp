@@ -8,8 +8,8 @@
 #define HWY_TARGET_INCLUDE "network/perceptron_bank.cpp"
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first: it includes this file again for every instruction set.
-#include "hwy/contrib/math/math-inl.h"
 #include "hwy/highway.h"
+#include "network/activation-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace dermis::network::HWY_NAMESPACE {
@@ -22,14 +22,6 @@ struct BankView {
   const float* inputs;
   float* outputs;
 };
-
-template <class D>
-hn::Vec<D> sigmoid(D d, hn::Vec<D> sum) {
-  // exp() overflows beyond 88; a sigmoid is 1 to single precision from 17 on.
-  const auto bounded = hn::Min(hn::Max(sum, hn::Set(d, -80.0F)), hn::Set(d, 80.0F));
-  const auto one = hn::Set(d, 1.0F);
-  return hn::Div(one, hn::Add(one, hn::Exp(d, hn::Neg(bounded))));
-}
 
 /// Outputs of the networks first ... first + lanes(d) - 1.
 template <class D>
@@ -48,7 +40,7 @@ void evaluate_lanes(D d, const BankView& bank, std::size_t first) {
     for (std::size_t input = 0; input < shape.inputs; ++input) {
       sum = hn::MulAdd(load(shape.weight(unit, input)), load_input(input), sum);
     }
-    y = hn::MulAdd(load(shape.output_weight(unit)), sigmoid(d, sum), y);
+    y = hn::MulAdd(load(shape.output_weight(unit)), log_sigmoid(d, sum), y);
   }
   hn::StoreU(y, d, bank.outputs + first);
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dermis/core/random.hpp"
+#include "support/simd_targets.hpp"
 
 namespace dermis::network {
 namespace {
@@ -34,7 +35,7 @@ double magnitude(const PerceptronShape& shape, const std::vector<double>& parame
   return sum;
 }
 
-TEST(PerceptronBank, every_network_gives_what_the_perceptron_gives) {
+void expect_what_the_perceptron_gives() {
   for (const PerceptronShape& shape : {PerceptronShape{1, 0, 0}, PerceptronShape{2, 4, 2}, PerceptronShape{3, 7, 2}}) {
     for (std::size_t networks = 1; networks <= 70; ++networks) {
       SCOPED_TRACE(testing::Message() << shape.inputs << "-" << shape.hidden << "-1, seed and networks " << networks);
@@ -52,6 +53,10 @@ TEST(PerceptronBank, every_network_gives_what_the_perceptron_gives) {
       }
     }
   }
+}
+
+TEST(PerceptronBank, every_network_gives_what_the_perceptron_gives_on_every_instruction_set) {
+  support::for_each_simd_target(expect_what_the_perceptron_gives);
 }
 
 TEST(PerceptronBank, writes_its_outputs_and_nothing_beside_them) {
