@@ -32,6 +32,7 @@ lint: setup
 
 bench: setup
 	scripts/setup test
+	scripts/setup bench
 	cmake --preset release
 	cmake --build --preset release
 	scripts/bench

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <Eigen/Cholesky>
+#include <cmath>
+#include <cstdlib>
 
-#include "adaptive_rate.hpp"
 #include "dermis/core/version.hpp"
 #include "dermis/network/feed_forward.hpp"
+#include "dermis/network/half_network_bank.hpp"
 #include "dermis/network/network_bank.hpp"
+#include "dermis/network/training.hpp"
 #include "engine.hpp"
 #include "reference.hpp"
 
@@ -14,6 +17,7 @@ namespace {
 
 using network::BankStep;
 using network::FeedForward;
+using network::HalfNetworkBank;
 using network::NetworkBank;
 using network::PackedSamples;
 
@@ -23,22 +27,16 @@ class Dermis final : public Engine {
   [[nodiscard]] std::string version() const override { return "dermis " DERMIS_VERSION; }
 
   std::optional<Run> peaks_epoch(const PeaksProblem& problem) override {
-    const auto network = std::make_shared<FeedForward<float>>(problem.shape);
-    const auto samples = std::make_shared<PackedSamples<float>>(
-        problem.shape, network::Samples<float>{problem.count(), problem.inputs, problem.targets, {}});
-    const auto mean_square_error = [=, scale = 2.0 / static_cast<double>(problem.count())](
-                                       const std::vector<float>& parameters, std::vector<float>& gradient) {
-      const double error = network->error_and_gradient(parameters, *samples, gradient);
-      for (float& slope : gradient) slope *= static_cast<float>(scale);
-      return scale * error;
+    const auto train = [&problem](std::size_t epochs) {
+      network::TrainingOptions options;
+      options.epochs = epochs;
+      network::TrainingState<float> state = network::start_training(problem.shape, problem.parameters, options);
+      const network::Samples<float> samples{problem.count(), problem.inputs, problem.targets, {}};
+      if (!network::train(state, samples, options)) std::abort();
+      return state.parameters;
     };
-    const AdaptiveRateDescent<float> start(problem.parameters, mean_square_error);
-    const auto train = [=](std::size_t epochs) {
-      AdaptiveRateDescent<float> descent = start;
-      for (std::size_t epoch = 0; epoch < epochs; ++epoch) descent.epoch(mean_square_error);
-      return descent.parameters();
-    };
-    return Run{[train, epochs = problem.epochs] { train(epochs); }, check_epochs(problem, train(kCheckedEpochs)), ""};
+    return Run{[train, epochs = problem.epochs] { train(epochs); }, check_epochs(problem, train(kCheckedEpochs)),
+               "train(), adaptive_rate"};
   }
 
   std::optional<Run> levenberg_marquardt_step(const PeaksProblem& problem) override {
@@ -74,6 +72,27 @@ class Dermis final : public Engine {
   }
 
   std::optional<Run> bank_frame(const BankProblem& problem) override { return evaluate(problem, 1); }
+  /// Beside the check of its outputs, how far they are from those of the bank in single precision.
+  std::optional<Run> bank_frame_16bit(const BankProblem& problem) override {
+    const std::shared_ptr<NetworkBank> whole = filled_bank(problem);
+    auto half = std::make_shared<Result<HalfNetworkBank>>(HalfNetworkBank::from(*whole));
+    std::vector<float> expected(problem.networks);
+    std::vector<float> outputs(problem.networks);
+    double error = 0.0;
+    for (std::size_t k = problem.batch; k-- > 0;) {
+      const std::span<const float> frame = std::span(problem.frames).subspan(k * problem.size(), problem.size());
+      whole->evaluate(frame, expected);
+      half->value().evaluate(frame, outputs);
+      error = std::fmax(error, reference::max_deviation(reference::as_double(outputs), reference::as_double(expected)));
+    }
+    Check check = check_outputs(problem, 1, outputs);
+    check.tolerance = 2e-4;
+    const auto evaluate = [half, outputs, frame = std::span(problem.frames).first(problem.size())]() mutable {
+      half->value().evaluate(frame, outputs);
+    };
+    return Run{evaluate, check, "binary16 weights", {}, {{"max_error_of_full_scale", error}}};
+  }
+
   std::optional<Run> bank_batch(const BankProblem& problem) override { return evaluate(problem, problem.batch); }
 
   std::optional<Run> bank_training(const BankProblem& problem, Rule rule) override {

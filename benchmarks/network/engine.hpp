@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "problems.hpp"
@@ -25,8 +26,9 @@ struct Check {
 struct Run {
   std::function<void()> step;  ///< What is timed.
   Check check;
-  std::string note;                         ///< The form chosen, where there were several; accuracy; ...
-  std::function<double()> limit_seconds{};  ///< A limit computed from measured rates, instead of `step`.
+  std::string note;                                       ///< The form chosen, where there were several; what it is.
+  std::function<double()> limit_seconds{};                ///< A limit computed from measured rates, instead of `step`.
+  std::vector<std::pair<std::string, double>> figures{};  ///< Of the row, besides the times.
 };
 
 /// The training rules of the bank.

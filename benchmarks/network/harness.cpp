@@ -61,7 +61,7 @@ double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-void print_row(const nlohmann::ordered_json& row) {
+void print_row(const nlohmann::ordered_json& row, const Run& run) {
   const auto times_faster =
       row.contains("times_faster") ? fmt::format("{:.2f}", row["times_faster"].get<double>()) : "";
   fmt::print("{:<22}{:>3}  {:<10}{:>10.3f} {:<3}{:>10.3f}{:>10}  {:<4}", row["work"].get<std::string>(),
@@ -72,7 +72,8 @@ void print_row(const nlohmann::ordered_json& row) {
     fmt::print("{:.1e} of {:.0e}: {}", row["deviation"].get<double>(), row["tolerance"].get<double>(),
                row["compared"].get<std::string>());
   }
-  if (row.contains("note")) fmt::print("  [{}]", row["note"].get<std::string>());
+  for (const auto& [name, value] : run.figures) fmt::print("  {} {:.1e}", name, value);
+  if (!run.note.empty()) fmt::print("  [{}]", run.note);
   fmt::print("\n");
   std::fflush(stdout);
 }
@@ -112,8 +113,9 @@ void measure(const Work& work, std::vector<Entry> entries, const Effort& effort,
       row["tolerance"] = run.check.tolerance;
     }
     if (row["engine"] != "dermis" && dermis > 0.0) row["times_faster"] = row["median"].get<double>() / dermis;
+    for (const auto& [name, value] : run.figures) row[name] = value;
     if (!run.note.empty()) row["note"] = run.note;
-    print_row(row);
+    print_row(row, run);
     rows.push_back(std::move(row));
   }
 }

@@ -5,13 +5,12 @@
 #include <fmt/core.h>
 #include <torch/torch.h>
 
-#include <chrono>
-#include <limits>
 #include <map>
 
 #include "adaptive_rate.hpp"
 #include "dermis/core/parallel.hpp"
 #include "engine.hpp"
+#include "forms.hpp"
 
 namespace dermis::benchmarks {
 namespace {
@@ -188,12 +187,6 @@ void use_blas_threads(int threads) {
   if (set_threads != nullptr) set_threads(threads);
 }
 
-/// One of several ways to do the same.
-struct Form {
-  std::string name;
-  std::function<void()> body;
-};
-
 /// How libtorch can use the threads: its own and those of OpenBLAS; only its own; or neither, with the networks shared
 /// out among threads of ours. body(first, count) works on so many networks from the first.
 template <typename Body>
@@ -220,26 +213,6 @@ std::vector<Form> threaded(const std::string& name, std::int64_t networks, int t
           {name + "; networks shared out to threads", shared_out}};
 }
 
-double seconds_of(const std::function<void()>& body) {
-  const auto start = std::chrono::steady_clock::now();
-  body();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// The fastest of the forms, as it is measured here, each at its best of several runs.
-Form fastest(const std::vector<Form>& forms) {
-  const Form* best = nullptr;
-  double least = std::numeric_limits<double>::infinity();
-  for (const Form& form : forms) {
-    for (int run = 0; run < 5; ++run) {
-      const double seconds = seconds_of(form.body);
-      if (seconds < least) best = &form;
-      least = std::min(least, seconds);
-    }
-  }
-  return *best;
-}
-
 /// The training of some networks of the bank by autograd: each network gathers its own batch, as ours does.
 class BankTraining {
  public:
@@ -263,8 +236,12 @@ class BankTraining {
     }
   }
 
-  void step() {
-    optimizer_->zero_grad();
+  void step(bool keep_gradients) {
+    if (keep_gradients) {
+      optimizer_->zero_grad();
+    } else {
+      for (const Tensor& leaf : leaves_) leaf.mutable_grad().reset();
+    }
     Tensor value = database_.index_select(0, chosen_).view({networks_, batch_, -1});
     for (std::size_t layer = 0; layer < leaves_.size(); layer += 2) {
       value = torch::baddbmm(leaves_[layer + 1].unsqueeze(1), value, leaves_[layer].transpose(1, 2)).sigmoid();
@@ -348,7 +325,9 @@ class Libtorch final : public Engine {
     // Trainings by the networks with which they begin; one of all networks and, with threads, one a part.
     using Trainings = std::map<std::pair<std::int64_t, std::int64_t>, std::unique_ptr<BankTraining>>;
     const auto trainings = std::make_shared<Trainings>();
-    const auto train = [trainings](std::int64_t first, std::int64_t count) { trainings->at({first, count})->step(); };
+    const auto train = [trainings](bool keep_gradients) {
+      return [=](std::int64_t first, std::int64_t count) { trainings->at({first, count})->step(keep_gradients); };
+    };
     const std::int64_t networks = size(problem.networks);
     const std::int64_t part = (networks + threads_ - 1) / threads_;
     const auto add = [&](std::int64_t first, std::int64_t count) {
@@ -359,10 +338,14 @@ class Libtorch final : public Engine {
       for (std::int64_t first = 0; first < networks; first += part) add(first, std::min(part, networks - first));
     }
     const BankTraining& whole = *trainings->at({0, networks});
-    train(0, networks);
+    train(true)(0, networks);
     const Check check =
         check_training_step(problem, rule, [&](std::size_t network) { return whole.parameters(size(network)); });
-    const Form form = fastest(threaded("baddbmm, autograd, torch::optim", networks, threads_, train));
+    std::vector<Form> forms = threaded("autograd, gradients zeroed", networks, threads_, train(true));
+    for (Form& form : threaded("autograd, gradients dropped", networks, threads_, train(false))) {
+      forms.push_back(std::move(form));
+    }
+    const Form form = fastest(forms);
     return Run{form.body, check, form.name};
   }
 

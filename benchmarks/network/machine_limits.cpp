@@ -11,11 +11,11 @@
 #include "dermis/core/parallel.hpp"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "network/machine_limits.cpp"
+#define HWY_TARGET_INCLUDE "benchmarks/network/machine_limits.cpp"
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first: it includes this file again for every instruction set.
-#include "hwy/contrib/math/math-inl.h"
 #include "hwy/highway.h"
+#include "network/activation-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace dermis::benchmarks::HWY_NAMESPACE {
@@ -49,17 +49,12 @@ double multiply_add_double(std::size_t rounds, double& result) {
   return multiply_add(rounds, result);
 }
 
-template <class D>
-hn::Vec<D> sigmoid(D d, hn::Vec<D> sum) {
-  const auto one = hn::Set(d, 1);
-  const auto bounded = hn::Min(hn::Max(sum, hn::Set(d, -80)), hn::Set(d, 80));
-  return hn::Div(one, hn::Add(one, hn::Exp(d, hn::Neg(bounded))));
-}
-
 template <typename Real>
 void sigmoids(Real* values, std::size_t count) {
   const hn::ScalableTag<Real> d;
-  for (std::size_t k = 0; k < count; k += hn::Lanes(d)) hn::StoreU(sigmoid(d, hn::LoadU(d, values + k)), d, values + k);
+  for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
+    hn::StoreU(network::HWY_NAMESPACE::log_sigmoid(d, hn::LoadU(d, values + k)), d, values + k);
+  }
 }
 
 void float_sigmoids(float* values, std::size_t count) {
@@ -70,13 +65,10 @@ void double_sigmoids(double* values, std::size_t count) {
   sigmoids(values, count);
 }
 
-/// tanh(x) = 2 sigmoid(2 x) - 1
 void float_tanhs(float* values, std::size_t count) {
   const hn::ScalableTag<float> d;
-  const auto two = hn::Set(d, 2.0F);
   for (std::size_t k = 0; k < count; k += hn::Lanes(d)) {
-    const auto doubled = hn::Mul(two, hn::LoadU(d, values + k));
-    hn::StoreU(hn::MulSub(two, sigmoid(d, doubled), hn::Set(d, 1.0F)), d, values + k);
+    hn::StoreU(network::HWY_NAMESPACE::tanh(d, hn::LoadU(d, values + k)), d, values + k);
   }
 }
 

@@ -4,8 +4,8 @@
 //   network_benchmark [--quick] [work ...]
 // Without works: all. --quick runs each only to see that it works, on a small bank; its times mean nothing.
 #include <fmt/core.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -125,14 +125,15 @@ class Program {
   template <typename Prepare>
   void compete(const Work& work, Prepare prepare) {
     if (!options_.wants(work.name)) return;
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(work.threads));
-    std::vector<Entry> entries;
-    for (const auto& engine : engines_) {
-      engine->use_threads(work.threads);
-      if (std::optional<Run> run = prepare(*engine)) entries.push_back({engine.get(), std::move(*run)});
-    }
-    measure(work, std::move(entries), effort(), rows_);
+    // Our threads; those of the peers are their own affair.
+    tbb::task_arena(work.threads).execute([&] {
+      std::vector<Entry> entries;
+      for (const auto& engine : engines_) {
+        engine->use_threads(work.threads);
+        if (std::optional<Run> run = prepare(*engine)) entries.push_back({engine.get(), std::move(*run)});
+      }
+      measure(work, std::move(entries), effort(), rows_);
+    });
   }
 
   [[nodiscard]] Effort effort() const { return options_.quick ? Effort{1, 0.0, 0.0} : Effort{}; }

@@ -8,6 +8,7 @@
 #include "dermis/core/parallel.hpp"
 #include "eigen_peaks.hpp"
 #include "engine.hpp"
+#include "forms.hpp"
 #include "machine_limits.hpp"
 
 namespace dermis::benchmarks {
@@ -32,13 +33,17 @@ class Openblas final : public Engine {
 
   std::optional<Run> bank_frame(const BankProblem& problem) override {
     const auto outputs = std::make_shared<std::vector<float>>(problem.networks);
-    const auto evaluate = [&problem, outputs] {
+    const auto transposed = std::make_shared<std::vector<float>>(transposed_weights(problem));
+    const auto evaluate = [&problem, outputs, transposed](CBLAS_ORDER order) {
+      const float* weights = order == CblasRowMajor ? problem.all_parameters.data() : transposed->data();
       parallel_for(problem.networks, [&](std::size_t network) {
-        (*outputs)[network] = evaluate_frame(problem, problem.parameters(network).data());
+        (*outputs)[network] = evaluate_frame(problem, network, order, weights);
       });
     };
-    evaluate();
-    return Run{evaluate, check_outputs(problem, 1, *outputs), "sgemv a layer and network, our sigmoid"};
+    const Form form = fastest({{"sgemv, weights by rows", [evaluate] { evaluate(CblasRowMajor); }},
+                               {"sgemv, weights by columns", [evaluate] { evaluate(CblasColMajor); }}});
+    form.body();
+    return Run{form.body, check_outputs(problem, 1, *outputs), form.name + ", our sigmoid"};
   }
 
   std::optional<Run> bank_batch(const BankProblem& problem) override {
@@ -50,12 +55,16 @@ class Openblas final : public Engine {
       });
     };
     evaluate();
-    return Run{evaluate, check_outputs(problem, problem.batch, *outputs), "sgemm a layer and network, our sigmoid"};
+    return Run{evaluate, check_outputs(problem, problem.batch, *outputs), "sgemm, our sigmoid"};
   }
 
  private:
-  static float evaluate_frame(const BankProblem& problem, const float* parameters) {
+  /// `weights`: of all networks, by rows [units, fan_in] or by columns.
+  static float evaluate_frame(const BankProblem& problem, std::size_t network, CBLAS_ORDER order,
+                              const float* weights) {
     const auto n = static_cast<int>(problem.size());
+    const float* own_weights = weights + network * problem.shape.parameter_count();
+    const float* parameters = problem.parameters(network).data();
     thread_local std::vector<float> below;
     thread_local std::vector<float> above;
     below.assign(problem.frames.begin(), problem.frames.begin() + n);
@@ -63,8 +72,8 @@ class Openblas final : public Engine {
       const auto units = static_cast<int>(problem.shape.layers[layer].units);
       const float* thresholds = parameters + problem.shape.thresholds(layer);
       above.assign(thresholds, thresholds + units);
-      cblas_sgemv(CblasRowMajor, CblasNoTrans, units, n, 1.0F, parameters + problem.shape.weights(layer), n,
-                  below.data(), 1, 1.0F, above.data(), 1);
+      cblas_sgemv(order, CblasNoTrans, units, n, 1.0F, own_weights + problem.shape.weights(layer),
+                  order == CblasRowMajor ? n : units, below.data(), 1, 1.0F, above.data(), 1);
       sigmoid_in_place(above);
       below.swap(above);
     }

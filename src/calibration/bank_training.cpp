@@ -21,10 +21,12 @@ namespace {
 
 using fusion::PaperBank;
 
-constexpr std::size_t kBatch = 64;
-constexpr double kRelativeDownTo = 0.05;  // of the heaviest force
-constexpr double kHighestRate = 1e-3;
+constexpr std::size_t kBatch = 16;       // larger ones converge in as many steps
+constexpr double kRelativeDownTo = 0.4;  // of the heaviest force
+constexpr double kRateOfSum = 1.28;      // of N connections together in a step: more breaks up the paper's start
+constexpr double kHighestRate = 0.05;
 constexpr double kLowestRate = 1e-5;
+constexpr float kSecondDecay = 0.97F;  // 0.999 takes twice the steps
 
 /// Of each taxel over all samples; a taxel that never changes gets a range of 1.
 std::vector<PaperBank::Range> ratio_ranges(const SampleDatabase& database) {
@@ -170,13 +172,15 @@ Result<TrainedBank> train_paper_bank(const SampleDatabase& database, std::size_t
   Result<BankTraining> training = BankTraining::create(database, seed);
   if (!training) return training.error();
   training->start(BankStart::structured);
+  const double highest_rate = std::min(kRateOfSum / static_cast<double>(database.array.taxel_count()), kHighestRate);
   BankTrainingReport report{training->bank().networks().parameter_count(), steps, {}};
   for (std::size_t k = 0; k < steps; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(steps);
     network::BankStep step;
     step.rule = network::BankStep::Rule::adam;
+    step.second_decay = kSecondDecay;
     step.rate = static_cast<float>(kLowestRate +
-                                   (kHighestRate - kLowestRate) * 0.5 * (1.0 + std::cos(std::numbers::pi * share)));
+                                   (highest_rate - kLowestRate) * 0.5 * (1.0 + std::cos(std::numbers::pi * share)));
     report.curve.push_back(training->step(step));
     if (!std::isfinite(report.curve.back())) return failed("the training of the paper's bank diverged");
     if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(steps));

@@ -19,6 +19,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace dermis::network::HWY_NAMESPACE {
+namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 void round_to_half(std::span<const float> values, hwy::float16_t* halves) {
@@ -34,6 +35,7 @@ void evaluate_half_frame(const PanelLayout& layout, const hwy::float16_t* parame
   evaluate_network(layout, parameters, inputs, space, outputs);
 }
 
+}  // namespace
 }  // namespace dermis::network::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

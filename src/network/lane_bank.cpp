@@ -15,25 +15,16 @@
 #include "network/activation-inl.hpp"
 #include "network/adam-inl.hpp"
 
-#ifndef DERMIS_NETWORK_LANE_BANK_ONCE
-#define DERMIS_NETWORK_LANE_BANK_ONCE
-namespace dermis::network {
-
-/// Patterns that go through a group together.
-constexpr std::size_t kTilePatterns = 4;
-
-}  // namespace dermis::network
-#endif
-
 HWY_BEFORE_NAMESPACE();
 namespace dermis::network::HWY_NAMESPACE {
+namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 using GroupTag = hn::CappedTag<float, kGroup>;
 using GroupVector = hn::Vec<GroupTag>;
 // Vectors to a group, and units of a tile of a product: 16 of the 32 registers of AVX-512, 8 of the 16 elsewhere.
-inline constexpr std::size_t kGroupLanes = hn::MaxLanes(GroupTag());
-inline constexpr std::size_t kTileUnits = kGroupLanes == kGroup ? 4 : 2;
+constexpr std::size_t kGroupLanes = hn::MaxLanes(GroupTag());
+constexpr std::size_t kTileUnits = kGroupLanes == kGroup ? 4 : 2;
 
 HWY_INLINE GroupVector load(const float* place) {
   return hn::Load(GroupTag(), place);
@@ -210,6 +201,7 @@ void move_group(const LaneParameters& parameters, const BankStep& step, std::spa
   }
 }
 
+}  // namespace
 }  // namespace dermis::network::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -13,8 +13,10 @@ namespace dermis::network {
 
 /// Networks that lie side by side: as many as the widest vector has lanes.
 inline constexpr std::size_t kGroup = 16;
+/// Patterns that go through a group together.
+inline constexpr std::size_t kTilePatterns = 4;
 
-/// Work space of one thread for a few patterns of one group: what each layer puts out and, on the way back, its
+/// Work space of one thread for a tile of patterns of one group: what each layer puts out and, on the way back, its
 /// deltas, [patterns, units, 16].
 class LaneSpace {
  public:

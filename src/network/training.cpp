@@ -234,8 +234,9 @@ class Run {
   void batch_epoch() {
     shuffle();
     if (pattern_descent_) {
-      pattern_descent_->epoch(samples_, order_, static_cast<Real>(options_.rate), static_cast<Real>(options_.momentum),
-                              state_.parameters, state_.memory);
+      const auto rate = static_cast<Real>(options_.rate);
+      const auto momentum = static_cast<Real>(options_.momentum);
+      pattern_descent_->epoch({samples_, order_, rate, momentum}, state_.parameters, state_.memory);
     } else {
       for (std::size_t first = 0; first < order_.size(); first += options_.batch) {
         const std::size_t count = std::min(options_.batch, order_.size() - first);

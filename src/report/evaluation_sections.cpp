@@ -132,18 +132,6 @@ std::string summary_sentence(const Evaluation& evaluation) {
   return sentence + ".";
 }
 
-void add_legend(Page& page, const Evaluation& evaluation, const pipeline::Model& model) {
-  add_reading_note(page);
-  std::vector<Fact> facts;
-  if (!evaluation.estimators.empty()) facts.emplace_back(evaluation.estimators.front().name, describe(model));
-  for (const fusion::LookUpTables& tables : model.baselines) facts.emplace_back(tables.name, describe(tables));
-  for (const EstimatorResult& estimator : evaluation.estimators) {
-    if (estimator.name != kPaperBank) continue;
-    facts.emplace_back(estimator.name, describe_paper_bank(evaluation.array.taxel_count()));
-  }
-  page.facts(facts, "facts note");
-}
-
 }  // namespace
 
 void add_summary(Page& page, const Evaluation& evaluation) {
@@ -189,12 +177,20 @@ Table estimator_table(const Evaluation& evaluation) {
   return table;
 }
 
-void add_reading_note(Page& page) {
+void add_legend(Page& page, const Evaluation& evaluation, const pipeline::Model& model) {
   page.paragraph(
       "Relative errors are those of taxels that carry at least 1 N; ghost: force reported on unloaded "
       "taxels; total: sum over the taxels of one load. Bold: the best of a column. \"No force\": the "
       "percentile falls on taxels without an estimate, which count as the worst error.",
       "note");
+  std::vector<Fact> facts;
+  if (!evaluation.estimators.empty()) facts.emplace_back(evaluation.estimators.front().name, describe(model));
+  for (const fusion::LookUpTables& tables : model.baselines) facts.emplace_back(tables.name, describe(tables));
+  for (const EstimatorResult& estimator : evaluation.estimators) {
+    if (estimator.name != kPaperBank) continue;
+    facts.emplace_back(estimator.name, describe_paper_bank(evaluation.array.taxel_count()));
+  }
+  page.facts(facts, "facts note");
 }
 
 void add_array(Page& page, const ArrayDescription& array) {

@@ -16,9 +16,11 @@ void add_summary(Page& page, const calibration::Evaluation& evaluation);
 /// where nothing was judged.
 void add_estimators(Page& page, const calibration::Evaluation& evaluation, const pipeline::Model& model);
 
-/// The table alone, and how to read it; without rows where nothing was judged.
+/// The table alone; without rows where nothing was judged.
 [[nodiscard]] Table estimator_table(const calibration::Evaluation& evaluation);
-void add_reading_note(Page& page);
+
+/// How to read the table, and what each estimator is.
+void add_legend(Page& page, const calibration::Evaluation& evaluation, const pipeline::Model& model);
 
 void add_array(Page& page, const ArrayDescription& array);
 void add_provenance(Page& page, const pipeline::Model& model);

@@ -22,6 +22,11 @@ constexpr double kTop = 44.0;
 constexpr double kLargestSide = 168.0;  // Of the array [px].
 constexpr double kSmallestSide = 6.0;   // So that a single long row can still be seen.
 constexpr double kBottom = 26.0;
+// With axes, where the picture has the width of a page's third.
+constexpr double kAxesWidth = 346.0;
+constexpr double kAxesLargestSide = 244.0;
+constexpr double kAxesTop = 26.0;
+constexpr double kAxesBottom = 40.0;
 constexpr double kBarGap = 10.0;
 constexpr double kBarWidth = 10.0;
 constexpr double kLeastBarHeight = 90.0;
@@ -46,17 +51,23 @@ Colour from_oklab(double lightness, double a, double b) {
           encoded(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
-std::string fill(std::size_t level) {
-  const Colour colour = sequential_colour(static_cast<double>(level) / static_cast<double>(kColours - 1));
-  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
+Colour from_oklch(double lightness, double chroma, double hue_degrees) {
+  const double hue = hue_degrees * std::numbers::pi / 180.0;
+  return from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
+}
+
+std::string fill(Colours colours, std::size_t level) {
+  const double share = static_cast<double>(level) / static_cast<double>(kColours - 1);
+  return to_hex(colours == Colours::diverging ? diverging_colour(2.0 * share - 1.0) : sequential_colour(share));
 }
 
 class Painter {
  public:
-  explicit Painter(const HeatMap& map) : map_(map) {
+  explicit Painter(const HeatMap& map)
+      : map_(map), low_(map.colours == Colours::diverging ? -map.high : 0.0), top_(map.axes ? kAxesTop : kTop) {
     const double width = static_cast<double>(map.cols) * map.col_pitch;
     const double height = static_cast<double>(map.rows) * map.row_pitch;
-    const double scale = kLargestSide / std::max(width, height);
+    const double scale = (map.axes ? kAxesLargestSide : kLargestSide) / std::max(width, height);
     width_ = std::max(width * scale, kSmallestSide);
     height_ = std::max(height * scale, kSmallestSide);
   }
@@ -64,11 +75,11 @@ class Painter {
   Drawing paint() && {
     canvas_.text("title", Anchor::start, {kLeft, 16.0}, map_.title);
     draw_cells();
-    canvas_.rectangle("frame", {kLeft, kTop}, width_, height_);
-    draw_lines();
+    canvas_.rectangle("frame", {kLeft, top_}, width_, height_);
+    map_.axes ? draw_axes(*map_.axes) : draw_lines();
     draw_scale();
-    const double height = kTop + bar_height() + kBottom;
-    return {kWidth, height, map_.title, std::move(canvas_).take()};
+    const double height = top_ + bar_height() + (map_.axes ? kAxesBottom : kBottom);
+    return {map_.axes ? kAxesWidth : kWidth, height, map_.title, std::move(canvas_).take()};
   }
 
  private:
@@ -76,15 +87,17 @@ class Painter {
   [[nodiscard]] double left_of(std::size_t col) const {
     return kLeft + width_ * static_cast<double>(col) / static_cast<double>(map_.cols);
   }
-  [[nodiscard]] double top_of(std::size_t row) const {
-    return kTop + height_ * static_cast<double>(row) / static_cast<double>(map_.rows);
+  /// Upper edge of a line of the picture, from 0 at the top.
+  [[nodiscard]] double top_of(std::size_t line) const {
+    return top_ + height_ * static_cast<double>(line) / static_cast<double>(map_.rows);
   }
 
   /// 0 ... kColours - 1, or kColours for a value that is not finite.
-  [[nodiscard]] std::size_t level(std::size_t row, std::size_t col) const {
+  [[nodiscard]] std::size_t level(std::size_t line, std::size_t col) const {
+    const std::size_t row = map_.axes ? map_.rows - 1 - line : line;
     const double value = map_.values[row * map_.cols + col];
     if (!std::isfinite(value)) return kColours;
-    const double share = std::clamp(value / map_.high, 0.0, 1.0);
+    const double share = std::clamp((value - low_) / (map_.high - low_), 0.0, 1.0);
     return static_cast<std::size_t>(std::lround(share * static_cast<double>(kColours - 1)));
   }
 
@@ -106,7 +119,7 @@ class Painter {
   }
 
   void draw_colour(std::size_t colour, const std::string& data) {
-    colour == kColours ? canvas_.path("nothing", data) : canvas_.filled_path("cell", fill(colour), data);
+    colour == kColours ? canvas_.path("nothing", data) : canvas_.filled_path("cell", fill(map_.colours, colour), data);
   }
 
   [[nodiscard]] std::string cell_path(std::size_t row, std::size_t first, std::size_t end) const {
@@ -123,7 +136,7 @@ class Painter {
   /// Names of the first and last lines: "c0" and "c15" above, "r0" and "r15" at the left.
   void draw_lines() {
     const auto column = [&](std::size_t col) {
-      const Point place{(left_of(col) + left_of(col + 1)) / 2.0, kTop - 6.0};
+      const Point place{(left_of(col) + left_of(col + 1)) / 2.0, top_ - 6.0};
       canvas_.text("small muted", Anchor::middle, place, "c" + std::to_string(col));
     };
     const auto row = [&](std::size_t line) {
@@ -136,24 +149,42 @@ class Painter {
     if (height_ > 28.0 && map_.rows > 1) row(map_.rows - 1);
   }
 
+  void draw_axes(const MapAxes& axes) {
+    const double bottom = top_ + height_;
+    for (const double tick : axes.x.ticks) {
+      const double x = kLeft + axes.x.position(tick) * width_;
+      canvas_.line("tick", {x, bottom}, {x, bottom + 4.0});
+      canvas_.text("small", Anchor::middle, {x, bottom + 16.0}, tick_label(tick));
+    }
+    for (const double tick : axes.y.ticks) {
+      const double y = bottom - axes.y.position(tick) * height_;
+      canvas_.line("tick", {kLeft - 4.0, y}, {kLeft, y});
+      canvas_.text("small", Anchor::end, {kLeft - 6.0, y + 4.0}, tick_label(tick));
+    }
+    canvas_.text("muted", Anchor::middle, {kLeft + width_ / 2.0, bottom + 32.0}, axes.x.label);
+    canvas_.upright_text("muted", {11.0, top_ + height_ / 2.0}, axes.y.label);
+  }
+
   void draw_scale() {
     const double left = kLeft + std::max(width_, 40.0) + kBarGap;
     const double step = bar_height() / static_cast<double>(kBarSteps);
     for (std::size_t i = 0; i < kBarSteps; ++i) {
-      const double top = kTop + bar_height() - step * static_cast<double>(i + 1);
+      const double top = top_ + bar_height() - step * static_cast<double>(i + 1);
       const std::string data = move_to({left, top}) + "h" + coordinate(kBarWidth) + "V" + coordinate(top + step) + "H" +
                                coordinate(left) + "z";
-      canvas_.filled_path("cell", fill(i * (kColours - 1) / (kBarSteps - 1)), data);
+      canvas_.filled_path("cell", fill(map_.colours, i * (kColours - 1) / (kBarSteps - 1)), data);
     }
-    canvas_.rectangle("frame", {left, kTop}, kBarWidth, bar_height());
-    for (const double tick : linear_ticks(0.0, map_.high, kMostTicks)) {
-      const double y = kTop + bar_height() * (1.0 - tick / map_.high);
+    canvas_.rectangle("frame", {left, top_}, kBarWidth, bar_height());
+    for (const double tick : linear_ticks(low_, map_.high, kMostTicks)) {
+      const double y = top_ + bar_height() * (1.0 - (tick - low_) / (map_.high - low_));
       canvas_.line("tick", {left + kBarWidth, y}, {left + kBarWidth + 4.0, y});
       canvas_.text("small", Anchor::start, {left + kBarWidth + 7.0, y + 4.0}, tick_label(tick));
     }
   }
 
   const HeatMap& map_;
+  double low_;  // Start of the colour scale.
+  double top_;
   Canvas canvas_;
   double width_ = 0.0;
   double height_ = 0.0;
@@ -164,9 +195,18 @@ class Painter {
 Colour sequential_colour(double share) noexcept {
   const double t = std::clamp(share, 0.0, 1.0);
   const double lightness = 0.24 + 0.70 * t;
-  const double hue = (300.0 - 195.0 * t) * std::numbers::pi / 180.0;
   const double chroma = 0.105 - 0.02 * std::sin(std::numbers::pi * t) + 0.06 * t * t;
-  return from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
+  return from_oklch(lightness, chroma, 300.0 - 195.0 * t);
+}
+
+Colour diverging_colour(double share) noexcept {
+  const double t = std::min(std::abs(share), 1.0);
+  const double chroma = 0.4 * t * (1.0 - 0.73 * t);  // Inside the gamut of sRGB all along.
+  return from_oklch(0.965 - 0.575 * t, chroma, share < 0.0 ? 260.0 : 45.0);
+}
+
+std::string to_hex(Colour colour) {
+  return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 
 double heat_map_high(const std::vector<double>& values) noexcept {

@@ -25,6 +25,7 @@ constexpr std::string_view kPageCss =
     ".tile{border:1px solid #d5dae0;margin:0 -1px -1px 0;padding:12px 14px}\n"
     ".tile b{display:block;font-size:1.75rem;line-height:1.25;font-weight:600;font-variant-numeric:tabular-nums;"
     "white-space:nowrap}\n"
+    ".tile .long{font-size:1.2rem;line-height:2.1875rem}\n"
     ".tile span{display:block;font-size:.82rem;color:#59636e;overflow-wrap:anywhere}\n"
     ".scroll{overflow-x:auto}\n"
     "table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums}\n"
@@ -37,7 +38,13 @@ constexpr std::string_view kPageCss =
     ".numbers svg{width:12px;height:12px;margin-right:6px;vertical-align:-1px;display:inline}\n"
     ".numbers .group{text-align:center;border-bottom:1px solid #e3e7ec;font-weight:400;color:#59636e}.numbers thead "
     "td{border:0}\n"
-    ".best{font-weight:700}\n"
+    ".best,.beyond{font-weight:700}\n"
+    ".compact{max-width:760px}.dense td,.dense tbody th{padding-top:2px;padding-bottom:2px}\n"
+    "figure+.scroll,.panels+.scroll{margin-top:30px}sub{font-size:.72em;line-height:0}\n"
+    ".numbers .beyond{text-decoration:underline;text-decoration-thickness:1px;text-underline-offset:3px}\n"
+    ".claims{width:100%}.claims th,.claims td{padding-right:22px}.claims .verdict{font-weight:650;padding-right:0;"
+    "min-width:8.5rem}\n"
+    ".claims tbody th{width:9.5rem;color:#59636e;font-weight:400}.claims td{width:36%}.claims td.verdict{width:auto}\n"
     ".facts th{width:16rem;padding-right:20px;overflow-wrap:anywhere}\n"
     ".facts td{overflow-wrap:anywhere}\n"
     ".note{font-size:.86rem}\n"
@@ -52,13 +59,16 @@ constexpr std::string_view kPageCss =
     ".across4{grid-template-columns:repeat(4,minmax(0,1fr))}\n"
     "@media (max-width:820px){.across2,.across3{grid-template-columns:minmax(0,1fr)}"
     ".across4{grid-template-columns:repeat(2,minmax(0,1fr))}}\n"
+    "@media screen and (max-width:640px){.claims thead{display:none}.claims tr{display:block;padding:8px 0;"
+    "border-bottom:1px solid #d5dae0}.claims tbody th,.claims td,.claims td.verdict{display:block;width:auto;border:0;"
+    "padding:2px 0}}\n"
     "@media (max-width:480px){main{padding:20px 14px 36px}.facts th{width:11rem}.tiles{grid-template-columns:1fr "
     "1fr}}\n"
     "@media screen and (prefers-color-scheme:dark){\n"
     "body{background:#14181d;color:#e6eaf0}\n"
-    "h2,.tile{border-color:#39424d}\n"
+    "h2,.tile,.claims tr{border-color:#39424d}\n"
     "th,td{border-color:#2b323b}thead th{border-color:#8b96a3}.numbers .group{border-color:#2b323b}\n"
-    ".muted,figcaption,.note,.tile span,.numbers .group{color:#9aa5b1}figcaption b{color:#e6eaf0}\n"
+    ".muted,figcaption,.note,.tile span,.numbers .group,.claims tbody th{color:#9aa5b1}figcaption b{color:#e6eaf0}\n"
     "}\n"
     "@media print{main{max-width:none;padding:0}body{font-size:11pt}h2{break-after:avoid}.scroll{overflow:visible}}\n";
 
@@ -67,6 +77,22 @@ std::string series_key(std::size_t style) {
       "<svg class=\"fig\" viewBox=\"0 0 12 12\" width=\"12\" height=\"12\" aria-hidden=\"true\"><g "
       "class=\"{}\"><path class=\"mark\" d=\"{}\"/></g></svg>",
       series_class(style), mark(style, {6.0, 6.0}));
+}
+
+/// Longer values are set smaller, so that a tile of the narrowest width holds them.
+constexpr std::size_t kLongTile = 8;
+
+/// Escaped words for an element.
+std::string words_of(std::string_view words) {
+  constexpr std::string_view kOmega = "\u03c9";
+  std::string escaped = escape_xml(words);
+  const std::string indexed = std::string(kOmega) + "_";
+  for (std::size_t at = escaped.find(indexed); at != std::string::npos; at = escaped.find(indexed, at + 1)) {
+    const std::size_t letter = at + indexed.size();
+    if (letter == escaped.size()) break;
+    escaped.replace(letter - 1, 2, fmt::format("<sub>{}</sub>", escaped[letter]));
+  }
+  return escaped;
 }
 
 std::string group_heads(const std::vector<Table::Group>& groups) {
@@ -101,7 +127,7 @@ void Page::tiles(const std::vector<Tile>& tiles) {
   for (const Tile& tile : tiles) {
     html_ += "<div class=\"tile\">";
     element("span", "", tile.name);
-    element("b", "", tile.value);
+    element("b", tile.value.size() > kLongTile ? "long" : "", tile.value);
     element("span", "", tile.note);
     html_ += "</div>\n";
   }
@@ -141,7 +167,7 @@ void Page::figure(const Figure& figure) {
     html_ += "</div>\n";
   }
   html_ += fmt::format("<figcaption><b>Fig. {}. {}.</b> {}</figcaption>\n</figure>\n", ++figures_,
-                       escape_xml(figure.title), escape_xml(figure.caption));
+                       words_of(figure.title), words_of(figure.caption));
 }
 
 void Page::figures(const std::vector<Figure>& figures) {
@@ -152,7 +178,7 @@ void Page::figures(const std::vector<Figure>& figures) {
 
 void Page::element(std::string_view tag, std::string_view style, std::string_view words) {
   const std::string attribute = style.empty() ? "" : fmt::format(" class=\"{}\"", style);
-  fmt::format_to(std::back_inserter(html_), "<{0}{1}>{2}</{0}>", tag, attribute, escape_xml(words));
+  fmt::format_to(std::back_inserter(html_), "<{0}{1}>{2}</{0}>", tag, attribute, words_of(words));
 }
 
 std::string Page::html() && {

@@ -41,13 +41,16 @@ struct Table {
     std::size_t columns = 1;
   };
 
-  std::string style = "numbers";   ///< Or "claims": sentences, which stand below each other on a narrow screen.
+  /// "numbers", also "numbers compact" for few columns and "numbers dense" for many rows; or "claims": sentences, which
+  /// stand below each other on a narrow screen.
+  std::string style = "numbers";
   std::vector<Group> groups;       ///< Of the columns after the first; none, or over all of them.
   std::vector<std::string> heads;  ///< The first is that of the names.
   std::vector<Row> rows;
 };
 
-/// A page with numbered figures, written from top to bottom. All words are plain text. Well-formed as XML, too.
+/// A page with numbered figures, written from top to bottom. All words are plain text, except that the letter after
+/// "\u03c9_" is set as an index. Well-formed as XML, too.
 class Page {
  public:
   /// `window` names the page in lists of pages.

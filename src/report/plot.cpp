@@ -54,6 +54,9 @@ class Plot::Painter {
     for (const Layer& layer : plot_.layers_) draw_backdrop(layer);
     std::for_each(plot_.layers_.rbegin(), plot_.layers_.rend(), [this](const Layer& layer) { draw_series(layer); });
     canvas_.rectangle("frame", {left_, top_}, right_ - left_, bottom_ - top_);
+    for (const Label& label : plot_.labels_) {
+      canvas_.text("small", Anchor::start, {to_x(label.place.x) + 6.0, to_y(label.place.y) + 4.0}, label.words);
+    }
     return std::move(canvas_).take();
   }
 
@@ -84,11 +87,14 @@ class Plot::Painter {
       case Kind::region: canvas_.rectangle("region", {from.x, from.y - 5.0}, 18.0, 10.0); break;
       case Kind::reference: canvas_.line("reference", from, to); break;
       case Kind::curve:
+      case Kind::line:
       case Kind::cloud:
       case Kind::whiskers:
         canvas_.open_group(series_class(entry.layer->style));
-        if (entry.layer->kind == Kind::curve) canvas_.line("curve", from, to);
-        canvas_.path("mark", mark(entry.layer->style, middle));
+        if (entry.layer->kind == Kind::curve || entry.layer->kind == Kind::line) canvas_.line("curve", from, to);
+        if (entry.layer->kind != Kind::line || entry.layer->marks > 0) {
+          canvas_.path("mark", mark(entry.layer->style, middle));
+        }
         canvas_.close_group();
         break;
     }
@@ -118,7 +124,8 @@ class Plot::Painter {
       canvas_.line("tick", {x, bottom_}, {x, bottom_ + kTickLength});
       const double half = text_width(tick_label(tick)) / 2.0;
       if (x - half < free_from) continue;
-      canvas_.text("small", Anchor::middle, {x, bottom_ + 17.0}, tick_label(tick));
+      const double middle = std::min(x, plot_.width_ - half - 4.0);
+      canvas_.text("small", Anchor::middle, {middle, bottom_ + 17.0}, tick_label(tick));
       free_from = x + half + 2.0;
     }
     canvas_.text("muted", Anchor::middle, {(left_ + right_) / 2.0, bottom_ + 35.0}, plot_.x_.label);
@@ -145,6 +152,9 @@ class Plot::Painter {
     if (layer.kind == Kind::curve) {
       canvas_.path("curve", joined(layer));
       canvas_.path("mark", marks(layer));
+    } else if (layer.kind == Kind::line) {
+      canvas_.path("curve", joined(layer));
+      canvas_.path("mark", few_marks(layer));
     } else if (layer.kind == Kind::cloud) {
       canvas_.path("cloud", dots(layer));
     } else {
@@ -169,6 +179,20 @@ class Plot::Painter {
     std::string data;
     for (const Point& point : layer.points) {
       if (!std::isnan(point.x) && !std::isnan(point.y)) data += mark(layer.style, place(layer, point));
+    }
+    return data;
+  }
+
+  /// On points that are at least 1 / marks of the x axis apart.
+  std::string few_marks(const Layer& layer) const {
+    std::string data;
+    double next = -1.0;
+    for (const Point& point : layer.points) {
+      if (layer.marks == 0 || std::isnan(point.x) || std::isnan(point.y)) continue;
+      const double position = plot_.x_.position(point.x);
+      if (position < next) continue;
+      data += mark(layer.style, place(layer, point));
+      next = position + 1.0 / static_cast<double>(layer.marks);
     }
     return data;
   }
@@ -223,6 +247,10 @@ void Plot::curve(std::string name, std::size_t style, std::vector<Point> points,
   layers_.push_back({Kind::curve, std::move(name), style, std::move(points), {}, shift});
 }
 
+void Plot::line(std::string name, std::size_t style, std::vector<Point> points, std::size_t marks) {
+  layers_.push_back({Kind::line, std::move(name), style, std::move(points), {}, 0.0, marks});
+}
+
 void Plot::cloud(std::string name, std::size_t style, std::vector<Point> points) {
   layers_.push_back({Kind::cloud, std::move(name), style, std::move(points), {}, 0.0});
 }
@@ -234,6 +262,10 @@ void Plot::whiskers(std::size_t style, std::vector<Point> from, std::vector<Poin
 
 void Plot::count(double x, std::size_t values) {
   if (!std::isnan(x)) counts_.push_back({x, values});
+}
+
+void Plot::label(Point place, std::string words) {
+  if (!std::isnan(place.x) && !std::isnan(place.y)) labels_.push_back({place, std::move(words)});
 }
 
 Drawing Plot::drawing() const {

@@ -21,7 +21,19 @@ std::string two_digits(double value) {
 }
 
 std::string percent(double fraction) {
-  return std::isfinite(fraction) ? two_digits(100.0 * fraction) + " %" : kNoForce;
+  const double value = 100.0 * fraction;
+  return std::isfinite(value) ? two_digits(value) + " %" : kNoForce;
+}
+
+std::string fine_percent(double fraction) {
+  const double value = 100.0 * fraction;
+  if (!std::isfinite(value)) return kNoForce;
+  if (value < 0.1) return fmt::format("{:.3g}\u00a0%", value);
+  return fmt::format("{:.{}f}\u00a0%", value, value < 9.995 ? 2 : 1);
+}
+
+std::string three_digits(double value) {
+  return std::isfinite(value) ? fmt::format("{:.3g}", value) : "-";
 }
 
 std::string newtons(double force) {
@@ -32,6 +44,12 @@ std::string grouped(std::size_t count) {
   std::string digits = std::to_string(count);
   for (std::size_t place = digits.size(); place > 3; place -= 3) digits.insert(place - 3, ",");
   return digits;
+}
+
+std::string steps(double count) {
+  constexpr double kMostSteps = 1e15;
+  const bool is_count = count >= 0.0 && count < kMostSteps;
+  return is_count ? counted(static_cast<std::size_t>(count), "step") : "- steps";
 }
 
 std::string counted(std::size_t count, const std::string& noun) {

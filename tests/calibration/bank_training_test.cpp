@@ -57,7 +57,9 @@ TEST(BankTraining, every_start_lowers_its_error_under_gradient_descent) {
     double first = 0.0;
     double last = 0.0;
     for (int k = 0; k < 400; ++k) {
-      const double error = training.step({});
+      network::BankStep step;
+      step.rate = 2.0F;
+      const double error = training.step(step);
       if (k < 40) first += error;
       if (k >= 360) last += error;
     }
@@ -75,7 +77,7 @@ TEST(BankTraining, the_same_seed_gives_the_same_bank_and_another_seed_another) {
 TEST(BankTraining, reaches_the_papers_five_percent_on_its_points) {
   const ArrayDescription array = reference_array(5, 4);
   const SampleDatabase database = database_of(array, "paper_calibration");
-  TrainedBank trained = train_paper_bank(database, 2500, 1).value();
+  TrainedBank trained = train_paper_bank(database, 5000, 1).value();
   EXPECT_EQ(trained.report.unknowns, fusion::paper_bank_unknowns(20));
   const Recording presses = record(array, "paper_calibration", 1);
   const Calibration calibration = calibrate(array, presses.frames, presses.loads).value();

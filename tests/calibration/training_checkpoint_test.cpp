@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -171,13 +172,14 @@ TEST(TrainingCheckpoint, refuses_content_that_does_not_fit_together) {
 
 TEST(TrainingCheckpoint, a_damaged_file_is_read_or_refused_in_one_line_and_what_is_read_can_be_trained) {
   const TemporaryFolder folder;
-  const std::string path = folder.file("c");
+  const std::string good = folder.file("good");
   TrainingState<float> state = fresh_state<float>(TrainingAlgorithm::adaptive_rate);
   train_to(state, 5);
-  ASSERT_TRUE(write_training_checkpoint(path, state));
-  const std::string bytes = store::read_bytes(path);
-  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+  ASSERT_TRUE(write_training_checkpoint(good, state));
+  const std::string bytes = store::read_bytes(good);
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
+    const std::string path = folder.file(std::to_string(seed));  // a new one each: overwriting waits for the disk
     store::write_bytes(path, store::mutated(bytes, seed));
     Result<TrainingState<float>> read = read_training_checkpoint<float>(path, kShape);
     if (read) {
@@ -189,6 +191,7 @@ TEST(TrainingCheckpoint, a_damaged_file_is_read_or_refused_in_one_line_and_what_
     }
   }
   for (std::size_t size = 0; size < bytes.size(); size += 13) {
+    const std::string path = folder.file("cut" + std::to_string(size));
     store::write_bytes(path, bytes.substr(0, size));
     EXPECT_FALSE(read_training_checkpoint<float>(path, kShape)) << "cut to " << size;
   }

@@ -58,6 +58,11 @@ class MissingFiles(SmallArray):
             with self.subTest(arguments):
                 self.refuse(arguments, [absent])
 
+    def test_a_bank(self):
+        absent = self.work / "absent"
+        self.refuse([*self.evaluate_arguments(), "--bank", absent], [absent])
+        self.refuse([*self.evaluate_arguments(), "--bank", self.model], [self.model, "calibrate --bank"])
+
     def test_a_folder_instead_of_a_file(self):
         self.refuse(self.run_arguments(self.work / "f.csv", **{"in": self.root}), [self.root])
 

@@ -97,6 +97,47 @@ class Workflow(SmallArray):
             self.assertIn("--", self.succeed(command, "--help"))
 
 
+class PaperBank(SmallArray):
+    def test_a_bank_is_one_more_estimator(self):
+        bank = self.work / "bank.safetensors"
+        self.succeed(*self.calibrate_arguments(self.work / "m"), "--bank", bank)
+        presses = ("--frames", self.calibration / "frames.csv", "--loads", self.calibration / "loads.csv")
+        arguments = ("evaluate", "--model", self.work / "m", *presses, "--bank", bank)
+        estimators = json.loads(self.succeed(*arguments, "--json"))["estimators"]
+        self.assertEqual([entry["name"] for entry in estimators][-1], "paper_bank")
+        self.assertLess(estimators[-1]["median_relative_error"], 0.25)
+        self.assertIn("\npaper_bank ", self.succeed(*arguments))
+        self.succeed(*arguments, "--report", self.work / "report")
+        self.assertIn("N-N-N-1", (self.work / "report" / "index.html").read_text())
+
+    def test_a_bank_gives_the_same_bytes_on_one_core(self):
+        arguments = self.calibrate_arguments(self.work / "m")
+        self.succeed(*arguments, "--bank", self.work / "a")
+        self.succeed(*arguments, "--bank", self.work / "b", prefix=("taskset", "-c", "0"))
+        self.assertEqual((self.work / "a").read_bytes(), (self.work / "b").read_bytes())
+
+
+class Paper(SmallArray):
+    def test_json_names_what_the_paper_claims(self):
+        found = json.loads(self.succeed("paper", "--quick", "--json"))
+        self.assertEqual(found["unknowns"], 2 * 16**3 + 16**2 + 2 * 16**2 + 16)
+        self.assertGreater(found["peaks"]["hidden_5"]["best_mse"], 0.001)
+        self.assertAlmostEqual(found["peaks"]["hidden_5"]["best_mse_normalised"],
+                               found["peaks"]["hidden_5"]["best_mse"] / found["peaks"]["range"]**2)
+        self.assertEqual(set(found["peaks"]["smallest_hidden"]), {"raw", "normalised"})
+        self.assertEqual(len(found["convergence"]), 3)
+        self.assertLess(found["points"]["dermis"]["max_relative_error"], 0.05)
+        self.assertGreater(found["points"]["bank"]["max_relative_error"], 0.0)
+
+    def test_text_and_report(self):
+        text = self.succeed("paper", "--quick", "--report", self.work / "report")
+        for words in ("2-5-1", "8976 unknowns", "48 points"):
+            self.assertIn(words, text)
+        page = (self.work / "report" / "index.html").read_text()
+        for words in ("Fig. 6", "Fig. 10", "Fig. 11"):
+            self.assertIn(words, page)
+
+
 class Loads(SmallArray):
     """The rigs that people have, other than a weight on each taxel."""
 

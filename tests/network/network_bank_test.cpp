@@ -123,8 +123,8 @@ double mean_gradient(const NetworkShape& shape, const BankBatch& batch, std::siz
 /// Gradient descent, or algorithm 1 of Kingma and Ba (2015) to the letter.
 void move_alone(Alone& network, std::span<const double> gradient, const BankStep& step) {
   ++network.steps;
-  const double beta1 = double{step.first_decay};
-  const double beta2 = double{step.second_decay};
+  const auto beta1 = double{step.first_decay};
+  const auto beta2 = double{step.second_decay};
   for (std::size_t i = 0; i < gradient.size(); ++i) {
     double direction = gradient[i];
     if (step.rule == BankStep::Rule::adam) {
@@ -178,7 +178,7 @@ TEST(NetworkBank, the_bank_of_the_paper_has_33751296_unknowns) {
 
 TEST(NetworkBank, starts_with_parameters_of_zero) {
   NetworkBank bank({3, {{20, kLogSigmoid}, {2, kLogSigmoid}}}, 3);
-  EXPECT_EQ(parameters_of(bank, 2), std::vector<float>(20 * 4 + 2 * 21));
+  EXPECT_EQ(parameters_of(bank, 2), std::vector<float>(bank.shape().parameter_count()));
   std::vector<float> outputs(6);
   bank.evaluate(std::vector<float>{1.0F, 2.0F, 3.0F}, outputs);
   for (const float output : outputs) EXPECT_NEAR(output, 0.5F, 1e-6F);
@@ -227,16 +227,19 @@ TEST(NetworkBank, every_network_gives_what_it_gives_alone) {
 }
 
 TEST(NetworkBank, evaluates_more_patterns_than_it_packs_at_a_time) {
+  constexpr std::size_t kPatterns = 2500;
   const NetworkShape shape{2, {{40, kTanh}, {1, kLinear}}};
-  Random random(5);
-  const Problem problem(shape, 2, 1, random);
-  NetworkBank bank = problem.bank();
-  const auto inputs = random_values(2 * 2500, 1.0, random);
-  std::vector<float> outputs(2 * 2500);
-  bank.evaluate_batch(inputs, outputs);
-  for (std::size_t network = 0; network < 2; ++network) {
-    const auto expected = expected_outputs(problem, network, inputs);
-    for (std::size_t p = 0; p < 2500; ++p) ASSERT_NEAR(outputs[2 * p + network], expected[p], 5e-6) << "pattern " << p;
+  for (const std::size_t networks : {2U, 16U}) {
+    Random random(networks);
+    const Problem problem(shape, networks, 1, random);
+    NetworkBank bank = problem.bank();
+    const auto inputs = random_values(kPatterns * 2, 1.0, random);
+    std::vector<float> outputs(kPatterns * networks);
+    bank.evaluate_batch(inputs, outputs);
+    for (std::size_t network = 0; network < networks; ++network) {
+      const auto expected = expected_outputs(problem, network, inputs);
+      for (std::size_t p = 0; p < kPatterns; ++p) ASSERT_NEAR(outputs[p * networks + network], expected[p], 5e-6);
+    }
   }
 }
 
@@ -332,12 +335,13 @@ TEST(NetworkBank, new_parameters_start_adam_anew_for_their_network_alone) {
 
 TEST(NetworkBank, without_weights_all_patterns_count_one) {
   Random random(4);
-  Problem problem({5, {{40, kTanh}, {2, kLinear}}}, 3, 20, random);
+  constexpr std::size_t kBatch = 20;
+  Problem problem({5, {{40, kTanh}, {2, kLinear}}}, 3, kBatch, random);
   NetworkBank none = problem.bank();
   NetworkBank ones = problem.bank();
   std::vector<float> errors_none(3);
   std::vector<float> errors_ones(3);
-  problem.weights.assign(3 * 20, 1.0F);
+  problem.weights.assign(3 * kBatch, 1.0F);
   ones.train_step(problem.batch(), {}, errors_ones);
   BankBatch batch = problem.batch();
   batch.weights = {};

@@ -85,6 +85,9 @@ Plot hard_plot() {
   plot.curve("<b>", 0, points, 3.0);
   plot.cloud("dots", 1, points);
   plot.whiskers(2, points, points);
+  plot.line("line", 3, points, 4);
+  plot.label({5.0, kInfinity}, "<label>");
+  plot.label({kNan, 5.0}, "nowhere");
   plot.count(1.0, 12);
   plot.count(kNan, 12);
   return plot;
@@ -106,6 +109,27 @@ TEST(Plot, BreaksLinesWhereAPointIsMissing) {
   const std::string path = elements.substr(start, elements.find("/>", start) - start);
   EXPECT_EQ(occurrences(path, "M"), 2U);
   EXPECT_EQ(occurrences(path, "L"), 2U);
+}
+
+TEST(Plot, LabelsPlaces) {
+  const std::string elements = hard_plot().drawing().elements;
+  EXPECT_NE(elements.find("&lt;label&gt;"), std::string::npos);
+  EXPECT_EQ(elements.find("nowhere"), std::string::npos);
+}
+
+TEST(Plot, MarksAFewPointsOfALine) {
+  std::vector<Point> points;
+  for (int i = 0; i <= 1000; ++i) points.push_back({0.01 * i, 5.0});
+  const Axis axis{"x", Scale::linear, 0.0, 10.0, {}};
+  const auto marks = [&](std::size_t most) {
+    Plot plot("t", axis, axis, 300.0, 300.0);
+    plot.line("", 0, points, most);
+    return occurrences(plot.drawing().elements, "a3.6");
+  };
+  EXPECT_EQ(marks(0), 0U);
+  const std::size_t circles = marks(8) / 2;  // A circle is two arcs.
+  EXPECT_GE(circles, 7U);
+  EXPECT_LE(circles, 9U);
 }
 
 TEST(Plot, PutsEarlierSeriesAbove) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -30,7 +31,7 @@ using report::TrainingCurve;
 constexpr std::uint64_t kCalibrationSeed = 1;
 constexpr std::uint64_t kPointsSeed = 3;
 constexpr std::uint64_t kBankSeed = 1;
-constexpr float kDescentRate = 1.0F;
+constexpr float kDescentRate = 2.0F;
 
 struct Recording {
   std::vector<RawFrame> frames;
@@ -83,7 +84,8 @@ std::vector<StartSystem> start_systems(std::size_t taxels) {
   const auto count = static_cast<double>(taxels);
   const double off = std::abs(count * 0.25 * output.weight + output.threshold + std::log(3.0));
   const double on = std::abs(count * 0.75 * output.weight + output.threshold - std::log(3.0));
-  systems.push_back({"(15)", "output", 0, output.weight, 0.0, 0.0, output.threshold, std::max(off, on)});
+  systems.push_back(
+      {"(15)", "output", 0, output.weight, std::nullopt, std::nullopt, output.threshold, std::max(off, on)});
   return systems;
 }
 
@@ -156,7 +158,7 @@ Status reproduce_bank(const ArrayDescription& array, const BankEffort& effort,
   if (!presses) return presses.error();
   const Result<SampleDatabase> database = calibration::build_sample_database(array, presses->frames, presses->loads);
   if (!database) return database.error();
-  const auto calibrated = calibration::calibrate(array, presses->frames, presses->loads);
+  auto calibrated = calibration::calibrate(array, presses->frames, presses->loads);
   if (!calibrated) return calibrated.error();
 
   Result<BankTraining> training = BankTraining::create(*database, kBankSeed);
@@ -192,6 +194,7 @@ Status reproduce_bank(const ArrayDescription& array, const BankEffort& effort,
   if (!evaluation) return evaluation.error();
   found.points = list_points(array, *database, *points, *evaluation);
   found.evaluation = std::move(*evaluation);
+  found.model = std::move(calibrated->model);
   return Done{};
 }
 

@@ -14,11 +14,11 @@ namespace dermis::app {
 struct PeaksEffort {
   std::size_t adaptive_rate_starts = 32;  ///< Each of the paper's 10,000 epochs.
   std::uint64_t adaptive_rate_epochs = 10'000;
-  std::size_t paper_size_starts = 400;  ///< Levenberg-Marquardt on 2-5-1.
-  std::size_t starts = 24;              ///< For every other size of the hidden layer.
-  std::size_t last_starts = 96;         ///< For the sizes just below one that reached the goal.
-  std::size_t most_hidden = 64;         ///< The search ends there at the latest.
-  int iterations = 500;                 ///< Of Levenberg-Marquardt, at most.
+  std::size_t paper_size_starts = 2000;  ///< Levenberg-Marquardt on 2-5-1.
+  std::size_t starts = 16;               ///< For every other size of the hidden layer.
+  std::size_t last_starts = 96;          ///< For the sizes just below one that reached the goal.
+  std::size_t most_hidden = 48;          ///< The search ends there at the latest.
+  int iterations = 1000;                 ///< Of Levenberg-Marquardt, at most.
 };
 
 /// Eq. (1), (2), Fig. 5 and 6: `progress` is told the share that is done. Deterministic.

@@ -25,8 +25,8 @@ enum class BankStart {
 ///
 /// A network's own presses are a few of very many samples (14 of 3,584 where every taxel is pressed alone), so half of
 /// each batch is drawn from the samples that load its taxel and half from those that do not; and squared errors are
-/// weighted as relative ones down to a force of 1/20 of the heaviest. Samples that do not tell the force of a taxel are
-/// left out for its network. Deterministic by seed.
+/// weighted as relative ones down to a force of 0.4 of the heaviest, and evenly below. Samples that do not tell the
+/// force of a taxel are left out for its network. Deterministic by seed.
 class BankTraining {
  public:
   /// Errors: no sample tells a force on a single taxel.

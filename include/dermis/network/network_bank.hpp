@@ -33,11 +33,13 @@ struct BankStep {
 };
 
 /// Many networks of one shape and different weights, evaluated and trained side by side, single precision.
-/// The paper's bank is one N-N-N-1 network a taxel. Results do not depend on the number of threads. An object holds
-/// work space: one call at a time.
+/// The paper's bank is one N-N-N-1 network a taxel. Results do not depend on the number of threads, but those of
+/// evaluate_batch() differ from those of evaluate() by rounding. An object holds work space: one call at a time.
+/// Nothing is allocated once the work space has grown to the batch, and the moments at the first step of Adam.
 ///
-/// Inputs, targets and parameters must be finite. A network whose sums leave the range of float gives outputs and an
-/// error that are not finite, and keeps doing so; the other networks of the bank do not notice.
+/// A NaN is never hidden: a network with one among its parameters gives NaN outputs and a NaN error, step after step,
+/// until it gets new parameters; the other networks of the bank do not notice. Inputs, targets and weights of patterns
+/// must be finite.
 class NetworkBank {
  public:
   /// All parameters 0. The shape must be valid.

@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "dermis/report/plot.hpp"
 #include "dermis/report/svg.hpp"
 
 namespace dermis::report {
@@ -23,6 +25,25 @@ struct Colour {
 /// 300 to 105 degrees, inside the gamut of sRGB.
 [[nodiscard]] Colour sequential_colour(double share) noexcept;
 
+/// A diverging colour map for signed quantities: dark blue over near white at 0 to dark orange. `share` is clamped to
+/// [-1, 1]; not NaN. Both arms darken linearly and alike (Oklab L from 0.965 to 0.39), so that a grey print shows the
+/// magnitude; blue (hue 260 degrees) against orange (45) tells the sign to readers with any colour vision.
+[[nodiscard]] Colour diverging_colour(double share) noexcept;
+
+/// "#0d62ac"
+[[nodiscard]] std::string to_hex(Colour colour);
+
+enum class Colours : std::uint8_t {
+  sequential,  ///< From 0 to `high`.
+  diverging,   ///< From -`high` to `high`.
+};
+
+/// Axes of a function of two variables; each cell is centred on its sample.
+struct MapAxes {
+  Axis x;  ///< Along the columns.
+  Axis y;  ///< Along the rows; row 0 is at the bottom.
+};
+
 /// One quantity on every taxel of an array: each measured taxel is a square, nothing is interpolated.
 struct HeatMap {
   std::string title;       ///< With the unit of the colour scale: "force [N]".
@@ -30,8 +51,10 @@ struct HeatMap {
   std::size_t cols = 0;    ///< >= 1
   double row_pitch = 1.0;  ///< Distance of rows over distance of columns is the shape of a taxel; > 0.
   double col_pitch = 1.0;
-  double high = 1.0;           ///< End of the colour scale, which starts at 0; finite and > 0.
+  double high = 1.0;           ///< End of the colour scale; finite and > 0.
   std::vector<double> values;  ///< [rows, cols]; NaN and infinity are drawn as crossed-out squares.
+  Colours colours = Colours::sequential;
+  std::optional<MapAxes> axes = std::nullopt;  ///< Instead of the names of the array's lines.
 };
 
 [[nodiscard]] Drawing heat_map(const HeatMap& map);

@@ -58,17 +58,21 @@ class Plot {
   void reference(std::string name, std::vector<Point> points);
   /// Marks joined by lines, the whole series shifted to the right by `shift` px.
   void curve(std::string name, std::size_t style, std::vector<Point> points, double shift = 0.0);
+  /// A line with up to `marks` marks, evenly along the x axis: for curves of many points.
+  void line(std::string name, std::size_t style, std::vector<Point> points, std::size_t marks = 0);
   /// Small dots.
   void cloud(std::string name, std::size_t style, std::vector<Point> points);
   /// Vertical lines from each of `from` to `to` at the same place, ending in a bar.
   void whiskers(std::size_t style, std::vector<Point> from, std::vector<Point> to, double shift = 0.0);
   /// A number above the plot at `x`: of how many values the marks at this x are made.
   void count(double x, std::size_t values);
+  /// Words to the right of a place; none where it is NaN.
+  void label(Point place, std::string words);
 
   [[nodiscard]] Drawing drawing() const;
 
  private:
-  enum class Kind { region, reference, curve, cloud, whiskers };
+  enum class Kind { region, reference, curve, line, cloud, whiskers };
   struct Layer {
     Kind kind;
     std::string name;
@@ -76,10 +80,15 @@ class Plot {
     std::vector<Point> points;
     std::vector<Point> ends;
     double shift = 0.0;
+    std::size_t marks = 0;
   };
   struct Count {
     double x;
     std::size_t values;
+  };
+  struct Label {
+    Point place;
+    std::string words;
   };
   class Painter;
 
@@ -90,6 +99,7 @@ class Plot {
   double height_;
   std::vector<Layer> layers_;
   std::vector<Count> counts_;
+  std::vector<Label> labels_;
 };
 
 }  // namespace dermis::report
