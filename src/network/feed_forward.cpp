@@ -9,6 +9,10 @@
 
 #include "network/feed_forward_kernels.hpp"
 
+// Blocks of vectors are arrays, which vectors without a fixed length cannot be in.
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "network/feed_forward.cpp"
 #include "hwy/foreach_target.h"

@@ -44,9 +44,10 @@ class PackedSamples {
   std::vector<CacheLine<Real>> tiles_;
 };
 
-/// The BP network: forward and backward passes over batches of samples for networks of any depth.
-/// An object holds work space: use one per thread. The shape must be valid. Nothing is allocated once the work space
-/// has grown to the batch.
+/// The BP network: forward and backward passes over batches of samples for networks of any depth, samples side by side
+/// in SIMD lanes. The output of a neuron is right to 2e-7 in float and 4e-16 in double, absolute; instruction sets
+/// differ in rounding. An object holds work space: use one per thread. The shape must be valid. Nothing is allocated
+/// once the work space has grown to what is asked of it.
 template <std::floating_point Real>
 class FeedForward {
  public:
