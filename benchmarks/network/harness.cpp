@@ -4,20 +4,60 @@
 
 #include <fmt/core.h>
 #include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
 #include <thread>
 
 namespace dermis::benchmarks {
 namespace {
+
+/// Cores that others may keep busy before it is said.
+constexpr double kQuiet = 0.05;
 
 double seconds_of(const std::function<void()>& body) {
   const auto start = std::chrono::steady_clock::now();
   body();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
+
+/// Cores that others kept busy on average since it was made: what to mistrust times for.
+class OtherLoad {
+ public:
+  [[nodiscard]] double cores() const {
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    return std::max(0.0, (busy_seconds() - busy_ - (own_seconds() - own_)) / elapsed);
+  }
+
+ private:
+  /// Of the whole machine, from the first line of /proc/stat: user, nice, system, idle, iowait, irq, softirq, steal.
+  static double busy_seconds() {
+    std::ifstream statistics("/proc/stat");
+    std::string name;
+    double ticks[8] = {};
+    statistics >> name;
+    for (double& value : ticks) statistics >> value;
+    const double busy = ticks[0] + ticks[1] + ticks[2] + ticks[5] + ticks[6] + ticks[7];
+    return busy / static_cast<double>(sysconf(_SC_CLK_TCK));
+  }
+
+  static double own_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto seconds = [](const timeval& time) {
+      return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+    };
+    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+  }
+
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double busy_ = busy_seconds();
+  double own_ = own_seconds();
+};
 
 /// One thread: on the last core. More: on as many cores as the program was given.
 class Placement {
@@ -87,12 +127,14 @@ void print_header() {
 
 void measure(const Work& work, std::vector<Entry> entries, const Effort& effort, nlohmann::ordered_json& rows) {
   const Placement placement(work.threads);
+  const OtherLoad others;
   std::vector<std::vector<double>> samples(entries.size());
   for (int round = 0; round < effort.rounds; ++round) {
     for (std::size_t k = 0; k < entries.size(); ++k) {
       samples[k].push_back(work.scale * sample(entries[k], work, effort));
     }
   }
+  const double other_cores = others.cores();
   double dermis = 0.0;
   for (std::size_t k = 0; k < entries.size(); ++k) {
     if (entries[k].engine->name() == "dermis") dermis = median(samples[k]);
@@ -106,7 +148,8 @@ void measure(const Work& work, std::vector<Entry> entries, const Effort& effort,
                                {"unit", work.unit},
                                {"checked", run.check.passed()},
                                {"fastest", *std::min_element(samples[k].begin(), samples[k].end())},
-                               {"rounds", effort.rounds}};
+                               {"rounds", effort.rounds},
+                               {"other_cores", other_cores}};
     if (!run.check.what.empty()) {
       row["compared"] = run.check.what;
       row["deviation"] = run.check.deviation;
@@ -118,6 +161,7 @@ void measure(const Work& work, std::vector<Entry> entries, const Effort& effort,
     print_row(row, run);
     rows.push_back(std::move(row));
   }
+  if (other_cores > kQuiet) fmt::print("  disturbed: other programs kept {:.2f} cores busy meanwhile\n", other_cores);
 }
 
 }  // namespace dermis::benchmarks
