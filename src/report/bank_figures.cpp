@@ -15,7 +15,11 @@
 namespace dermis::report {
 namespace {
 
-constexpr const char* kBankError = "mean error of a pattern, eq. (5)";
+constexpr const char* kBankError = "error, eq. (6)";
+constexpr const char* kErrorWords =
+    "The error is that of eq. (6), half the weighted mean square of a batch, mean of all networks; neighbouring steps "
+    "are "
+    "drawn as their mean.";
 
 }  // namespace
 
@@ -74,7 +78,7 @@ Figure convergence_figure(const PaperReproduction& reproduction) {
   }
   if (series.empty()) return figure;
   figure.panels.push_back(training_plot({"gradient descent of the bank", kBankError, std::move(series), std::nullopt}));
-  figure.caption = "Error over the steps of gradient descent, eq. (5), mean of all patterns and networks.";
+  figure.caption = kErrorWords;
   return figure;
 }
 
@@ -89,15 +93,16 @@ Figure bank_training_figure(const PaperReproduction& reproduction) {
   figure.panels.push_back(
       training_plot({"training of the bank", kBankError, {{bank_style(reproduction), &curve}}, std::nullopt}));
   figure.caption =
-      fmt::format("Error over {}, on {}; {} of them load the taxel of a network.", steps(curve.step.back()),
-                  counted(reproduction.bank_samples, "labelled frame"), grouped(reproduction.own_samples));
+      fmt::format("{} on {}; the own taxel of a network is loaded in {} of them. {}", steps(curve.step.back()),
+                  counted(reproduction.bank_samples, "labelled frame"), grouped(reproduction.own_samples), kErrorWords);
   return figure;
 }
 
 std::size_t bank_style(const PaperReproduction& reproduction) {
   const auto& estimators = reproduction.evaluation.estimators;
-  const auto bank = std::find_if(estimators.begin(), estimators.end(),
-                                 [](const calibration::EstimatorResult& result) { return result.name == kPaperBank; });
+  const auto bank = std::find_if(estimators.begin(), estimators.end(), [](const calibration::EstimatorResult& result) {
+    return result.name == calibration::kPaperBankName;
+  });
   return bank == estimators.end() ? 1 : static_cast<std::size_t>(bank - estimators.begin());
 }
 

@@ -105,8 +105,9 @@ std::string describe(const fusion::LookUpTables& tables) {
 /// N as in the paper: the number of taxels.
 std::string describe_paper_bank(std::size_t taxels) {
   return fmt::format(
-      "the paper's bank: one N-N-N-1 network a taxel, N = {}, from the readings of the whole array to newtons; it is "
-      "told nothing of the circuit",
+      "the paper's bank: one N-N-N-1 network a taxel, N = {}, from the readings of the whole array, and the "
+      "temperature where "
+      "the calibration varies it, to newtons; it is told nothing of the circuit",
       grouped(taxels));
 }
 
@@ -187,7 +188,7 @@ void add_legend(Page& page, const Evaluation& evaluation, const pipeline::Model&
   if (!evaluation.estimators.empty()) facts.emplace_back(evaluation.estimators.front().name, describe(model));
   for (const fusion::LookUpTables& tables : model.baselines) facts.emplace_back(tables.name, describe(tables));
   for (const EstimatorResult& estimator : evaluation.estimators) {
-    if (estimator.name != kPaperBank) continue;
+    if (estimator.name != calibration::kPaperBankName) continue;
     facts.emplace_back(estimator.name, describe_paper_bank(evaluation.array.taxel_count()));
   }
   page.facts(facts, "facts note");

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "dermis/calibration/evaluation.hpp"
@@ -36,8 +35,5 @@ struct Figure {
 
 /// The relative error that the paper claims.
 inline constexpr double kPaperTolerance = 0.05;
-
-/// Name of the paper's bank of networks among the estimators of an evaluation.
-inline constexpr std::string_view kPaperBank = "paper_bank";
 
 }  // namespace dermis::report

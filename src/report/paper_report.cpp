@@ -150,7 +150,7 @@ void add_peaks(Page& page, const PeaksReproduction& peaks, const Figures& figure
   page.figures({figures.peaks_training, figures.hidden_units});
   if (peaks.by_hidden.empty()) return;
   page.table(hidden_table(peaks));
-  page.paragraph("Bold: the goal is reached.", "note");
+  page.paragraph("Bold: the goal is reached. The starts of a size end soon after one has reached it.", "note");
 }
 
 // The bank and its start.

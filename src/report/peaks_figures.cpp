@@ -158,7 +158,7 @@ Figure hidden_units_figure(const PeaksReproduction& peaks) {
   if (peaks.by_hidden.empty()) return figure;
   const std::vector<Point> raw = positive_points(peaks.by_hidden, &HiddenLayerFit::best_mse);
   const std::vector<Point> scaled = positive_points(peaks.by_hidden, &HiddenLayerFit::best_mse_normalised);
-  std::vector<double> errors = {peaks.goal};
+  std::vector<double> errors = {peaks.goal / 2.0};  // So that the goal does not lie on the frame.
   for (const Point& point : raw) errors.push_back(point.y);
   for (const Point& point : scaled) errors.push_back(point.y);
   const Axis x = hidden_axis(peaks.by_hidden);

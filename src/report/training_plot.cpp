@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "dermis/report/plot.hpp"
@@ -13,9 +14,21 @@ namespace {
 
 constexpr std::size_t kMarks = 7;
 
+double mean(const std::vector<double>& values, std::size_t first, std::size_t end) {
+  double sum = 0.0;
+  for (std::size_t i = first; i < end; ++i) sum += values[i];
+  return sum / static_cast<double>(end - first);
+}
+
 std::vector<Point> points_of(const TrainingCurve& curve) {
+  constexpr double kSamePlace = 1.02;
   std::vector<Point> points;
-  for (std::size_t i = 0; i < curve.step.size(); ++i) points.push_back({curve.step[i], curve.value[i]});
+  for (std::size_t first = 0; first < curve.step.size();) {
+    std::size_t end = first + 1;
+    while (end < curve.step.size() && curve.step[end] < kSamePlace * curve.step[first]) ++end;
+    points.push_back({mean(curve.step, first, end), mean(curve.value, first, end)});
+    first = end;
+  }
   return points;
 }
 
@@ -23,6 +36,11 @@ std::vector<Point> points_of(const TrainingCurve& curve) {
 
 bool has_points(const TrainingCurve& curve) {
   return !curve.step.empty() && curve.step.size() == curve.value.size();
+}
+
+double final_error(const TrainingCurve& curve) {
+  const std::size_t count = curve.value.size();
+  return mean(curve.value, count - std::max<std::size_t>(count / 10, 1), count);
 }
 
 Drawing training_plot(const TrainingPlot& training) {

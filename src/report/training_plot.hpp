@@ -15,7 +15,10 @@ namespace dermis::report {
 /// A curve can be drawn where it has points: as many values as steps.
 [[nodiscard]] bool has_points(const TrainingCurve& curve);
 
-/// Errors over the steps, both logarithmic.
+/// What the curve comes down to: the mean of its last tenth, for the errors of batches are noisy. It must have points.
+[[nodiscard]] double final_error(const TrainingCurve& curve);
+
+/// Errors over the steps, both logarithmic. Steps that are less than 2 % apart are drawn as one, with their mean error.
 struct TrainingPlot {
   struct Series {
     std::size_t style = 0;

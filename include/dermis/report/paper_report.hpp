@@ -24,7 +24,7 @@ struct TrainingCurve {
 /// The best that Levenberg-Marquardt found for one size of the hidden layer.
 struct HiddenLayerFit {
   std::size_t hidden = 0;
-  std::size_t starts = 0;            ///< Random starts that were tried.
+  std::size_t starts = 0;            ///< Random starts that were tried, at least until one reached the goal.
   double best_mse = 0.0;             ///< Eq. (2), in the units of the function; 0: not tried.
   double best_mse_normalised = 0.0;  ///< Eq. (2), with targets scaled to [0, 1]; 0: not tried.
 };
@@ -81,8 +81,8 @@ struct PaperReproduction {
   PeaksReproduction peaks;
   std::size_t unknowns = 0;  ///< Counted by the bank.
   std::vector<StartSystem> start;
-  /// Gradient descent of the bank from each start, the paper's structured start first; eq. (5), mean over patterns and
-  /// networks.
+  /// Gradient descent of the bank from each start, the paper's structured start first; eq. (6): half the weighted mean
+  /// square of a batch, mean of the networks.
   std::vector<TrainingCurve> convergence;
   TrainingCurve bank_training;         ///< The training that the points are judged with; the same error.
   std::size_t bank_samples = 0;        ///< Labelled frames of the training.
