@@ -14,6 +14,10 @@
 
 namespace dermis::network {
 
+/// Patterns that evaluating takes through the layers together: what they put out and a layer's weights stay in the
+/// cache.
+inline constexpr std::size_t kBlock = 64;
+
 /// Work space of one thread for a batch of patterns: what each layer puts out, [patterns, stride], pattern by pattern.
 class PatternSpace {
  public:
