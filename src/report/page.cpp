@@ -57,12 +57,13 @@ constexpr std::string_view kPageCss =
     ".across2{grid-template-columns:repeat(2,minmax(0,1fr))}\n"
     ".across3{grid-template-columns:repeat(3,minmax(0,1fr))}\n"
     ".across4{grid-template-columns:repeat(4,minmax(0,1fr))}\n"
-    "@media (max-width:820px){.across2,.across3{grid-template-columns:minmax(0,1fr)}"
+    "@media screen and (max-width:820px){.across2,.across3{grid-template-columns:minmax(0,1fr)}"
     ".across4{grid-template-columns:repeat(2,minmax(0,1fr))}}\n"
     "@media screen and (max-width:640px){.claims thead{display:none}.claims tr{display:block;padding:8px 0;"
     "border-bottom:1px solid #d5dae0}.claims tbody th,.claims td,.claims td.verdict{display:block;width:auto;border:0;"
     "padding:2px 0}}\n"
-    "@media (max-width:480px){main{padding:20px 14px 36px}.facts th{width:11rem}.tiles{grid-template-columns:1fr "
+    "@media screen and (max-width:480px){main{padding:20px 14px 36px}.facts "
+    "th{width:11rem}.tiles{grid-template-columns:1fr "
     "1fr}}\n"
     "@media screen and (prefers-color-scheme:dark){\n"
     "body{background:#14181d;color:#e6eaf0}\n"
@@ -70,7 +71,8 @@ constexpr std::string_view kPageCss =
     "th,td{border-color:#2b323b}thead th{border-color:#8b96a3}.numbers .group{border-color:#2b323b}\n"
     ".muted,figcaption,.note,.tile span,.numbers .group,.claims tbody th{color:#9aa5b1}figcaption b{color:#e6eaf0}\n"
     "}\n"
-    "@media print{main{max-width:none;padding:0}body{font-size:11pt}h2{break-after:avoid}.scroll{overflow:visible}}\n";
+    "@media print{main{max-width:none;padding:0}html,body{font-size:10pt}h2{break-after:avoid;margin-top:28px}"
+    "tr{break-inside:avoid}.scroll{overflow:visible}.numbers th+th,.numbers td{padding-left:8px}}\n";
 
 std::string series_key(std::size_t style) {
   return fmt::format(
