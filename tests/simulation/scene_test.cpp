@@ -185,7 +185,7 @@ TEST(Scene, RefusesWhatItCannotPlay) {
   const auto message = [&](std::string_view name, std::optional<std::size_t> frames = {}) {
     return Scene::create(name, array, EnvironmentOptions{}, 1, frames).error().message;
   };
-  EXPECT_NE(message("nap").find("calibration, uniform, paper, multitouch, idle"), std::string::npos);
+  EXPECT_NE(message("nap").find("calibration, uniform, paper_calibration, paper, multitouch, idle"), std::string::npos);
   EXPECT_NE(message("paper").find("at least 16 taxels"), std::string::npos);
   EXPECT_NE(message("calibration", 10).find("fixed number"), std::string::npos);
   EXPECT_NE(message("idle", 0).find("needs 1 to 200000 frames"), std::string::npos);
