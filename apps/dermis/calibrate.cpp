@@ -30,7 +30,6 @@ using calibration::Calibration;
 using calibration::CalibrationReport;
 
 constexpr double kPoorFit = 0.1;  // relative error
-constexpr std::size_t kBankSteps = 5000;
 constexpr std::uint64_t kBankSeed = 1;
 
 struct CalibrateOptions {
@@ -108,7 +107,7 @@ Status check_writable(const std::string& path) {
 
 Status train_bank(const CalibrateOptions& options, const calibration::SampleDatabase& database, Progress& progress) {
   const Result<calibration::TrainedBank> trained = calibration::train_paper_bank(
-      database, kBankSteps, kBankSeed, [&](double share) { progress.show("bank", share); });
+      database, calibration::kBankSteps, kBankSeed, [&](double share) { progress.show("bank", share); });
   if (!trained) return trained.error();
   return pipeline::write_paper_bank(options.bank, trained->bank);
 }

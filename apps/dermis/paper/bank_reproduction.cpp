@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/bank_training.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/network/structured_start.hpp"

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "dermis/calibration/bank_training.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/report/paper_report.hpp"
@@ -13,8 +14,8 @@
 namespace dermis::app {
 
 struct BankEffort {
-  std::size_t convergence_steps = 300;  ///< Gradient descent from each start.
-  std::size_t training_steps = 5000;    ///< Adam, for the points.
+  std::size_t convergence_steps = 300;                   ///< Gradient descent from each start.
+  std::size_t training_steps = calibration::kBankSteps;  ///< Adam, for the points.
 };
 
 /// The array of the paper with the circuit of the project's reference array.

@@ -78,6 +78,9 @@ struct TrainedBank {
   BankTrainingReport report;
 };
 
+/// Steps that bring a bank to the paper's 5 %.
+inline constexpr std::size_t kBankSteps = 5000;
+
 /// From the paper's start, Adam with a rate that falls along a cosine. `progress` is told the share that is done.
 /// Errors: those of BankTraining::create; the training diverges.
 [[nodiscard]] Result<TrainedBank> train_paper_bank(const SampleDatabase& database, std::size_t steps,
