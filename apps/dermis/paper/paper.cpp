@@ -127,7 +127,7 @@ Status paper(const PaperOptions& options) {
   note_time("Peaks");
   const std::size_t side = options.quick ? kQuickSide : kPaperSide;
   const auto show = [&](const std::string& part, double share) { progress.show(part, share); };
-  const Status done = reproduce_bank(paper_array(side, side), options.quick ? kQuickBank : BankEffort{}, show, found);
+  Status done = reproduce_bank(paper_array(side, side), options.quick ? kQuickBank : BankEffort{}, show, found);
   if (!done) return done;
   note_time("the paper's bank");
   if (!options.report.empty()) {
