@@ -82,15 +82,14 @@ template <class D>
 HWY_INLINE hn::Vec<D> log_sigmoid_of_power(D d, hn::Vec<D> z) {
   using Real = hn::TFromD<D>;
   const hn::RebindToSigned<D> di;
-  const auto rounder = hn::Set(d, PowerOfTwo<Real>::kRounder);
+  const auto rounder = hn::Set(d, PowerOfTwo<Real>::kRounder + PowerOfTwo<Real>::kBias);
   const auto one = hn::Set(d, Real{1});
   const auto bounded = bounded_power(d, z);
   const auto rounded = hn::Add(bounded, rounder);
   const auto r = hn::Sub(bounded, hn::Sub(rounded, rounder));
-  const auto fraction = hn::MulAdd(power_series(d, r), r, one);  // 2^r
-  const auto exponent = hn::ShiftLeft<PowerOfTwo<Real>::kMantissaBits>(hn::BitCast(di, rounded));
-  const auto power = hn::BitCast(d, hn::Add(hn::BitCast(di, fraction), exponent));
-  return hn::Div(one, hn::Add(one, power));
+  const auto fraction = hn::MulAdd(power_series(d, r), r, one);  // 2^r, NaN where z is
+  const auto scale = hn::BitCast(d, hn::ShiftLeft<PowerOfTwo<Real>::kMantissaBits>(hn::BitCast(di, rounded)));
+  return hn::Div(one, hn::MulAdd(scale, fraction, one));
 }
 
 /// (2^z - 1) / (2^z + 1), tanh x with z = 2 log2(e) x. Absolute error below 1.5e-7 in float, 3e-16 in double; the

@@ -21,7 +21,7 @@ Real activate(Activation activation, Real sum) noexcept {
   switch (activation) {
     case Activation::log_sigmoid: return Real{1} / (Real{1} + std::exp(-sum));
     case Activation::tanh: return std::tanh(sum);
-    case Activation::relu: return sum > Real{0} ? sum : Real{0};
+    case Activation::relu: return sum < Real{0} ? Real{0} : sum;
     case Activation::linear: break;
   }
   return sum;

@@ -22,7 +22,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 // A tile of a product lies in registers: 16 of the 32 of AVX-512, 8 of the 16 elsewhere.
 constexpr std::size_t kTileRows = kVectorLanes == kLanes ? 8 : 4;
-constexpr std::size_t kTileVectors = kVectorLanes == kLanes ? 2 : kLanes / kVectorLanes >= 2 ? 2 : 1;
+constexpr std::size_t kTileVectors = 2;
 
 using FullVector = hn::Vec<FullTag>;
 
@@ -446,17 +446,16 @@ void PanelBank::evaluate(std::span<const float> inputs, std::span<float> outputs
   });
 }
 
-void PanelBank::reserve_spaces(std::size_t workers, std::size_t patterns) {
-  if (space_patterns_ == patterns && spaces_.size() >= workers) return;
-  spaces_.assign(workers, PatternSpace(layout_, patterns));
-  space_patterns_ = patterns;
+void PanelBank::reserve(std::vector<PatternSpace>& spaces, std::size_t workers, std::size_t patterns) const {
+  if (spaces.size() >= workers && spaces.front().weights.size() == patterns) return;
+  spaces.assign(workers, PatternSpace(layout_, patterns));
 }
 
 void PanelBank::evaluate_batch(std::span<const float> inputs, std::span<float> outputs) {
   const std::size_t count = inputs.size() / layout_.inputs();
   const std::size_t workers = worker_count(values_.size() * count);
   const std::size_t stride = row_stride(layout_.inputs());
-  reserve_spaces(workers, kBlock);
+  reserve(block_spaces_, workers, kBlock);
   for (std::size_t first = 0; first < count; first += kPackedPatterns) {
     const std::size_t packed = std::min(kPackedPatterns, count - first);
     packed_.resize(std::max(packed_.size(), round_up(packed, kLanes) * stride));
@@ -465,7 +464,7 @@ void PanelBank::evaluate_batch(std::span<const float> inputs, std::span<float> o
                std::span(packed_).subspan(p * stride, stride));
     }
     share_among_workers(networks_, workers, [&](std::size_t network, std::size_t worker) {
-      PatternSpace& own = spaces_[worker];
+      PatternSpace& own = block_spaces_[worker];
       for (std::size_t block = 0; block < packed; block += kBlock) {
         const std::size_t rows = std::min(kBlock, packed - block);
         HWY_DYNAMIC_DISPATCH(forward)
@@ -482,13 +481,13 @@ void PanelBank::evaluate_batch(std::span<const float> inputs, std::span<float> o
 
 void PanelBank::train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors) {
   const std::size_t workers = worker_count(values_.size() * batch.batch);
-  reserve_spaces(workers, batch.batch);
+  reserve(batch_spaces_, workers, batch.batch);
   if (step.rule == BankStep::Rule::adam) {
     first_moments_.resize(values_.size());
     second_moments_.resize(values_.size());
   }
   share_among_workers(networks_, workers, [&](std::size_t network, std::size_t worker) {
-    errors[network] = train_network(batch, step, network, spaces_[worker]);
+    errors[network] = train_network(batch, step, network, batch_spaces_[worker]);
   });
 }
 

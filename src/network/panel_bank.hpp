@@ -66,7 +66,7 @@ class PanelBank final : public BankStorage {
   void train_step(const BankBatch& batch, const BankStep& step, std::span<float> errors) override;
 
  private:
-  void reserve_spaces(std::size_t workers, std::size_t patterns);
+  void reserve(std::vector<PatternSpace>& spaces, std::size_t workers, std::size_t patterns) const;
   PanelParameters of(std::size_t network);
   float train_network(const BankBatch& batch, const BankStep& step, std::size_t network, PatternSpace& space);
 
@@ -77,9 +77,9 @@ class PanelBank final : public BankStorage {
   HugeVector<float> second_moments_;
   std::vector<std::size_t> adam_steps_;  ///< [networks]
   FrameSpace frame_;
-  HugeVector<float> packed_;          ///< Patterns of evaluate_batch(), each as pack_row() leaves it.
-  std::vector<PatternSpace> spaces_;  ///< One a worker, for `space_patterns_` patterns.
-  std::size_t space_patterns_ = 0;
+  HugeVector<float> packed_;                ///< Patterns of evaluate_batch(), each as pack_row() leaves it.
+  std::vector<PatternSpace> block_spaces_;  ///< Of evaluate_batch(), one a worker, for kBlock patterns.
+  std::vector<PatternSpace> batch_spaces_;  ///< Of train_step(), one a worker, for the last batch's patterns.
 };
 
 }  // namespace dermis::network

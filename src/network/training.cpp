@@ -360,6 +360,10 @@ class Run {
       mu = dot(p, p);
     }
     const double p_square = dot(p, p);
+    if (!std::isnormal(p_square)) {  // too short or too long to be measured: all below would be NaN
+      no_descent_ = true;
+      return;
+    }
     if (curvature == 0.0) curvature = measure_curvature(p_square);
     double delta = curvature + lambda * p_square;
     if (delta <= 0.0) {
@@ -550,6 +554,7 @@ Status check_state(const TrainingState<Real>& state, const NetworkShape& shape, 
   if (Status good = check_numbers("best parameters", state.best_parameters, n); !good) return good;
   if (Status good = check_numbers("memory", state.memory, memory_of(algorithm).rows * n); !good) return good;
   if (Status good = check_numbers("numbers", state.numbers, memory_of(algorithm).numbers); !good) return good;
+  if (std::isnan(state.best_error)) return bad_input("training state: its best error is not a number");
   if (state.best_epoch > state.epoch) return bad_input("training state: its best epoch is yet to come");
   return check_curve(state.curve, state.epoch);
 }

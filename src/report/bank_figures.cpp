@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "dermis/network/activation.hpp"
 #include "dermis/report/network_diagram.hpp"
 #include "dermis/report/plot.hpp"
 #include "report/paper_figures.hpp"
@@ -48,7 +49,7 @@ Figure log_sigmoid_figure() {
   std::vector<Point> curve;
   for (int i = -60; i <= 60; ++i) {
     const double input = 0.1 * i;
-    curve.push_back({input, 1.0 / (1.0 + std::exp(-input))});
+    curve.push_back({input, network::activate(network::Activation::log_sigmoid, input)});
   }
   Plot plot("log-sigmoid, eq. (3)", x, y, 480.0, 350.0);
   plot.region("working range", {{-reach, 0.25}, {reach, 0.25}, {reach, 0.75}, {-reach, 0.75}});

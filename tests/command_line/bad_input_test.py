@@ -295,6 +295,7 @@ class Outputs(SmallArray):
         self.refuse(["simulate", "--array", self.array, "--scene", "paper", "--out", folder / "o"], [folder], status=1,
                     **as_nobody)
         self.refuse([*self.evaluate_arguments(), "--report", folder / "o"], [folder], status=1, **as_nobody)
+        self.refuse(["paper", "--report", folder / "o"], [folder], status=1, **as_nobody)  # before the work
 
 
 if __name__ == "__main__":

@@ -41,6 +41,13 @@ TEST(Activation, relu_and_linear) {
   EXPECT_EQ(activate(Activation::linear, -2.5), -2.5);
 }
 
+TEST(Activation, nan_stays_nan) {
+  for (const Activation activation : kActivations) {
+    EXPECT_TRUE(std::isnan(activate(activation, std::numeric_limits<double>::quiet_NaN()))) << name(activation);
+    EXPECT_TRUE(std::isnan(activate(activation, std::numeric_limits<float>::quiet_NaN()))) << name(activation);
+  }
+}
+
 TEST(Activation, slope_is_the_derivative) {
   constexpr double kStep = 1e-5;
   for (const Activation activation : kActivations) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -384,6 +385,24 @@ TEST(FeedForward, a_parameter_that_is_not_a_number_shows_in_the_error_on_every_i
   support::for_each_simd_target([] {
     expect_no_silent_nan<float>();
     expect_no_silent_nan<double>();
+  });
+}
+
+TEST(FeedForward, a_nan_of_any_bits_stays_one_on_every_instruction_set) {
+  support::for_each_simd_target([] {
+    for (const std::uint32_t payload : {0U, 1U, 0x7A2U, 0x3FFFFFU}) {
+      const auto single = std::bit_cast<float>(0x7FC00000U | payload);
+      const auto whole = std::bit_cast<double>(0x7FF8000000000000U | payload);
+      for (const Activation activation : kActivations) {
+        SCOPED_TRACE(testing::Message() << name(activation) << ", payload " << payload);
+        std::vector<float> y(1);
+        FeedForward<float>({1, {{1, activation}}}).evaluate(std::vector<float>{1.0F, 0.0F}, std::vector{single}, y);
+        EXPECT_TRUE(std::isnan(y[0])) << y[0];
+        std::vector<double> z(1);
+        FeedForward<double>({1, {{1, activation}}}).evaluate(std::vector<double>{1.0, 0.0}, std::vector{whole}, z);
+        EXPECT_TRUE(std::isnan(z[0])) << z[0];
+      }
+    }
   });
 }
 

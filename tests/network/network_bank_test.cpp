@@ -14,6 +14,7 @@
 
 #include "dermis/core/random.hpp"
 #include "dermis/network/feed_forward.hpp"
+#include "support/allocation_guard.hpp"
 #include "support/simd_targets.hpp"
 
 namespace dermis::network {
@@ -393,6 +394,26 @@ TEST(NetworkBank, results_do_not_depend_on_the_number_of_threads) {
     }
     EXPECT_EQ(results[0], results[1]);
     EXPECT_EQ(results[0], results[2]);
+  }
+}
+
+TEST(NetworkBank, allocates_nothing_once_the_work_space_has_grown) {
+  if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
+  for (const std::size_t networks : {1U, 16U}) {  // in panels and in lanes, on one thread
+    Random random(networks);
+    const Problem problem({3, {{20, kTanh}, {1, kLinear}}}, networks, 6, random);
+    NetworkBank bank = problem.bank();
+    std::vector<float> outputs(5 * networks);
+    std::vector<float> errors(networks);
+    const auto use = [&] {
+      bank.evaluate(std::span(problem.inputs).first(3), std::span(outputs).first(networks));
+      bank.evaluate_batch(std::span(problem.inputs).first(15), outputs);
+      bank.train_step(problem.batch(), {.rule = BankStep::Rule::adam}, errors);
+    };
+    use();
+    const support::AllocationGuard guard;
+    use();
+    EXPECT_EQ(guard.count(), 0U) << networks << " networks";
   }
 }
 

@@ -783,6 +783,17 @@ TEST(Training, at_a_minimum_no_step_goes_down) {
   }
 }
 
+TEST(Training, a_gradient_too_small_to_be_squared_is_the_end_of_conjugate_gradient) {
+  Data<double> data = waves<double>(5, 1, 1, 7);
+  std::fill(data.inputs.begin(), data.inputs.end(), 1.0);
+  std::fill(data.targets.begin(), data.targets.end(), 1.0);
+  const NetworkShape shape{1, {{1, Activation::log_sigmoid}}};
+  const TrainingOptions options{.algorithm = TrainingAlgorithm::conjugate_gradient, .epochs = 50};
+  TrainingState<double> state = start_training(shape, Numbers{-200.0, -200.0}, options);
+  EXPECT_EQ(stop_of(state, data, options), StopReason::no_descent);
+  EXPECT_TRUE(check_state(state, shape, options.algorithm));
+}
+
 TEST(Training, divergence_stops_with_the_best_finite_point) {
   const Data<double> data = waves<double>(50, 2, 1, 7);
   const NetworkShape shape{2, {{4, Activation::relu}, {1, Activation::linear}}};
@@ -902,6 +913,10 @@ TEST(Training, refuses_a_state_of_another_training_and_names_what_differs) {
   ASSERT_FALSE(other);
   EXPECT_EQ(other.error().message, "training state: is of a network 2-4-1, not 2-7-1");
   EXPECT_TRUE(check_state(good, kSmall, TrainingAlgorithm::adam));
+  TrainingState<double> spoilt = good;
+  spoilt.best_error = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(check_state(spoilt, kSmall, TrainingAlgorithm::adam).error().message,
+            "training state: its best error is not a number");
 }
 
 TEST(Training, refuses_levenberg_marquardt_where_it_cannot_be_done) {

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "commands.hpp"
 #include "dermis/report/paper_report.hpp"
+#include "dermis/store/atomic_file.hpp"
 #include "paper/bank_reproduction.hpp"
 #include "paper/peaks_reproduction.hpp"
 #include "progress.hpp"
@@ -97,7 +100,20 @@ void print_text(const PaperReproduction& found) {
              100.0 * max_relative_error(found.evaluation, "dermis"));
 }
 
+/// A folder that cannot be written is told before minutes of work, not after them.
+Status check_folder(const std::string& directory) {
+  std::error_code error;
+  std::filesystem::create_directories(directory, error);
+  if (error) return failed("cannot make the directory '" + directory + "': " + error.message());
+  const Result<store::AtomicFile> writable = store::AtomicFile::create(directory + "/index.html");
+  if (!writable) return writable.error();
+  return Done{};
+}
+
 Status paper(const PaperOptions& options) {
+  if (!options.report.empty()) {
+    if (Status writable = check_folder(options.report); !writable) return writable;
+  }
   using Clock = std::chrono::steady_clock;
   PaperReproduction found;
   Progress progress;

@@ -29,7 +29,7 @@ enum class BankStart {
 /// force of a taxel are left out for its network. Deterministic by seed.
 class BankTraining {
  public:
-  /// Errors: no sample tells a force on a single taxel.
+  /// Errors: no sample tells a force on a single taxel; more unknowns than fusion::kMostUnknowns.
   [[nodiscard]] static Result<BankTraining> create(const SampleDatabase& database, std::uint64_t seed);
 
   /// Sets all parameters anew.
@@ -59,8 +59,8 @@ class BankTraining {
   std::uint64_t seed_;
   std::vector<Choice> choices_;  // [networks]
   std::vector<float> inputs_;    // [samples, inputs]
-  std::vector<float> targets_;   // [samples, networks]; NaN where unknown
-  std::vector<float> weights_;   // [samples, networks]
+  std::vector<float> targets_;   // [samples, networks]
+  std::vector<float> weights_;   // [samples, networks]; 0 where the force is unknown
   std::vector<std::uint32_t> chosen_;
   std::vector<float> chosen_weights_;
   std::vector<float> errors_;

@@ -118,8 +118,8 @@ template <std::floating_point Real>
 [[nodiscard]] TrainingState<Real> start_training(const NetworkShape& shape, std::vector<Real> parameters,
                                                  const TrainingOptions& options);
 
-/// Whether a state belongs to this shape and algorithm and is whole: sizes that fit, every number finite. The error
-/// names what differs.
+/// Whether a state belongs to this shape and algorithm and is whole: sizes that fit, parameters and memory finite. The
+/// error names what differs.
 template <std::floating_point Real>
 [[nodiscard]] Status check_state(const TrainingState<Real>& state, const NetworkShape& shape,
                                  TrainingAlgorithm algorithm);
