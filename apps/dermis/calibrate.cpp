@@ -30,7 +30,7 @@ using calibration::Calibration;
 using calibration::CalibrationReport;
 
 constexpr double kPoorFit = 0.1;  // relative error
-constexpr std::size_t kBankSteps = 5000;
+constexpr std::size_t kBankSteps = 6000;
 constexpr std::uint64_t kBankSeed = 1;
 
 struct CalibrateOptions {

@@ -14,7 +14,7 @@ namespace dermis::app {
 
 struct BankEffort {
   std::size_t convergence_steps = 300;  ///< Gradient descent from each start.
-  std::size_t training_steps = 5000;    ///< Adam, for the points.
+  std::size_t training_steps = 6000;    ///< Adam, for the points.
 };
 
 /// The array of the paper with the circuit of the project's reference array.
