@@ -85,8 +85,8 @@ class Placement {
 /// Seconds of one step: the mean over as many as fill a sample, after one that is not timed.
 double sample(const Entry& entry, const Work& work, const Effort& effort) {
   entry.engine->use_threads(work.threads);
-  if (entry.run.limit_seconds) return entry.run.limit_seconds();
   if (work.threads > 1) std::this_thread::sleep_for(std::chrono::duration<double>(effort.seconds_between));
+  if (entry.run.limit_seconds) return entry.run.limit_seconds();
   const double once = seconds_of(entry.run.step);
   const int steps = std::max(1, static_cast<int>(std::lround(effort.seconds_a_sample / once)));
   return seconds_of([&] {

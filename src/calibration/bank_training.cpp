@@ -22,8 +22,8 @@ namespace {
 using fusion::PaperBank;
 
 constexpr std::size_t kBatch = 16;       // larger ones converge in as many steps
-constexpr double kRelativeDownTo = 0.4;  // of the heaviest force
-constexpr double kRateOfSum = 1.28;      // of N connections together in a step: more breaks up the paper's start
+constexpr double kRelativeDownTo = 0.5;  // of the heaviest force
+constexpr double kRateOfSum = 2.0;       // of N connections together in a step: more breaks up the paper's start
 constexpr double kHighestRate = 0.05;
 constexpr double kLowestRate = 1e-5;
 constexpr float kSecondDecay = 0.97F;  // 0.999 takes twice the steps

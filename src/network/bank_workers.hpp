@@ -11,9 +11,10 @@
 
 namespace dermis::network {
 
-/// Threads that are worth starting for so many multiply-adds: one below about 20 us of work.
+/// Threads that are worth waking for so many multiply-adds. Measured on two cores: a frame of half a million parameters
+/// (34 us) gains nothing from the second, one of two million (118 us) takes 0.6 times as long.
 [[nodiscard]] inline std::size_t worker_count(std::size_t multiply_adds) {
-  constexpr std::size_t kWorthSharing = std::size_t{1} << 18U;
+  constexpr std::size_t kWorthSharing = std::size_t{1} << 21U;
   return multiply_adds < kWorthSharing ? 1 : std::max(1U, std::thread::hardware_concurrency());
 }
 

@@ -89,11 +89,12 @@ TEST(HalfNetworkBank, a_parameter_that_does_not_fit_is_named) {
 
 TEST(HalfNetworkBank, results_do_not_depend_on_the_number_of_threads) {
   Random random(9);
-  const Example example({64, {{64, Activation::log_sigmoid}, {1, Activation::log_sigmoid}}}, 100, random);
+  // Large enough to be shared among threads.
+  const Example example({64, {{64, Activation::log_sigmoid}, {1, Activation::log_sigmoid}}}, 520, random);
   auto half = HalfNetworkBank::from(example.bank);
   ASSERT_TRUE(half);
-  std::vector<float> one(100);
-  std::vector<float> four(100);
+  std::vector<float> one(520);
+  std::vector<float> four(520);
   half->evaluate(example.inputs, four);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);
   half->evaluate(example.inputs, one);

@@ -374,7 +374,7 @@ TEST(NetworkBank, results_do_not_depend_on_the_number_of_threads) {
   for (const NetworkShape& shape : {NetworkShape{64, {{64, kLogSigmoid}, {64, kTanh}, {1, kLogSigmoid}}},
                                     NetworkShape{8, {{16, kLogSigmoid}, {16, kTanh}, {1, kLogSigmoid}}}}) {
     Random random(7);
-    const std::size_t networks = 800'000 / shape.parameter_count();
+    const std::size_t networks = 2'200'000 / shape.parameter_count();
     const Problem problem(shape, networks, 64, random);
     std::vector<std::vector<float>> results;
     for (const std::size_t threads : {1U, 2U, 4U}) {

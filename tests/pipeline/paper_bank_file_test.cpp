@@ -97,6 +97,28 @@ TEST(PaperBankFile, refuses_what_is_missing_or_out_of_range) {
   });
 }
 
+TEST(PaperBankFile, a_damaged_file_is_refused_or_read_as_a_sound_bank) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_paper_bank(folder.file("bank"), random_bank(3, PaperBank::Range{0.0, 50.0})));
+  const std::string whole = store::read_bytes(folder.file("bank"));
+  constexpr std::uint64_t kSeed = 11;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  Random random(kSeed);
+  for (int trial = 0; trial < 1000; ++trial) {
+    std::string bytes = whole;
+    if (trial % 4 == 0) bytes.resize(random.below(bytes.size()));
+    for (std::uint64_t flips = random.below(4); flips > 0 && !bytes.empty(); --flips) {
+      bytes[random.below(bytes.size())] = static_cast<char>(random.below(256));
+    }
+    store::write_bytes(folder.file("damaged"), bytes);
+    Result<PaperBank> read = read_paper_bank(folder.file("damaged"));
+    if (!read) continue;
+    EXPECT_GT(read->heaviest_newtons(), 0.0);
+    std::vector<float> newtons(read->taxel_count());
+    read->estimate(std::vector<double>(read->taxel_count(), 0.5), 20.0, newtons);
+  }
+}
+
 TEST(PaperBankFile, refuses_a_file_that_is_not_there_or_no_safetensors) {
   const TemporaryFolder folder;
   EXPECT_FALSE(read_paper_bank(folder.file("absent")));

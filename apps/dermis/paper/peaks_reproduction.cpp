@@ -53,6 +53,8 @@ class PeaksExperiment {
 
   [[nodiscard]] const PeaksSamples& peaks() const { return peaks_; }
   [[nodiscard]] double range() const { return range_; }
+  /// The goal for targets scaled to [0, 1], in the units of the function.
+  [[nodiscard]] double normalised_goal() const { return kGoal * range_ * range_; }
 
   [[nodiscard]] double variance() const {
     const auto count = static_cast<double>(PeaksSamples::kCount);
@@ -114,9 +116,9 @@ void note(const Fit& best, const PeaksExperiment& experiment, HiddenLayerFit& re
 }
 
 /// The best of random starts first ... last - 1; ends early once one has reached the goal.
-void try_starts(const PeaksExperiment& experiment, std::size_t first, std::size_t last, int iterations,
+void try_starts(const PeaksExperiment& experiment, std::size_t first, std::size_t last, int iterations, double goal,
                 HiddenLayerFit& result, Fit& best) {
-  for (; first < last && best.mse > kGoal; first += kStartsAtOnce) {
+  for (; first < last && best.mse > goal; first += kStartsAtOnce) {
     std::vector<Fit> fits(std::min(kStartsAtOnce, last - first));
     parallel_for(fits.size(), [&](std::size_t k) {
       fits[k] = experiment.levenberg_marquardt(result.hidden, first + k, iterations);
@@ -134,22 +136,22 @@ struct SizeSearch {
   std::vector<Fit> best;
 };
 
-std::optional<std::size_t> smallest(const SizeSearch& search, double HiddenLayerFit::*mse) {
+std::optional<std::size_t> smallest(const SizeSearch& search, double goal) {
   for (const HiddenLayerFit& fit : search.fits) {
-    if (fit.*mse <= kGoal) return fit.hidden;
+    if (fit.best_mse <= goal) return fit.hidden;
   }
   return std::nullopt;
 }
 
-/// The sizes just below the smallest that reached the goal are given further starts, as long as that brings it down.
-void try_harder_below_goal(const PeaksExperiment& experiment, const PeaksEffort& effort, double HiddenLayerFit::*mse,
-                           SizeSearch& search) {
-  for (std::optional<std::size_t> reached = smallest(search, mse); reached && *reached > kPaperHidden;) {
+/// The sizes just below the smallest that reached a goal are given further starts, as long as that brings it down.
+void try_harder_below(double goal, const PeaksExperiment& experiment, const PeaksEffort& effort, SizeSearch& search) {
+  for (std::optional<std::size_t> reached = smallest(search, goal); reached && *reached > kPaperHidden;) {
     const std::size_t below = *reached - 1 - kPaperHidden;
     HiddenLayerFit& fit = search.fits[below];
-    try_starts(experiment, fit.starts, effort.last_starts, effort.iterations, fit, search.best[below]);
-    if (fit.*mse > kGoal) return;
-    reached = smallest(search, mse);
+    const std::size_t starts = effort.starts_times_size_squared / (fit.hidden * fit.hidden);
+    try_starts(experiment, fit.starts, starts, effort.iterations, goal, fit, search.best[below]);
+    if (fit.best_mse > goal) return;
+    reached = smallest(search, goal);
   }
 }
 
@@ -160,12 +162,12 @@ SizeSearch search_sizes(const PeaksExperiment& experiment, const PeaksEffort& ef
     search.fits.push_back({hidden, 0, 0.0, 0.0});
     search.best.emplace_back();
     const std::size_t starts = hidden == kPaperHidden ? effort.paper_size_starts : effort.starts;
-    try_starts(experiment, 0, starts, effort.iterations, search.fits.back(), search.best.back());
+    try_starts(experiment, 0, starts, effort.iterations, kGoal, search.fits.back(), search.best.back());
     progress(static_cast<double>(hidden) / static_cast<double>(effort.most_hidden));
     if (search.fits.back().best_mse <= kGoal) break;
   }
-  try_harder_below_goal(experiment, effort, &HiddenLayerFit::best_mse_normalised, search);
-  try_harder_below_goal(experiment, effort, &HiddenLayerFit::best_mse, search);
+  try_harder_below(experiment.normalised_goal(), experiment, effort, search);
+  try_harder_below(kGoal, experiment, effort, search);
   return search;
 }
 
@@ -211,8 +213,8 @@ PeaksReproduction reproduce_peaks(const PeaksEffort& effort, const std::function
   found.side = PeaksSamples::kSide;
   found.target = experiment.peaks().targets;
   found.output = experiment.output(peaks_shape(kPaperHidden), best.parameters);
-  found.smallest_hidden_raw = smallest(search, &HiddenLayerFit::best_mse);
-  found.smallest_hidden_normalised = smallest(search, &HiddenLayerFit::best_mse_normalised);
+  found.smallest_hidden_raw = smallest(search, kGoal);
+  found.smallest_hidden_normalised = smallest(search, experiment.normalised_goal());
   found.by_hidden = std::move(search.fits);
   progress(1.0);
   return found;

@@ -25,7 +25,7 @@ enum class BankStart {
 ///
 /// A network's own presses are a few of very many samples (14 of 3,584 where every taxel is pressed alone), so half of
 /// each batch is drawn from the samples that load its taxel and half from those that do not; and squared errors are
-/// weighted as relative ones down to a force of 0.4 of the heaviest, and evenly below. Samples that do not tell the
+/// weighted as relative ones down to a force of half the heaviest, and evenly below. Samples that do not tell the
 /// force of a taxel are left out for its network. Deterministic by seed.
 class BankTraining {
  public:
@@ -79,7 +79,7 @@ struct TrainedBank {
 };
 
 /// Steps that bring a bank to the paper's 5 %.
-inline constexpr std::size_t kBankSteps = 5000;
+inline constexpr std::size_t kBankSteps = 6000;
 
 /// From the paper's start, Adam with a rate that falls along a cosine. `progress` is told the share that is done.
 /// Errors: those of BankTraining::create; the training diverges.
