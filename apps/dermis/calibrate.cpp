@@ -26,6 +26,7 @@
 namespace dermis::app {
 namespace {
 
+using calibration::BankTrainingReport;
 using calibration::Calibration;
 using calibration::CalibrationReport;
 
@@ -53,7 +54,19 @@ Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::st
   return Done{};
 }
 
-void print_text(const CalibrationReport& report, const ArrayDescription& array) {
+void print_bank(const BankTrainingReport& bank, const ArrayDescription& array) {
+  fmt::print("the paper's bank: {} unknowns, error {:.2g} after {} steps\n", bank.unknowns, bank.curve.back(),
+             bank.steps);
+  for (const std::size_t taxel : bank.never_loaded) {
+    fmt::print("taxel {} is never loaded: the bank knows no force on it\n", array.taxel_name(taxel));
+  }
+  for (const std::size_t taxel : bank.constant_readings) {
+    fmt::print("taxel {} always reads the same: the bank learns nothing from it\n", array.taxel_name(taxel));
+  }
+}
+
+void print_text(const CalibrationReport& report, const std::optional<BankTrainingReport>& bank,
+                const ArrayDescription& array) {
   const calibration::TrainingReport& training = report.training;
   fmt::print("{} labelled frames, {} rejected{}\n", report.frames, report.frames_rejected,
              report.frames_rejected > 0 ? " (" + report.first_rejection + ")" : "");
@@ -68,12 +81,20 @@ void print_text(const CalibrationReport& report, const ArrayDescription& array) 
   for (const std::size_t taxel : training.dead_taxels) {
     fmt::print("dead taxel {}: it does not answer to its loads\n", array.taxel_name(taxel));
   }
+  if (bank) print_bank(*bank, array);
   fmt::print("time:");
   for (const calibration::StageTime& stage : report.stages) fmt::print(" {} {:.2f} s", stage.stage, stage.seconds);
   fmt::print("\n");
 }
 
-void print_json(const CalibrationReport& report, const ArrayDescription& array) {
+nlohmann::ordered_json taxel_names(const std::vector<std::size_t>& taxels, const ArrayDescription& array) {
+  auto names = nlohmann::ordered_json::array();
+  for (const std::size_t taxel : taxels) names.push_back(array.taxel_name(taxel));
+  return names;
+}
+
+void print_json(const CalibrationReport& report, const std::optional<BankTrainingReport>& bank,
+                const ArrayDescription& array) {
   const calibration::TrainingReport& training = report.training;
   nlohmann::ordered_json json = {{"frames", report.frames},
                                  {"frames_rejected", report.frames_rejected},
@@ -87,12 +108,14 @@ void print_json(const CalibrationReport& report, const ArrayDescription& array) 
                                  {"median_fit_error", training.median_fit_error},
                                  {"worst_fit_error", training.worst_fit_error},
                                  {"shared_leave_one_out_error", training.shared_leave_one_out_error},
-                                 {"dead_taxels", nlohmann::ordered_json::array()},
+                                 {"dead_taxels", taxel_names(training.dead_taxels, array)},
                                  {"seconds", nlohmann::ordered_json::object()}};
-  for (const std::size_t taxel : training.dead_taxels) {
-    json["dead_taxels"].push_back(array.taxel_name(taxel));
-  }
   for (const calibration::StageTime& stage : report.stages) json["seconds"][stage.stage] = stage.seconds;
+  if (bank) {
+    json["bank"] = {{"unknowns", bank->unknowns}, {"steps", bank->steps}, {"last_error", bank->curve.back()}};
+    json["bank"]["never_loaded"] = taxel_names(bank->never_loaded, array);
+    json["bank"]["constant_readings"] = taxel_names(bank->constant_readings, array);
+  }
   fmt::print("{}\n", json.dump(2));
 }
 
@@ -105,11 +128,13 @@ Status check_writable(const std::string& path) {
   return Done{};
 }
 
-Status train_bank(const CalibrateOptions& options, const calibration::SampleDatabase& database, Progress& progress) {
-  const Result<calibration::TrainedBank> trained = calibration::train_paper_bank(
+Result<BankTrainingReport> train_bank(const CalibrateOptions& options, const calibration::SampleDatabase& database,
+                                      Progress& progress) {
+  Result<calibration::TrainedBank> trained = calibration::train_paper_bank(
       database, calibration::kBankSteps, kBankSeed, [&](double share) { progress.show("bank", share); });
   if (!trained) return trained.error();
-  return pipeline::write_paper_bank(options.bank, trained->bank);
+  if (Status written = pipeline::write_paper_bank(options.bank, trained->bank); !written) return written.error();
+  return std::move(trained->report);
 }
 
 Status calibrate(const CalibrateOptions& options) {
@@ -128,6 +153,13 @@ Status calibrate(const CalibrateOptions& options) {
   if (!loads) return loads.error();
   const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+  std::optional<calibration::SampleDatabase> bank_samples;
+  if (!options.bank.empty()) {
+    Result<calibration::SampleDatabase> built = calibration::build_sample_database(*array, *frames, *loads, *settle);
+    if (!built) return built.error();
+    if (Status checked = calibration::check_bank_samples(*built); !checked) return checked;
+    bank_samples = std::move(*built);
+  }
   Progress progress;
   Result<Calibration> calibration = calibration::calibrate(
       *array, *frames, *loads, *settle, [&](const std::string& stage, double share) { progress.show(stage, share); });
@@ -135,12 +167,13 @@ Status calibrate(const CalibrateOptions& options) {
   calibration->report.stages.insert(calibration->report.stages.begin(), {"reading", read_s});
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
   if (Status written = pipeline::write_model(options.out, calibration->model); !written) return written;
-  if (!options.bank.empty()) {
-    const auto database = calibration::build_sample_database(*array, *frames, *loads, *settle);
-    if (!database) return database.error();
-    if (Status trained = train_bank(options, *database, progress); !trained) return trained;
+  std::optional<BankTrainingReport> bank;
+  if (bank_samples) {
+    Result<BankTrainingReport> trained = train_bank(options, *bank_samples, progress);
+    if (!trained) return trained.error();
+    bank = std::move(*trained);
   }
-  options.json ? print_json(calibration->report, *array) : print_text(calibration->report, *array);
+  options.json ? print_json(calibration->report, bank, *array) : print_text(calibration->report, bank, *array);
   return Done{};
 }
 

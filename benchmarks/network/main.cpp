@@ -8,6 +8,7 @@
 #include <tbb/task_arena.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 
@@ -76,6 +77,13 @@ class Program {
     peaks();
     taxels();
     bank();
+    for (const std::string& name : options_.works) {
+      const auto is_named = [&](const auto& row) { return row["work"] == name; };
+      if (std::none_of(rows_.begin(), rows_.end(), is_named)) {
+        fmt::print(stderr, "network_benchmark: there is no work '{}'\n", name);
+        return false;
+      }
+    }
     return write_rows("network", rows_);
   }
 

@@ -44,6 +44,17 @@ std::vector<PaperBank::Range> ratio_ranges(const SampleDatabase& database) {
   return ranges;
 }
 
+std::vector<std::size_t> constant_readings(const SampleDatabase& database) {
+  std::vector<std::size_t> taxels;
+  for (std::size_t taxel = 0; taxel < database.array.taxel_count(); ++taxel) {
+    const double first = database.samples.front().ratio[taxel];
+    const bool is_constant = std::all_of(database.samples.begin(), database.samples.end(),
+                                         [&](const Sample& sample) { return sample.ratio[taxel] == first; });
+    if (is_constant) taxels.push_back(taxel);
+  }
+  return taxels;
+}
+
 double heaviest_force(const SampleDatabase& database) {
   double heaviest = 0.0;
   for (const Sample& sample : database.samples) {
@@ -75,9 +86,8 @@ std::vector<float> with_further_input(const std::vector<float>& parameters, std:
 
 }  // namespace
 
-Result<BankTraining> BankTraining::create(const SampleDatabase& database, std::uint64_t seed) {
-  const double heaviest = heaviest_force(database);
-  if (heaviest <= 0.0) {
+Status check_bank_samples(const SampleDatabase& database) {
+  if (heaviest_force(database) <= 0.0) {
     return bad_input("the paper's bank needs loads on single taxels; these loads tell only totals or none");
   }
   const std::size_t unknowns = fusion::paper_bank_unknowns(database.array.taxel_count());
@@ -87,7 +97,13 @@ Result<BankTraining> BankTraining::create(const SampleDatabase& database, std::u
                     "rises with the third power of the taxels",
                     database.array.taxel_count(), unknowns, fusion::kMostUnknowns));
   }
-  return BankTraining(database, PaperBank(ratio_ranges(database), temperature_range(database), heaviest), seed);
+  return Done{};
+}
+
+Result<BankTraining> BankTraining::create(const SampleDatabase& database, std::uint64_t seed) {
+  if (Status checked = check_bank_samples(database); !checked) return checked.error();
+  return BankTraining(database,
+                      PaperBank(ratio_ranges(database), temperature_range(database), heaviest_force(database)), seed);
 }
 
 BankTraining::BankTraining(const SampleDatabase& database, PaperBank bank, std::uint64_t seed)
@@ -161,6 +177,14 @@ void BankTraining::draw_batch() {
   }
 }
 
+std::vector<std::size_t> BankTraining::never_loaded() const {
+  std::vector<std::size_t> taxels;
+  for (std::size_t taxel = 0; taxel < choices_.size(); ++taxel) {
+    if (choices_[taxel].loaded.empty()) taxels.push_back(taxel);
+  }
+  return taxels;
+}
+
 double BankTraining::step(const network::BankStep& step) {
   draw_batch();
   bank_.networks().train_step({kBatch, inputs_, targets_, chosen_, chosen_weights_}, step, errors_);
@@ -173,7 +197,8 @@ Result<TrainedBank> train_paper_bank(const SampleDatabase& database, std::size_t
   if (!training) return training.error();
   training->start(BankStart::structured);
   const double highest_rate = std::min(kRateOfSum / static_cast<double>(database.array.taxel_count()), kHighestRate);
-  BankTrainingReport report{training->bank().networks().parameter_count(), steps, {}};
+  BankTrainingReport report{
+      training->bank().networks().parameter_count(), steps, {}, training->never_loaded(), constant_readings(database)};
   for (std::size_t k = 0; k < steps; ++k) {
     const double share = static_cast<double>(k) / static_cast<double>(steps);
     network::BankStep step;

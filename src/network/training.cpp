@@ -21,6 +21,8 @@
 namespace dermis::network {
 namespace {
 
+constexpr double kMaxRate = 1e30;  // of adaptive_rate; keeps it finite where every epoch lowers the error
+
 constexpr std::size_t kMaxLevenbergMarquardtUnknowns = 4096;  // whose normal equations take 128 MiB
 
 constexpr double kFirstStepSize = 0.1;  // resilient propagation
@@ -168,7 +170,7 @@ class Run {
   }
 
   [[nodiscard]] std::optional<StopReason> reason_to_stop() const {
-    if (!std::isfinite(state_.error)) return StopReason::diverged;
+    if (!std::isfinite(state_.error) || !std::isfinite(state_.validation_error)) return StopReason::diverged;
     if (state_.error <= options_.error_goal) return StopReason::error_goal;
     if (knows_gradient()) {
       const auto is_finite = [](Real value) { return std::isfinite(value); };
@@ -315,7 +317,7 @@ class Run {
       forget_momentum();
       return;
     }
-    if (trial_error < state_.error) rate *= options_.rate_increase;
+    if (trial_error < state_.error) rate = std::min(rate * options_.rate_increase, kMaxRate);
     move_to_trial(trial_error);
   }
 

@@ -23,8 +23,11 @@ bool all_finite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
 }
 
+/// Wide enough to divide by in single precision, and not too wide.
 bool is_range(double low, double high) {
-  return std::isfinite(low) && std::isfinite(high) && low < high;
+  constexpr double kNarrowest = 1e-9;
+  constexpr double kFarthest = 1e9;
+  return std::abs(low) <= kFarthest && std::abs(high) <= kFarthest && high - low >= kNarrowest;
 }
 
 /// Everything but the parameters; the bank's parameters are 0.
@@ -34,18 +37,18 @@ Result<PaperBank> read_ranges(const SafetensorsFile& file, std::size_t taxels) {
   std::vector<PaperBank::Range> ranges;
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     ranges.push_back({(*ratio)[2 * taxel], (*ratio)[2 * taxel + 1]});
-    if (!is_range(ranges.back().low, ranges.back().high)) return bad_input("ratio: a range is empty");
+    if (!is_range(ranges.back().low, ranges.back().high)) return bad_input("ratio: a range is empty or too wide");
   }
   std::optional<PaperBank::Range> celsius;
   if (file.tensors.contains("celsius")) {
     const Result<std::span<const double>> values = file.view<double>("celsius", {2});
     if (!values) return values.error();
     celsius = PaperBank::Range{values->front(), values->back()};
-    if (!is_range(celsius->low, celsius->high)) return bad_input("celsius: the range is empty");
+    if (!is_range(celsius->low, celsius->high)) return bad_input("celsius: the range is empty or too wide");
   }
   const Result<std::span<const double>> heaviest = file.view<double>("heaviest_newtons", {1});
   if (!heaviest) return heaviest.error();
-  if (!is_range(0.0, heaviest->front())) return bad_input("heaviest_newtons: must be above 0");
+  if (!is_range(0.0, heaviest->front())) return bad_input("heaviest_newtons: must be above 0 and at most 1e9");
   return PaperBank(std::move(ranges), celsius, heaviest->front());
 }
 

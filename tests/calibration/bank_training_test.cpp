@@ -98,6 +98,17 @@ TEST(BankTraining, leaves_out_what_the_samples_do_not_tell) {
   EXPECT_EQ(parameters_of(training.bank(), 6), start);
 }
 
+TEST(BankTraining, says_which_taxels_were_never_loaded_and_which_never_change) {
+  SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
+  for (Sample& sample : database.samples) {
+    sample.ratio[3] = 0.25;
+    if (sample.known_newtons[6] > 0.0F) sample.known_newtons[6] = std::numeric_limits<float>::quiet_NaN();
+  }
+  const BankTrainingReport report = train_paper_bank(database, 2, 1)->report;
+  EXPECT_EQ(report.never_loaded, std::vector<std::size_t>{6});
+  EXPECT_EQ(report.constant_readings, std::vector<std::size_t>{3});
+}
+
 TEST(BankTraining, refuses_loads_that_tell_no_taxel_of_its_own) {
   SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
   for (Sample& sample : database.samples) {

@@ -171,6 +171,7 @@ Status reproduce_bank(const ArrayDescription& array, const BankEffort& effort,
       progress("convergence", (static_cast<double>(k) + share) / static_cast<double>(starts.size()));
     };
     found.convergence.push_back(descend(*training, starts[k].first, starts[k].second, effort.convergence_steps, tell));
+    if (!std::isfinite(found.convergence.back().value.back())) return failed("gradient descent of the bank diverged");
   }
 
   Result<calibration::TrainedBank> trained = calibration::train_paper_bank(

@@ -21,6 +21,10 @@ enum class BankStart {
   xavier,         ///< Random, scaled by the number of connections.
 };
 
+/// Whether the paper's bank can be trained on these samples. Errors: no sample tells a force on a single taxel; an
+/// array whose bank would have more than fusion::kMostUnknowns.
+[[nodiscard]] Status check_bank_samples(const SampleDatabase& database);
+
 /// The training of the paper's bank on a sample database: Fig. 9 for all networks at once, in mini-batches.
 ///
 /// A network's own presses are a few of very many samples (14 of 3,584 where every taxel is pressed alone), so half of
@@ -32,13 +36,16 @@ class BankTraining {
   /// Errors: no sample tells a force on a single taxel; more unknowns than fusion::kMostUnknowns.
   [[nodiscard]] static Result<BankTraining> create(const SampleDatabase& database, std::uint64_t seed);
 
-  /// Sets all parameters anew.
+  /// Sets all parameters anew; before the first step.
   void start(BankStart start);
   /// One step of every network; the mean of their errors before it: half a weighted mean square, eq. (6), in units of
   /// the outputs.
   double step(const network::BankStep& step);
 
   [[nodiscard]] fusion::PaperBank& bank() noexcept { return bank_; }
+
+  /// Taxels that no sample loads.
+  [[nodiscard]] std::vector<std::size_t> never_loaded() const;
 
  private:
   BankTraining(const SampleDatabase& database, fusion::PaperBank bank, std::uint64_t seed);
@@ -70,7 +77,9 @@ class BankTraining {
 struct BankTrainingReport {
   std::size_t unknowns = 0;
   std::size_t steps = 0;
-  std::vector<double> curve;  ///< Error of each step, as BankTraining::step gives it.
+  std::vector<double> curve;                   ///< Error of each step, as BankTraining::step gives it.
+  std::vector<std::size_t> never_loaded;       ///< Taxels that no sample loads: their networks know of no force.
+  std::vector<std::size_t> constant_readings;  ///< Taxels whose reading is the same in all samples.
 };
 
 struct TrainedBank {
