@@ -3,8 +3,8 @@
 #pragma once
 
 // Counts what this thread allocates, by taking the place of malloc and its relatives in the test binary: operator new,
-// Eigen's and Highway's own allocators and the C library all end there. Works with glibc; where a sanitizer owns malloc,
-// kAllocationsAreCounted is false and tests skip with a message.
+// Eigen's and Highway's own allocators and the C library all end there. Works with glibc; where a sanitizer owns
+// malloc, kAllocationsAreCounted is false and tests skip with a message.
 
 #include <cstddef>
 #include <cstdlib>
