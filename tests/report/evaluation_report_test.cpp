@@ -3,15 +3,14 @@
 #include "dermis/report/evaluation_report.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <set>
-#include <sstream>
 
 #include "report/sample_evaluation.hpp"
 #include "report/well_formed.hpp"
+#include "store/temporary_folder.hpp"
 
 namespace dermis::report {
 namespace {
@@ -19,19 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string read(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
+  return store::read_bytes(path.string());
 }
 
 class ReportTest : public testing::Test {
  protected:
-  ReportTest() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    directory_ = fs::temp_directory_path() / ("dermis_report_" + std::to_string(::getpid()) + "_" + test->name());
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
   /// Writes the report, checks every file of it and returns their names.
   std::set<std::string> write(const calibration::Evaluation& evaluation) {
     const Status written = write_evaluation_report(directory_.string(), evaluation, sample_model(evaluation));
@@ -49,7 +40,8 @@ class ReportTest : public testing::Test {
 
   [[nodiscard]] bool says(std::string_view words) const { return page_.find(words) != std::string::npos; }
 
-  fs::path directory_;
+  store::TemporaryFolder folder_;
+  fs::path directory_ = folder_.file("report");  // not there yet
   std::string page_;
 };
 

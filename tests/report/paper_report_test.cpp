@@ -3,17 +3,16 @@
 #include "dermis/report/paper_report.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <set>
-#include <sstream>
 
 #include "report/sample_reproduction.hpp"
 #include "report/well_formed.hpp"
+#include "store/temporary_folder.hpp"
 
 namespace dermis::report {
 namespace {
@@ -24,19 +23,11 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string read(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
+  return store::read_bytes(path.string());
 }
 
 class PaperReportTest : public testing::Test {
  protected:
-  PaperReportTest() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    directory_ = fs::temp_directory_path() / ("dermis_paper_" + std::to_string(::getpid()) + "_" + test->name());
-  }
-  void TearDown() override { fs::remove_all(directory_); }
-
   /// Makes the page and checks its form.
   void make(const PaperReproduction& reproduction) {
     page_ = paper_page(reproduction);
@@ -55,7 +46,8 @@ class PaperReportTest : public testing::Test {
     return page_.substr(start, page_.find('<', start) - start);
   }
 
-  fs::path directory_;
+  store::TemporaryFolder folder_;
+  fs::path directory_ = folder_.file("report");  // not there yet
   std::string page_;
 };
 
