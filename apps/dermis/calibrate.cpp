@@ -30,6 +30,12 @@ using calibration::BankTrainingReport;
 using calibration::Calibration;
 using calibration::CalibrationReport;
 
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
 constexpr double kPoorFit = 0.1;  // relative error
 constexpr std::uint64_t kBankSeed = 1;
 
@@ -146,30 +152,33 @@ Status calibrate(const CalibrateOptions& options) {
   if (!options.bank.empty()) {
     if (Status writable = check_writable(options.bank); !writable) return writable;
   }
-  const auto start = std::chrono::steady_clock::now();
+  auto start = Clock::now();
   const Result<std::vector<RawFrame>> frames = store::read_frames(options.frames, array->rows, array->cols);
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = store::read_loads(options.loads, *array, frames->size());
   if (!loads) return loads.error();
-  const double read_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double read_s = seconds_since(start);
 
-  std::optional<calibration::SampleDatabase> bank_samples;
-  if (!options.bank.empty()) {
-    Result<calibration::SampleDatabase> built = calibration::build_sample_database(*array, *frames, *loads, *settle);
-    if (!built) return built.error();
-    if (Status checked = calibration::check_bank_samples(*built); !checked) return checked;
-    bank_samples = std::move(*built);
-  }
   Progress progress;
-  Result<Calibration> calibration = calibration::calibrate(
-      *array, *frames, *loads, *settle, [&](const std::string& stage, double share) { progress.show(stage, share); });
+  progress.show("circuit", 0.0);
+  start = Clock::now();
+  const auto database = calibration::build_sample_database(*array, *frames, *loads, *settle);
+  if (!database) return database.error();
+  const double circuit_s = seconds_since(start);
+  progress.show("circuit", 1.0);
+  if (!options.bank.empty()) {
+    if (Status checked = calibration::check_bank_samples(*database); !checked) return checked;
+  }
+  Result<Calibration> calibration =
+      calibration::calibrate(*database, [&](const std::string& stage, double share) { progress.show(stage, share); });
   if (!calibration) return calibration.error();
-  calibration->report.stages.insert(calibration->report.stages.begin(), {"reading", read_s});
+  std::vector<calibration::StageTime>& stages = calibration->report.stages;
+  stages.insert(stages.begin(), {{"reading", read_s}, {"circuit", circuit_s}});
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
   if (Status written = pipeline::write_model(options.out, calibration->model); !written) return written;
   std::optional<BankTrainingReport> bank;
-  if (bank_samples) {
-    Result<BankTrainingReport> trained = train_bank(options, *bank_samples, progress);
+  if (!options.bank.empty()) {
+    Result<BankTrainingReport> trained = train_bank(options, *database, progress);
     if (!trained) return trained.error();
     bank = std::move(*trained);
   }

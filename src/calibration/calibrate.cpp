@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "dermis/calibration/baselines.hpp"
-#include "dermis/calibration/sample_database.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -42,33 +41,42 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
 
 Result<Calibration> calibrate(const ArrayDescription& array, std::span<const RawFrame> frames,
                               std::span<const Load> loads, Nanos settle_time, const Progress& progress) {
+  CalibrationReport circuit;
+  if (progress) progress("circuit", 0.0);
+  const Result<SampleDatabase> database =
+      timed(circuit, "circuit", [&] { return build_sample_database(array, frames, loads, settle_time); });
+  if (!database) return database.error();
+  if (progress) progress("circuit", 1.0);
+  Result<Calibration> calibration = calibrate(*database, progress);
+  if (calibration) {
+    std::vector<StageTime>& stages = calibration->report.stages;
+    stages.insert(stages.begin(), circuit.stages.begin(), circuit.stages.end());
+  }
+  return calibration;
+}
+
+Result<Calibration> calibrate(const SampleDatabase& database, const Progress& progress) {
   std::mutex progress_mutex;
-  const auto tell = [&](const char* stage, double share) {
+  const auto tell_networks = [&](double share) {
     if (!progress) return;
     const std::lock_guard lock(progress_mutex);
-    progress(stage, share);
+    progress("networks", share);
   };
 
   Calibration calibration;
   CalibrationReport& report = calibration.report;
-  tell("circuit", 0.0);
-  const Result<SampleDatabase> database =
-      timed(report, "circuit", [&] { return build_sample_database(array, frames, loads, settle_time); });
-  if (!database) return database.error();
-  tell("circuit", 1.0);
-  Result<ForceTraining> training = timed(report, "networks", [&] {
-    return train_force_networks(*database, [&](double share) { tell("networks", share); });
-  });
+  Result<ForceTraining> training =
+      timed(report, "networks", [&] { return train_force_networks(database, tell_networks); });
   if (!training) return training.error();
-  calibration.model.baselines = timed(report, "baselines", [&] { return make_baselines(*database); });
+  calibration.model.baselines = timed(report, "baselines", [&] { return make_baselines(database); });
 
-  report.frames = database->samples.size();
-  report.frames_rejected = database->frames_rejected;
-  report.first_rejection = database->first_rejection;
+  report.frames = database.samples.size();
+  report.frames_rejected = database.frames_rejected;
+  report.first_rejection = database.first_rejection;
   report.training = std::move(training->report);
-  calibration.model.array = array;
+  calibration.model.array = database.array;
   calibration.model.networks = std::move(training->networks);
-  calibration.model.provenance = provenance(array, report);
+  calibration.model.provenance = provenance(database.array, report);
   return calibration;
 }
 

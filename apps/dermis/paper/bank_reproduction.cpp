@@ -157,7 +157,7 @@ Status reproduce_bank(const ArrayDescription& array, const BankEffort& effort,
   if (!presses) return presses.error();
   const Result<SampleDatabase> database = calibration::build_sample_database(array, presses->frames, presses->loads);
   if (!database) return database.error();
-  auto calibrated = calibration::calibrate(array, presses->frames, presses->loads);
+  auto calibrated = calibration::calibrate(*database);
   if (!calibrated) return calibrated.error();
 
   Result<BankTraining> training = BankTraining::create(*database, kBankSeed);

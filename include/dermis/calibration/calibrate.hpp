@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dermis/calibration/force_training.hpp"
+#include "dermis/calibration/sample_database.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/core/result.hpp"
@@ -43,5 +44,9 @@ using Progress = std::function<void(const std::string& stage, double share)>;
 [[nodiscard]] Result<Calibration> calibrate(const ArrayDescription& array, std::span<const RawFrame> frames,
                                             std::span<const Load> loads, Nanos settle_time = Nanos{0},
                                             const Progress& progress = {});
+
+/// The same from samples that are there already; the report has no stage "circuit".
+/// Errors: those of train_force_networks().
+[[nodiscard]] Result<Calibration> calibrate(const SampleDatabase& database, const Progress& progress = {});
 
 }  // namespace dermis::calibration
