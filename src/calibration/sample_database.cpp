@@ -134,6 +134,7 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
     const std::size_t end = std::min(selected, (task + 1) * kFramesPerTask);
     for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
       ConductanceFrame conductance;
+      solver->forget();  // whatever task a frame is in, its bits are the same
       solver->process(selection.conditioned[k], conductance);
       const std::size_t frame = selection.frame[k];
       database.samples[k].frame = frame;

@@ -3,6 +3,7 @@
 #include "dermis/compensation/crosstalk.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "compensation/grounded_divider.hpp"
 #include "compensation/proportional.hpp"
@@ -10,24 +11,40 @@
 
 namespace dermis::compensation {
 
-Result<std::unique_ptr<CrosstalkInversion>> make_crosstalk_inversion(const ArrayDescription& array) {
+namespace {
+
+constexpr double kToleranceCounts = 0.01;
+
+using Inversion = Result<std::unique_ptr<CrosstalkInversion>>;
+
+template <typename Kind, typename... Arguments>
+Inversion inversion(const Arguments&... arguments) {
+  return std::unique_ptr<CrosstalkInversion>(std::make_unique<Kind>(arguments...));
+}
+
+Error not_yet(const char* what) {
+  return bad_input(std::string(what) + " cannot be inverted yet: set circuit = \"none\"");
+}
+
+}  // namespace
+
+Inversion make_crosstalk_inversion(const ArrayDescription& array, const InversionOptions& options) {
   const Readout& readout = array.readout;
-  switch (readout.circuit) {
-    case Circuit::divider:
-      if (readout.idle_rows == IdleRows::floating) {
-        return bad_input(
-            "readout.idle_rows = \"floating\" with a divider cannot be inverted yet: ground the idle rows, or set "
-            "circuit = \"none\"");
-      }
-      return std::unique_ptr<CrosstalkInversion>(std::make_unique<GroundedDivider>(array));
-    case Circuit::transimpedance: return std::unique_ptr<CrosstalkInversion>(std::make_unique<VirtualGround>(array));
-    case Circuit::none: return std::unique_ptr<CrosstalkInversion>(std::make_unique<Proportional>());
+  if (array.has_unknown_circuit()) {
+    return bad_input("readout: the circuit or some of its resistances are to be fitted: calibrate the array first");
   }
-  return bad_input("readout.circuit: unknown");
+  const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
+  if (readout.circuit == Circuit::none) return inversion<Proportional>();
+  if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty()) return not_yet("lines with resistance");
+  if (readout.circuit == Circuit::flexitac) return not_yet("readout.circuit = \"flexitac\"");
+  if (readout.circuit == Circuit::transimpedance) return inversion<VirtualGround>(array);
+  if (readout.idle_columns == IdleColumns::floating) return not_yet("readout.idle_columns = \"floating\"");
+  if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\" with a divider");
+  return inversion<GroundedDivider>(array, tolerance);
 }
 
 Result<Compensator> Compensator::create(const ArrayDescription& array) {
-  Result<std::unique_ptr<CrosstalkInversion>> inversion = make_crosstalk_inversion(array);
+  Inversion inversion = make_crosstalk_inversion(array);
   if (!inversion) return inversion.error();
   return Compensator(std::move(*inversion));
 }
@@ -38,11 +55,17 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.temperature_celsius = conditioned.temperature_celsius;
   conductance.taxels = conditioned.taxels;
   conductance.siemens.resize(conditioned.ratio.size());
+  conductance.sigma_siemens.resize(conditioned.ratio.size());
+  conductance.residual_sigma = 0.0;
   if (has(conditioned.status, FrameStatus::rejected)) {
     std::fill(conductance.siemens.begin(), conductance.siemens.end(), 0.0);
+    std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
     return;
   }
-  if (inversion_->invert(conditioned.ratio, conductance.siemens)) return;
+  const InversionResult result = inversion_->invert(conditioned.ratio, conductance.siemens);
+  conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
+  inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+  if (result.solved) return;
   conductance.status |= FrameStatus::not_converged;
   std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
 }

@@ -12,7 +12,6 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxSteps = 200;
-constexpr double kToleranceCounts = 0.01;   // largest change of a step, as a reading
 constexpr double kColumnShareCap = 0.9999;  // 1 - sigma stays positive under noise
 constexpr double kHalvedStep = 0.5;
 constexpr double kLeastDamping = 1.0 / 16.0;
@@ -20,10 +19,10 @@ constexpr double kRunawayChange = 1e3;  // of a conductance, relative to the loa
 
 }  // namespace
 
-GroundedDivider::GroundedDivider(const ArrayDescription& array)
+GroundedDivider::GroundedDivider(const ArrayDescription& array, double tolerance_ratio)
     : rows_(array.rows),
       cols_(array.cols),
-      tolerance_(kToleranceCounts / array.readout.full_scale_counts()),
+      tolerance_(tolerance_ratio),
       drive_ohm_(array.readout.drive_ohm),
       line_gain_(rows_),
       column_siemens_(cols_),
@@ -34,13 +33,22 @@ GroundedDivider::GroundedDivider(const ArrayDescription& array)
   for (const double ohm : array.readout.load_ohm) load_siemens_.push_back(1.0 / ohm);
 }
 
-bool GroundedDivider::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
+InversionResult GroundedDivider::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
   for (double damping = 1.0; damping >= kLeastDamping; damping *= kHalvedStep) {
     start(ratio, siemens);
-    if (iterate(ratio, siemens, damping)) return true;
+    if (!iterate(ratio, siemens, damping)) continue;
+    for (double& conductance : siemens) conductance = std::max(conductance, 0.0);
+    return {true, tolerance_};
   }
   start(ratio, siemens);  // the best attempt: always finite, right for ideal drivers
-  return false;
+  for (double& conductance : siemens) conductance = std::max(conductance, 0.0);
+  return {false, 1.0};
+}
+
+void GroundedDivider::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
+  for (std::size_t taxel = 0; taxel < sigma_siemens.size(); ++taxel) {
+    sigma_siemens[taxel] = sigma_ratio * column_siemens_[taxel % cols_] * line_gain_[taxel / cols_];
+  }
 }
 
 bool GroundedDivider::iterate(std::span<const double> ratio, std::span<double> siemens, double damping) noexcept {

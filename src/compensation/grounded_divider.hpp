@@ -23,8 +23,9 @@ namespace dermis::compensation {
 /// iteration starts anew with smaller steps where it runs away: taxels down to about a quarter of drive_ohm are found.
 class GroundedDivider final : public CrosstalkInversion {
  public:
-  explicit GroundedDivider(const ArrayDescription& array);
-  [[nodiscard]] bool invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
+  GroundedDivider(const ArrayDescription& array, double tolerance_ratio);
+  [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
+  void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override {
     return *std::max_element(load_siemens_.begin(), load_siemens_.end());
   }

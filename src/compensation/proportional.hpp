@@ -11,9 +11,12 @@ namespace dermis::compensation {
 /// The circuit is unknown: readings are taken as proportional to conductance, with 1 S for the full supply.
 class Proportional final : public CrosstalkInversion {
  public:
-  [[nodiscard]] bool invert(std::span<const double> ratio, std::span<double> siemens) noexcept override {
-    std::copy(ratio.begin(), ratio.end(), siemens.begin());
-    return true;
+  [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override {
+    for (std::size_t k = 0; k < ratio.size(); ++k) siemens[k] = std::max(ratio[k], 0.0);
+    return {true, 0.0};
+  }
+  void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override {
+    std::fill(sigma_siemens.begin(), sigma_siemens.end(), sigma_ratio);
   }
   [[nodiscard]] double siemens_per_ratio() const noexcept override { return 1.0; }
 };

@@ -2,13 +2,15 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "compensation/virtual_ground.hpp"
 
+#include <algorithm>
+
 namespace dermis::compensation {
 
 VirtualGround::VirtualGround(const ArrayDescription& array) : drive_ohm_(array.readout.drive_ohm) {
   for (const double ohm : array.readout.load_ohm) load_siemens_.push_back(1.0 / ohm);
 }
 
-bool VirtualGround::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
+InversionResult VirtualGround::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
   const std::size_t cols = load_siemens_.size();
   bool solvable = true;
   for (std::size_t row = 0; row < drive_ohm_.size(); ++row) {
@@ -24,9 +26,15 @@ bool VirtualGround::invert(std::span<const double> ratio, std::span<double> siem
       solvable = false;
       continue;
     }
-    for (double& conductance : conductances) conductance /= line_ratio;
+    for (double& conductance : conductances) conductance = std::max(conductance / line_ratio, 0.0);
   }
-  return solvable;
+  return {solvable, 0.0};
+}
+
+void VirtualGround::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
+  for (std::size_t taxel = 0; taxel < sigma_siemens.size(); ++taxel) {
+    sigma_siemens[taxel] = sigma_ratio * load_siemens_[taxel % load_siemens_.size()];
+  }
 }
 
 }  // namespace dermis::compensation

@@ -17,7 +17,8 @@ namespace dermis::compensation {
 class VirtualGround final : public CrosstalkInversion {
  public:
   explicit VirtualGround(const ArrayDescription& array);
-  [[nodiscard]] bool invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
+  [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
+  void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override {
     return *std::max_element(load_siemens_.begin(), load_siemens_.end());
   }

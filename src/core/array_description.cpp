@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/core/array_description.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace dermis {
@@ -13,13 +14,21 @@ bool is_positive(double value) {
   return std::isfinite(value) && value > 0.0;
 }
 
+Status validate_size(const std::string& name, const std::vector<double>& values, std::size_t lines) {
+  if (values.size() == lines) return Done{};
+  return bad_input(name + ": has " + std::to_string(values.size()) + " values, the array needs " +
+                   std::to_string(lines));
+}
+
+bool is_to_be_fitted(const std::vector<double>& ohms) {
+  return std::any_of(ohms.begin(), ohms.end(), [](double ohm) { return std::isnan(ohm); });
+}
+
 Status validate_resistors(const char* field, const std::vector<double>& ohms, std::size_t lines, bool zero_allowed) {
   const std::string name = std::string("readout.") + field;
-  if (ohms.size() != lines) {
-    return bad_input(name + ": has " + std::to_string(ohms.size()) + " values, the array needs " +
-                     std::to_string(lines));
-  }
+  if (Status size = validate_size(name, ohms, lines); !size) return size;
   for (const double ohm : ohms) {
+    if (std::isnan(ohm)) continue;  // kFitOhm
     if (!is_positive(ohm) && !(zero_allowed && ohm == 0.0)) {
       return bad_input(name + ": must be " + (zero_allowed ? "0 or more" : "more than 0") + " ohm");
     }
@@ -27,7 +36,38 @@ Status validate_resistors(const char* field, const std::vector<double>& ohms, st
   return Done{};
 }
 
-Status validate_readout(const Readout& readout, std::size_t rows, std::size_t cols) {
+/// A list that may be absent; its resistances are never fitted.
+Status validate_extra_resistors(const char* field, const std::vector<double>& ohms, std::size_t lines) {
+  if (ohms.empty()) return Done{};
+  if (is_to_be_fitted(ohms)) return bad_input(std::string("readout.") + field + ": must be 0 or more ohm");
+  return validate_resistors(field, ohms, lines, true);
+}
+
+Status validate_amplifiers(const Readout& readout, std::size_t cols) {
+  const bool has_parts =
+      !readout.column_switch_ohm.empty() || !readout.amplifier_offset_v.empty() || readout.amplifier_gain;
+  if (has_parts && readout.circuit != Circuit::transimpedance) {
+    return bad_input(
+        "readout.circuit: column_switch_ohm, amplifier_offset_v and amplifier_gain belong to \"transimpedance\"");
+  }
+  if (Status valid = validate_extra_resistors("column_switch_ohm", readout.column_switch_ohm, cols); !valid) {
+    return valid;
+  }
+  if (readout.amplifier_gain && !(*readout.amplifier_gain >= 1.0)) {
+    return bad_input("readout.amplifier_gain: must be 1 or more");
+  }
+  if (readout.amplifier_offset_v.empty()) return Done{};
+  const std::string name = "readout.amplifier_offset_v";
+  if (Status size = validate_size(name, readout.amplifier_offset_v, cols); !size) return size;
+  if (!readout.supply_v) return bad_input(name + ": needs readout.supply_v, the nominal supply");
+  for (const double volt : readout.amplifier_offset_v) {
+    if (!(std::abs(volt) < *readout.supply_v)) return bad_input(name + ": must be less than the supply");
+  }
+  return Done{};
+}
+
+Status validate_readout(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
   if (readout.adc_bits < 1 || readout.adc_bits > kMaxAdcBits) {
     return bad_input("readout.adc_bits: must be 1 to " + std::to_string(kMaxAdcBits));
   }
@@ -37,15 +77,30 @@ Status validate_readout(const Readout& readout, std::size_t rows, std::size_t co
   if (readout.supply_v && !is_positive(*readout.supply_v)) {
     return bad_input("readout.supply_v: must be more than 0 V");
   }
-  if (readout.circuit == Circuit::none) return Done{};
-  if (Status drive = validate_resistors("drive_ohm", readout.drive_ohm, rows, true); !drive) return drive;
-  return validate_resistors("load_ohm", readout.load_ohm, cols, false);
+  if (!is_positive(readout.adc_noise_counts)) return bad_input("readout.adc_noise_counts: must be more than 0");
+  if (readout.circuit == Circuit::none || readout.circuit == Circuit::automatic) return Done{};
+  if (readout.idle_columns == IdleColumns::floating && readout.circuit != Circuit::divider) {
+    return bad_input("readout.idle_columns: belongs to circuit = \"divider\"");
+  }
+  if (Status drive = validate_resistors("drive_ohm", readout.drive_ohm, array.driven_lines(), true); !drive) {
+    return drive;
+  }
+  if (Status load = validate_resistors("load_ohm", readout.load_ohm, array.sensed_lines(), false); !load) return load;
+  if (Status valid = validate_amplifiers(readout, array.cols); !valid) return valid;
+  if (Status row = validate_extra_resistors("row_segment_ohm", readout.row_segment_ohm, array.rows); !row) return row;
+  return validate_extra_resistors("column_segment_ohm", readout.column_segment_ohm, array.cols);
 }
 
 }  // namespace
 
 double Readout::full_scale_counts() const noexcept {
   return std::ldexp(1.0, adc_bits) - 1.0;
+}
+
+bool ArrayDescription::has_unknown_circuit() const noexcept {
+  if (readout.circuit == Circuit::none) return false;
+  return readout.circuit == Circuit::automatic || is_to_be_fitted(readout.drive_ohm) ||
+         is_to_be_fitted(readout.load_ohm);
 }
 
 std::string ArrayDescription::taxel_name(std::size_t taxel) const {
@@ -58,16 +113,22 @@ Status ArrayDescription::validate() const {
   if (!is_positive(row_pitch_m) || !is_positive(col_pitch_m))
     return bad_input("array.pitch_mm: must be more than 0 mm");
   if (taxel_area_m2 && !is_positive(*taxel_area_m2)) return bad_input("array.taxel_area_mm2: must be more than 0 mm2");
-  return validate_readout(readout, rows, cols);
+  return validate_readout(*this);
 }
 
 const char* to_string(Circuit circuit) noexcept {
   switch (circuit) {
     case Circuit::divider: return "divider";
     case Circuit::transimpedance: return "transimpedance";
+    case Circuit::flexitac: return "flexitac";
     case Circuit::none: return "none";
+    case Circuit::automatic: return "auto";
   }
   return "none";
+}
+
+const char* to_string(IdleColumns idle_columns) noexcept {
+  return idle_columns == IdleColumns::loaded ? "loaded" : "floating";
 }
 
 const char* to_string(IdleRows idle_rows) noexcept {

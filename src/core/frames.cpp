@@ -8,7 +8,7 @@
 namespace dermis {
 
 std::string to_string(FrameStatus status) {
-  static constexpr std::array<std::pair<FrameStatus, const char*>, 7> kNames{{
+  static constexpr std::array<std::pair<FrameStatus, const char*>, 8> kNames{{
       {FrameStatus::rejected, "rejected"},
       {FrameStatus::saturated, "saturated"},
       {FrameStatus::above_range, "above_range"},
@@ -16,6 +16,7 @@ std::string to_string(FrameStatus status) {
       {FrameStatus::temperature_unknown, "temperature_unknown"},
       {FrameStatus::temperature_clamped, "temperature_clamped"},
       {FrameStatus::not_converged, "not_converged"},
+      {FrameStatus::line_fault, "line_fault"},
   }};
   std::string text;
   for (const auto& [flag, name] : kNames) {

@@ -118,7 +118,7 @@ void ForceFusion::finish(std::size_t taxel, ForceFrame& force) const noexcept {
   } else if (std::isnan(excess_siemens_[taxel])) {
     status = TaxelStatus::invalid;
   }
-  if (status == TaxelStatus::dead || status == TaxelStatus::invalid) {
+  if (status == TaxelStatus::dead || status == TaxelStatus::invalid || status == TaxelStatus::line_fault) {
     newtons = kNoForce;
     return;
   }

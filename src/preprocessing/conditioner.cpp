@@ -72,6 +72,7 @@ void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) co
   const std::optional<double> supply_v = raw.supply_v ? raw.supply_v : readout.supply_v;
   const double reference = readout.adc_reference_v && supply_v ? *readout.adc_reference_v / *supply_v : 1.0;
   const double scale = (readout.pressure_raises_reading ? reference : -reference) / full_scale_counts_;
+  conditioned.sigma_ratio = std::abs(scale) * readout.adc_noise_counts;
   const double zero = readout.pressure_raises_reading ? 0.0 : 1.0;
   constexpr float kHalfCount = 0.5F;  // averaged readings
   constexpr float kNever = std::numeric_limits<float>::infinity();

@@ -33,6 +33,15 @@ ArrayXd driven_row_voltage(const Eigen::Map<const Matrix>& conductance, const st
 
 Result<ReadoutCircuit> ReadoutCircuit::create(const ArrayDescription& array) {
   if (Status valid = array.validate(); !valid) return valid.error();
+  const Readout& readout = array.readout;
+  if (array.has_unknown_circuit()) {
+    return bad_input("readout: the circuit or some of its resistances are to be fitted; a simulation needs numbers");
+  }
+  if (readout.circuit == Circuit::flexitac || readout.idle_columns == IdleColumns::floating ||
+      !readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty() || !readout.column_switch_ohm.empty() ||
+      !readout.amplifier_offset_v.empty() || readout.amplifier_gain) {
+    return bad_input("readout: this circuit cannot be simulated yet");
+  }
   return ReadoutCircuit(array);
 }
 
@@ -41,6 +50,8 @@ void ReadoutCircuit::ratios(std::span<const double> siemens, std::span<double> r
   switch (readout_.circuit) {
     case Circuit::divider: divide(siemens, ratio); break;
     case Circuit::transimpedance: amplify(siemens, ratio); break;
+    case Circuit::flexitac: break;
+    case Circuit::automatic: break;
     case Circuit::none: as_matrix(ratio, rows_, cols_) = kUnknownCircuitOhm * as_matrix(siemens, rows_, cols_); break;
   }
   if (readout_.pressure_raises_reading) return;

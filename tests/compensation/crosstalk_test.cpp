@@ -52,7 +52,7 @@ struct Inverted {
 Inverted invert(const ArrayDescription& array, const std::vector<double>& ratio) {
   Inverted inverted;
   inverted.siemens.resize(ratio.size());
-  inverted.solved = inversion_for(array)->invert(ratio, inverted.siemens);
+  inverted.solved = inversion_for(array)->invert(ratio, inverted.siemens).solved;
   return inverted;
 }
 
@@ -218,7 +218,7 @@ TEST(CrosstalkInversion, noise_of_unloaded_taxels_stays_unbiased) {
     for (int frame = 0; frame < 200; ++frame) {
       std::vector<double> noisy = clean;
       for (double& ratio : noisy) ratio += kNoise * random.normal();
-      ASSERT_TRUE(inversion->invert(noisy, inverted));
+      ASSERT_TRUE(inversion->invert(noisy, inverted).solved);
       for (std::size_t k = 0; k < 64; ++k) {
         if (siemens[k] > 0.0) continue;
         sum += inverted[k];
@@ -261,7 +261,7 @@ TEST(CrosstalkInversion, result_does_not_depend_on_the_frame_before) {
     for (const auto& before : {ratios_of(random_siemens(array, random)), std::vector<double>(64, 1.0),
                                std::vector<double>(64, 0.0), ratio}) {
       (void)inversion->invert(before, siemens);
-      EXPECT_TRUE(inversion->invert(ratio, siemens));
+      EXPECT_TRUE(inversion->invert(ratio, siemens).solved);
       EXPECT_EQ(siemens, fresh.siemens);
       std::fill(siemens.begin(), siemens.end(), 1e9);
     }

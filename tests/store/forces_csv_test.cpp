@@ -17,10 +17,11 @@ TEST(ForcesCsvWriter, writes_time_status_and_newtons) {
   const TemporaryFolder folder;
   Result<ForcesCsvWriter> writer = ForcesCsvWriter::create(folder.file("f.csv"), 1, 3);
   ASSERT_TRUE(writer);
-  ASSERT_TRUE(writer->write({Nanos(10'000'000), FrameStatus::ok, {0.0F, 9.81F, 50.0F}, {}}));
+  ASSERT_TRUE(writer->write({Nanos(10'000'000), FrameStatus::ok, {0.0F, 9.81F, 50.0F}, {}, {}}));
   ASSERT_TRUE(writer->write({Nanos(20'000'000),
                              FrameStatus::saturated | FrameStatus::dead_taxels,
                              {std::nanf(""), -std::nanf(""), 0.125F},
+                             {},
                              {}}));
   ASSERT_TRUE(writer->commit());
   EXPECT_EQ(read_bytes(folder.file("f.csv")),

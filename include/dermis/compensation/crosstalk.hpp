@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "dermis/core/array_description.hpp"
@@ -10,6 +11,20 @@
 #include "dermis/core/result.hpp"
 
 namespace dermis::compensation {
+
+struct InversionOptions {
+  /// A frame is solved once its certificate is this good (InversionResult::residual_ratio), >= 0; 0: to rounding.
+  /// Empty: a hundredth of a count of the ADC, far below its noise.
+  std::optional<double> tolerance_ratio;
+};
+
+/// How the inversion of a frame ended.
+struct InversionResult {
+  bool solved = false;  ///< Within the tolerance, and possible in this circuit.
+  /// Certificate: no reading differs from the circuit's reading at `siemens` by more than this. Where a taxel is held
+  /// at 0 S its reading may lie below the circuit's by more.
+  double residual_ratio = 0.0;
+};
 
 /// Inverts one kind of readout circuit: readings with crosstalk -> the conductance of every taxel. A new circuit is a
 /// new class behind make_crosstalk_inversion(); the pipeline does not change. Not thread-safe: one per thread.
@@ -20,18 +35,26 @@ class CrosstalkInversion {
   CrosstalkInversion& operator=(const CrosstalkInversion&) = delete;
   virtual ~CrosstalkInversion() = default;
 
-  /// ratio [rows, cols] (reading / supply) -> siemens [rows, cols]. A reading below what the neighbours alone explain
-  /// gives a small negative conductance: noise stays unbiased. Returns false where the readings have no solution in
-  /// this circuit; `siemens` then holds the best attempt. Allocates nothing.
-  [[nodiscard]] virtual bool invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
+  /// ratio [rows, cols] (reading / supply) -> siemens [rows, cols], finite and >= 0. Starts from the last frame's
+  /// solution where there is one. A reading below what the neighbours alone explain gives 0 S. Where the readings have
+  /// no solution in this circuit `solved` is false and `siemens` holds the best attempt. Allocates nothing.
+  [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
-  /// Rise of an unloaded taxel's conductance for a rise of its ratio [S], the largest of all columns: what the noise of
-  /// a reading becomes.
+  /// Forgets the last frame: the next one does not depend on it, not in the last bit.
+  virtual void forget() noexcept {}
+
+  /// Standard deviation of every taxel [rows, cols] of the last solved frame, each of whose readings had independent
+  /// noise of standard deviation `sigma_ratio`, to first order. Allocates nothing.
+  virtual void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept = 0;
+
+  /// Rise of an unloaded taxel's conductance for a rise of its ratio [S], the largest of all sensed lines: what the
+  /// noise of a reading becomes.
   [[nodiscard]] virtual double siemens_per_ratio() const noexcept = 0;
 };
 
-/// The inversion for the array's circuit. Errors: a circuit that cannot be inverted yet.
-[[nodiscard]] Result<std::unique_ptr<CrosstalkInversion>> make_crosstalk_inversion(const ArrayDescription& array);
+/// The inversion for the array's circuit. Errors: a circuit with unknown resistances.
+[[nodiscard]] Result<std::unique_ptr<CrosstalkInversion>> make_crosstalk_inversion(
+    const ArrayDescription& array, const InversionOptions& options = {});
 
 /// Unit 3 of the paper, the Compensation Unit: data "that deviate from the actual values by a known relationship" are
 /// put right by that relationship. Not thread-safe: one per stream.
@@ -42,6 +65,8 @@ class Compensator {
   /// Allocates nothing once `conductance` has the array's size.
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
 
+  /// See CrosstalkInversion.
+  void forget() noexcept { inversion_->forget(); }
   [[nodiscard]] double siemens_per_ratio() const noexcept { return inversion_->siemens_per_ratio(); }
 
  private:

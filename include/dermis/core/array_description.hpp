@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,10 @@ inline constexpr std::size_t kMaxLines = 1024;
 enum class Circuit {
   divider,         ///< Every column ends in a resistor to ground; the ADC reads the column voltage.
   transimpedance,  ///< Every column is held at 0 V (virtual ground); the ADC reads its current times load_ohm.
-  none,            ///< Unknown: readings are taken as proportional to conductance.
+  flexitac,   ///< One column is driven and the others are at 0 V; one row ends in a resistor to ground and is read, the
+              ///< other rows float (FlexiTac, Sensitronics).
+  none,       ///< Unknown: readings are taken as proportional to conductance.
+  automatic,  ///< "auto": calibration chooses among the circuits by held-out error.
 };
 
 /// What the rows that are not being scanned are tied to.
@@ -27,27 +31,45 @@ enum class IdleRows {
   floating,  ///< To nothing.
 };
 
-/// The path from taxel resistance to counts (the paper's Fig. 3).
+/// What the columns that are not being read end in.
+enum class IdleColumns {
+  loaded,    ///< In their load, like the one that is read.
+  floating,  ///< In nothing: one load is switched from column to column.
+};
+
+/// Stands for a resistance that calibration is to find ("fit"); not a number, so that nothing can compute with it.
+inline constexpr double kFitOhm = std::numeric_limits<double>::quiet_NaN();
+
+/// The path from taxel resistance to counts (the paper's Fig. 3). Lists with one value a line may be empty where the
+/// circuit does not have that part.
 struct Readout {
   Circuit circuit = Circuit::divider;
-  IdleRows idle_rows = IdleRows::grounded;
-  std::vector<double> drive_ohm;  ///< Resistance of each row driver [ohm], >= 0; size rows (empty for `none`).
+  IdleRows idle_rows = IdleRows::grounded;         ///< divider, transimpedance
+  IdleColumns idle_columns = IdleColumns::loaded;  ///< divider
+  std::vector<double> drive_ohm;          ///< Resistance of the driver of each driven line [ohm], >= 0 or kFitOhm.
+  std::vector<double> load_ohm;           ///< Divider or feedback resistor of each sensed line [ohm], > 0 or kFitOhm.
+  std::vector<double> column_switch_ohm;  ///< transimpedance: between a column and its amplifier [ohm], >= 0.
   std::vector<double>
-      load_ohm;       ///< Divider or feedback resistor of each column [ohm], > 0; size cols (empty for `none`).
-  int adc_bits = 12;  ///< Resolution [bit], 1 ... 24.
-  std::optional<double> adc_reference_v;  ///< Full scale of the ADC [V], > 0; empty: the supply itself (ratiometric).
-  std::optional<double> supply_v;         ///< Nominal supply [V], > 0, for frames that carry none.
-  bool pressure_raises_reading = true;    ///< false: the reading falls with pressure, and 1 - ratio is used.
+      amplifier_offset_v;                ///< transimpedance: input offset of a column's amplifier [V]; needs supply_v.
+  std::optional<double> amplifier_gain;  ///< transimpedance: open-loop gain, >= 1; empty: infinite.
+  std::vector<double> row_segment_ohm;   ///< Of each row line, from one taxel to the next [ohm], >= 0.
+  std::vector<double> column_segment_ohm;  ///< Of each column line, from one taxel to the next [ohm], >= 0.
+  int adc_bits = 12;                       ///< Resolution [bit], 1 ... 24.
+  double adc_noise_counts = 1.0;           ///< Standard deviation of a reading, rounding included [counts], > 0.
+  std::optional<double> adc_reference_v;   ///< Full scale of the ADC [V], > 0; empty: the supply itself (ratiometric).
+  std::optional<double> supply_v;          ///< Nominal supply [V], > 0, for frames that carry none.
+  bool pressure_raises_reading = true;     ///< false: the reading falls with pressure, and 1 - ratio is used.
 
   /// Largest count, 2^adc_bits - 1.
   [[nodiscard]] double full_scale_counts() const noexcept;
 };
 
-/// A resistive tactile array: rows are driven, columns are sensed; r0c0 is the corner next to the connector.
+/// A resistive tactile array: rows are driven, columns are sensed (the other way round for `flexitac`); r0c0 is the
+/// corner next to the connector.
 struct ArrayDescription {
   std::string name = "array";
-  std::size_t rows = 0;                 ///< Driven lines, 1 ... kMaxLines.
-  std::size_t cols = 0;                 ///< Sensed lines, 1 ... kMaxLines.
+  std::size_t rows = 0;                 ///< 1 ... kMaxLines.
+  std::size_t cols = 0;                 ///< 1 ... kMaxLines.
   double row_pitch_m = 0.010;           ///< Distance between neighbouring rows [m], > 0.
   double col_pitch_m = 0.010;           ///< Distance between neighbouring columns [m], > 0.
   std::optional<double> taxel_area_m2;  ///< Pressed area of a taxel [m2], > 0; needed for loads given as pressure.
@@ -55,6 +77,14 @@ struct ArrayDescription {
 
   [[nodiscard]] std::size_t taxel_count() const noexcept { return rows * cols; }
   [[nodiscard]] std::size_t index(std::size_t row, std::size_t col) const noexcept { return row * cols + col; }
+
+  /// Number of lines with a driver: rows, or columns for `flexitac`.
+  [[nodiscard]] std::size_t driven_lines() const noexcept { return readout.circuit == Circuit::flexitac ? cols : rows; }
+  /// Number of lines with a load: columns, or rows for `flexitac`.
+  [[nodiscard]] std::size_t sensed_lines() const noexcept { return readout.circuit == Circuit::flexitac ? rows : cols; }
+
+  /// Calibration is still to find the circuit or some of its resistances: a reading cannot be computed yet.
+  [[nodiscard]] bool has_unknown_circuit() const noexcept;
 
   /// "r3c5" for a row-major index.
   [[nodiscard]] std::string taxel_name(std::size_t taxel) const;
@@ -65,6 +95,7 @@ struct ArrayDescription {
 
 [[nodiscard]] const char* to_string(Circuit circuit) noexcept;
 [[nodiscard]] const char* to_string(IdleRows idle_rows) noexcept;
+[[nodiscard]] const char* to_string(IdleColumns idle_columns) noexcept;
 
 /// "r3c5", as in the headers of the CSV files.
 [[nodiscard]] std::string taxel_name(std::size_t row, std::size_t col);

@@ -21,6 +21,7 @@ enum class TaxelStatus : std::uint8_t {
   saturated,    ///< The ADC stands at the end of its range: the force is at least the one given.
   above_range,  ///< Beyond the heaviest calibrated load: clamped to it.
   dead,         ///< Did not answer to its calibration loads: no force is given (NaN).
+  line_fault,   ///< On an open or shorted line, or stuck: no force is given (NaN).
   invalid,      ///< The reading is missing or not a number, or the crosstalk has no solution: no force (NaN).
 };
 
@@ -34,6 +35,7 @@ enum class FrameStatus : std::uint8_t {
   temperature_unknown = 1U << 4U,  ///< The frame carries no temperature: the calibration's mean is taken.
   temperature_clamped = 1U << 5U,  ///< More than 1 C outside the calibrated temperatures: clamped to the nearest.
   not_converged = 1U << 6U,        ///< The crosstalk inversion did not reach its tolerance.
+  line_fault = 1U << 7U,  ///< A line or taxel is faulty: masked, the rest is solved with the fault in the model.
 };
 
 [[nodiscard]] constexpr FrameStatus operator|(FrameStatus a, FrameStatus b) noexcept {
@@ -63,6 +65,7 @@ struct ConditionedFrame {
   FrameStatus status = FrameStatus::ok;
   std::optional<double> temperature_celsius;
   std::vector<double> ratio;  ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
+  double sigma_ratio = 0.0;   ///< Standard deviation of every ratio, rounding included.
   std::vector<TaxelStatus> taxels;
 };
 
@@ -71,7 +74,10 @@ struct ConductanceFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
   std::optional<double> temperature_celsius;
-  std::vector<double> siemens;  ///< Taxel conductance [S], >= 0 up to noise; the bare ratio for `circuit = "none"`.
+  std::vector<double> siemens;        ///< Taxel conductance [S], >= 0; the bare ratio for `circuit = "none"`.
+  std::vector<double> sigma_siemens;  ///< Standard deviation of each from the noise of the readings [S].
+  double residual_sigma = 0.0;  ///< Certificate: no reading differs from the circuit's at `siemens` by more than this
+                                ///< times its standard deviation (where a taxel is held at 0, it lies below instead).
   std::vector<TaxelStatus> taxels;
 };
 
@@ -79,7 +85,8 @@ struct ConductanceFrame {
 struct ForceFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
-  std::vector<float> newtons;  ///< Normal force per taxel [N], >= 0; NaN where `taxels` says dead or invalid.
+  std::vector<float> newtons;        ///< Normal force per taxel [N], >= 0; NaN where `taxels` says there is no force.
+  std::vector<float> sigma_newtons;  ///< Standard deviation of each [N], > 0; NaN where `newtons` is.
   std::vector<TaxelStatus> taxels;
 };
 

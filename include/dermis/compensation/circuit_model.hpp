@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::compensation {
+
+/// Any readout circuit as nodal equations: its readings and their exact derivatives, in double precision. What the
+/// inversion by Newton's method, the fit of unknown resistances and the Cramer-Rao bound have in common. With u the
+/// node voltages while line k is driven and w the response of the reading j to a current into each node (adjoint), a
+/// conductance g between the nodes a and b moves the reading by
+///
+///   d T_kj / d g = -(w_a - w_b) (u_a - u_b)            formula (5) of research/literature.md A.5
+///
+/// Readings stand at their taxel's row-major index. Not thread-safe: one per thread.
+class CircuitModel {
+ public:
+  /// Errors: an invalid array, `none`, or a circuit with unknown resistances.
+  [[nodiscard]] static Result<CircuitModel> create(const ArrayDescription& array);
+  CircuitModel(CircuitModel&&) noexcept;
+  CircuitModel& operator=(CircuitModel&&) noexcept;
+  ~CircuitModel();
+
+  /// Solves the circuit for conductances [rows, cols], each finite and >= 0 [S]. Allocates nothing after the first
+  /// call.
+  void solve(std::span<const double> siemens) noexcept;
+
+  /// Replaces the resistances of the drivers and loads [ohm], sizes driven_lines() and sensed_lines().
+  void set_resistors(std::span<const double> drive_ohm, std::span<const double> load_ohm);
+
+  /// Readings over the supply at the last solution [rows, cols].
+  [[nodiscard]] std::span<const double> ratio() const noexcept;
+
+  /// d ratio / d siemens at the last solution, [reading, taxel], row-major [ohm].
+  void taxel_jacobian(std::span<double> jacobian) const noexcept;
+
+  /// d ratio / d drive_ohm [reading, driven line] and d ratio / d load_ohm [reading, sensed line], row-major [1/ohm].
+  void drive_jacobian(std::span<double> jacobian) const noexcept;
+  void load_jacobian(std::span<double> jacobian) const noexcept;
+
+ private:
+  struct Implementation;
+  explicit CircuitModel(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::compensation
