@@ -169,6 +169,43 @@ void advance_kernel(GroundedRowsState& state) {
   refresh_kernel(state);
 }
 
+/// Base of column j: what noise of y_ij alone makes of G_ij, but for the line gain a_i.
+HWY_INLINE Vec column_noise(D d, const GroundedRowsState& state, const double* HWY_RESTRICT sigma, std::size_t col) {
+  return hn::Div(hn::LoadU(d, sigma + col), hn::LoadU(d, &state.column_part[col]));
+}
+
+void noise_kernel(const GroundedRowsState& state, const double* HWY_RESTRICT sigma, double* HWY_RESTRICT out) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  const Vec one = hn::Set(d, 1.0);
+  Vec columns = hn::Zero(d);
+  for (std::size_t col = 0; col < state.stride; col += lanes) {
+    const Vec base = column_noise(d, state, sigma, col);
+    columns = hn::MulAdd(base, base, columns);
+  }
+  const Vec all_columns = hn::Set(d, hn::GetLane(hn::SumOfLanes(d, columns)));
+  double rows = 0.0;
+  for (const double gain : state.line_gain) rows += gain * gain;
+  for (std::size_t col = 0; col < state.stride; col += lanes) {
+    const Vec base = column_noise(d, state, sigma, col);
+    const Vec square = hn::Mul(base, base);
+    const Vec other_columns = hn::Sub(all_columns, square);
+    const Vec ohm = hn::LoadU(d, &state.column_ohm[col]);
+    for (std::size_t row = 0; row < state.rows; ++row) {
+      const std::size_t k = row * state.stride + col;
+      const double gain = state.line_gain[row] * state.line_gain[row];
+      const Vec g = hn::LoadU(d, &state.siemens[k]);
+      const Vec p = hn::Mul(hn::Set(d, state.drive_ohm[row]), g);
+      const Vec w = hn::Mul(ohm, g);
+      const Vec own = hn::Add(one, hn::Add(p, w));
+      Vec variance = hn::Mul(hn::Mul(hn::Set(d, gain), square), hn::Mul(own, own));
+      variance = hn::MulAdd(hn::Mul(p, p), hn::Mul(hn::Set(d, gain), other_columns), variance);
+      variance = hn::MulAdd(hn::Mul(w, w), hn::Mul(hn::Set(d, rows - gain), square), variance);
+      hn::StoreU(hn::Sqrt(variance), d, out + k);
+    }
+  }
+}
+
 }  // namespace dermis::compensation::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -186,6 +223,7 @@ HWY_EXPORT(warm_kernel);
 HWY_EXPORT(refresh_kernel);
 HWY_EXPORT(assess_kernel);
 HWY_EXPORT(advance_kernel);
+HWY_EXPORT(noise_kernel);
 
 GroundedRowsState::GroundedRowsState(std::size_t row_count, std::size_t col_count, IdleColumns columns)
     : rows(row_count),
@@ -235,6 +273,10 @@ double assess(GroundedRowsState& state) noexcept {
 
 void advance(GroundedRowsState& state) noexcept {
   HWY_DYNAMIC_DISPATCH(advance_kernel)(state);
+}
+
+void spread_noise(const GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept {
+  HWY_DYNAMIC_DISPATCH(noise_kernel)(state, sigma.data(), out.data());
 }
 
 }  // namespace dermis::compensation

@@ -55,6 +55,9 @@ void start_warm(GroundedRowsState& state, const std::vector<double>& last_estima
 /// Equations (d) and (e): the next G and y'.
 void advance(GroundedRowsState& state) noexcept;
 
+/// Standard deviation of G [rows, stride] from that of y, `sigma` [stride]; see GroundedRows::propagate_noise.
+void spread_noise(const GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept;
+
 /// After a change of G or y' from outside.
 void refresh(GroundedRowsState& state) noexcept;
 
