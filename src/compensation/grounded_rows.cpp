@@ -13,6 +13,7 @@ namespace {
 constexpr int kPlainSteps = 24;
 constexpr double kShrinks = 0.7;  // of the certificate in a step; what shrinks less is left to the mixing
 constexpr int kMixedSteps = 400;
+constexpr int kDampedSteps = 200;
 constexpr int kStepsWithoutGain = 60;
 constexpr int kRoundedStepsWithoutGain = 5;
 constexpr double kRounded = 1e-12;  // certificate; what is left of it is rounding
@@ -78,7 +79,8 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
     start_cold(state_);
   }
   double certificate = iterate();
-  if (!(certificate <= tolerance_)) certificate = iterate_with_mixing(certificate);
+  if (!(certificate <= tolerance_)) certificate = iterate_with_mixing(certificate, 0);
+  if (!(certificate <= std::max(tolerance_, kRounded))) certificate = iterate_with_mixing(certificate, kDampedSteps);
   const bool solved = certificate <= std::max(tolerance_, kRounded);
   if (!solved) forget();
   has_last_ = solved;
@@ -176,18 +178,23 @@ void GroundedRows::keep() noexcept {
   best_explained_ = state_.explained;
 }
 
-double GroundedRows::iterate_with_mixing(double best) noexcept {
+/// From the start, the first steps halved (A.5, alpha = 0.5), the others mixed.
+double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept {
   for (std::size_t k = 0; k < log_siemens_.size(); ++k) {
     log_siemens_[k] = std::log(std::max(state_.estimate[k], kLeastSiemens));
   }
   mixing_.forget();
   int without_gain = 0;
-  for (int step = 0; step < kMixedSteps && best > tolerance_; ++step) {
+  for (int step = 0; step < damped_steps + kMixedSteps && best > tolerance_; ++step) {
     take_step();
     const double certificate = certify();
     if (certificate < best) {
       best = certificate;
       keep();
+      without_gain = 0;
+    }
+    if (step < damped_steps) {
+      mixing_.forget();
       without_gain = 0;
     }
     if (++without_gain > (best <= kRounded ? kRoundedStepsWithoutGain : kStepsWithoutGain)) break;

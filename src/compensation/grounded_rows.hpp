@@ -65,7 +65,7 @@ class GroundedRows final : public CrosstalkInversion {
   void follow_sources() noexcept;
   void find_row_currents() noexcept;
   double iterate() noexcept;
-  double iterate_with_mixing(double best) noexcept;
+  double iterate_with_mixing(double best, int damped_steps) noexcept;
   void choose_step() noexcept;
   void take_step() noexcept;
   void keep() noexcept;
