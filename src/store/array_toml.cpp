@@ -103,6 +103,7 @@ void read_readout(ConfigFile& file, ArrayDescription& array) {
   file.require("readout.adc_bits");
   file.integer("readout.adc_bits", readout.adc_bits);
   file.number("readout.adc_noise_counts", readout.adc_noise_counts);
+  file.number("readout.supply_noise", readout.supply_noise);
   if (!file.is_text("readout.adc_reference_v", "supply")) {
     file.number("readout.adc_reference_v", readout.adc_reference_v);
   }
@@ -196,8 +197,8 @@ std::string array_to_toml(const ArrayDescription& array) {
     text += fmt::format("taxel_area_mm2 = {:.15g}\n", *array.taxel_area_m2 * kSquareMillimetresPerSquareMetre);
   }
   text += "\n[readout]\n" + circuit_toml(readout);
-  text += fmt::format("adc_bits = {}\nadc_noise_counts = {}\nadc_reference_v = {}\n", readout.adc_bits,
-                      readout.adc_noise_counts,
+  text += fmt::format("adc_bits = {}\nadc_noise_counts = {}\nsupply_noise = {}\nadc_reference_v = {}\n",
+                      readout.adc_bits, readout.adc_noise_counts, readout.supply_noise,
                       readout.adc_reference_v ? fmt::format("{}", *readout.adc_reference_v) : "\"supply\"");
   if (readout.supply_v) text += fmt::format("supply_v = {}\n", *readout.supply_v);
   text += fmt::format("pressure_raises_reading = {}\n", readout.pressure_raises_reading);
