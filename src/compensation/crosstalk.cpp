@@ -7,6 +7,7 @@
 
 #include "compensation/grounded_divider.hpp"
 #include "compensation/proportional.hpp"
+#include "compensation/supply_error.hpp"
 #include "compensation/virtual_ground.hpp"
 
 namespace dermis::compensation {
@@ -46,8 +47,14 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
 Result<Compensator> Compensator::create(const ArrayDescription& array) {
   Inversion inversion = make_crosstalk_inversion(array);
   if (!inversion) return inversion.error();
-  return Compensator(std::move(*inversion));
+  return Compensator(std::move(*inversion), std::make_unique<SupplyError>(array));
 }
+
+Compensator::Compensator(std::unique_ptr<CrosstalkInversion> inversion, std::unique_ptr<SupplyError> supply_error)
+    : inversion_(std::move(inversion)), supply_error_(std::move(supply_error)) {}
+Compensator::Compensator(Compensator&&) noexcept = default;
+Compensator& Compensator::operator=(Compensator&&) noexcept = default;
+Compensator::~Compensator() = default;
 
 void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
   conductance.time = conditioned.time;
@@ -65,6 +72,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   const InversionResult result = inversion_->invert(conditioned.ratio, conductance.siemens);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+  supply_error_->add(conductance.siemens, conductance.sigma_siemens);
   if (result.solved) return;
   conductance.status |= FrameStatus::not_converged;
   std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);

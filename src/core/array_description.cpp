@@ -8,6 +8,7 @@
 namespace dermis {
 namespace {
 
+constexpr double kMostSupplyNoise = 0.1;
 constexpr int kMaxAdcBits = 24;  // Counts are kept in float, which holds 24 bits exactly.
 
 bool is_positive(double value) {
@@ -78,6 +79,9 @@ Status validate_readout(const ArrayDescription& array) {
     return bad_input("readout.supply_v: must be more than 0 V");
   }
   if (!is_positive(readout.adc_noise_counts)) return bad_input("readout.adc_noise_counts: must be more than 0");
+  if (!(readout.supply_noise >= 0.0 && readout.supply_noise <= kMostSupplyNoise)) {
+    return bad_input("readout.supply_noise: must be 0 to 0.1");
+  }
   if (readout.circuit == Circuit::none || readout.circuit == Circuit::automatic) return Done{};
   if (readout.idle_columns == IdleColumns::floating && readout.circuit != Circuit::divider) {
     return bad_input("readout.idle_columns: belongs to circuit = \"divider\"");

@@ -67,6 +67,8 @@ void read_readout(ConfigFile& file, std::size_t rows, std::size_t cols, Readout&
   read_resistors(file, "readout.load_ohm", readout.circuit, cols, readout.load_ohm);
   file.require("readout.adc_bits");
   file.integer("readout.adc_bits", readout.adc_bits);
+  file.number("readout.adc_noise_counts", readout.adc_noise_counts);
+  file.number("readout.supply_noise", readout.supply_noise);
   if (!file.is_text("readout.adc_reference_v", "supply")) {
     file.number("readout.adc_reference_v", readout.adc_reference_v);
   }
@@ -138,7 +140,8 @@ std::string array_to_toml(const ArrayDescription& array) {
     text += fmt::format("drive_ohm = {}\nload_ohm = {}\n", resistors_toml(readout.drive_ohm),
                         resistors_toml(readout.load_ohm));
   }
-  text += fmt::format("adc_bits = {}\nadc_reference_v = {}\n", readout.adc_bits,
+  text += fmt::format("adc_bits = {}\nadc_noise_counts = {}\nsupply_noise = {}\nadc_reference_v = {}\n",
+                      readout.adc_bits, readout.adc_noise_counts, readout.supply_noise,
                       readout.adc_reference_v ? fmt::format("{}", *readout.adc_reference_v) : "\"supply\"");
   if (readout.supply_v) text += fmt::format("supply_v = {}\n", *readout.supply_v);
   text += fmt::format("pressure_raises_reading = {}\n", readout.pressure_raises_reading);

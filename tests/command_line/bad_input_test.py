@@ -249,7 +249,7 @@ class ModelFile(SmallArray):
     def test_a_header_that_was_changed(self):
         whole = self.model.read_bytes()
         changed = self.work / "model"
-        for old, new in ((b"dermis model 1", b"dermis model 9"), (b"rows = 4", b"rows = 3"),
+        for old, new in ((b"dermis model 2", b"dermis model 9"), (b"rows = 4", b"rows = 3"),
                          (b"networks.gain", b"networks.gone"), (b"F64", b"F32")):
             with self.subTest(new):
                 self.assertIn(old, whole)

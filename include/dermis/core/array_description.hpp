@@ -56,6 +56,7 @@ struct Readout {
   std::vector<double> column_segment_ohm;  ///< Of each column line, from one taxel to the next [ohm], >= 0.
   int adc_bits = 12;                       ///< Resolution [bit], 1 ... 24.
   double adc_noise_counts = 1.0;           ///< Standard deviation of a reading, rounding included [counts], > 0.
+  double supply_noise = 0.0;               ///< Relative standard deviation of the measured supply, 0 ... 0.1.
   std::optional<double> adc_reference_v;   ///< Full scale of the ADC [V], > 0; empty: the supply itself (ratiometric).
   std::optional<double> supply_v;          ///< Nominal supply [V], > 0, for frames that carry none.
   bool pressure_raises_reading = true;     ///< false: the reading falls with pressure, and 1 - ratio is used.
