@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/fault_inversion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::compensation {
+namespace {
+
+constexpr int kMaxRounds = 12;
+constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
+
+bool is_modelled(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
+  return array.rows + array.cols <= kMostLines && readout.circuit != Circuit::none && readout.row_segment_ohm.empty() && readout.column_segment_ohm.empty() &&
+         readout.column_switch_ohm.empty() && readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
+}
+
+}  // namespace
+
+FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_ratio)
+    : array_(array),
+      tolerance_(tolerance_ratio),
+      masked_(array.taxel_count()),
+      unknown_(array.taxel_count()),
+      measured_(array.taxel_count()),
+      equivalent_(array.taxel_count()),
+      healthy_ratio_(array.taxel_count()),
+      faulty_ratio_(array.taxel_count()) {
+  if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
+  supplied_rows_.reserve(array.rows);
+}
+
+void FaultInversion::set_faults(std::span<const LineFault> faults) {
+  any_ = !faults.empty();
+  std::fill(masked_.begin(), masked_.end(), std::uint8_t{0});
+  std::fill(unknown_.begin(), unknown_.end(), std::uint8_t{0});
+  supplied_rows_.clear();
+  if (circuits_) circuits_->faulty.restore();
+  for (const LineFault& fault : faults) add(fault);
+}
+
+void FaultInversion::add(const LineFault& fault) {
+  LumpedCircuit* const circuit = circuits_ ? &circuits_->faulty : nullptr;
+  switch (fault.kind) {
+    case LineFaultKind::silent_row:
+      mask_row(fault.place, true);
+      if (circuit != nullptr) circuit->open_row(fault.place);
+      break;
+    case LineFaultKind::silent_column:
+      mask_column(fault.place, true);
+      if (circuit != nullptr) circuit->open_column(fault.place);
+      break;
+    case LineFaultKind::supplied_row:  // its readings subtracted, it is a row with an ideal driver
+      mask_row(fault.place, false);
+      supplied_rows_.push_back(fault.place);
+      if (circuit != nullptr && array_.readout.circuit != Circuit::flexitac) circuit->set_drive_ohm(fault.place, 0.0);
+      break;
+    case LineFaultKind::supplied_column:
+      mask_column(fault.place, true);
+      if (circuit != nullptr) circuit->tie_column_to_supply(fault.place);
+      break;
+    case LineFaultKind::shorted_rows:
+      mask_row(fault.place, false);
+      mask_row(fault.place + 1, false);
+      if (circuit != nullptr) circuit->join_rows(fault.place);
+      break;
+    case LineFaultKind::shorted_columns:
+      mask_column(fault.place, false);
+      mask_column(fault.place + 1, false);
+      if (circuit != nullptr) circuit->join_columns(fault.place);
+      break;
+    case LineFaultKind::stuck_taxel: mask(fault.place, true); break;
+    case LineFaultKind::dead_taxel: mask(fault.place, false); break;
+    case LineFaultKind::drifting_driver:
+      if (circuit != nullptr) circuit->set_drive_ohm(fault.place, fault.drive_ohm);
+      break;
+  }
+}
+
+void FaultInversion::mask_row(std::size_t row, bool unknown) {
+  for (std::size_t col = 0; col < array_.cols; ++col) mask(array_.index(row, col), unknown);
+}
+
+void FaultInversion::mask_column(std::size_t col, bool unknown) {
+  for (std::size_t row = 0; row < array_.rows; ++row) mask(array_.index(row, col), unknown);
+}
+
+void FaultInversion::mask(std::size_t taxel, bool unknown) {
+  masked_[taxel] = 1;
+  if (unknown) unknown_[taxel] = 1;
+}
+
+InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<const double> ratio,
+                                       std::span<double> siemens) noexcept {
+  subtract_supplied_rows(ratio);
+  std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
+  estimate_unknown(equivalent_);
+  InversionResult result = healthy.invert(equivalent_, siemens);
+  if (!circuits_) return result;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    estimate_unknown(siemens);
+    circuits_->healthy.solve(siemens, healthy_ratio_);
+    circuits_->faulty.solve(siemens, faulty_ratio_);
+    result.residual_ratio = misfit(siemens);
+    result.solved = result.residual_ratio <= tolerance_;
+    if (result.solved) break;
+    for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+      const double known = measured_[taxel] - faulty_ratio_[taxel];
+      equivalent_[taxel] = healthy_ratio_[taxel] + (unknown_[taxel] != 0 ? 0.0 : known);
+    }
+    static_cast<void>(healthy.invert(equivalent_, siemens));
+  }
+  return result;
+}
+
+/// A row at the supply adds to every scan what its own scan reads (superposition).
+void FaultInversion::subtract_supplied_rows(std::span<const double> ratio) noexcept {
+  std::copy(ratio.begin(), ratio.end(), measured_.begin());
+  for (const std::size_t supplied : supplied_rows_) {
+    for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+      if (taxel / array_.cols != supplied) measured_[taxel] -= ratio[array_.index(supplied, taxel % array_.cols)];
+    }
+  }
+}
+
+void FaultInversion::estimate_unknown(std::span<double> values) const noexcept {
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    for (std::size_t col = 0; col < array_.cols; ++col) {
+      const std::size_t taxel = array_.index(row, col);
+      if (unknown_[taxel] == 0) continue;
+      double sum = 0.0;
+      double count = 0.0;
+      const auto take = [&](bool exists, std::size_t neighbour) {
+        if (!exists || unknown_[neighbour] != 0) return;
+        sum += values[neighbour];
+        count += 1.0;
+      };
+      take(row > 0, taxel - array_.cols);
+      take(row + 1 < array_.rows, taxel + array_.cols);
+      take(col > 0, taxel - 1);
+      take(col + 1 < array_.cols, taxel + 1);
+      values[taxel] = count > 0.0 ? sum / count : 0.0;
+    }
+  }
+}
+
+double FaultInversion::misfit(std::span<const double> siemens) const noexcept {
+  double largest = 0.0;
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (unknown_[taxel] != 0) continue;
+    const double difference = measured_[taxel] - faulty_ratio_[taxel];
+    if (siemens[taxel] == 0.0 && difference < 0.0) continue;
+    largest = std::max(largest, std::abs(difference));
+  }
+  return largest;
+}
+
+}  // namespace dermis::compensation
