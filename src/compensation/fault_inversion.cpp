@@ -13,8 +13,9 @@ constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, t
 
 bool is_modelled(const ArrayDescription& array) {
   const Readout& readout = array.readout;
-  return array.rows + array.cols <= kMostLines && readout.circuit != Circuit::none && readout.row_segment_ohm.empty() && readout.column_segment_ohm.empty() &&
-         readout.column_switch_ohm.empty() && readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
+  return array.rows + array.cols <= kMostLines && readout.circuit != Circuit::none && readout.row_segment_ohm.empty() &&
+         readout.column_segment_ohm.empty() && readout.column_switch_ohm.empty() &&
+         readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
 }
 
 }  // namespace
@@ -30,6 +31,7 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
       faulty_ratio_(array.taxel_count()) {
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
   supplied_rows_.reserve(array.rows);
+  shorted_.reserve(array.rows + array.cols);
 }
 
 void FaultInversion::set_faults(std::span<const LineFault> faults) {
@@ -37,6 +39,7 @@ void FaultInversion::set_faults(std::span<const LineFault> faults) {
   std::fill(masked_.begin(), masked_.end(), std::uint8_t{0});
   std::fill(unknown_.begin(), unknown_.end(), std::uint8_t{0});
   supplied_rows_.clear();
+  shorted_.clear();
   if (circuits_) circuits_->faulty.restore();
   for (const LineFault& fault : faults) add(fault);
 }
@@ -64,11 +67,13 @@ void FaultInversion::add(const LineFault& fault) {
     case LineFaultKind::shorted_rows:
       mask_row(fault.place, false);
       mask_row(fault.place + 1, false);
+      shorted_.push_back({true, fault.place, ratio_of_shorted_lines(array_, true, fault.place)});
       if (circuit != nullptr) circuit->join_rows(fault.place);
       break;
     case LineFaultKind::shorted_columns:
       mask_column(fault.place, false);
       mask_column(fault.place + 1, false);
+      shorted_.push_back({false, fault.place, ratio_of_shorted_lines(array_, false, fault.place)});
       if (circuit != nullptr) circuit->join_columns(fault.place);
       break;
     case LineFaultKind::stuck_taxel: mask(fault.place, true); break;
@@ -95,6 +100,7 @@ void FaultInversion::mask(std::size_t taxel, bool unknown) {
 InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<const double> ratio,
                                        std::span<double> siemens) noexcept {
   subtract_supplied_rows(ratio);
+  average_shorted_lines();
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
   estimate_unknown(equivalent_);
   InversionResult result = healthy.invert(equivalent_, siemens);
@@ -104,15 +110,36 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
     circuits_->healthy.solve(siemens, healthy_ratio_);
     circuits_->faulty.solve(siemens, faulty_ratio_);
     result.residual_ratio = misfit(siemens);
-    result.solved = result.residual_ratio <= tolerance_;
-    if (result.solved) break;
-    for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-      const double known = measured_[taxel] - faulty_ratio_[taxel];
-      equivalent_[taxel] = healthy_ratio_[taxel] + (unknown_[taxel] != 0 ? 0.0 : known);
-    }
-    static_cast<void>(healthy.invert(equivalent_, siemens));
+    if (correct() <= tolerance_) return result;
+    result.solved = healthy.invert(equivalent_, siemens).solved;
   }
+  result.solved = false;
   return result;
+}
+
+/// T' from both circuits at the present conductances; the largest change of it.
+double FaultInversion::correct() noexcept {
+  double change = 0.0;
+  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
+    const double known = unknown_[taxel] != 0 ? 0.0 : measured_[taxel] - faulty_ratio_[taxel];
+    const double corrected = healthy_ratio_[taxel] + known;
+    change = std::max(change, std::abs(corrected - equivalent_[taxel]));
+    equivalent_[taxel] = corrected;
+  }
+  return change;
+}
+
+/// Two lines that are one node give the same reading twice, in a known ratio; what differs is noise.
+void FaultInversion::average_shorted_lines() noexcept {
+  for (const ShortedLines& pair : shorted_) {
+    for (std::size_t k = 0; k < (pair.rows ? array_.cols : array_.rows); ++k) {
+      double& first = measured_[pair.rows ? array_.index(pair.first, k) : array_.index(k, pair.first)];
+      double& second = measured_[pair.rows ? array_.index(pair.first + 1, k) : array_.index(k, pair.first + 1)];
+      const double fitted = (pair.ratio * first + second) / (pair.ratio * pair.ratio + 1.0);
+      first = pair.ratio * fitted;
+      second = fitted;
+    }
+  }
 }
 
 /// A row at the supply adds to every scan what its own scan reads (superposition).

@@ -44,11 +44,19 @@ class FaultInversion {
     LumpedCircuit faulty;
   };
 
+  struct ShortedLines {
+    bool rows;
+    std::size_t first;
+    double ratio;  ///< Reading of the first line over that of the second.
+  };
+
   void add(const LineFault& fault);
   void mask_row(std::size_t row, bool unknown);
   void mask_column(std::size_t col, bool unknown);
   void mask(std::size_t taxel, bool unknown);
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
+  void average_shorted_lines() noexcept;
+  double correct() noexcept;
   void estimate_unknown(std::span<double> values) const noexcept;
   [[nodiscard]] double misfit(std::span<const double> siemens) const noexcept;
 
@@ -59,6 +67,7 @@ class FaultInversion {
   std::vector<std::uint8_t> masked_;   // [taxels]
   std::vector<std::uint8_t> unknown_;  // [taxels]
   std::vector<std::size_t> supplied_rows_;
+  std::vector<ShortedLines> shorted_;
   std::vector<double> measured_;       // T without what supplied rows add [taxels]
   std::vector<double> equivalent_;     // T' [taxels]
   std::vector<double> healthy_ratio_;  // [taxels]

@@ -41,8 +41,8 @@ constexpr double kSameCount = 1e-3;
 constexpr double kLeastOthers = 4.0;  // interior readings that tell how often a reading repeats
 constexpr int kStuckHealChanges = 5;
 
-constexpr double kDriftMemory = 0.999;  // per frame
-constexpr double kDriftSigmas = 8.0;
+constexpr double kDriftMemory = 0.9998;  // per frame
+constexpr double kDriftSigmas = 6.0;
 constexpr double kLeastDriftSag = 0.03;    // of the typical loaded line
 constexpr double kLeastDriftShare = 0.25;  // of the driver's resistance
 constexpr double kPressedShare = 3.0;      // of the unloaded conductance
@@ -148,10 +148,11 @@ class LineFaultMonitor::Implementation {
   void judge_shorted_lines(const Inputs& in, bool row);
   void judge_supplied_columns(const Inputs& in);
   void judge_supplied_rows(const Inputs& in);
+  void judge_supplied_row(const Inputs& in, std::size_t row, bool is_known);
+  [[nodiscard]] bool reads_doubled(const Inputs& in, std::size_t row) const;
   void judge_drivers(const Inputs& in);
   void judge_driver(const Inputs& in, std::size_t line, double common_share);
   [[nodiscard]] double silence_evidence(double reading, double expected, double sigma) const;
-  [[nodiscard]] double pair_ratio(bool row, std::size_t line) const;
   [[nodiscard]] double counts(const Inputs& in, std::size_t taxel) const;
   [[nodiscard]] bool is_pressed(const Inputs& in, std::size_t taxel) const;
 
@@ -181,6 +182,7 @@ class LineFaultMonitor::Implementation {
   std::vector<PageTest> pinned_;
   std::vector<PageTest> unpinned_;
   std::vector<PressCount> supplied_;
+  std::vector<PageTest> doubled_;
   std::vector<double> supplied_last_;
   std::vector<DriftFit> drift_;
 };
@@ -212,6 +214,7 @@ LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
       pinned_(array.cols),
       unpinned_(array.cols),
       supplied_(array.rows),
+      doubled_(array.rows),
       supplied_last_(taxels()),
       drift_(array.driven_lines()) {
   assert(unloaded_siemens.size() == taxels());
@@ -443,22 +446,13 @@ void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
   }
 }
 
-/// Reading of a line over that of the next one where both are one node: their drivers work against each other.
-double LineFaultMonitor::Implementation::pair_ratio(bool row, std::size_t line) const {
-  const Readout& readout = array_.readout;
-  if (readout.circuit == Circuit::none || row != driven_is_row() || readout.idle_rows == IdleRows::floating) return 1.0;
-  const double first = readout.drive_ohm[line];
-  const double second = readout.drive_ohm[line + 1];
-  return first > 0.0 && second > 0.0 ? second / first : 1.0;
-}
-
 void LineFaultMonitor::Implementation::judge_shorted_lines(const Inputs& in, bool row) {
   const LineFaultKind kind = row ? LineFaultKind::shorted_rows : LineFaultKind::shorted_columns;
   const std::span<const double> ratio = in.conditioned.ratio;
   const double sigma = in.conditioned.sigma_ratio;
   const std::uint8_t line_causes = row ? kRowCause : kColumnCause;
   for (std::size_t line = 0; line + 1 < lines(row); ++line) {
-    const double pair = pair_ratio(row, line);
+    const double pair = ratio_of_shorted_lines(array_, row, line);
     int equal = 0;
     int different = 0;
     for (std::size_t k = 0; k < across(row); ++k) {
@@ -528,45 +522,101 @@ void LineFaultMonitor::Implementation::judge_supplied_columns(const Inputs& in) 
   }
 }
 
+/// A row at the supply reads the least in every column, as the others hold its reading too. What speaks for it is a
+/// press on it that shows alike in most other rows; or an unloaded array that reads twice what it should, but for this
+/// row.
 void LineFaultMonitor::Implementation::judge_supplied_rows(const Inputs& in) {
   if (array_.readout.circuit == Circuit::flexitac || array_.rows < 3) return;
+  const auto known = std::find_if(faults_.begin(), faults_.end(),
+                                  [](const LineFault& fault) { return fault.kind == LineFaultKind::supplied_row; });
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    const bool is_known = known != faults_.end() && known->place == row;
+    if (is_known || known == faults_.end()) judge_supplied_row(in, row, is_known);
+    if (changed_ && !is_known && is_found(LineFaultKind::supplied_row, row)) return;
+  }
+}
+
+void LineFaultMonitor::Implementation::judge_supplied_row(const Inputs& in, std::size_t row, bool is_known) {
   const std::span<const double> ratio = in.conditioned.ratio;
   const double sigma = in.conditioned.sigma_ratio;
-  for (std::size_t row = 0; row < array_.rows; ++row) {
-    int shows = 0;
-    int fails = 0;
-    std::size_t columns = 0;
-    for (std::size_t col = 0; col < array_.cols; ++col) {
-      const std::size_t own = array_.index(row, col);
-      if ((causes_[own] & ~kRowCause) != 0 || in.conditioned.taxels[own] != TaxelStatus::ok) continue;
-      if (ratio[own] < kPressedSigmas * sigma + kPressedShare * unloaded_ratio_[own]) continue;
-      const double deviation = std::hypot(sigma, sigma, kEqualShare * ratio[own]);
-      double least = 1.0;
-      for (std::size_t other = 0; other < array_.rows; ++other) {
-        const std::size_t taxel = array_.index(other, col);
-        const bool unusable = other == row || (causes_[taxel] & (kRowCause | kStuckCause)) != 0;
-        if (!unusable) least = std::min(least, ratio[taxel]);
-      }
-      if (least < ratio[own] - kDifferentSigmas * deviation) ++fails;
-      if (least < ratio[own] - kEqualSigmas * deviation) continue;
-      ++columns;
-      if (std::abs(ratio[own] - supplied_last_[own]) < kNewPress * ratio[own]) continue;
-      supplied_last_[own] = ratio[own];
-      ++shows;
+  int shows = 0;
+  int fails = 0;
+  bool any = false;
+  for (std::size_t col = 0; col < array_.cols; ++col) {
+    const std::size_t own = array_.index(row, col);
+    if ((causes_[own] & ~kRowCause) != 0 || in.conditioned.taxels[own] != TaxelStatus::ok) continue;
+    if (ratio[own] < kPressedSigmas * sigma + kPressedShare * unloaded_ratio_[own]) continue;
+    const double deviation = std::hypot(sigma, sigma, kEqualShare * ratio[own]);
+    std::size_t others = 0;
+    std::size_t alike = 0;
+    bool least = true;
+    for (std::size_t other = 0; other < array_.rows; ++other) {
+      const std::size_t taxel = array_.index(other, col);
+      if (other == row || (causes_[taxel] & (kRowCause | kStuckCause)) != 0) continue;
+      const double more = ratio[taxel] - ratio[own];
+      ++others;
+      if (more < kPressedShare * unloaded_ratio_[taxel] + kEqualSigmas * deviation) ++alike;
+      if (more < -kEqualSigmas * deviation) least = false;
+      if (more < -kDifferentSigmas * deviation) ++fails;
     }
-    PressCount& count = supplied_[row];
-    const bool is_known = is_found(LineFaultKind::supplied_row, row);
-    count.against = fails > 0 ? count.against + 1 : (columns > 0 ? 0 : count.against);
-    if (fails > 0 && (!is_known || count.against >= kLineFrames)) {
-      if (is_known) healed(LineFaultKind::supplied_row, row);
-      count.presses = 0;
-    } else if (!is_known && 2 * columns < array_.cols) {  // else it may be an even load
-      count.add(shows, in.frame, in.conditioned.time);
-      if (count.presses < kSupplyPresses) continue;
-      found(LineFaultKind::supplied_row, row, count.first_frame, count.first_time);
-      count.against = 0;
-    }
+    if (!least || 2 * alike < others || others < 2) continue;
+    any = true;
+    if (std::abs(ratio[own] - supplied_last_[own]) < kNewPress * ratio[own]) continue;
+    supplied_last_[own] = ratio[own];
+    ++shows;
   }
+  PressCount& count = supplied_[row];
+  const Nanos time = in.conditioned.time;
+  count.against = fails > 0 ? count.against + 1 : (any ? 0 : count.against);
+  if (is_known) {
+    if (count.against < kLineFrames) return;
+    healed(LineFaultKind::supplied_row, row);
+    count = PressCount();
+    return;
+  }
+  if (fails > 0) count.presses = 0;
+  count.add(shows, in.frame, time);
+  doubled_[row].add(fails == 0 && reads_doubled(in, row) ? kEvidence : kMostAgainst * kEvidence, in.frame, time);
+  if (count.presses >= kSupplyPresses) {
+    found(LineFaultKind::supplied_row, row, count.first_frame, count.first_time);
+  } else if (doubled_[row].decides(kHealFrames)) {
+    found(LineFaultKind::supplied_row, row, doubled_[row].first_frame, doubled_[row].first_time);
+  } else {
+    return;
+  }
+  count.against = 0;
+  doubled_[row].restart();
+}
+
+/// The others read their unloaded value and this row's on top; temperature alone cannot do that.
+bool LineFaultMonitor::Implementation::reads_doubled(const Inputs& in, std::size_t row) const {
+  constexpr double kLeastOthersShare = 1.5;
+  constexpr double kMostOthersShare = 2.8;
+  double own = 0.0;
+  double own_unloaded = 0.0;
+  double least_share = kMostOthersShare;
+  double most_share = 0.0;
+  for (std::size_t other = 0; other < array_.rows; ++other) {
+    double sum = 0.0;
+    double unloaded = 0.0;
+    for (std::size_t col = 0; col < array_.cols; ++col) {
+      const std::size_t taxel = array_.index(other, col);
+      if (causes_[taxel] != 0) continue;
+      sum += in.conditioned.ratio[taxel];
+      unloaded += unloaded_ratio_[taxel];
+    }
+    if (!(unloaded > kPressedSigmas * in.conditioned.sigma_ratio)) continue;
+    if (other == row) {
+      own = sum;
+      own_unloaded = unloaded;
+      continue;
+    }
+    least_share = std::min(least_share, sum / unloaded);
+    most_share = std::max(most_share, sum / unloaded);
+  }
+  const double own_share = own_unloaded > 0.0 ? own / own_unloaded : 0.0;
+  return own_share > kUnloadedShare && most_share < kMostOthersShare && least_share > kLeastOthersShare &&
+         least_share > kLeastOthersShare * own_share;
 }
 
 /// A driver whose resistance is higher by d than the inversion takes it to be makes all conductances of its line come
@@ -620,7 +670,9 @@ void LineFaultMonitor::Implementation::judge_driver(const Inputs& in, std::size_
     variance += in.conductance.sigma_siemens[taxel] * in.conductance.sigma_siemens[taxel];
   }
   DriftFit& fit = drift_[line];
-  if (!(variance > 0.0)) return;
+  double line_unloaded = 0.0;
+  for (std::size_t k = 0; k < array_.sensed_lines(); ++k) line_unloaded += unloaded_siemens_[at(by_row, line, k)];
+  if (!(variance > 0.0) || line_siemens_[line] < kPressedShare * line_unloaded) return;
   const double slope = expected * line_siemens_[line];
   if (fit.frames == 0) {
     fit.first_frame = in.frame;

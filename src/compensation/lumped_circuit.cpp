@@ -200,4 +200,14 @@ void LumpedCircuit::read(std::size_t scan, std::size_t driven, std::size_t first
   }
 }
 
+double ratio_of_shorted_lines(const ArrayDescription& array, bool rows, std::size_t line) noexcept {
+  const Readout& readout = array.readout;
+  const bool driven = rows == (readout.circuit != Circuit::flexitac);
+  const bool opposed = readout.circuit == Circuit::flexitac || readout.idle_rows == IdleRows::grounded;
+  if (readout.circuit == Circuit::none || !driven || !opposed) return 1.0;
+  const double first = readout.drive_ohm[line];
+  const double second = readout.drive_ohm[line + 1];
+  return first > 0.0 && second > 0.0 ? second / first : 1.0;
+}
+
 }  // namespace dermis::compensation

@@ -66,4 +66,8 @@ class LumpedCircuit {
   std::vector<double> right_;      // [nodes, right_columns]: sources, then probes; then the voltages
 };
 
+/// Reading of a row (or column) over that of the next one where both are one node: grounded idle rows work against the
+/// driven one through their drivers.
+[[nodiscard]] double ratio_of_shorted_lines(const ArrayDescription& array, bool rows, std::size_t line) noexcept;
+
 }  // namespace dermis::compensation

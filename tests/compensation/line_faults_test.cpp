@@ -102,7 +102,7 @@ std::string names(std::span<const LineFault> faults, const ArrayDescription& arr
 TEST(Explore, Faults) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
     for (const char* scene : {"multitouch", "idle"}) {
-      for (int k = 0; k < 12; ++k) {
+      for (int k = 0; k < 12; ++k) { if (getenv("K") && atoi(getenv("K")) != k) continue;
         ArrayDescription array = make_array(16, 16, circuit);
         LineFaults faults;
         faults.from_frame = 20;
@@ -116,17 +116,17 @@ TEST(Explore, Faults) {
         if (k == 7) faults.shorted_columns = {5};
         if (k == 8) faults.dead_taxels = {"r5c5"};
         if (k == 9) faults.stuck_taxels = {"r5c5"};
-        if (k == 10) { faults.drifting_rows = {5}; faults.drift_ohm = 40; }
-        Rig rig(array, scene, 3, 400, faults);
+        if (k == 10) { faults.drifting_rows = {5}; faults.drift_ohm = 60; }
+        Rig rig(array, scene, 3, getenv("N") ? atoi(getenv("N")) : 400, faults);
         std::printf("%s %s %d: ", to_string(circuit), scene, k);
         int before = 0;
         int unsolved = 0;
         while (rig.next()) {
-          if (rig.changes() != before && rig.changes() < 8) std::printf("@%zu %s| ", rig.frame() - 1, names(rig.monitor().faults(), array).c_str());
+          if (rig.changes() != before && rig.changes() < 5) std::printf("@%zu %.200s| ", rig.frame() - 1, names(rig.monitor().faults(), array).c_str());
           before = rig.changes();
           if (has(rig.conductance().status, FrameStatus::not_converged)) ++unsolved;
         }
-        std::printf(" changes %d unsolved %d end: %s\n", rig.changes(), unsolved, names(rig.monitor().faults(), array).c_str());
+        std::printf(" changes %d unsolved %d end: %.200s\n", rig.changes(), unsolved, names(rig.monitor().faults(), array).c_str());
       }
     }
   }
