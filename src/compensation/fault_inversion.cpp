@@ -9,6 +9,8 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxRounds = 12;
+constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end
+constexpr double kMostRise = 1.0;        // of the logarithm above both neighbours
 constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
 
 bool is_modelled(const ArrayDescription& array) {
@@ -49,11 +51,13 @@ void FaultInversion::add(const LineFault& fault) {
   switch (fault.kind) {
     case LineFaultKind::silent_row:
       mask_row(fault.place, true);
-      if (circuit != nullptr) circuit->open_row(fault.place);
+      if (circuit != nullptr) fault.grounded ? circuit->ground_row(fault.place) : circuit->open_row(fault.place);
       break;
     case LineFaultKind::silent_column:
       mask_column(fault.place, true);
-      if (circuit != nullptr) circuit->open_column(fault.place);
+      if (circuit != nullptr) {
+        fault.grounded ? circuit->ground_column(fault.place) : circuit->open_column(fault.place);
+      }
       break;
     case LineFaultKind::supplied_row:  // its readings subtracted, it is a row with an ideal driver
       mask_row(fault.place, false);
@@ -152,24 +156,34 @@ void FaultInversion::subtract_supplied_rows(std::span<const double> ratio) noexc
   }
 }
 
+/// From the neighbours that are known, in logarithms: half way between their mean and the parabola through two on
+/// either side, which a Gaussian contact is. Beside one neighbour its value; the mean where the row and the column
+/// tell.
 void FaultInversion::estimate_unknown(std::span<double> values) const noexcept {
-  for (std::size_t row = 0; row < array_.rows; ++row) {
-    for (std::size_t col = 0; col < array_.cols; ++col) {
-      const std::size_t taxel = array_.index(row, col);
-      if (unknown_[taxel] == 0) continue;
-      double sum = 0.0;
-      double count = 0.0;
-      const auto take = [&](bool exists, std::size_t neighbour) {
-        if (!exists || unknown_[neighbour] != 0) return;
-        sum += values[neighbour];
-        count += 1.0;
-      };
-      take(row > 0, taxel - array_.cols);
-      take(row + 1 < array_.rows, taxel + array_.cols);
-      take(col > 0, taxel - 1);
-      take(col + 1 < array_.cols, taxel + 1);
-      values[taxel] = count > 0.0 ? sum / count : 0.0;
-    }
+  const double floor = kFloorShare * *std::max_element(values.begin(), values.end());
+  if (!(floor > 0.0)) return;
+  const auto along = [&](std::size_t taxel, std::size_t place, std::size_t size, std::size_t stride) {
+    const auto known = [&](bool exists, std::size_t neighbour) -> std::optional<double> {
+      if (!exists || unknown_[neighbour] != 0) return std::nullopt;
+      return std::log(std::max(values[neighbour], floor));
+    };
+    const std::optional<double> before = known(place > 0, taxel - stride);
+    const std::optional<double> after = known(place + 1 < size, taxel + stride);
+    if (!before || !after) return before ? before : after;
+    const std::optional<double> far_before = known(place > 1, taxel - 2 * stride);
+    const std::optional<double> far_after = known(place + 2 < size, taxel + 2 * stride);
+    if (!far_before || !far_after) return std::optional<double>(0.5 * (*before + *after));
+    const double mean = 0.5 * (*before + *after);
+    const double parabola = (4.0 * (*before + *after) - (*far_before + *far_after)) / 6.0;
+    const double between = 0.5 * (mean + parabola);
+    return std::optional<double>(std::min(between, std::max(*before, *after) + kMostRise));
+  };
+  for (std::size_t taxel = 0; taxel < values.size(); ++taxel) {
+    if (unknown_[taxel] == 0) continue;
+    const std::optional<double> down = along(taxel, taxel / array_.cols, array_.rows, array_.cols);
+    const std::optional<double> right = along(taxel, taxel % array_.cols, array_.cols, 1);
+    const double count = (down ? 1.0 : 0.0) + (right ? 1.0 : 0.0);
+    values[taxel] = count > 0.0 ? std::exp((down.value_or(0.0) + right.value_or(0.0)) / count) : 0.0;
   }
 }
 

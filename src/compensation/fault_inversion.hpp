@@ -18,10 +18,9 @@ namespace dermis::compensation {
 ///
 ///   T' = T + T_healthy(G) - T_faulty(G),   G <- invert_healthy(T')
 ///
-/// Taxels whose conductance no reading tells (on a silent line, stuck) are estimated: the mean of their neighbours that
-/// are known. An open row still couples the columns through them: eliminating it adds -g g^T / sum(g) to their
-/// equations. For resistive lines, switches, real amplifiers,
-/// `none` and arrays of more than 256 lines there is no faulty circuit: the readings of
+/// Taxels whose conductance no reading tells (on a silent line, stuck) are estimated from their neighbours. An open row
+/// still couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. For resistive lines,
+/// switches, real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit: the readings of
 /// faulty lines are replaced by those of their neighbours, and the rest is solved as if healthy.
 class FaultInversion {
  public:

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "compensation/lumped_circuit.hpp"
@@ -48,6 +49,9 @@ constexpr double kLeastDriftShare = 0.25;  // of the driver's resistance
 constexpr double kPressedShare = 3.0;      // of the unloaded conductance
 constexpr std::size_t kContactReach = 3;   // taxels beside a pressed one that may be touched too
 constexpr int kDriftFrames = 30;
+constexpr double kDoubtOfEstimate = 0.5;  // relative, of a conductance between neighbours
+constexpr double kGroundEvidence = 10.0;
+constexpr double kMostGround = 3.0;  // evidence of one taxel in one frame
 
 /// Page's cumulative sum: evidence for a change, back to 0 whenever there is more against it.
 struct PageTest {
@@ -127,6 +131,13 @@ class LineFaultMonitor::Implementation {
     bool solved;
   };
 
+  /// Untouched taxels of a line.
+  struct Untouched {
+    double siemens = 0.0;
+    double expected = 0.0;
+    double variance = 0.0;
+  };
+
   [[nodiscard]] std::size_t taxels() const { return array_.taxel_count(); }
   [[nodiscard]] std::size_t lines(bool row) const { return row ? array_.rows : array_.cols; }
   [[nodiscard]] std::size_t across(bool row) const { return row ? array_.cols : array_.rows; }
@@ -136,6 +147,7 @@ class LineFaultMonitor::Implementation {
   [[nodiscard]] bool driven_is_row() const { return array_.readout.circuit != Circuit::flexitac; }
 
   [[nodiscard]] bool is_found(LineFaultKind kind, std::size_t place) const;
+  [[nodiscard]] bool has_kind(LineFaultKind kind) const;
   void found(LineFaultKind kind, std::size_t place, std::size_t frame, Nanos time, double drive_ohm = 0.0);
   void healed(LineFaultKind kind, std::size_t place);
   void mark_faulty_taxels();
@@ -148,10 +160,13 @@ class LineFaultMonitor::Implementation {
   void judge_shorted_lines(const Inputs& in, bool row);
   void judge_supplied_columns(const Inputs& in);
   void judge_supplied_rows(const Inputs& in);
-  void judge_supplied_row(const Inputs& in, std::size_t row, bool is_known);
+  void judge_supplied_row(const Inputs& in, std::size_t row, bool is_known, bool is_least);
   [[nodiscard]] bool reads_doubled(const Inputs& in, std::size_t row) const;
   void judge_drivers(const Inputs& in);
-  void judge_driver(const Inputs& in, std::size_t line, double common_share);
+  void judge_driver(const Inputs& in, std::size_t line);
+  void judge_ground(const Inputs& in, LineFault& fault);
+  void find_untouched(const Inputs& in);
+  [[nodiscard]] Untouched untouched_on(const Inputs& in, bool row, std::size_t line) const;
   [[nodiscard]] double silence_evidence(double reading, double expected, double sigma) const;
   [[nodiscard]] double counts(const Inputs& in, std::size_t taxel) const;
   [[nodiscard]] bool is_pressed(const Inputs& in, std::size_t taxel) const;
@@ -168,7 +183,8 @@ class LineFaultMonitor::Implementation {
 
   // Why a taxel's reading is not its own: bits of kRowCause ...
   std::vector<std::uint8_t> causes_;
-  std::vector<std::uint8_t> untouched_;  // for judge_drivers [taxels]
+  std::vector<std::uint8_t> untouched_;  // [taxels]
+  double common_share_ = 0.0;
 
   std::vector<PageTest> silent_[2];  // [0] columns, [1] rows
   std::vector<PageTest> alive_[2];
@@ -266,10 +282,14 @@ bool LineFaultMonitor::Implementation::is_found(LineFaultKind kind, std::size_t 
                      [&](const LineFault& fault) { return fault.kind == kind && fault.place == place; });
 }
 
+bool LineFaultMonitor::Implementation::has_kind(LineFaultKind kind) const {
+  return std::any_of(faults_.begin(), faults_.end(), [&](const LineFault& fault) { return fault.kind == kind; });
+}
+
 void LineFaultMonitor::Implementation::found(LineFaultKind kind, std::size_t place, std::size_t frame, Nanos time,
                                              double drive_ohm) {
   if (faults_.size() == faults_.capacity()) return;
-  faults_.push_back({kind, place, frame, time, drive_ohm});
+  faults_.push_back({kind, place, frame, time, drive_ohm, 0.0, false});
   mark_faulty_taxels();
   changed_ = true;
 }
@@ -448,6 +468,8 @@ void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
 
 void LineFaultMonitor::Implementation::judge_shorted_lines(const Inputs& in, bool row) {
   const LineFaultKind kind = row ? LineFaultKind::shorted_rows : LineFaultKind::shorted_columns;
+  // A line at the supply makes the readings of others alike.
+  if (has_kind(LineFaultKind::supplied_row) || has_kind(LineFaultKind::supplied_column)) return;
   const std::span<const double> ratio = in.conditioned.ratio;
   const double sigma = in.conditioned.sigma_ratio;
   const std::uint8_t line_causes = row ? kRowCause : kColumnCause;
@@ -526,17 +548,27 @@ void LineFaultMonitor::Implementation::judge_supplied_columns(const Inputs& in) 
 /// press on it that shows alike in most other rows; or an unloaded array that reads twice what it should, but for this
 /// row.
 void LineFaultMonitor::Implementation::judge_supplied_rows(const Inputs& in) {
-  if (array_.readout.circuit == Circuit::flexitac || array_.rows < 3) return;
-  const auto known = std::find_if(faults_.begin(), faults_.end(),
-                                  [](const LineFault& fault) { return fault.kind == LineFaultKind::supplied_row; });
+  if (array_.readout.circuit == Circuit::flexitac || array_.rows < 3 || has_kind(LineFaultKind::supplied_column))
+    return;
+  std::size_t least_row = 0;
+  double least_sum = std::numeric_limits<double>::infinity();
   for (std::size_t row = 0; row < array_.rows; ++row) {
-    const bool is_known = known != faults_.end() && known->place == row;
-    if (is_known || known == faults_.end()) judge_supplied_row(in, row, is_known);
-    if (changed_ && !is_known && is_found(LineFaultKind::supplied_row, row)) return;
+    if (is_found(LineFaultKind::silent_row, row)) continue;
+    double sum = 0.0;
+    for (std::size_t col = 0; col < array_.cols; ++col) sum += in.conditioned.ratio[array_.index(row, col)];
+    if (sum >= least_sum) continue;
+    least_row = row;
+    least_sum = sum;
+  }
+  const bool any_known = has_kind(LineFaultKind::supplied_row);
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    const bool is_known = is_found(LineFaultKind::supplied_row, row);
+    if (is_known || !any_known) judge_supplied_row(in, row, is_known, row == least_row);
   }
 }
 
-void LineFaultMonitor::Implementation::judge_supplied_row(const Inputs& in, std::size_t row, bool is_known) {
+void LineFaultMonitor::Implementation::judge_supplied_row(const Inputs& in, std::size_t row, bool is_known,
+                                                          bool is_least) {
   const std::span<const double> ratio = in.conditioned.ratio;
   const double sigma = in.conditioned.sigma_ratio;
   int shows = 0;
@@ -575,8 +607,9 @@ void LineFaultMonitor::Implementation::judge_supplied_row(const Inputs& in, std:
     return;
   }
   if (fails > 0) count.presses = 0;
-  count.add(shows, in.frame, time);
-  doubled_[row].add(fails == 0 && reads_doubled(in, row) ? kEvidence : kMostAgainst * kEvidence, in.frame, time);
+  if (is_least) count.add(shows, in.frame, time);
+  doubled_[row].add(is_least && fails == 0 && reads_doubled(in, row) ? kEvidence : kMostAgainst * kEvidence, in.frame,
+                    time);
   if (count.presses >= kSupplyPresses) {
     found(LineFaultKind::supplied_row, row, count.first_frame, count.first_time);
   } else if (doubled_[row].decides(kHealFrames)) {
@@ -619,31 +652,25 @@ bool LineFaultMonitor::Implementation::reads_doubled(const Inputs& in, std::size
          least_share > kLeastOthersShare * own_share;
 }
 
-/// A driver whose resistance is higher by d than the inversion takes it to be makes all conductances of its line come
-/// out too small by the factor 1 - d Y, Y the sum of the line as it comes out. Seen on the taxels that nothing presses,
-/// against those of the other lines, which share their temperature.
-void LineFaultMonitor::Implementation::judge_drivers(const Inputs& in) {
-  const Readout& readout = array_.readout;
-  const bool is_modelled = readout.circuit == Circuit::transimpedance || readout.circuit == Circuit::flexitac ||
-                           (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded);
-  if (!in.solved || !is_modelled) return;
+/// Taxels that nothing touches, for comparison: none nearby reads more than an unloaded one. Their conductance over the
+/// unloaded one is common to the array (temperature).
+void LineFaultMonitor::Implementation::find_untouched(const Inputs& in) {
   const bool by_row = driven_is_row();
-  std::fill(untouched_.begin(), untouched_.end(), std::uint8_t{1});
-  for (std::size_t line = 0; line < array_.driven_lines(); ++line) {
-    for (std::size_t k = 0; k < array_.sensed_lines(); ++k) {
-      const std::size_t taxel = at(by_row, line, k);
-      const double pressed_siemens =
-          kPressedShare * unloaded_siemens_[taxel] + kDifferentSigmas * in.conductance.sigma_siemens[taxel];
-      const bool pressed = in.conductance.siemens[taxel] > pressed_siemens;
-      if (causes_[taxel] != 0 || unloaded_siemens_[taxel] <= 0.0) untouched_[taxel] = 0;
-      if (!pressed) continue;
-      const std::size_t from = k - std::min(k, kContactReach);
-      const std::size_t to = std::min(k + kContactReach, array_.sensed_lines() - 1);
-      for (std::size_t near = from; near <= to; ++near) {
-        untouched_[at(by_row, line, near)] = 0;
-        if (line > 0) untouched_[at(by_row, line - 1, near)] = 0;
-        if (line + 1 < array_.driven_lines()) untouched_[at(by_row, line + 1, near)] = 0;
-      }
+  for (std::size_t taxel = 0; taxel < taxels(); ++taxel) {
+    untouched_[taxel] = causes_[taxel] == 0 && unloaded_siemens_[taxel] > 0.0 ? 1 : 0;
+  }
+  for (std::size_t taxel = 0; taxel < taxels(); ++taxel) {
+    const double most =
+        kPressedShare * unloaded_siemens_[taxel] + kDifferentSigmas * in.conductance.sigma_siemens[taxel];
+    if (in.conductance.siemens[taxel] <= most) continue;
+    const std::size_t line = by_row ? taxel / array_.cols : taxel % array_.cols;
+    const std::size_t place = by_row ? taxel % array_.cols : taxel / array_.cols;
+    const std::size_t from = place - std::min(place, kContactReach);
+    const std::size_t to = std::min(place + kContactReach, array_.sensed_lines() - 1);
+    for (std::size_t near = from; near <= to; ++near) {
+      untouched_[at(by_row, line, near)] = 0;
+      if (line > 0) untouched_[at(by_row, line - 1, near)] = 0;
+      if (line + 1 < array_.driven_lines()) untouched_[at(by_row, line + 1, near)] = 0;
     }
   }
   double siemens = 0.0;
@@ -653,35 +680,89 @@ void LineFaultMonitor::Implementation::judge_drivers(const Inputs& in) {
     siemens += in.conductance.siemens[taxel];
     unloaded += unloaded_siemens_[taxel];
   }
-  if (!(siemens > 0.0)) return;
-  for (std::size_t line = 0; line < array_.driven_lines(); ++line) judge_driver(in, line, siemens / unloaded);
+  common_share_ = unloaded > 0.0 ? siemens / unloaded : 0.0;
 }
 
-void LineFaultMonitor::Implementation::judge_driver(const Inputs& in, std::size_t line, double common_share) {
-  const bool by_row = driven_is_row();
-  double siemens = 0.0;
-  double expected = 0.0;
-  double variance = 0.0;
-  for (std::size_t k = 0; k < array_.sensed_lines(); ++k) {
-    const std::size_t taxel = at(by_row, line, k);
+LineFaultMonitor::Implementation::Untouched LineFaultMonitor::Implementation::untouched_on(const Inputs& in, bool row,
+                                                                                           std::size_t line) const {
+  Untouched sums;
+  for (std::size_t k = 0; k < across(row); ++k) {
+    const std::size_t taxel = at(row, line, k);
     if (untouched_[taxel] == 0) continue;
-    siemens += in.conductance.siemens[taxel];
-    expected += common_share * unloaded_siemens_[taxel];
-    variance += in.conductance.sigma_siemens[taxel] * in.conductance.sigma_siemens[taxel];
+    sums.siemens += in.conductance.siemens[taxel];
+    sums.expected += common_share_ * unloaded_siemens_[taxel];
+    sums.variance += in.conductance.sigma_siemens[taxel] * in.conductance.sigma_siemens[taxel];
   }
+  return sums;
+}
+
+/// Whether a silent line is open or shorted to 0 V: shorted, it takes current from the lines that cross it where it is
+/// pressed (as its neighbours are), and untouched taxels on those read less, by the share `taken`.
+void LineFaultMonitor::Implementation::judge_ground(const Inputs& in, LineFault& fault) {
+  const bool row = fault.kind == LineFaultKind::silent_row;
+  const bool is_driven = row == driven_is_row();
+  const bool was_grounded = fault.grounded;
+  for (std::size_t k = 0; k < across(row); ++k) {
+    const std::size_t taxel = at(row, fault.place, k);
+    const double pressed = in.conductance.siemens[taxel] - common_share_ * unloaded_siemens_[taxel];
+    if (pressed < kPressedShare * unloaded_siemens_[taxel]) continue;
+    double taken = 0.0;
+    if (!is_driven) {
+      const double drive_ohm = array_.readout.drive_ohm[k];
+      taken = drive_ohm * pressed / (1.0 + drive_ohm * line_siemens_[k]);
+    } else if (array_.readout.circuit != Circuit::transimpedance) {
+      double crossing_siemens = 1.0 / array_.readout.load_ohm[k] + pressed;
+      for (std::size_t other = 0; other < lines(row); ++other)
+        crossing_siemens += in.conductance.siemens[at(row, other, k)];
+      taken = pressed / crossing_siemens;
+    }
+    const Untouched seen = untouched_on(in, !row, k);
+    const double difference = taken * seen.expected;
+    const double doubt = kDoubtOfEstimate * difference;
+    const double variance = seen.variance + doubt * doubt;
+    if (!(variance > 0.0)) continue;
+    const double missing = seen.expected - seen.siemens + (was_grounded ? difference : 0.0);
+    fault.ground_evidence +=
+        std::clamp(difference * (missing - 0.5 * difference) / variance, -kMostGround, kMostGround);
+  }
+  fault.ground_evidence = std::clamp(fault.ground_evidence, -kEvidence, kEvidence);
+  fault.grounded = fault.ground_evidence > (was_grounded ? -kGroundEvidence : kGroundEvidence);
+  if (fault.grounded != was_grounded) changed_ = true;
+}
+
+/// A driver whose resistance is higher by d than the inversion takes it to be makes all conductances of its line come
+/// out too small by the factor 1 - d Y, Y the sum of the line as it comes out. Seen on untouched taxels against those
+/// of the other lines, while there is no other fault.
+void LineFaultMonitor::Implementation::judge_drivers(const Inputs& in) {
+  const Readout& readout = array_.readout;
+  const bool is_modelled = readout.circuit == Circuit::transimpedance || readout.circuit == Circuit::flexitac ||
+                           (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded);
+  if (!in.solved || !is_modelled) return;
+  const bool is_faulty = std::any_of(causes_.begin(), causes_.end(), [](std::uint8_t cause) { return cause != 0; });
+  find_untouched(in);
+  for (LineFault& fault : faults_) {
+    if (fault.kind == LineFaultKind::silent_row || fault.kind == LineFaultKind::silent_column) judge_ground(in, fault);
+  }
+  for (std::size_t line = 0; line < array_.driven_lines() && !is_faulty; ++line) judge_driver(in, line);
+}
+
+void LineFaultMonitor::Implementation::judge_driver(const Inputs& in, std::size_t line) {
+  const bool by_row = driven_is_row();
+  double unloaded = 0.0;
+  for (std::size_t k = 0; k < array_.sensed_lines(); ++k) unloaded += unloaded_siemens_[at(by_row, line, k)];
+  if (line_siemens_[line] < kPressedShare * unloaded) return;
+  const Untouched seen = untouched_on(in, by_row, line);
+  if (!(seen.variance > 0.0)) return;
   DriftFit& fit = drift_[line];
-  double line_unloaded = 0.0;
-  for (std::size_t k = 0; k < array_.sensed_lines(); ++k) line_unloaded += unloaded_siemens_[at(by_row, line, k)];
-  if (!(variance > 0.0) || line_siemens_[line] < kPressedShare * line_unloaded) return;
-  const double slope = expected * line_siemens_[line];
+  const double slope = seen.expected * line_siemens_[line];
   if (fit.frames == 0) {
     fit.first_frame = in.frame;
     fit.first_time = in.conditioned.time;
   }
   ++fit.frames;
-  fit.normal = kDriftMemory * fit.normal + slope * slope / variance;
-  fit.moment = kDriftMemory * fit.moment + slope * (expected - siemens) / variance;
-  fit.loads = kDriftMemory * fit.loads + slope * slope / variance * line_siemens_[line] * line_siemens_[line];
+  fit.normal = kDriftMemory * fit.normal + slope * slope / seen.variance;
+  fit.moment = kDriftMemory * fit.moment + slope * (seen.expected - seen.siemens) / seen.variance;
+  fit.loads = kDriftMemory * fit.loads + slope * slope / seen.variance * line_siemens_[line] * line_siemens_[line];
   if (fit.frames < kDriftFrames || !(fit.normal > 0.0)) return;
 
   const double rise_ohm = fit.moment / fit.normal;

@@ -36,6 +36,7 @@ void LumpedCircuit::restore() {
   }
   supply_siemens_.assign(nodes_, 0.0);
   joint_siemens_.assign(nodes_, 0.0);
+  ground_siemens_.assign(nodes_, 0.0);
   is_open_.assign(nodes_, false);
 }
 
@@ -45,6 +46,16 @@ void LumpedCircuit::open_row(std::size_t row) {
 
 void LumpedCircuit::open_column(std::size_t col) {
   open_line(array_.rows + col);
+}
+
+void LumpedCircuit::ground_row(std::size_t row) {
+  open_line(row);
+  ground_siemens_[row] = kShortSiemens;
+}
+
+void LumpedCircuit::ground_column(std::size_t col) {
+  open_line(array_.rows + col);
+  ground_siemens_[array_.rows + col] = kShortSiemens;
 }
 
 void LumpedCircuit::open_line(std::size_t node) {
@@ -117,7 +128,7 @@ void LumpedCircuit::assemble(std::span<const double> siemens) noexcept {
   std::fill(assembled_.begin(), assembled_.end(), 0.0);
   std::swap(matrix_, assembled_);  // connect() writes into matrix_
   for (std::size_t node = 0; node < nodes_; ++node) {
-    matrix_[node * nodes_ + node] += kLeakSiemens + supply_siemens_[node];
+    matrix_[node * nodes_ + node] += kLeakSiemens + supply_siemens_[node] + ground_siemens_[node];
     if (joint_siemens_[node] > 0.0) connect(node, node + 1, joint_siemens_[node]);
   }
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {

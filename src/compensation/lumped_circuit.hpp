@@ -24,6 +24,8 @@ class LumpedCircuit {
 
   void open_row(std::size_t row);
   void open_column(std::size_t col);
+  void ground_row(std::size_t row);
+  void ground_column(std::size_t col);
   void tie_column_to_supply(std::size_t col);
   void join_rows(std::size_t row);     ///< With the next row.
   void join_columns(std::size_t col);  ///< With the next column.
@@ -59,6 +61,7 @@ class LumpedCircuit {
   std::vector<double> load_siemens_;    // [sensed lines]
   std::vector<double> supply_siemens_;  // from every node to the supply [nodes]
   std::vector<double> joint_siemens_;   // from every node to the next one [nodes]
+  std::vector<double> ground_siemens_;  // from every node to 0 V, beside driver and load [nodes]
   std::vector<bool> is_open_;           // [nodes]
   std::size_t right_columns_;
   std::vector<double> matrix_;     // [nodes, nodes], the lower triangle; then its Cholesky factor

@@ -94,7 +94,7 @@ std::string names(std::span<const LineFault> faults, const ArrayDescription& arr
   std::string text;
   for (const LineFault& fault : faults) {
     text += place_name(fault, array) + "(kind " + std::to_string(static_cast<int>(fault.kind)) + ", frame " +
-            std::to_string(fault.frame) + ", " + std::to_string(fault.drive_ohm) + ") ";
+            std::to_string(fault.frame) + ", " + std::to_string(fault.drive_ohm + fault.ground_evidence) + ") ";
   }
   return text;
 }
@@ -128,6 +128,38 @@ TEST(Explore, Faults) {
         }
         std::printf(" changes %d unsolved %d end: %.200s\n", rig.changes(), unsolved, names(rig.monitor().faults(), array).c_str());
       }
+    }
+  }
+}
+
+TEST(Explore, Accuracy) {
+  for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
+    for (int k = 0; k < 9; ++k) { if (getenv("K") && atoi(getenv("K")) != k) continue;
+      ArrayDescription array = make_array(16, 16, circuit);
+      LineFaults faults;
+      if (k == 0) faults.open_rows = {5};
+      if (k == 1) faults.open_columns = {5};
+      if (k == 2) faults.grounded_rows = {5};
+      if (k == 3) faults.grounded_columns = {5};
+      if (k == 4) faults.supplied_rows = {5};
+      if (k == 5) faults.supplied_columns = {5};
+      if (k == 6) faults.shorted_rows = {5};
+      if (k == 7) faults.shorted_columns = {5};
+      if (k == 8) faults.stuck_taxels = {"r5c5"};
+      Rig rig(array, "multitouch", 3, 1000, faults);
+      Rig good(array, "multitouch", 3, 1000);
+      std::vector<double> e[2];
+      while (rig.next() && good.next()) {
+        if (rig.frame() < 60) continue;
+        for (std::size_t t = 0; t < 256; ++t) {
+          if (rig.conductance().taxels[t] != TaxelStatus::ok || rig.true_siemens()[t] < 1e-4) continue;
+          e[0].push_back(std::abs(good.conductance().siemens[t] / good.true_siemens()[t] - 1.0));
+          e[1].push_back(std::abs(rig.conductance().siemens[t] / good.true_siemens()[t] - 1.0));
+        }
+      }
+      for (auto& v : e) std::sort(v.begin(), v.end());
+      const auto q = [&](int i, double p) { return e[i][static_cast<std::size_t>(p * static_cast<double>(e[i].size() - 1))]; };
+      std::printf("%s %d n %zu median %.5f %.5f %.2f p95 %.5f %.5f %.2f p99 %.2f\n", to_string(circuit), k, e[0].size(), q(0, 0.5), q(1, 0.5), q(1, .5) / q(0, .5), q(0, .95), q(1, .95), q(1, .95) / q(0, .95), q(1, .99) / q(0, .99));
     }
   }
 }

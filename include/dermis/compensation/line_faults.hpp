@@ -16,7 +16,7 @@ namespace dermis::compensation {
 
 /// What can be seen of a fault from the readings alone.
 enum class LineFaultKind {
-  silent_row,       ///< Open or shorted to 0 V, which read the same: nothing arrives from the row.
+  silent_row,       ///< Open or shorted to 0 V: nothing arrives from the row.
   silent_column,    ///< The same of a column.
   supplied_row,     ///< Shorted to the supply: every scan also holds its readings.
   supplied_column,  ///< Shorted to the supply: it reads full scale whatever is pressed.
@@ -33,6 +33,10 @@ struct LineFault {
   std::size_t frame = 0;   ///< First frame in which it showed, counted from 0.
   Nanos time{};            ///< Time of that frame.
   double drive_ohm = 0.0;  ///< drifting_driver: its resistance now [ohm].
+  /// Silent lines: log-likelihood ratio of a short to 0 V against an open line, -30 ... 30. Both read the same, but
+  /// take different currents from the other lines where they are pressed; 0 until they have been.
+  double ground_evidence = 0.0;
+  bool grounded = false;  ///< Taken to be shorted to 0 V, not open: from evidence 10 until it has fallen to -10.
 };
 
 /// "row 3", "columns 4 and 5", "taxel r3c5", "driver of row 3".
