@@ -296,6 +296,33 @@ void ConfigFile::numbers(std::string_view key, std::size_t size, std::vector<dou
   parsed_->read_list(*node, key, size, "must be a list of " + std::to_string(size) + " numbers", values);
 }
 
+void ConfigFile::counts(std::string_view key, std::vector<std::size_t>& values) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  constexpr const char* kWanted = "must be a list of whole numbers of 0 or more";
+  const toml::array* list = node->as_array();
+  if (list == nullptr) return parsed_->keep(node, key, kWanted);
+  values.clear();
+  for (const toml::node& element : *list) {
+    const toml::value<std::int64_t>* whole = element.as_integer();
+    if (whole == nullptr || whole->get() < 0) return parsed_->keep(node, key, kWanted);
+    values.push_back(static_cast<std::size_t>(whole->get()));
+  }
+}
+
+void ConfigFile::texts(std::string_view key, std::vector<std::string>& values) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  constexpr const char* kWanted = "must be a list of texts in quotes";
+  const toml::array* list = node->as_array();
+  if (list == nullptr) return parsed_->keep(node, key, kWanted);
+  values.clear();
+  for (const toml::node& element : *list) {
+    if (!element.is_string()) return parsed_->keep(node, key, kWanted);
+    values.push_back(element.as_string()->get());
+  }
+}
+
 void ConfigFile::choice(std::string_view key, const std::vector<std::string>& names, std::size_t& index) {
   const toml::node* node = parsed_->ask(key);
   if (node == nullptr) return;
