@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "compensation/grounded_divider.hpp"
+#include "compensation/grounded_rows.hpp"
 #include "compensation/proportional.hpp"
 #include "compensation/supply_error.hpp"
 #include "compensation/virtual_ground.hpp"
@@ -39,9 +39,8 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty()) return not_yet("lines with resistance");
   if (readout.circuit == Circuit::flexitac) return not_yet("readout.circuit = \"flexitac\"");
   if (readout.circuit == Circuit::transimpedance) return inversion<VirtualGround>(array);
-  if (readout.idle_columns == IdleColumns::floating) return not_yet("readout.idle_columns = \"floating\"");
   if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\" with a divider");
-  return inversion<GroundedDivider>(array, tolerance);
+  return inversion<GroundedRows>(array, tolerance);
 }
 
 Result<Compensator> Compensator::create(const ArrayDescription& array) {
