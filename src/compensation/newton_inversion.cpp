@@ -17,6 +17,7 @@ constexpr double kLongestStep = 2.0;              // of x: a factor of e^2 where
 constexpr double kShortestFraction = 1.0 / 64.0;  // of a step
 constexpr double kLeastOpenShare = 1e-9;  // of the supply that a reading leaves to its taxel; less is no solution
 constexpr double kRounding = 1e-13;       // of the largest reading: what remains of a residual in double precision
+constexpr double kRoundingMerit = 1e-9;   // below it a step that does not halve the misfits is rounding
 constexpr double kMostSiemens = 1e3;
 constexpr double kLeastOwnShare = 1e-3;  // of a taxel in its reading that the scaling of the equations counts on
 
@@ -171,7 +172,8 @@ bool NewtonInversion::step() noexcept {
   for (double fraction = 1.0; fraction >= kShortestFraction; fraction *= 0.5) {
     for (std::size_t k = 0; k < taxels; ++k) x_[k] = moved(k, trial_[k], fraction * change_[k]);
     solve_at(x_);
-    if (merit() < before) return true;
+    const double after = merit();
+    if (after < before) return after > kRoundingMerit || after < 0.5 * before;
   }
   x_ = trial_;
   solve_at(x_);
