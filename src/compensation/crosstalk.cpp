@@ -5,9 +5,10 @@
 #include <algorithm>
 #include <string>
 
-#include "compensation/grounded_divider.hpp"
+#include "compensation/grounded_rows.hpp"
 #include "compensation/proportional.hpp"
 #include "compensation/supply_error.hpp"
+#include "compensation/transposed.hpp"
 #include "compensation/virtual_ground.hpp"
 
 namespace dermis::compensation {
@@ -21,6 +22,20 @@ using Inversion = Result<std::unique_ptr<CrosstalkInversion>>;
 template <typename Kind, typename... Arguments>
 Inversion inversion(const Arguments&... arguments) {
   return std::unique_ptr<CrosstalkInversion>(std::make_unique<Kind>(arguments...));
+}
+
+/// One column driven, the others grounded, one row sensed: the divider with one load, rows and columns exchanged.
+Inversion flexitac(const ArrayDescription& array, double tolerance) {
+  ArrayDescription exchanged = array;
+  std::swap(exchanged.rows, exchanged.cols);
+  exchanged.readout.circuit = Circuit::divider;
+  exchanged.readout.idle_columns = IdleColumns::floating;
+  return std::unique_ptr<CrosstalkInversion>(
+      std::make_unique<Transposed>(std::make_unique<GroundedRows>(exchanged, tolerance), array.rows, array.cols));
+}
+
+bool has_ideal_amplifiers(const Readout& readout) {
+  return readout.column_switch_ohm.empty() && readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
 }
 
 Error not_yet(const char* what) {
@@ -37,11 +52,12 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
   if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty()) return not_yet("lines with resistance");
-  if (readout.circuit == Circuit::flexitac) return not_yet("readout.circuit = \"flexitac\"");
-  if (readout.circuit == Circuit::transimpedance) return inversion<VirtualGround>(array);
-  if (readout.idle_columns == IdleColumns::floating) return not_yet("readout.idle_columns = \"floating\"");
-  if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\" with a divider");
-  return inversion<GroundedDivider>(array, tolerance);
+  if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance);
+  if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
+    return inversion<VirtualGround>(array);
+  }
+  if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\"");
+  return inversion<GroundedRows>(array, tolerance);
 }
 
 Result<Compensator> Compensator::create(const ArrayDescription& array) {
