@@ -66,8 +66,11 @@ class PatternMaker {
 
 Precision precision_of(std::vector<double> errors) {
   std::sort(errors.begin(), errors.end());
+  double sum_of_logarithms = 0.0;
+  for (const double error : errors) sum_of_logarithms += std::log(error);
   const std::size_t last = errors.size() - 1;
-  return {errors[last / 2], errors[last * 95 / 100], errors[last]};
+  return {std::exp(sum_of_logarithms / static_cast<double>(errors.size())), errors[last / 2], errors[last * 95 / 100],
+          errors[last]};
 }
 
 /// Judges circuits that differ in their resistances.
@@ -125,12 +128,12 @@ ArrayDescription with_drive(ArrayDescription array, double drive_ohm) {
 
 /// Values of a series of `steps` values a decade (E3, E12) from `least` to `most`, with two digits as they are sold.
 std::vector<double> series(int steps, double least, double most) {
-  static const std::vector<double> e12{1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 3.9, 4.7, 5.6, 6.8, 8.2};
+  static const std::vector<double> kE12{1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 3.9, 4.7, 5.6, 6.8, 8.2};
   constexpr double kRounding = 1e-9;
   std::vector<double> values;
-  for (double decade = std::pow(10.0, std::floor(std::log10(least))); decade <= most; decade *= 10.0) {
-    for (std::size_t k = 0; k < e12.size(); k += e12.size() / static_cast<std::size_t>(steps)) {
-      const double value = decade * e12[k];
+  for (int exponent = static_cast<int>(std::floor(std::log10(least))); std::pow(10.0, exponent) <= most; ++exponent) {
+    for (std::size_t k = 0; k < kE12.size(); k += kE12.size() / static_cast<std::size_t>(steps)) {
+      const double value = std::pow(10.0, exponent) * kE12[k];
       if (value >= least * (1.0 - kRounding) && value <= most * (1.0 + kRounding)) values.push_back(value);
     }
   }
@@ -139,7 +142,7 @@ std::vector<double> series(int steps, double least, double most) {
 
 bool is_better(const LoadChoice& a, const LoadChoice& b) {
   if (!a.precision || !b.precision) return a.precision.has_value() && !b.precision.has_value();
-  return a.precision->p95 < b.precision->p95;
+  return a.precision->mean < b.precision->mean;
 }
 
 Status try_loads(const ArrayDescription& array, const std::vector<double>& ohms, Judge& judge, Advice& advice) {
@@ -159,14 +162,14 @@ Status try_loads(const ArrayDescription& array, const std::vector<double>& ohms,
 
 /// The drive resistance at which the error is kTolerableGrowth times that of ideal drivers, by bisection of its
 /// logarithm.
-Result<double> most_drive(const ArrayDescription& array, double ideal_p95, double most_ohm, Judge& judge) {
+Result<double> most_drive(const ArrayDescription& array, double ideal_mean, double most_ohm, Judge& judge) {
   double low = 1e-3;
   double high = 10.0 * most_ohm;
   while (high / low > 1.02) {
     const double ohm = std::sqrt(low * high);
     const Result<std::optional<Precision>> precision = judge.judge(with_drive(array, ohm));
     if (!precision) return precision.error();
-    const bool is_tolerable = *precision && (*precision)->p95 <= kTolerableGrowth * ideal_p95;
+    const bool is_tolerable = *precision && (*precision)->mean <= kTolerableGrowth * ideal_mean;
     (is_tolerable ? low : high) = ohm;
   }
   return low;
@@ -195,7 +198,7 @@ Result<Advice> advise(const ArrayDescription& array, double least_ohm, double mo
   if (!ideal) return ideal.error();
   advice.ideal_drivers = *ideal;
   if (!advice.ideal_drivers) return advice;
-  const Result<double> drive = most_drive(best, advice.ideal_drivers->p95, most_ohm, judge);
+  const Result<double> drive = most_drive(best, advice.ideal_drivers->mean, most_ohm, judge);
   if (!drive) return drive.error();
   advice.most_drive_ohm = *drive;
   return advice;

@@ -14,6 +14,7 @@ namespace dermis::app {
 /// 1-sigma of a conductance from the noise of the ADC in one frame, relative, over the pressed taxels of several
 /// contact patterns: a whole array pressed, a tenth of it, a row, a column, one taxel.
 struct Precision {
+  double mean = 0.0;  ///< Geometric: what is judged by.
   double median = 0.0;
   double p95 = 0.0;
   double worst = 0.0;
@@ -26,10 +27,10 @@ struct LoadChoice {
 
 struct Advice {
   std::vector<LoadChoice> loads;           ///< Rising.
-  std::size_t best = 0;                    ///< Of `loads`: the least 95th percentile.
+  std::size_t best = 0;                    ///< Of `loads`: the least mean.
   std::optional<Precision> present;        ///< With the resistances that the array has now.
   std::optional<Precision> ideal_drivers;  ///< With the best load and drivers of 0 ohm.
-  double most_drive_ohm = 0.0;  ///< With the best load: where the 95th percentile is 10 % above that of ideal drivers.
+  double most_drive_ohm = 0.0;             ///< With the best load: where the mean is 10 % above that of ideal drivers.
 };
 
 /// For taxels from `least_ohm` to `most_ohm`, log-uniform, and an ADC whose readings have a standard deviation of

@@ -26,7 +26,7 @@ std::string ohms_text(const std::vector<double>& ohms) {
 }
 
 std::string percent(double share) {
-  return fmt::format("{:.2g} %", 100.0 * share);
+  return share < 1.0 ? fmt::format("{:.2g} %", 100.0 * share) : fmt::format("{:.0f} %", 100.0 * share);
 }
 
 std::string circuit_text(const Readout& readout) {
@@ -38,14 +38,15 @@ std::string circuit_text(const Readout& readout) {
 
 std::string precision_text(const std::optional<Precision>& precision) {
   if (!precision) return "readings beyond the ADC or without a solution";
-  return fmt::format("{} for half of the pressed taxels, {} for 95 %, {} for the worst", percent(precision->median),
-                     percent(precision->p95), percent(precision->worst));
+  return fmt::format("{} in the mean, at most {} for half of the pressed taxels, {} for 95 %, {} for the worst",
+                     percent(precision->mean), percent(precision->median), percent(precision->p95),
+                     percent(precision->worst));
 }
 
 void print_table(const Advice& advice) {
   constexpr double kShownFactor = 25.0;
   const double best_ohm = advice.loads[advice.best].load_ohm;
-  fmt::print("{:>12}{:>12}{:>12}{:>12}\n", "load", "median", "95 %", "worst");
+  fmt::print("{:>12}{:>12}{:>12}{:>12}{:>12}\n", "load", "mean", "median", "95 %", "worst");
   for (const LoadChoice& choice : advice.loads) {
     if (std::abs(std::log(choice.load_ohm / best_ohm)) > std::log(kShownFactor)) continue;
     const std::string mark = choice.load_ohm == best_ohm ? "   best" : "";
@@ -53,8 +54,9 @@ void print_table(const Advice& advice) {
       fmt::print("{:>12}   readings beyond the ADC or without a solution\n", ohm_text(choice.load_ohm));
       continue;
     }
-    fmt::print("{:>12}{:>12}{:>12}{:>12}{}\n", ohm_text(choice.load_ohm), percent(choice.precision->median),
-               percent(choice.precision->p95), percent(choice.precision->worst), mark);
+    const Precision& precision = *choice.precision;
+    fmt::print("{:>12}{:>12}{:>12}{:>12}{:>12}{}\n", ohm_text(choice.load_ohm), percent(precision.mean),
+               percent(precision.median), percent(precision.p95), percent(precision.worst), mark);
   }
 }
 
@@ -73,13 +75,14 @@ void print_text(const ArrayDescription& array, const AdviseOptions& options, dou
     return;
   }
   fmt::print("Drive: the less the better. Ideal drivers: {}.\n", precision_text(advice.ideal_drivers));
-  fmt::print("       Up to {} the 95 % figure grows by less than 10 %; now the drivers have {}.\n",
+  fmt::print("       Up to {} the mean grows by less than 10 %; now the drivers have {}.\n",
              ohm_text(advice.most_drive_ohm), ohms_text(readout.drive_ohm));
 }
 
 nlohmann::ordered_json precision_json(const std::optional<Precision>& precision) {
   if (!precision) return nullptr;
-  return {{"median", precision->median}, {"p95", precision->p95}, {"worst", precision->worst}};
+  return {
+      {"mean", precision->mean}, {"median", precision->median}, {"p95", precision->p95}, {"worst", precision->worst}};
 }
 
 void print_json(const Advice& advice, double noise_ratio) {
