@@ -174,7 +174,7 @@ HWY_INLINE Vec column_noise(D d, const GroundedRowsState& state, const double* H
   return hn::Div(hn::LoadU(d, sigma + col), hn::LoadU(d, &state.column_part[col]));
 }
 
-void noise_kernel(const GroundedRowsState& state, const double* HWY_RESTRICT sigma, double* HWY_RESTRICT out) {
+void noise_kernel(GroundedRowsState& state, const double* HWY_RESTRICT sigma, double* HWY_RESTRICT out) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   const Vec one = hn::Set(d, 1.0);
@@ -184,8 +184,16 @@ void noise_kernel(const GroundedRowsState& state, const double* HWY_RESTRICT sig
     columns = hn::MulAdd(base, base, columns);
   }
   const Vec all_columns = hn::Set(d, hn::GetLane(hn::SumOfLanes(d, columns)));
-  double rows = 0.0;
-  for (const double gain : state.line_gain) rows += gain * gain;
+  double all_rows = 0.0;
+  for (std::size_t row = 0; row < state.rows; ++row) {
+    Vec returned = hn::Zero(d);
+    for (std::size_t k = row * state.stride; k < (row + 1) * state.stride; k += lanes) {
+      returned = hn::MulAdd(hn::LoadU(d, &state.siemens[k]), hn::LoadU(d, &state.shunted[k]), returned);
+    }
+    const double own = state.line_gain[row] - state.drive_ohm[row] * hn::GetLane(hn::SumOfLanes(d, returned));
+    state.noise_gain[row] = own * own;
+    all_rows += own * own;
+  }
   for (std::size_t col = 0; col < state.stride; col += lanes) {
     const Vec base = column_noise(d, state, sigma, col);
     const Vec square = hn::Mul(base, base);
@@ -193,14 +201,14 @@ void noise_kernel(const GroundedRowsState& state, const double* HWY_RESTRICT sig
     const Vec ohm = hn::LoadU(d, &state.column_ohm[col]);
     for (std::size_t row = 0; row < state.rows; ++row) {
       const std::size_t k = row * state.stride + col;
-      const double gain = state.line_gain[row] * state.line_gain[row];
+      const double gain = state.noise_gain[row];
       const Vec g = hn::LoadU(d, &state.siemens[k]);
       const Vec p = hn::Mul(hn::Set(d, state.drive_ohm[row]), g);
       const Vec w = hn::Mul(ohm, g);
       const Vec own = hn::Add(one, hn::Add(p, w));
       Vec variance = hn::Mul(hn::Mul(hn::Set(d, gain), square), hn::Mul(own, own));
       variance = hn::MulAdd(hn::Mul(p, p), hn::Mul(hn::Set(d, gain), other_columns), variance);
-      variance = hn::MulAdd(hn::Mul(w, w), hn::Mul(hn::Set(d, rows - gain), square), variance);
+      variance = hn::MulAdd(hn::Mul(w, w), hn::Mul(hn::Set(d, all_rows - gain), square), variance);
       hn::StoreU(hn::Sqrt(variance), d, out + k);
     }
   }
@@ -242,6 +250,7 @@ GroundedRowsState::GroundedRowsState(std::size_t row_count, std::size_t col_coun
       coupling(cols * stride),
       returned(rows * stride),
       line_gain(rows),
+      noise_gain(rows),
       column_part(stride),
       column_scale(stride) {}
 
@@ -275,7 +284,7 @@ void advance(GroundedRowsState& state) noexcept {
   HWY_DYNAMIC_DISPATCH(advance_kernel)(state);
 }
 
-void spread_noise(const GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept {
+void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept {
   HWY_DYNAMIC_DISPATCH(noise_kernel)(state, sigma.data(), out.data());
 }
 
