@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <type_traits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simulation/grounded_divider_forward.cpp"
@@ -16,7 +15,6 @@ HWY_BEFORE_NAMESPACE();
 namespace dermis::simulation::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr std::size_t kMostLines = 64;
 constexpr std::size_t kMostLanes = 16;
 
 /// Rows of `stride` values: zeros fill up the columns to whole vectors.
@@ -25,11 +23,11 @@ struct Workspace {
   std::size_t rows;
   std::size_t cols;
   std::size_t stride;
-  HWY_ALIGN Real siemens[kMostLines * kMostLines];   // G
-  HWY_ALIGN Real weighted[kMostLines * kMostLines];  // diag(Rd / a) G, later the readings
-  HWY_ALIGN Real inverse[kMostLines * kMostLines];   // C, then its inverse
-  HWY_ALIGN Real line[kMostLines];
-  Real line_ratio[kMostLines];  // 1 / a
+  HWY_ALIGN Real siemens[kMostFastLines * kMostFastLines];   // G
+  HWY_ALIGN Real weighted[kMostFastLines * kMostFastLines];  // diag(Rd / a) G, later the readings
+  HWY_ALIGN Real inverse[kMostFastLines * kMostFastLines];   // C, then its inverse
+  HWY_ALIGN Real line[kMostFastLines];
+  Real line_ratio[kMostFastLines];  // 1 / a
 };
 
 /// Rows row ... row + Rows - 1 of a b, one vector wide: a's element (i, l) stands at a[i * row_step + l * col_step].
@@ -65,15 +63,16 @@ HWY_INLINE void multiply(D d, const Real* HWY_RESTRICT a, std::size_t row_step, 
 }
 
 template <class D, typename Real = hn::TFromD<D>>
-HWY_INLINE void load(D d, const Real* drive_ohm, const Real* HWY_RESTRICT siemens, Workspace<Real>& work) {
+HWY_INLINE void load(D d, const double* drive_ohm, const Real* HWY_RESTRICT siemens, Workspace<Real>& work) {
   for (std::size_t row = 0; row < work.rows; ++row) {
     Real* const line = work.siemens + row * work.stride;
     std::fill(std::copy_n(siemens + row * work.cols, work.cols, line), line + work.stride, Real{0});
     hn::Vec<D> sum = hn::Zero(d);
     for (std::size_t col = 0; col < work.stride; col += hn::Lanes(d)) sum = hn::Add(sum, hn::Load(d, line + col));
-    const Real ratio = 1 / (1 + drive_ohm[row] * hn::GetLane(hn::SumOfLanes(d, sum)));
+    const Real ohm = static_cast<Real>(drive_ohm[row]);
+    const Real ratio = 1 / (1 + ohm * hn::GetLane(hn::SumOfLanes(d, sum)));
     work.line_ratio[row] = ratio;
-    const auto weight = hn::Set(d, drive_ohm[row] * ratio);
+    const auto weight = hn::Set(d, ohm * ratio);
     for (std::size_t col = 0; col < work.stride; col += hn::Lanes(d)) {
       hn::Store(hn::Mul(weight, hn::Load(d, line + col)), d, work.weighted + row * work.stride + col);
     }
@@ -82,7 +81,7 @@ HWY_INLINE void load(D d, const Real* drive_ohm, const Real* HWY_RESTRICT siemen
 
 /// -C, whose sign spares negating a product, into `inverse`.
 template <class D, typename Real = hn::TFromD<D>>
-HWY_INLINE void eliminate_rows(D d, const Real* HWY_RESTRICT load_siemens, Workspace<Real>& work) {
+HWY_INLINE void eliminate_rows(D d, const double* load_ohm, Workspace<Real>& work) {
   multiply(d, work.weighted, 1, work.stride, work.siemens, work.cols, work.rows, work.stride, work.inverse);
   for (std::size_t col = 0; col < work.stride; col += hn::Lanes(d)) {
     hn::Vec<D> sum = hn::Zero(d);
@@ -92,7 +91,7 @@ HWY_INLINE void eliminate_rows(D d, const Real* HWY_RESTRICT load_siemens, Works
     hn::Store(sum, d, work.line + col);
   }
   for (std::size_t col = 0; col < work.cols; ++col) {
-    work.inverse[col * work.stride + col] -= load_siemens[col] + work.line[col];
+    work.inverse[col * work.stride + col] -= work.line[col] + 1 / static_cast<Real>(load_ohm[col]);
   }
 }
 
@@ -133,7 +132,7 @@ HWY_INLINE void invert(D d, Workspace<Real>& work) {
 }
 
 template <typename Real>
-void find_ratios(const Real* drive_ohm, const Real* load_siemens, const Real* siemens, std::size_t rows,
+void find_ratios(const double* drive_ohm, const double* load_ohm, const Real* siemens, std::size_t rows,
                  std::size_t cols, Real* ratio) {
   const hn::CappedTag<Real, kMostLanes> d;
   Workspace<Real> work;
@@ -141,7 +140,7 @@ void find_ratios(const Real* drive_ohm, const Real* load_siemens, const Real* si
   work.cols = cols;
   work.stride = (cols + hn::Lanes(d) - 1) / hn::Lanes(d) * hn::Lanes(d);
   load(d, drive_ohm, siemens, work);
-  eliminate_rows(d, load_siemens, work);
+  eliminate_rows(d, load_ohm, work);
   invert(d, work);
   multiply(d, work.siemens, work.stride, 1, work.inverse, rows, cols, work.stride, work.weighted);
   for (std::size_t row = 0; row < rows; ++row) {
@@ -151,14 +150,14 @@ void find_ratios(const Real* drive_ohm, const Real* load_siemens, const Real* si
   }
 }
 
-void find_ratios_float(const float* drive_ohm, const float* load_siemens, const float* siemens, std::size_t rows,
+void find_ratios_float(const double* drive_ohm, const double* load_ohm, const float* siemens, std::size_t rows,
                        std::size_t cols, float* ratio) {
-  find_ratios(drive_ohm, load_siemens, siemens, rows, cols, ratio);
+  find_ratios(drive_ohm, load_ohm, siemens, rows, cols, ratio);
 }
 
-void find_ratios_double(const double* drive_ohm, const double* load_siemens, const double* siemens, std::size_t rows,
+void find_ratios_double(const double* drive_ohm, const double* load_ohm, const double* siemens, std::size_t rows,
                         std::size_t cols, double* ratio) {
-  find_ratios(drive_ohm, load_siemens, siemens, rows, cols, ratio);
+  find_ratios(drive_ohm, load_ohm, siemens, rows, cols, ratio);
 }
 
 }  // namespace dermis::simulation::HWY_NAMESPACE
@@ -170,30 +169,27 @@ namespace dermis::simulation {
 HWY_EXPORT(find_ratios_float);
 HWY_EXPORT(find_ratios_double);
 
-template <typename Real>
-GroundedDividerForward<Real>::GroundedDividerForward(const std::vector<double>& drive_ohm,
-                                                     const std::vector<double>& load_ohm) {
-  assert(drive_ohm.size() <= kMostLines && load_ohm.size() <= kMostLines);
-  for (const double ohm : drive_ohm) drive_ohm_.push_back(static_cast<Real>(ohm));
-  for (const double ohm : load_ohm) load_siemens_.push_back(static_cast<Real>(1.0 / ohm));
+bool fits_grounded_divider(const ArrayDescription& array) noexcept {
+  const Readout& readout = array.readout;
+  return readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded &&
+         readout.idle_columns == IdleColumns::loaded && readout.row_segment_ohm.empty() &&
+         readout.column_segment_ohm.empty() && std::max(array.rows, array.cols) <= kMostFastLines;
 }
 
-template <typename Real>
-void GroundedDividerForward<Real>::ratios(std::span<const Real> siemens, std::span<Real> ratio) const noexcept {
-  const std::size_t rows = drive_ohm_.size();
-  const std::size_t cols = load_siemens_.size();
-  assert(siemens.size() == rows * cols && ratio.size() == rows * cols);
-  if constexpr (std::is_same_v<Real, float>) {
-    HWY_DYNAMIC_DISPATCH(find_ratios_float)
-    (drive_ohm_.data(), load_siemens_.data(), siemens.data(), rows, cols, ratio.data());
-  } else {
-    HWY_DYNAMIC_DISPATCH(find_ratios_double)
-    (drive_ohm_.data(), load_siemens_.data(), siemens.data(), rows, cols, ratio.data());
-  }
+void grounded_divider_ratios(const Readout& readout, std::span<const float> siemens, std::span<float> ratio) noexcept {
+  assert(siemens.size() == readout.drive_ohm.size() * readout.load_ohm.size() && ratio.size() == siemens.size());
+  HWY_DYNAMIC_DISPATCH(find_ratios_float)
+  (readout.drive_ohm.data(), readout.load_ohm.data(), siemens.data(), readout.drive_ohm.size(), readout.load_ohm.size(),
+   ratio.data());
 }
 
-template class GroundedDividerForward<float>;
-template class GroundedDividerForward<double>;
+void grounded_divider_ratios(const Readout& readout, std::span<const double> siemens,
+                             std::span<double> ratio) noexcept {
+  assert(siemens.size() == readout.drive_ohm.size() * readout.load_ohm.size() && ratio.size() == siemens.size());
+  HWY_DYNAMIC_DISPATCH(find_ratios_double)
+  (readout.drive_ohm.data(), readout.load_ohm.data(), siemens.data(), readout.drive_ohm.size(), readout.load_ohm.size(),
+   ratio.data());
+}
 
 }  // namespace dermis::simulation
 #endif  // HWY_ONCE
