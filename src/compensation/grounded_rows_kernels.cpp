@@ -26,12 +26,12 @@ using Vec = hn::Vec<D>;
 constexpr double kLeastShare = 1e-6;      // What a column leaves of the supply stays positive under noise.
 constexpr double kLeastLineRatio = 0.05;  // What a row leaves of the supply, for the estimate.
 
-/// 1 / (1 - RL sum), and for one loaded column its drivers' share, the mean of Rd y weighted by Z: from Z to G.
-HWY_INLINE Vec column_scale(D d, const GroundedRowsState& state, std::size_t col, Vec sum, Vec drop) {
+/// (c): `sum` of Z; for one loaded column the mean of Rd y weighted by Z+ is `drop` over `weight`.
+HWY_INLINE Vec column_scale(D d, const GroundedRowsState& state, std::size_t col, Vec sum, Vec drop, Vec weight) {
   const Vec one = hn::Set(d, 1.0);
   Vec share = hn::NegMulAdd(hn::LoadU(d, state.column_ohm.data() + col), sum, one);
   if (state.idle_columns == IdleColumns::floating) {
-    share = hn::Sub(share, hn::IfThenElseZero(hn::Gt(sum, hn::Zero(d)), hn::Div(drop, sum)));
+    share = hn::Sub(share, hn::IfThenElseZero(hn::Gt(weight, hn::Zero(d)), hn::Div(drop, weight)));
   }
   return hn::Div(one, hn::Max(share, hn::Set(d, kLeastShare)));
 }
@@ -48,7 +48,7 @@ void estimate_kernel(GroundedRowsState& state) {
       sum = hn::Add(sum, y);
       drop = hn::MulAdd(hn::Mul(hn::Set(d, state.drive_ohm[row]), y), y, drop);
     }
-    const Vec scale = column_scale(d, state, col, sum, drop);
+    const Vec scale = column_scale(d, state, col, sum, drop, sum);
     for (std::size_t row = 0; row < state.rows; ++row) {
       const std::size_t k = row * state.stride + col;
       hn::StoreU(hn::Mul(hn::Max(hn::LoadU(d, &state.measured[k]), zero), scale), d, &state.estimate[k]);
@@ -127,6 +127,7 @@ double assess_kernel(GroundedRowsState& state) {
     const Vec part = hn::LoadU(d, &state.column_part[col]);
     Vec sum = zero;
     Vec drop = zero;
+    Vec weight = zero;
     Vec worst = zero;
     Vec spread = zero;
     for (std::size_t row = 0; row < state.rows; ++row) {
@@ -135,13 +136,15 @@ double assess_kernel(GroundedRowsState& state) {
       const Vec off_diagonal = hn::Set(d, 1.0 - 1.0 / state.line_gain[row]);
       const Vec returned = hn::LoadU(d, &state.returned[k]);
       const Vec z = hn::MulSub(gain, hn::LoadU(d, &state.explained[k]), returned);
+      const Vec positive = hn::Max(z, zero);
       sum = hn::Add(sum, z);
-      drop = hn::MulAdd(z, hn::LoadU(d, &state.dropped[k]), drop);
+      weight = hn::Add(weight, positive);
+      drop = hn::MulAdd(positive, hn::LoadU(d, &state.dropped[k]), drop);
       const Vec residual = hn::Abs(hn::NegMulAdd(hn::LoadU(d, &state.siemens[k]), part, z));
       worst = hn::Max(worst, residual);
       spread = hn::MulAdd(residual, off_diagonal, spread);
     }
-    hn::StoreU(column_scale(d, state, col, sum, drop), d, &state.column_scale[col]);
+    hn::StoreU(column_scale(d, state, col, sum, drop, weight), d, &state.column_scale[col]);
     const Vec bound = hn::Mul(hn::Add(worst, spread), hn::LoadU(d, &state.certificate_ratio[col]));
     largest = hn::Max(largest, bound);
     total = hn::Add(total, bound);
