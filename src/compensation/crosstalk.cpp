@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <string>
 
-#include "compensation/grounded_divider.hpp"
+#include "compensation/grounded_rows.hpp"
 #include "compensation/proportional.hpp"
+#include "compensation/supply_error.hpp"
+#include "compensation/transposed.hpp"
 #include "compensation/virtual_ground.hpp"
 
 namespace dermis::compensation {
@@ -20,6 +22,20 @@ using Inversion = Result<std::unique_ptr<CrosstalkInversion>>;
 template <typename Kind, typename... Arguments>
 Inversion inversion(const Arguments&... arguments) {
   return std::unique_ptr<CrosstalkInversion>(std::make_unique<Kind>(arguments...));
+}
+
+/// One column driven, the others grounded, one row sensed: the divider with one load, rows and columns exchanged.
+Inversion flexitac(const ArrayDescription& array, double tolerance) {
+  ArrayDescription exchanged = array;
+  std::swap(exchanged.rows, exchanged.cols);
+  exchanged.readout.circuit = Circuit::divider;
+  exchanged.readout.idle_columns = IdleColumns::floating;
+  return std::unique_ptr<CrosstalkInversion>(
+      std::make_unique<Transposed>(std::make_unique<GroundedRows>(exchanged, tolerance), array.rows, array.cols));
+}
+
+bool has_ideal_amplifiers(const Readout& readout) {
+  return readout.column_switch_ohm.empty() && readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
 }
 
 Error not_yet(const char* what) {
@@ -36,18 +52,25 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
   if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty()) return not_yet("lines with resistance");
-  if (readout.circuit == Circuit::flexitac) return not_yet("readout.circuit = \"flexitac\"");
-  if (readout.circuit == Circuit::transimpedance) return inversion<VirtualGround>(array);
-  if (readout.idle_columns == IdleColumns::floating) return not_yet("readout.idle_columns = \"floating\"");
-  if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\" with a divider");
-  return inversion<GroundedDivider>(array, tolerance);
+  if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance);
+  if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
+    return inversion<VirtualGround>(array);
+  }
+  if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\"");
+  return inversion<GroundedRows>(array, tolerance);
 }
 
 Result<Compensator> Compensator::create(const ArrayDescription& array) {
   Inversion inversion = make_crosstalk_inversion(array);
   if (!inversion) return inversion.error();
-  return Compensator(std::move(*inversion));
+  return Compensator(std::move(*inversion), std::make_unique<SupplyError>(array));
 }
+
+Compensator::Compensator(std::unique_ptr<CrosstalkInversion> inversion, std::unique_ptr<SupplyError> supply_error)
+    : inversion_(std::move(inversion)), supply_error_(std::move(supply_error)) {}
+Compensator::Compensator(Compensator&&) noexcept = default;
+Compensator& Compensator::operator=(Compensator&&) noexcept = default;
+Compensator::~Compensator() = default;
 
 void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
   conductance.time = conditioned.time;
@@ -65,6 +88,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   const InversionResult result = inversion_->invert(conditioned.ratio, conductance.siemens);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+  supply_error_->add(conductance.siemens, conductance.sigma_siemens);
   if (result.solved) return;
   conductance.status |= FrameStatus::not_converged;
   std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);

@@ -62,16 +62,18 @@ Result<SimulationOptions> read_simulation_options(const std::string& path) {
   SimulationOptions options;
   read_rubber(*file, options.rubber);
   read_environment(*file, options.environment);
+  read_line_faults(*file, options.faults);
   if (Status complete = file->finish(); !complete) return complete.error();
   if (Status valid = options.validate(); !valid) return bad_input(path + ": " + valid.error().message);
   return options;
 }
 
-Simulator::Simulator(Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit, const Readout& readout,
-                     const EnvironmentOptions& environment, std::uint64_t seed)
+Simulator::Simulator(Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit, std::optional<FaultyCircuit> faulty,
+                     const Readout& readout, const EnvironmentOptions& environment, std::uint64_t seed)
     : scene_(std::move(scene)),
       rubber_(std::move(rubber)),
       circuit_(std::move(circuit)),
+      faulty_(std::move(faulty)),
       adc_(readout, environment.adc_noise_lsb),
       environment_(environment),
       instruments_(Random::stream(seed, kInstrumentStream)),
@@ -89,17 +91,25 @@ Result<std::unique_ptr<Simulator>> Simulator::create(const ArrayDescription& arr
   if (!rubber) return rubber.error();
   Result<ReadoutCircuit> circuit = ReadoutCircuit::create(array);
   if (!circuit) return circuit.error();
+  std::optional<FaultyCircuit> faulty;
+  if (options.faults.any()) {
+    Result<FaultyCircuit> created = FaultyCircuit::create(array, options.faults);
+    if (!created) return created.error();
+    faulty = *std::move(created);
+  }
   return std::unique_ptr<Simulator>(new Simulator(*std::move(script), *std::move(rubber), *std::move(circuit),
-                                                  array.readout, options.environment, seed));
+                                                  std::move(faulty), array.readout, options.environment, seed));
 }
 
 Result<bool> Simulator::next(RawFrame& frame) {
   if (next_frame_ == scene_.frame_count()) return false;
-  scene_.frame(next_frame_++, truth_);
+  const std::size_t index = next_frame_++;
+  const bool is_faulty = faulty_ && faulty_->present(index);
+  scene_.frame(index, truth_);
   if (truth_.rest_s > 0.0) rubber_.press(unloaded_n_, truth_.rest_s);
   rubber_.press(truth_.force_n, truth_.hold_s);
   rubber_.read(truth_.temperature_celsius, siemens_);
-  circuit_.ratios(siemens_, ratio_);
+  is_faulty ? faulty_->ratios(siemens_, index, ratio_) : circuit_.ratios(siemens_, ratio_);
   time_s_ += truth_.rest_s + truth_.hold_s;
 
   frame.time = Nanos(std::llround(time_s_ * 1e9));
@@ -108,6 +118,7 @@ Result<bool> Simulator::next(RawFrame& frame) {
   frame.supply_v = truth_.supply_v * (1.0 + environment_.supply_noise * instruments_.normal());
   frame.counts.resize(ratio_.size());
   adc_.convert(ratio_, truth_.supply_v, instruments_, frame.counts);
+  if (is_faulty) faulty_->stick(frame.counts);
   return true;
 }
 

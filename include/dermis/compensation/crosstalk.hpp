@@ -56,11 +56,16 @@ class CrosstalkInversion {
 [[nodiscard]] Result<std::unique_ptr<CrosstalkInversion>> make_crosstalk_inversion(
     const ArrayDescription& array, const InversionOptions& options = {});
 
+class SupplyError;
+
 /// Unit 3 of the paper, the Compensation Unit: data "that deviate from the actual values by a known relationship" are
 /// put right by that relationship. Not thread-safe: one per stream.
 class Compensator {
  public:
   [[nodiscard]] static Result<Compensator> create(const ArrayDescription& array);
+  Compensator(Compensator&&) noexcept;
+  Compensator& operator=(Compensator&&) noexcept;
+  ~Compensator();
 
   /// Allocates nothing once `conductance` has the array's size.
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
@@ -70,8 +75,9 @@ class Compensator {
   [[nodiscard]] double siemens_per_ratio() const noexcept { return inversion_->siemens_per_ratio(); }
 
  private:
-  explicit Compensator(std::unique_ptr<CrosstalkInversion> inversion) : inversion_(std::move(inversion)) {}
+  Compensator(std::unique_ptr<CrosstalkInversion> inversion, std::unique_ptr<SupplyError> supply_error);
   std::unique_ptr<CrosstalkInversion> inversion_;
+  std::unique_ptr<SupplyError> supply_error_;
 };
 
 }  // namespace dermis::compensation

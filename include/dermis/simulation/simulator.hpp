@@ -16,6 +16,7 @@
 #include "dermis/core/random.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/simulation/adc.hpp"
+#include "dermis/simulation/line_faults.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 #include "dermis/simulation/rubber.hpp"
 #include "dermis/simulation/scene.hpp"
@@ -25,12 +26,13 @@ namespace dermis::simulation {
 struct SimulationOptions {
   RubberOptions rubber;
   EnvironmentOptions environment;
+  LineFaults faults;
 
   [[nodiscard]] Status validate() const;
 };
 
-/// Reads the tables [rubber] and [environment] of a TOML file; keys are the field names, absent keys keep their
-/// defaults. `rubber.carbon_percent` (5, 10 or 15) sets the defaults of that grade. Unknown keys are errors.
+/// Reads the tables [rubber], [environment] and [faults] of a TOML file; keys are the field names, absent keys keep
+/// their defaults. `rubber.carbon_percent` (5, 10 or 15) sets the defaults of that grade. Unknown keys are errors.
 [[nodiscard]] Result<SimulationOptions> read_simulation_options(const std::string& path);
 
 /// A simulated array as a source of frames: scene -> rubber -> readout circuit -> ADC.
@@ -62,12 +64,13 @@ class Simulator final : public FrameSource {
   [[nodiscard]] const ConductiveRubber& rubber() const noexcept { return rubber_; }
 
  private:
-  Simulator(Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit, const Readout& readout,
-            const EnvironmentOptions& environment, std::uint64_t seed);
+  Simulator(Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit, std::optional<FaultyCircuit> faulty,
+            const Readout& readout, const EnvironmentOptions& environment, std::uint64_t seed);
 
   Scene scene_;
   ConductiveRubber rubber_;
   ReadoutCircuit circuit_;
+  std::optional<FaultyCircuit> faulty_;
   Adc adc_;
   EnvironmentOptions environment_;
   Random instruments_;
