@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "calibration/labels.hpp"
 #include "dermis/calibration/sample_database.hpp"
@@ -18,6 +19,8 @@ namespace dermis::calibration {
 namespace {
 
 constexpr std::size_t kMaxExamples = 3;
+constexpr double kSigmas68 = 0.99446;  // a normal error is within so many standard deviations with 68 % probability
+constexpr double kSigmas95 = 1.95996;
 
 /// Errors of every estimator, gathered while the frames go by.
 struct Errors {
@@ -56,6 +59,7 @@ class EstimatorRow {
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const std::vector<std::vector<float>>& newtons() const { return newtons_; }
+  [[nodiscard]] const std::vector<float>& sigma_newtons() const { return force_.sigma_newtons; }
   [[nodiscard]] const std::vector<double>& reading() const { return reading_; }
   [[nodiscard]] const std::vector<double>& siemens() const { return pipeline_.conductance().siemens; }
 
@@ -96,6 +100,10 @@ std::size_t count_contacts(const std::vector<float>& known_newtons, std::size_t 
   return contacts;
 }
 
+bool has_finite_sigma(const JudgedTaxel& taxel) {
+  return std::isfinite(taxel.sigma_newtons);
+}
+
 double relative_error(double estimate, double truth) {
   return std::abs(estimate / truth - 1.0);
 }
@@ -111,8 +119,9 @@ void judge_taxels(std::size_t frame, const RawFrame& raw, const Sample& truth, c
         if (!std::isnan(ghost)) errors.ghost_n[k].push_back(ghost);  // no force is no ghost
       }
     } else if (newtons >= kJudgedNewtons) {
-      JudgedTaxel judged{frame, taxel, newtons, raw.temperature_celsius, raw.supply_v, contacts, {}};
+      JudgedTaxel judged{frame, taxel, newtons, raw.temperature_celsius, raw.supply_v, contacts, {}, 0.0F};
       for (const std::vector<float>& forces : row.newtons()) judged.newtons.push_back(forces[taxel]);
+      judged.sigma_newtons = row.sigma_newtons()[taxel];
       evaluation.taxels.push_back(std::move(judged));
     }
   }
@@ -163,6 +172,16 @@ std::vector<EstimatorResult> summarise_estimators(const std::vector<std::string>
   return results;
 }
 
+Coverage coverage_of(std::span<const JudgedTaxel> taxels) {
+  const std::vector<double> shares = covered_shares(taxels, std::array{kSigmas68, kSigmas95});
+  Coverage coverage;
+  if (shares.empty()) return coverage;
+  coverage.count = static_cast<std::size_t>(std::count_if(taxels.begin(), taxels.end(), has_finite_sigma));
+  coverage.share_68 = shares[0];
+  coverage.share_95 = shares[1];
+  return coverage;
+}
+
 /// Bins of the judged taxels (of the totals, where no taxel is judged) by `quantity`, a function of either that gives
 /// an optional<double>. Bins without anything in them are left out.
 template <typename Quantity>
@@ -170,7 +189,8 @@ std::vector<BreakdownBin> break_down(const Evaluation& evaluation, const std::ve
                                      Quantity quantity) {
   std::vector<BreakdownBin> bins;
   for (std::size_t b = 0; b + 1 < edges.size(); ++b) {
-    BreakdownBin bin{edges[b], edges[b + 1], {}};
+    BreakdownBin bin{edges[b], edges[b + 1], {}, {}};
+    std::vector<JudgedTaxel> taxels;
     std::vector<std::vector<double>> errors(evaluation.estimators.size());
     const auto gather = [&](const auto& judged) {
       const std::optional<double> value = quantity(judged);
@@ -178,6 +198,7 @@ std::vector<BreakdownBin> break_down(const Evaluation& evaluation, const std::ve
       for (std::size_t k = 0; k < errors.size(); ++k) {
         errors[k].push_back(relative_error(static_cast<double>(judged.newtons[k]), judged.true_newtons));
       }
+      if constexpr (std::is_same_v<std::decay_t<decltype(judged)>, JudgedTaxel>) taxels.push_back(judged);
     };
     if (evaluation.taxels.empty()) {
       std::for_each(evaluation.totals.begin(), evaluation.totals.end(), gather);
@@ -186,6 +207,7 @@ std::vector<BreakdownBin> break_down(const Evaluation& evaluation, const std::ve
     }
     if (errors.empty() || errors.front().empty()) continue;
     for (std::vector<double>& of_estimator : errors) bin.relative_error.push_back(summarise(std::move(of_estimator)));
+    bin.coverage = coverage_of(taxels);
     bins.push_back(std::move(bin));
   }
   return bins;
@@ -264,6 +286,22 @@ class ExampleChoice {
 
 }  // namespace
 
+std::vector<double> covered_shares(std::span<const JudgedTaxel> taxels, std::span<const double> sigmas) {
+  std::vector<double> shares(sigmas.size(), 0.0);
+  double count = 0.0;
+  for (const JudgedTaxel& taxel : taxels) {
+    if (!has_finite_sigma(taxel)) continue;
+    const double error = std::abs(static_cast<double>(taxel.newtons.front()) - taxel.true_newtons);
+    for (std::size_t k = 0; k < sigmas.size(); ++k) {
+      if (error <= sigmas[k] * static_cast<double>(taxel.sigma_newtons)) shares[k] += 1.0;
+    }
+    count += 1.0;
+  }
+  if (count == 0.0) return {};
+  for (double& share : shares) share /= count;
+  return shares;
+}
+
 ErrorSummary summarise(std::vector<double> errors) {
   ErrorSummary summary;
   summary.count = errors.size();
@@ -315,6 +353,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   }
   if (evaluation.frames == 0) return bad_input("no labelled frame fits the model's array");
   evaluation.estimators = summarise_estimators(row.names(), evaluation, errors);
+  evaluation.coverage = coverage_of(evaluation.taxels);
   evaluation.examples = std::move(examples).chosen();
   break_down_all(evaluation);
   return evaluation;

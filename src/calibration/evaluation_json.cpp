@@ -14,6 +14,12 @@ Json number(const std::optional<double>& value) {
   return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
 }
 
+/// Only dermis, the first estimator, says how sure it is.
+void add_coverage(const Coverage& coverage, Json& dermis) {
+  dermis["coverage_68"] = number(coverage.share_68);
+  dermis["coverage_95"] = number(coverage.share_95);
+}
+
 Json estimator_json(const EstimatorResult& result) {
   return {{"name", result.name},
           {"median_relative_error", number(result.relative_error.median)},
@@ -38,6 +44,7 @@ Json breakdown_json(const Evaluation& evaluation, const std::vector<BreakdownBin
       estimators[evaluation.estimators[k].name] = {{"median_relative_error", number(bin.relative_error[k].median)},
                                                    {"p95_relative_error", number(bin.relative_error[k].p95)}};
     }
+    add_coverage(bin.coverage, estimators[evaluation.estimators.front().name]);
     rows.push_back({{"from", bin.low},
                     {"to", bin.high},
                     {"count", bin.relative_error.front().count},
@@ -51,6 +58,8 @@ Json breakdown_json(const Evaluation& evaluation, const std::vector<BreakdownBin
 std::string to_json(const Evaluation& evaluation) {
   Json estimators = Json::array();
   for (const EstimatorResult& result : evaluation.estimators) estimators.push_back(estimator_json(result));
+  add_coverage(evaluation.coverage, estimators.front());
+  estimators.front()["coverage_taxels"] = evaluation.coverage.count;
   const Json root = {{"frames", evaluation.frames},
                      {"frames_rejected", evaluation.frames_rejected},
                      {"estimators", std::move(estimators)},

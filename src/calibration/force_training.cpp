@@ -118,6 +118,8 @@ fusion::ForceNetworks make_networks(const network::PerceptronShape& shape, const
   networks.heaviest_siemens.assign(taxels, 1.0F);
   networks.heaviest_newtons.assign(taxels, std::numeric_limits<float>::infinity());
   networks.gain.assign(taxels, 1.0F);
+  networks.offset_sigma_siemens.assign(taxels, 0.0F);
+  networks.relative_sigma.assign(taxels, 0.01F);
   networks.parameters.assign(shape.parameter_count() * taxels, 0.0F);
   for (const bool dead : evidence.dead) networks.dead.push_back(dead ? 1 : 0);
   return networks;

@@ -6,8 +6,10 @@
 #include <string>
 
 #include "compensation/fault_inversion.hpp"
-#include "compensation/grounded_divider.hpp"
+#include "compensation/grounded_rows.hpp"
 #include "compensation/proportional.hpp"
+#include "compensation/supply_error.hpp"
+#include "compensation/transposed.hpp"
 #include "compensation/virtual_ground.hpp"
 
 namespace dermis::compensation {
@@ -24,6 +26,20 @@ Inversion inversion(const Arguments&... arguments) {
   return std::unique_ptr<CrosstalkInversion>(std::make_unique<Kind>(arguments...));
 }
 
+/// One column driven, the others grounded, one row sensed: the divider with one load, rows and columns exchanged.
+Inversion flexitac(const ArrayDescription& array, double tolerance) {
+  ArrayDescription exchanged = array;
+  std::swap(exchanged.rows, exchanged.cols);
+  exchanged.readout.circuit = Circuit::divider;
+  exchanged.readout.idle_columns = IdleColumns::floating;
+  return std::unique_ptr<CrosstalkInversion>(
+      std::make_unique<Transposed>(std::make_unique<GroundedRows>(exchanged, tolerance), array.rows, array.cols));
+}
+
+bool has_ideal_amplifiers(const Readout& readout) {
+  return readout.column_switch_ohm.empty() && readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
+}
+
 Error not_yet(const char* what) {
   return bad_input(std::string(what) + " cannot be inverted yet: set circuit = \"none\"");
 }
@@ -38,11 +54,12 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
   if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty()) return not_yet("lines with resistance");
-  if (readout.circuit == Circuit::flexitac) return not_yet("readout.circuit = \"flexitac\"");
-  if (readout.circuit == Circuit::transimpedance) return inversion<VirtualGround>(array);
-  if (readout.idle_columns == IdleColumns::floating) return not_yet("readout.idle_columns = \"floating\"");
-  if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\" with a divider");
-  return inversion<GroundedDivider>(array, tolerance);
+  if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance);
+  if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
+    return inversion<VirtualGround>(array);
+  }
+  if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\"");
+  return inversion<GroundedRows>(array, tolerance);
 }
 
 Result<Compensator> Compensator::create(const ArrayDescription& array) {
@@ -53,7 +70,8 @@ Result<Compensator> Compensator::create(const ArrayDescription& array) {
 
 Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion)
     : inversion_(std::move(inversion)),
-      faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts())) {}
+      faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts())),
+      supply_error_(std::make_unique<SupplyError>(array)) {}
 Compensator::Compensator(Compensator&&) noexcept = default;
 Compensator& Compensator::operator=(Compensator&&) noexcept = default;
 Compensator::~Compensator() = default;
@@ -79,6 +97,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
                                                 : inversion_->invert(conditioned.ratio, conductance.siemens);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+  supply_error_->add(conductance.siemens, conductance.sigma_siemens);
   if (!result.solved) {
     conductance.status |= FrameStatus::not_converged;
     std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);

@@ -21,6 +21,7 @@ struct BankView {
   const float* parameters;
   const float* inputs;
   float* outputs;
+  float* gradient;  // null where nobody asks
 };
 
 /// Outputs of the networks first ... first + lanes(d) - 1.
@@ -45,14 +46,51 @@ void evaluate_lanes(D d, const BankView& bank, std::size_t first) {
   hn::StoreU(y, d, bank.outputs + first);
 }
 
+/// The same with d y / d x_i = s_i + sum_h v_h f'(z_h) w_hi.
+template <class D>
+void evaluate_lanes_with_gradient(D d, const BankView& bank, std::size_t first) {
+  const PerceptronShape& shape = bank.shape;
+  const auto load = [&](std::size_t parameter) {
+    return hn::LoadU(d, bank.parameters + parameter * bank.networks + first);
+  };
+  const auto load_input = [&](std::size_t input) { return hn::LoadU(d, bank.inputs + input * bank.networks + first); };
+  const auto gradient_of = [&](std::size_t input) { return bank.gradient + input * bank.networks + first; };
+  auto y = load(shape.output_bias());
+  for (std::size_t input = 0; input < shape.inputs; ++input) {
+    const auto weight = load(shape.direct_weight(input));
+    y = hn::MulAdd(weight, load_input(input), y);
+    hn::StoreU(weight, d, gradient_of(input));
+  }
+  for (std::size_t unit = 0; unit < shape.hidden; ++unit) {
+    auto sum = load(shape.bias(unit));
+    for (std::size_t input = 0; input < shape.inputs; ++input) {
+      sum = hn::MulAdd(load(shape.weight(unit, input)), load_input(input), sum);
+    }
+    const auto activation = log_sigmoid(d, sum);
+    const auto output_weight = load(shape.output_weight(unit));
+    y = hn::MulAdd(output_weight, activation, y);
+    const auto slope = hn::Mul(output_weight, slope_from_output(d, Activation::log_sigmoid, activation));
+    for (std::size_t input = 0; input < shape.inputs; ++input) {
+      float* place = gradient_of(input);
+      hn::StoreU(hn::MulAdd(slope, load(shape.weight(unit, input)), hn::LoadU(d, place)), d, place);
+    }
+  }
+  hn::StoreU(y, d, bank.outputs + first);
+}
+
+template <class D>
+void evaluate_some(D d, const BankView& bank, std::size_t first) {
+  bank.gradient == nullptr ? evaluate_lanes(d, bank, first) : evaluate_lanes_with_gradient(d, bank, first);
+}
+
 void evaluate_bank(const PerceptronShape& shape, std::size_t networks, const float* parameters, const float* inputs,
-                   float* outputs) {
-  const BankView bank{shape, networks, parameters, inputs, outputs};
+                   float* outputs, float* gradient) {
+  const BankView bank{shape, networks, parameters, inputs, outputs, gradient};
   const hn::ScalableTag<float> d;
   const std::size_t lanes = hn::Lanes(d);
   std::size_t first = 0;
-  for (; first + lanes <= bank.networks; first += lanes) evaluate_lanes(d, bank, first);
-  for (; first < bank.networks; ++first) evaluate_lanes(hn::CappedTag<float, 1>(), bank, first);
+  for (; first + lanes <= bank.networks; first += lanes) evaluate_some(d, bank, first);
+  for (; first < bank.networks; ++first) evaluate_some(hn::CappedTag<float, 1>(), bank, first);
 }
 
 }  // namespace dermis::network::HWY_NAMESPACE
@@ -70,7 +108,15 @@ PerceptronBank::PerceptronBank(const PerceptronShape& shape, std::size_t network
 
 void PerceptronBank::evaluate(std::span<const float> inputs, std::span<float> outputs) const noexcept {
   assert(inputs.size() == shape_.inputs * networks_ && outputs.size() == networks_);
-  HWY_DYNAMIC_DISPATCH(evaluate_bank)(shape_, networks_, parameters_.data(), inputs.data(), outputs.data());
+  HWY_DYNAMIC_DISPATCH(evaluate_bank)(shape_, networks_, parameters_.data(), inputs.data(), outputs.data(), nullptr);
+}
+
+void PerceptronBank::evaluate(std::span<const float> inputs, std::span<float> outputs,
+                              std::span<float> gradient) const noexcept {
+  assert(inputs.size() == shape_.inputs * networks_ && outputs.size() == networks_);
+  assert(gradient.size() == inputs.size());
+  HWY_DYNAMIC_DISPATCH(evaluate_bank)
+  (shape_, networks_, parameters_.data(), inputs.data(), outputs.data(), gradient.data());
 }
 
 }  // namespace dermis::network

@@ -18,7 +18,8 @@ using fusion::ForceNetworks;
 using fusion::LookUpTables;
 using store::SafetensorsFile;
 
-constexpr const char* kFormat = "dermis model 1";
+constexpr const char* kFormat = "dermis model 2";
+constexpr const char* kFormatWithoutSigma = "dermis model 1";
 constexpr const char* kProvenancePrefix = "provenance.";
 constexpr std::size_t kMaxBaselines = 16;
 
@@ -27,11 +28,13 @@ struct TaxelTensors {
   std::array<std::pair<const char*, std::vector<double> ForceNetworks::*>, 2> doubles{
       {{"networks.offset_siemens", &ForceNetworks::offset_siemens},
        {"networks.offset_per_celsius", &ForceNetworks::offset_per_celsius}}};
-  std::array<std::pair<const char*, std::vector<float> ForceNetworks::*>, 4> floats{
+  std::array<std::pair<const char*, std::vector<float> ForceNetworks::*>, 6> floats{
       {{"networks.reference_siemens", &ForceNetworks::reference_siemens},
        {"networks.heaviest_siemens", &ForceNetworks::heaviest_siemens},
        {"networks.heaviest_newtons", &ForceNetworks::heaviest_newtons},
-       {"networks.gain", &ForceNetworks::gain}}};
+       {"networks.gain", &ForceNetworks::gain},
+       {"networks.offset_sigma_siemens", &ForceNetworks::offset_sigma_siemens},
+       {"networks.relative_sigma", &ForceNetworks::relative_sigma}}};
 };
 
 template <typename T>
@@ -78,8 +81,9 @@ void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
   const std::size_t taxels = networks.taxel_count();
   file.metadata["networks.inputs"] = std::to_string(networks.shape.inputs);
   file.metadata["networks.hidden"] = std::to_string(networks.shape.hidden);
-  put<double>(file, "networks.temperature_celsius", {2},
-              {networks.temperature_centre_celsius, networks.temperature_half_span_celsius});
+  put<double>(file, "networks.temperature_celsius", {3},
+              {networks.temperature_centre_celsius, networks.temperature_half_span_celsius,
+               networks.temperature_sigma_celsius});
   const TaxelTensors tensors;
   for (const auto& [name, member] : tensors.doubles) put(file, name, {taxels}, networks.*member);
   for (const auto& [name, member] : tensors.floats) put(file, name, {taxels}, networks.*member);
@@ -91,10 +95,11 @@ ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, Tens
   ForceNetworks networks;
   networks.shape = {metadata_count(file, "networks.inputs"), metadata_count(file, "networks.hidden"), 2};
   std::vector<double> temperature;
-  reader.get("networks.temperature_celsius", {2}, temperature);
-  if (temperature.size() == 2) {
+  reader.get("networks.temperature_celsius", {3}, temperature);
+  if (temperature.size() == 3) {
     networks.temperature_centre_celsius = temperature[0];
     networks.temperature_half_span_celsius = temperature[1];
+    networks.temperature_sigma_celsius = temperature[2];
   }
   const TaxelTensors tensors;
   for (const auto& [name, member] : tensors.doubles) reader.get(name, {taxels}, networks.*member);
@@ -163,6 +168,10 @@ Status write_model(const std::string& path, const Model& model) {
 Result<Model> read_model(const std::string& path) {
   const Result<SafetensorsFile> file = store::read_safetensors(path);
   if (!file) return file.error();
+  if (metadata(*file, "format") == kFormatWithoutSigma) {
+    return bad_input(path + ": is of an older dermis that did not know how sure its forces are; write it again with " +
+                     "'dermis calibrate'");
+  }
   if (metadata(*file, "format") != kFormat) {
     return bad_input(path + ": is not a dermis model; write one with 'dermis calibrate'");
   }

@@ -2,93 +2,171 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/simulation/readout_circuit.hpp"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cassert>
+#include <limits>
+
+#include "simulation/terminal_network.hpp"
 
 namespace dermis::simulation {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Eigen::ArrayXd;
+using Eigen::Index;
 
-Eigen::Map<const Matrix> as_matrix(std::span<const double> values, std::size_t rows, std::size_t cols) {
-  return {values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols)};
+constexpr double kNothing = std::numeric_limits<double>::infinity();  // the series resistor of a line that floats
+
+Eigen::Map<const Table> as_table(std::span<const double> values, std::size_t rows, std::size_t cols) {
+  return {values.data(), static_cast<Index>(rows), static_cast<Index>(cols)};
 }
 
-Eigen::Map<Matrix> as_matrix(std::span<double> values, std::size_t rows, std::size_t cols) {
-  return {values.data(), static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(cols)};
+Eigen::Map<Table> as_table(std::span<double> values, std::size_t rows, std::size_t cols) {
+  return {values.data(), static_cast<Index>(rows), static_cast<Index>(cols)};
 }
 
-Eigen::Map<const ArrayXd> as_array(const std::vector<double>& values) {
-  return {values.data(), static_cast<Eigen::Index>(values.size())};
+ArrayXd as_array(const std::vector<double>& values) {
+  return Eigen::Map<const ArrayXd>(values.data(), static_cast<Index>(values.size()));
 }
 
-// Voltage of each row line over the supply, while it is driven and all columns stand at 0 V.
-ArrayXd driven_row_voltage(const Eigen::Map<const Matrix>& conductance, const std::vector<double>& drive_ohm) {
-  return (1.0 + as_array(drive_ohm) * conductance.rowwise().sum().array()).inverse();
+ArrayXd array_or_zero(const std::vector<double>& values, Index size) {
+  return values.empty() ? ArrayXd::Zero(size) : as_array(values);
+}
+
+/// What stands at the end of each sensed line: a resistor to a source, and the reading for the current through it.
+/// A divider's resistor leads to 0 V; an amplifier's input is seen behind its switch and stands at
+/// offset gain/(1 + gain) + I load/(1 + gain). Voltages are over the supply.
+struct Sinks {
+  ArrayXd ohm;
+  ArrayXd source;
+  ArrayXd load_ohm;
+  ArrayXd offset;
+  double gain = 1.0;  ///< of the reading
+
+  /// [driven, sensed] from currents over the supply.
+  [[nodiscard]] Table readings(const Table& current) const {
+    const Table ideal = current * load_ohm.matrix().asDiagonal();
+    return gain * (ideal.rowwise() - offset.matrix().transpose());
+  }
+};
+
+Sinks sinks_of(const Readout& readout) {
+  const ArrayXd load = as_array(readout.load_ohm);
+  const ArrayXd none = ArrayXd::Zero(load.size());
+  if (readout.circuit != Circuit::transimpedance) return {load, none, load, none};
+  const double inverse_gain = readout.amplifier_gain ? 1.0 / *readout.amplifier_gain : 0.0;
+  const double gain = 1.0 / (1.0 + inverse_gain);
+  const ArrayXd offset = array_or_zero(readout.amplifier_offset_v, load.size()) / readout.supply_v.value_or(1.0);
+  const ArrayXd input_ohm = array_or_zero(readout.column_switch_ohm, load.size()) + load * (inverse_gain * gain);
+  return {input_ohm, offset * gain, load, offset, gain};
+}
+
+/// The driven lines, then the sensed lines, without sources.
+Electronics electronics(const ArrayXd& driven_ohm, const ArrayXd& sensed_ohm, Index cases) {
+  const Index terminals = driven_ohm.size() + sensed_ohm.size();
+  ArrayXd series(terminals);
+  series << driven_ohm, sensed_ohm;
+  return {series, Table::Zero(terminals, cases), Table::Zero(terminals, cases)};
+}
+
+// Case k: line k is driven. Last case: the sources of the sensed lines alone, which act in every scan.
+Table idle_driven_grounded(const TerminalNetwork& network, const ArrayXd& drive_ohm, const Sinks& sinks) {
+  const Index driven = drive_ohm.size();
+  const Index sensed = sinks.ohm.size();
+  Electronics scans = electronics(drive_ohm, sinks.ohm, driven + 1);
+  scans.source_v.topLeftCorner(driven, driven).setIdentity();
+  scans.source_v.col(driven).tail(sensed) = sinks.source;
+  const Table sunk = solve(network, scans).sunk_a.bottomRows(sensed).transpose();
+  return sinks.readings(sunk.topRows(driven).rowwise() + sunk.row(driven));
+}
+
+// Case k: unit current into line k, all driven lines floating: its resistance is V_kk, so the driver, which sees the
+// voltage of the sensed lines' sources against it, drives (1 - V_k,last)/(drive_ohm_k + V_kk) into it.
+Table idle_driven_floating(const TerminalNetwork& network, const ArrayXd& drive_ohm, const Sinks& sinks) {
+  const Index driven = drive_ohm.size();
+  const Index sensed = sinks.ohm.size();
+  Electronics scans = electronics(ArrayXd::Constant(driven, kNothing), sinks.ohm, driven + 1);
+  scans.current_a.topLeftCorner(driven, driven).setIdentity();
+  scans.source_v.col(driven).tail(sensed) = sinks.source;
+  const Solution solution = solve(network, scans);
+  const ArrayXd resistance = drive_ohm + solution.voltage_v.topLeftCorner(driven, driven).diagonal().array();
+  const ArrayXd drive = (1.0 - solution.voltage_v.col(driven).head(driven).array()) / resistance;
+  const Table sunk = solution.sunk_a.bottomRows(sensed).transpose();
+  return sinks.readings((drive.matrix().asDiagonal() * sunk.topRows(driven)).rowwise() + sunk.row(driven));
+}
+
+// Without any load: case k, line k driven, gives the open voltages V_jk; case driven + j, unit current into sensed line
+// j, its resistance R_j. The load that is switched to it divides V_jk by 1 + R_j/load_ohm_j.
+Table one_load_grounded(const TerminalNetwork& network, const ArrayXd& drive_ohm, const ArrayXd& load_ohm) {
+  const Index driven = drive_ohm.size();
+  const Index sensed = load_ohm.size();
+  Electronics scans = electronics(drive_ohm, ArrayXd::Constant(sensed, kNothing), driven + sensed);
+  scans.source_v.topLeftCorner(driven, driven).setIdentity();
+  scans.current_a.bottomRightCorner(sensed, sensed).setIdentity();
+  const Table voltage = solve(network, scans).voltage_v.bottomRows(sensed);
+  const ArrayXd loaded = load_ohm / (load_ohm + voltage.rightCols(sensed).diagonal().array());
+  return voltage.leftCols(driven).transpose() * loaded.matrix().asDiagonal();
+}
+
+// A series of driver, array and load; the array's resistance between line k and sensed line j is the voltage of a unit
+// current into line k, with line j at 0 V and all others floating.
+Table one_load_floating(const TerminalNetwork& network, const ArrayXd& drive_ohm, const ArrayXd& load_ohm) {
+  const Index driven = drive_ohm.size();
+  const Index sensed = load_ohm.size();
+  Electronics scans = electronics(ArrayXd::Constant(driven, kNothing), ArrayXd::Constant(sensed, kNothing), driven);
+  scans.current_a.topRows(driven).setIdentity();
+  Table readings(driven, sensed);
+  for (Index j = 0; j < sensed; ++j) {
+    scans.series_ohm(driven + j) = 0.0;
+    const ArrayXd array_ohm = solve(network, scans).voltage_v.topRows(driven).diagonal();
+    readings.col(j) = load_ohm(j) / (drive_ohm + array_ohm + load_ohm(j));
+    scans.series_ohm(driven + j) = kNothing;
+  }
+  return readings;
+}
+
+TerminalNetwork network_of(const Table& taxels, const std::vector<double>& driven_segment_ohm,
+                           const std::vector<double>& sensed_segment_ohm) {
+  const bool is_lumped = driven_segment_ohm.empty() && sensed_segment_ohm.empty();
+  return is_lumped ? lumped_network(taxels) : resistive_network(taxels, driven_segment_ohm, sensed_segment_ohm);
+}
+
+/// Readings [driven, sensed] over the supply.
+Table readings(const Readout& readout, const TerminalNetwork& network) {
+  const ArrayXd drive = as_array(readout.drive_ohm);
+  const ArrayXd load = as_array(readout.load_ohm);
+  if (readout.circuit == Circuit::flexitac) return one_load_grounded(network, drive, load);
+  const bool rows_float = readout.idle_rows == IdleRows::floating;
+  if (readout.idle_columns == IdleColumns::floating) {
+    return rows_float ? one_load_floating(network, drive, load) : one_load_grounded(network, drive, load);
+  }
+  const Sinks sinks = sinks_of(readout);
+  return rows_float ? idle_driven_floating(network, drive, sinks) : idle_driven_grounded(network, drive, sinks);
 }
 
 }  // namespace
 
 Result<ReadoutCircuit> ReadoutCircuit::create(const ArrayDescription& array) {
   if (Status valid = array.validate(); !valid) return valid.error();
-  const Readout& readout = array.readout;
   if (array.has_unknown_circuit()) {
     return bad_input("readout: the circuit or some of its resistances are to be fitted; a simulation needs numbers");
-  }
-  if (readout.circuit == Circuit::flexitac || readout.idle_columns == IdleColumns::floating ||
-      !readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty() || !readout.column_switch_ohm.empty() ||
-      !readout.amplifier_offset_v.empty() || readout.amplifier_gain) {
-    return bad_input("readout: this circuit cannot be simulated yet");
   }
   return ReadoutCircuit(array);
 }
 
 void ReadoutCircuit::ratios(std::span<const double> siemens, std::span<double> ratio) const {
   assert(siemens.size() == rows_ * cols_ && ratio.size() == rows_ * cols_);
-  switch (readout_.circuit) {
-    case Circuit::divider: divide(siemens, ratio); break;
-    case Circuit::transimpedance: amplify(siemens, ratio); break;
-    case Circuit::flexitac: break;
-    case Circuit::automatic: break;
-    case Circuit::none: as_matrix(ratio, rows_, cols_) = kUnknownCircuitOhm * as_matrix(siemens, rows_, cols_); break;
+  const auto taxels = as_table(siemens, rows_, cols_);
+  auto reading = as_table(ratio, rows_, cols_);
+  if (readout_.circuit == Circuit::none) {
+    reading = kUnknownCircuitOhm * taxels;
+  } else if (readout_.circuit == Circuit::flexitac) {
+    const TerminalNetwork network =
+        network_of(taxels.transpose(), readout_.column_segment_ohm, readout_.row_segment_ohm);
+    reading = readings(readout_, network).transpose();
+  } else {
+    reading = readings(readout_, network_of(taxels, readout_.row_segment_ohm, readout_.column_segment_ohm));
   }
-  if (readout_.pressure_raises_reading) return;
-  for (double& reading : ratio) reading = 1.0 - reading;
-}
-
-// The row lines are eliminated by hand, A being diagonal, which also admits drivers of 0 ohm. It leaves a symmetric
-// positive definite system for the column lines, (B - sum_i e_i g_i g_i^T) v = w_k g_k, where g_i is row i of G,
-// w_k = 1/(1 + drive_ohm_k Y_k), Y_k = sum_j G_kj, and e_i = 1/A_i: drive_ohm_i w_i for a grounded row, 1/Y_i for a
-// floating one. Grounded, it is the same system for all k. Floating, row k differs from the all-floating system by
-// (w_k/Y_k) g_k g_k^T, since 1/Y_k - drive_ohm_k w_k = w_k/Y_k: the Sherman-Morrison formula.
-void ReadoutCircuit::divide(std::span<const double> siemens, std::span<double> ratio) const {
-  const auto conductance = as_matrix(siemens, rows_, cols_);
-  const ArrayXd row_sum = conductance.rowwise().sum();
-  const ArrayXd inverse_row_sum = (row_sum > 0.0).select(row_sum.inverse(), 0.0);
-  const ArrayXd driven = driven_row_voltage(conductance, readout_.drive_ohm);
-  const bool floating = readout_.idle_rows == IdleRows::floating;
-  const ArrayXd eliminated = floating ? inverse_row_sum : as_array(readout_.drive_ohm) * driven;
-
-  Eigen::MatrixXd columns = -(conductance.transpose() * eliminated.matrix().asDiagonal() * conductance);
-  columns.diagonal().array() += as_array(readout_.load_ohm).inverse() + conductance.colwise().sum().transpose().array();
-  const Eigen::MatrixXd response = columns.ldlt().solve(conductance.transpose());  // [cols, rows]
-
-  ArrayXd scale = driven;
-  if (floating) {
-    const ArrayXd self = conductance.cwiseProduct(response.transpose()).rowwise().sum();
-    scale = driven / (1.0 + driven * inverse_row_sum * self);
-  }
-  as_matrix(ratio, rows_, cols_) = scale.matrix().asDiagonal() * response.transpose();
-}
-
-// With all columns at 0 V, idle rows carry no current into them, grounded or floating.
-void ReadoutCircuit::amplify(std::span<const double> siemens, std::span<double> ratio) const {
-  const auto conductance = as_matrix(siemens, rows_, cols_);
-  const ArrayXd driven = driven_row_voltage(conductance, readout_.drive_ohm);
-  as_matrix(ratio, rows_, cols_) =
-      driven.matrix().asDiagonal() * conductance * as_array(readout_.load_ohm).matrix().asDiagonal();
+  if (!readout_.pressure_raises_reading) reading = 1.0 - reading.array();
 }
 
 }  // namespace dermis::simulation

@@ -56,6 +56,7 @@ TEST(ForceTraining, follows_the_force_it_was_trained_on_and_rises_with_conductan
   fusion::ForceFusion fusion(training->networks);
   ConductanceFrame conductance;
   conductance.taxels.assign(4, TaxelStatus::ok);
+  conductance.sigma_siemens.assign(4, 1e-6);
   ForceFrame force;
   for (const double celsius : {2.0, 25.0, 48.0}) {
     conductance.temperature_celsius = celsius;
@@ -113,6 +114,7 @@ TEST(ForceTraining, shares_one_network_where_one_load_cell_weighs_the_whole_pad)
   ConductanceFrame conductance;
   conductance.temperature_celsius = 25.0;
   conductance.taxels.assign(16, TaxelStatus::ok);
+  conductance.sigma_siemens.assign(16, 1e-6);
   for (std::size_t taxel = 0; taxel < 16; ++taxel) {
     conductance.siemens.push_back(simulator->rubber().conductance_from_force(taxel, 10.0, 25.0));
   }

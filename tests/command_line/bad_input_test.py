@@ -98,6 +98,14 @@ class ArrayFile(SmallArray):
     def test_broken_toml(self):
         self.refuse_array(ARRAY.replace("rows = 4", "rows 4"), [":3"])
 
+    def test_a_key_of_another_circuit(self):
+        self.refuse_array(ARRAY + "amplifier_gain = 1e5\n", [":14", "amplifier_gain", "transimpedance"])
+
+    def test_a_circuit_that_is_not_known_yet(self):
+        for text in (ARRAY.replace("load_ohm = 200.0", 'load_ohm = "fit"'),
+                     ARRAY.replace('"divider"', '"auto"')):
+            self.refuse_array(text, ["fitted"])
+
     def test_unknown_physics(self):
         physics = self.written("physics.toml", "[rubber]\nexponnt = 0.9\n")
         self.refuse(["simulate", "--array", self.array, "--physics", physics, "--scene", "idle",
@@ -249,7 +257,7 @@ class ModelFile(SmallArray):
     def test_a_header_that_was_changed(self):
         whole = self.model.read_bytes()
         changed = self.work / "model"
-        for old, new in ((b"dermis model 1", b"dermis model 9"), (b"rows = 4", b"rows = 3"),
+        for old, new in ((b"dermis model 2", b"dermis model 9"), (b"rows = 4", b"rows = 3"),
                          (b"networks.gain", b"networks.gone"), (b"F64", b"F32")):
             with self.subTest(new):
                 self.assertIn(old, whole)

@@ -23,6 +23,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 ConductanceFrame make_frame(std::vector<double> siemens, std::optional<double> temperature_celsius = 25.0) {
   ConductanceFrame frame;
   frame.taxels.assign(siemens.size(), TaxelStatus::ok);
+  frame.sigma_siemens.assign(siemens.size(), 1e-6);
   frame.siemens = std::move(siemens);
   frame.temperature_celsius = temperature_celsius;
   return frame;
@@ -48,6 +49,8 @@ ForceNetworks power_law() {
   networks.heaviest_newtons = {std::numeric_limits<float>::infinity()};
   networks.gain = {1.0F};
   networks.dead = {0};
+  networks.offset_sigma_siemens = {0.0F};
+  networks.relative_sigma = {0.01F};
   networks.parameters = {std::log(10.0F), 0.9F, 0.0F};  // c, s_0, s_1
   return networks;
 }
@@ -63,6 +66,8 @@ ForceNetworks two_power_laws() {
   twice(networks.heaviest_newtons);
   twice(networks.gain);
   twice(networks.dead);
+  twice(networks.offset_sigma_siemens);
+  twice(networks.relative_sigma);
   networks.parameters = {std::log(10.0F), std::log(10.0F), 0.9F, 0.9F, 0.0F, 0.0F};
   return networks;
 }

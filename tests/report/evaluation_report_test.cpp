@@ -100,7 +100,7 @@ TEST_F(ReportTest, TakesOneTaxelJudgedOnce) {
   calibration::Evaluation evaluation = empty_sample(1, 1);
   evaluation.frames = 1;
   evaluation.frames_rejected = 1;
-  evaluation.taxels.push_back({0, 0, 10.0, 20.0, 5.0, 1, {10.0F, 0.0F, 1e30F, 9.0F}});
+  evaluation.taxels.push_back({0, 0, 10.0, 20.0, 5.0, 1, {10.0F, 0.0F, 1e30F, 9.0F}, 0.1F});
   summarise_sample(evaluation);
   evaluation.examples = {{0, {0.5}, {1e-3}, {10.0F}, {10.0}}};
   write(evaluation);

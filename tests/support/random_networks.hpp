@@ -20,6 +20,7 @@ inline fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inp
   networks.shape = {inputs, hidden, 2};
   networks.temperature_centre_celsius = 25.0;
   networks.temperature_half_span_celsius = 20.0;
+  networks.temperature_sigma_celsius = 0.3;
   networks.parameters.resize(networks.shape.parameter_count() * taxels);
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     const double reference = random.log_uniform(5e-4, 2e-3);
@@ -31,6 +32,8 @@ inline fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inp
     networks.heaviest_newtons.push_back(1e4F);  // beyond what the network gives: the clamp has its own tests
     networks.gain.push_back(static_cast<float>(random.uniform(0.5, 2.0)));
     networks.dead.push_back(0);
+    networks.offset_sigma_siemens.push_back(static_cast<float>(random.log_uniform(1e-8, 1e-6)));
+    networks.relative_sigma.push_back(static_cast<float>(random.log_uniform(1e-3, 1e-1)));
     for (std::size_t k = 0; k < networks.shape.parameter_count(); ++k) {
       const bool positive = network::monotone::is_positive(networks.shape, k);
       const double value = positive ? random.log_uniform(0.05, 0.8) : 0.5 * random.normal();

@@ -34,6 +34,13 @@ struct ErrorSummary {
 /// Nearest-rank percentiles; NaN errors (a taxel without a force) count as the worst.
 [[nodiscard]] ErrorSummary summarise(std::vector<double> errors);
 
+/// How often the true force lies within a multiple of dermis' standard deviation of its force.
+struct Coverage {
+  std::size_t count = 0;           ///< Judged taxels whose standard deviation is a finite number.
+  std::optional<double> share_68;  ///< Within 0.9945 sigma: 0.68 where sigma is right. Empty where count is 0.
+  std::optional<double> share_95;  ///< Within 1.96 sigma.
+};
+
 /// How one estimator did on all frames.
 struct EstimatorResult {
   std::string name;                    ///< "dermis" first, then the baselines, then kPaperBankName.
@@ -53,7 +60,12 @@ struct JudgedTaxel {
   std::optional<double> supply_v;
   std::size_t contacts = 0;    ///< Separate stressed areas in the frame (8-connected).
   std::vector<float> newtons;  ///< Estimate of each estimator, in their order.
+  float sigma_newtons = 0.0F;  ///< Standard deviation of dermis' estimate, as ForceFrame defines it [N].
 };
+
+/// Share of `taxels` whose true force is within each of `sigmas` (>= 0) standard deviations of dermis' force, of those
+/// with a finite one; empty where there is none.
+[[nodiscard]] std::vector<double> covered_shares(std::span<const JudgedTaxel> taxels, std::span<const double> sigmas);
 
 /// One `force` load over several taxels of one frame, for plots.
 struct JudgedTotal {
@@ -68,6 +80,7 @@ struct BreakdownBin {
   double low = 0.0;
   double high = 0.0;
   std::vector<ErrorSummary> relative_error;  ///< One per estimator.
+  Coverage coverage = {};                    ///< Of dermis; of taxels only.
 };
 
 /// A frame at its stages, for pictures; each [rows, cols].
@@ -84,6 +97,7 @@ struct Evaluation {
   std::size_t frames = 0;  ///< Labelled frames judged.
   std::size_t frames_rejected = 0;
   std::vector<EstimatorResult> estimators;
+  Coverage coverage;  ///< Of dermis, over all judged taxels.
   std::vector<JudgedTaxel> taxels;
   std::vector<JudgedTotal> totals;
   std::vector<BreakdownBin> by_force;        ///< [N]

@@ -58,6 +58,7 @@ class CrosstalkInversion {
     const ArrayDescription& array, const InversionOptions& options = {});
 
 class FaultInversion;
+class SupplyError;
 
 /// Unit 3 of the paper, the Compensation Unit: data "that deviate from the actual values by a known relationship" are
 /// put right by that relationship. Not thread-safe: one per stream.
@@ -85,6 +86,7 @@ class Compensator {
 
   std::unique_ptr<CrosstalkInversion> inversion_;
   std::unique_ptr<FaultInversion> faults_;
+  std::unique_ptr<SupplyError> supply_error_;
 };
 
 }  // namespace dermis::compensation

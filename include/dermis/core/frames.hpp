@@ -75,7 +75,7 @@ struct ConductanceFrame {
   FrameStatus status = FrameStatus::ok;
   std::optional<double> temperature_celsius;
   std::vector<double> siemens;        ///< Taxel conductance [S], >= 0; the bare ratio for `circuit = "none"`.
-  std::vector<double> sigma_siemens;  ///< Standard deviation of each from the noise of the readings [S].
+  std::vector<double> sigma_siemens;  ///< Standard deviation of each from noise of readings and supply [S].
   double residual_sigma = 0.0;  ///< Certificate: no reading differs from the circuit's at `siemens` by more than this
                                 ///< times its standard deviation (where a taxel is held at 0, it lies below instead).
   std::vector<TaxelStatus> taxels;
@@ -85,8 +85,10 @@ struct ConductanceFrame {
 struct ForceFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
-  std::vector<float> newtons;        ///< Normal force per taxel [N], >= 0; NaN where `taxels` says there is no force.
-  std::vector<float> sigma_newtons;  ///< Standard deviation of each [N], > 0; NaN where `newtons` is.
+  std::vector<float> newtons;  ///< Normal force per taxel [N], >= 0; NaN where `taxels` says there is no force.
+  /// Standard deviation of each [N], > 0. Of an unloaded taxel, its detection limit: the force that would just stand
+  /// out of the noise. Infinite where only a lower bound is known (saturated, above_range). NaN where `newtons` is.
+  std::vector<float> sigma_newtons;
   std::vector<TaxelStatus> taxels;
 };
 

@@ -40,6 +40,11 @@ struct ForceNetworks {
   std::vector<std::uint8_t> dead;          ///< 1: did not answer to its loads.
   std::vector<float> parameters;           ///< [shape.parameter_count(), taxels]
 
+  // What calibration found of its own uncertainty; see ForceFusion.
+  double temperature_sigma_celsius = 0.0;   ///< Noise of the temperature sensor [C], >= 0.
+  std::vector<float> offset_sigma_siemens;  ///< Standard deviation of offset_siemens [S], >= 0.
+  std::vector<float> relative_sigma;        ///< Of the force, from all that is not known otherwise, > 0.
+
   [[nodiscard]] std::size_t taxel_count() const noexcept { return gain.size(); }
 
   /// All vectors have the right size and every number is in its range.
@@ -47,6 +52,17 @@ struct ForceNetworks {
 };
 
 /// Unit 4 of the paper, the Data Processing Unit: fuses conductance and temperature to newtons.
+///
+/// The standard deviation of a force, to first order, with p = d ln newtons / d ln e and q = d ln newtons / dT at a
+/// fixed conductance (p and q by the backward pass of the network):
+///
+///   (sigma_newtons / newtons)^2 = (p / e)^2 (sigma_siemens^2 + offset_sigma^2) + (q sigma_T)^2 + relative_sigma^2
+///
+/// sigma_T is the noise of the temperature sensor, and what the temperature was clamped by; half_span / sqrt(3) where
+/// the frame has none. Below e = sigma_siemens (+) offset_sigma the right side times newtons is that of this
+/// conductance, reached along the power law: what an unloaded taxel shows is its detection limit, the force that would
+/// just stand out of the noise.
+///
 /// Not thread-safe: one per stream.
 class ForceFusion {
  public:
@@ -58,15 +74,23 @@ class ForceFusion {
 
  private:
   [[nodiscard]] bool uses_temperature() const noexcept { return networks_.shape.inputs == kInputsWithTemperature; }
-  [[nodiscard]] double temperature_offset(const ConductanceFrame& conductance, ForceFrame& force) const noexcept;
-  void prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept;
-  void finish(std::size_t taxel, ForceFrame& force) const noexcept;
+  /// Offset from the centre, clamped, and its standard deviation [C].
+  struct Temperature {
+    double offset = 0.0;
+    double sigma = 0.0;
+  };
+  [[nodiscard]] Temperature temperature(const ConductanceFrame& conductance, ForceFrame& force) const noexcept;
+  void prepare_inputs(const ConductanceFrame& conductance, const Temperature& temperature) noexcept;
+  void finish(std::size_t taxel, const Temperature& temperature, ForceFrame& force) const noexcept;
+  [[nodiscard]] float sigma_newtons(std::size_t taxel, float newtons, double temperature_sigma) const noexcept;
 
   ForceNetworks networks_;
   network::PerceptronBank bank_;
   std::vector<float> excess_siemens_;  // [taxels]
+  std::vector<float> sigma_siemens_;   // of the excess [taxels]
   std::vector<float> inputs_;          // [inputs, taxels]
   std::vector<float> outputs_;         // [taxels]
+  std::vector<float> gradient_;        // of the outputs [inputs, taxels]
 };
 
 }  // namespace dermis::fusion

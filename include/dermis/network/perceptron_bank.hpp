@@ -25,6 +25,9 @@ class PerceptronBank {
   /// inputs [inputs, networks] -> outputs [networks].
   void evaluate(std::span<const float> inputs, std::span<float> outputs) const noexcept;
 
+  /// The same, and d output / d input in `gradient` [inputs, networks]: the backward pass to the inputs.
+  void evaluate(std::span<const float> inputs, std::span<float> outputs, std::span<float> gradient) const noexcept;
+
  private:
   PerceptronShape shape_;
   std::size_t networks_ = 0;

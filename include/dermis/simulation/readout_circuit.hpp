@@ -10,16 +10,17 @@
 
 namespace dermis::simulation {
 
-/// From taxel conductances to readings, crosstalk included: for every driven row k the voltages u of the row lines and
-/// v of the column lines follow from Kirchhoff's current law at every line,
-///   [ A   -G ] [u]   [ gd .* s ]     A = diag(gd_i + sum_j G_ij), gd = 1/drive_ohm (0 for an idle floating row)
-///   [-G^T  B ] [v] = [    0    ]     B = diag(1/load_ohm_j + sum_i G_ij), s = supply at row k, 0 V at idle rows
-/// (nodal analysis; docs/simulation.md). What is read, over the supply:
-///   divider:         v_j / supply
-///   transimpedance:  the current into column j, which an ideal amplifier holds at 0 V, times load_ohm_j / supply;
-///                    may exceed 1, the rails of the amplifier are those of the ADC
-///   none:            conductance times kUnknownCircuitOhm, without crosstalk
-/// and 1 minus this where pressure lowers the reading. Lines have no resistance of their own.
+/// From taxel conductances to readings, crosstalk included, for every circuit of core/array_description.hpp: for each
+/// driven line the voltages of all lines follow from Kirchhoff's current law at every line (nodal analysis,
+/// docs/simulation.md). What is read, over the supply:
+///   divider, flexitac: the voltage of the sensed line across its load_ohm
+///   transimpedance:    r = (I load_ohm - o) / (1 + 1/amplifier_gain), with I the current into the amplifier over the
+///                      supply and o its offset over the nominal supply_v: minus the amplifier's output. Its input is
+///                      at (o gain + I load_ohm)/(1 + gain). r may exceed 1 or be below 0: the rails are those of
+///                      the ADC
+///   none:              conductance times kUnknownCircuitOhm, without crosstalk
+/// and 1 minus this where pressure lowers the reading. A line with a segment resistance has its driver, load or
+/// amplifier at the taxel of row or column 0. Relative precision: some roundings of each reading itself.
 /// Thread-safe: ratios() only reads.
 class ReadoutCircuit {
  public:
@@ -27,16 +28,13 @@ class ReadoutCircuit {
 
   [[nodiscard]] static Result<ReadoutCircuit> create(const ArrayDescription& array);
 
-  /// `siemens` and `ratio` are [rows, cols]; conductances are finite and >= 0 [S]. ratio[k, j] is the reading of
-  /// column j while row k is driven, over the supply.
+  /// `siemens` and `ratio` are [rows, cols]; conductances are finite and >= 0 [S]. ratio[i, j] is the reading over
+  /// the supply while the driven and the sensed line of the taxel in row i and column j are selected.
   void ratios(std::span<const double> siemens, std::span<double> ratio) const;
 
  private:
   explicit ReadoutCircuit(const ArrayDescription& array)
       : readout_(array.readout), rows_(array.rows), cols_(array.cols) {}
-  void divide(std::span<const double> siemens, std::span<double> ratio) const;
-  void amplify(std::span<const double> siemens, std::span<double> ratio) const;
-
   Readout readout_;
   std::size_t rows_;
   std::size_t cols_;

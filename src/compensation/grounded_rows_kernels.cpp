@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/grounded_rows_kernels.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "compensation/matrix_product.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "compensation/grounded_rows_kernels.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h comes first: it includes this file again for every instruction set.
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace dermis::compensation::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Whole vectors of any instruction set fill a row of `stride` values.
+using D = hn::CappedTag<double, 8>;
+using Vec = hn::Vec<D>;
+
+constexpr double kLeastShare = 1e-6;      // What a column leaves of the supply stays positive under noise.
+constexpr double kLeastLineRatio = 0.05;  // What a row leaves of the supply, for the estimate.
+
+/// 1 / (1 - RL sum), and for one loaded column its drivers' share, the mean of Rd y weighted by Z: from Z to G.
+HWY_INLINE Vec column_scale(D d, const GroundedRowsState& state, std::size_t col, Vec sum, Vec drop) {
+  const Vec one = hn::Set(d, 1.0);
+  Vec share = hn::NegMulAdd(hn::LoadU(d, state.column_ohm.data() + col), sum, one);
+  if (state.idle_columns == IdleColumns::floating) {
+    share = hn::Sub(share, hn::IfThenElseZero(hn::Gt(sum, hn::Zero(d)), hn::Div(drop, sum)));
+  }
+  return hn::Div(one, hn::Max(share, hn::Set(d, kLeastShare)));
+}
+
+void estimate_kernel(GroundedRowsState& state) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  const Vec zero = hn::Zero(d);
+  for (std::size_t col = 0; col < state.stride; col += lanes) {
+    Vec sum = zero;
+    Vec drop = zero;
+    for (std::size_t row = 0; row < state.rows; ++row) {
+      const Vec y = hn::Max(hn::LoadU(d, &state.measured[row * state.stride + col]), zero);
+      sum = hn::Add(sum, y);
+      drop = hn::MulAdd(hn::Mul(hn::Set(d, state.drive_ohm[row]), y), y, drop);
+    }
+    const Vec scale = column_scale(d, state, col, sum, drop);
+    for (std::size_t row = 0; row < state.rows; ++row) {
+      const std::size_t k = row * state.stride + col;
+      hn::StoreU(hn::Mul(hn::Max(hn::LoadU(d, &state.measured[k]), zero), scale), d, &state.estimate[k]);
+    }
+  }
+  for (std::size_t row = 0; row < state.rows; ++row) {
+    double* const line = &state.estimate[row * state.stride];
+    Vec sum = zero;
+    for (std::size_t col = 0; col < state.stride; col += lanes) sum = hn::Add(sum, hn::LoadU(d, line + col));
+    const double line_ratio = 1.0 - state.drive_ohm[row] * hn::GetLane(hn::SumOfLanes(d, sum));
+    const Vec gain = hn::Set(d, 1.0 / std::max(line_ratio, kLeastLineRatio));
+    for (std::size_t col = 0; col < state.stride; col += lanes) {
+      hn::StoreU(hn::Mul(hn::LoadU(d, line + col), gain), d, line + col);
+    }
+  }
+}
+
+void warm_kernel(GroundedRowsState& state, const double* HWY_RESTRICT last_estimate) {
+  const D d;
+  const Vec zero = hn::Zero(d);
+  for (std::size_t k = 0; k < state.siemens.size(); k += hn::Lanes(d)) {
+    const Vec y = hn::LoadU(d, &state.measured[k]);
+    const Vec last = hn::LoadU(d, &state.siemens[k]);
+    const Vec explained = hn::LoadU(d, &state.explained[k]);
+    const auto held = hn::And(hn::Eq(last, zero), hn::Gt(explained, y));
+    const Vec moved = hn::Add(last, hn::Sub(hn::LoadU(d, &state.estimate[k]), hn::LoadU(d, last_estimate + k)));
+    hn::StoreU(hn::IfThenZeroElse(held, hn::Max(moved, zero)), d, &state.siemens[k]);
+    hn::StoreU(hn::IfThenElse(held, explained, y), d, &state.explained[k]);
+  }
+}
+
+void refresh_kernel(GroundedRowsState& state) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  const Vec zero = hn::Zero(d);
+  const Vec one = hn::Set(d, 1.0);
+  for (std::size_t row = 0; row < state.rows; ++row) {
+    const Vec drive = hn::Set(d, state.drive_ohm[row]);
+    Vec sum = zero;
+    for (std::size_t col = 0; col < state.stride; col += lanes) {
+      const std::size_t k = row * state.stride + col;
+      sum = hn::Add(sum, hn::LoadU(d, &state.siemens[k]));
+      hn::StoreU(hn::Mul(drive, hn::LoadU(d, &state.explained[k])), d, &state.dropped[k]);
+    }
+    state.line_gain[row] = 1.0 + state.drive_ohm[row] * hn::GetLane(hn::SumOfLanes(d, sum));
+  }
+  const bool one_loaded = state.idle_columns == IdleColumns::floating;
+  for (std::size_t col = 0; col < state.stride; col += lanes) {
+    Vec sum = zero;
+    Vec drop = zero;
+    for (std::size_t k = col; k < state.siemens.size(); k += state.stride) {
+      const Vec g = hn::LoadU(d, &state.siemens[k]);
+      sum = hn::Add(sum, g);
+      if (one_loaded) drop = hn::MulAdd(g, hn::LoadU(d, &state.dropped[k]), drop);
+    }
+    const Vec ohm = hn::LoadU(d, &state.column_ohm[col]);
+    Vec part = hn::Div(one, hn::MulAdd(ohm, sum, one));
+    Vec eta = hn::Mul(ohm, part);
+    if (one_loaded) {
+      eta = hn::IfThenElseZero(hn::Gt(sum, zero), hn::Div(one, sum));
+      part = hn::Mul(part, hn::NegMulAdd(drop, eta, one));
+    }
+    hn::StoreU(part, d, &state.column_part[col]);
+    for (std::size_t k = col; k < state.siemens.size(); k += state.stride) {
+      hn::StoreU(hn::Mul(hn::LoadU(d, &state.siemens[k]), eta), d, &state.shunted[k]);
+    }
+  }
+}
+
+double assess_kernel(GroundedRowsState& state) {
+  const D d;
+  const Vec zero = hn::Zero(d);
+  Vec largest = zero;
+  Vec total = zero;
+  for (std::size_t col = 0; col < state.stride; col += hn::Lanes(d)) {
+    const Vec part = hn::LoadU(d, &state.column_part[col]);
+    Vec sum = zero;
+    Vec drop = zero;
+    Vec worst = zero;
+    Vec spread = zero;
+    for (std::size_t row = 0; row < state.rows; ++row) {
+      const std::size_t k = row * state.stride + col;
+      const Vec gain = hn::Set(d, state.line_gain[row]);
+      const Vec off_diagonal = hn::Set(d, 1.0 - 1.0 / state.line_gain[row]);
+      const Vec returned = hn::LoadU(d, &state.returned[k]);
+      const Vec z = hn::MulSub(gain, hn::LoadU(d, &state.explained[k]), returned);
+      sum = hn::Add(sum, z);
+      drop = hn::MulAdd(z, hn::LoadU(d, &state.dropped[k]), drop);
+      const Vec residual = hn::Abs(hn::NegMulAdd(hn::LoadU(d, &state.siemens[k]), part, z));
+      worst = hn::Max(worst, residual);
+      spread = hn::MulAdd(residual, off_diagonal, spread);
+    }
+    hn::StoreU(column_scale(d, state, col, sum, drop), d, &state.column_scale[col]);
+    const Vec bound = hn::Mul(hn::Add(worst, spread), hn::LoadU(d, &state.certificate_ratio[col]));
+    largest = hn::Max(largest, bound);
+    total = hn::Add(total, bound);
+  }
+  // Max() may drop what is not a number; the sum does not.
+  if (!std::isfinite(hn::GetLane(hn::SumOfLanes(d, total)))) return std::numeric_limits<double>::infinity();
+  return hn::GetLane(hn::MaxOfLanes(d, largest));
+}
+
+void advance_kernel(GroundedRowsState& state) {
+  const D d;
+  const Vec zero = hn::Zero(d);
+  for (std::size_t row = 0; row < state.rows; ++row) {
+    const Vec gain = hn::Set(d, state.line_gain[row]);
+    const Vec inverse_gain = hn::Set(d, 1.0 / state.line_gain[row]);
+    for (std::size_t col = 0; col < state.stride; col += hn::Lanes(d)) {
+      const std::size_t k = row * state.stride + col;
+      const Vec y = hn::LoadU(d, &state.measured[k]);
+      const Vec returned = hn::LoadU(d, &state.returned[k]);
+      const Vec z = hn::Max(hn::MulSub(gain, y, returned), zero);
+      hn::StoreU(hn::Mul(z, hn::LoadU(d, &state.column_scale[col])), d, &state.siemens[k]);
+      hn::StoreU(hn::Max(y, hn::Mul(returned, inverse_gain)), d, &state.explained[k]);
+    }
+  }
+  refresh_kernel(state);
+}
+
+/// Base of column j: what noise of y_ij alone makes of G_ij, but for the line gain a_i.
+HWY_INLINE Vec column_noise(D d, const GroundedRowsState& state, const double* HWY_RESTRICT sigma, std::size_t col) {
+  return hn::Div(hn::LoadU(d, sigma + col), hn::LoadU(d, &state.column_part[col]));
+}
+
+void noise_kernel(const GroundedRowsState& state, const double* HWY_RESTRICT sigma, double* HWY_RESTRICT out) {
+  const D d;
+  const std::size_t lanes = hn::Lanes(d);
+  const Vec one = hn::Set(d, 1.0);
+  Vec columns = hn::Zero(d);
+  for (std::size_t col = 0; col < state.stride; col += lanes) {
+    const Vec base = column_noise(d, state, sigma, col);
+    columns = hn::MulAdd(base, base, columns);
+  }
+  const Vec all_columns = hn::Set(d, hn::GetLane(hn::SumOfLanes(d, columns)));
+  double rows = 0.0;
+  for (const double gain : state.line_gain) rows += gain * gain;
+  for (std::size_t col = 0; col < state.stride; col += lanes) {
+    const Vec base = column_noise(d, state, sigma, col);
+    const Vec square = hn::Mul(base, base);
+    const Vec other_columns = hn::Sub(all_columns, square);
+    const Vec ohm = hn::LoadU(d, &state.column_ohm[col]);
+    for (std::size_t row = 0; row < state.rows; ++row) {
+      const std::size_t k = row * state.stride + col;
+      const double gain = state.line_gain[row] * state.line_gain[row];
+      const Vec g = hn::LoadU(d, &state.siemens[k]);
+      const Vec p = hn::Mul(hn::Set(d, state.drive_ohm[row]), g);
+      const Vec w = hn::Mul(ohm, g);
+      const Vec own = hn::Add(one, hn::Add(p, w));
+      Vec variance = hn::Mul(hn::Mul(hn::Set(d, gain), square), hn::Mul(own, own));
+      variance = hn::MulAdd(hn::Mul(p, p), hn::Mul(hn::Set(d, gain), other_columns), variance);
+      variance = hn::MulAdd(hn::Mul(w, w), hn::Mul(hn::Set(d, rows - gain), square), variance);
+      hn::StoreU(hn::Sqrt(variance), d, out + k);
+    }
+  }
+}
+
+}  // namespace dermis::compensation::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace dermis::compensation {
+
+namespace {
+
+constexpr std::size_t kMostLanes = 8;
+
+}  // namespace
+
+HWY_EXPORT(estimate_kernel);
+HWY_EXPORT(warm_kernel);
+HWY_EXPORT(refresh_kernel);
+HWY_EXPORT(assess_kernel);
+HWY_EXPORT(advance_kernel);
+HWY_EXPORT(noise_kernel);
+
+GroundedRowsState::GroundedRowsState(std::size_t row_count, std::size_t col_count, IdleColumns columns)
+    : rows(row_count),
+      cols(col_count),
+      stride((col_count + kMostLanes - 1) / kMostLanes * kMostLanes),
+      idle_columns(columns),
+      drive_ohm(rows),
+      column_ohm(stride),
+      certificate_ratio(stride),
+      measured(rows * stride),
+      explained(rows * stride),
+      dropped(rows * stride),
+      estimate(rows * stride),
+      siemens(rows * stride),
+      shunted(rows * stride),
+      coupling(cols * stride),
+      returned(rows * stride),
+      line_gain(rows),
+      column_part(stride),
+      column_scale(stride) {}
+
+void estimate_from_readings(GroundedRowsState& state) noexcept {
+  HWY_DYNAMIC_DISPATCH(estimate_kernel)(state);
+}
+
+void start_cold(GroundedRowsState& state) noexcept {
+  state.siemens = state.estimate;
+  state.explained = state.measured;
+  refresh(state);
+}
+
+void start_warm(GroundedRowsState& state, const std::vector<double>& last_estimate) noexcept {
+  HWY_DYNAMIC_DISPATCH(warm_kernel)(state, last_estimate.data());
+  refresh(state);
+}
+
+void refresh(GroundedRowsState& state) noexcept {
+  HWY_DYNAMIC_DISPATCH(refresh_kernel)(state);
+}
+
+double assess(GroundedRowsState& state) noexcept {
+  const auto [rows, cols, stride] = std::tuple(state.rows, state.cols, state.stride);
+  multiply({state.shunted.data(), 1, stride}, state.dropped.data(), cols, rows, stride, state.coupling.data());
+  multiply({state.siemens.data(), stride, 1}, state.coupling.data(), rows, cols, stride, state.returned.data());
+  return HWY_DYNAMIC_DISPATCH(assess_kernel)(state);
+}
+
+void advance(GroundedRowsState& state) noexcept {
+  HWY_DYNAMIC_DISPATCH(advance_kernel)(state);
+}
+
+void spread_noise(const GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept {
+  HWY_DYNAMIC_DISPATCH(noise_kernel)(state, sigma.data(), out.data());
+}
+
+}  // namespace dermis::compensation
+#endif  // HWY_ONCE

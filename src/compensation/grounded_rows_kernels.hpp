@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+
+namespace dermis::compensation {
+
+/// What the iteration of GroundedRows works on; grounded_rows.hpp says what the symbols mean. Matrices are
+/// [rows, stride], row-major: zeros fill up the columns to whole SIMD vectors.
+struct GroundedRowsState {
+  GroundedRowsState(std::size_t row_count, std::size_t col_count, IdleColumns columns);
+
+  std::size_t rows;
+  std::size_t cols;
+  std::size_t stride;
+  IdleColumns idle_columns;
+
+  // The circuit.
+  std::vector<double> drive_ohm;          // Rd [rows]
+  std::vector<double> column_ohm;         // RL [stride]
+  std::vector<double> certificate_ratio;  // Ratio per bound on D S^-1 R [stride]
+
+  // The frame.
+  std::vector<double> measured;   // y
+  std::vector<double> explained;  // y', above y where a taxel is held at 0 S
+  std::vector<double> dropped;    // Rd y'
+  std::vector<double> estimate;   // G by the textbook, from y alone
+
+  // The iterate.
+  std::vector<double> siemens;       // G
+  std::vector<double> shunted;       // G diag(eta)
+  std::vector<double> coupling;      // diag(eta) G^T Rd y' [cols, stride]
+  std::vector<double> returned;      // G diag(eta) G^T Rd y'
+  std::vector<double> line_gain;     // a [rows]
+  std::vector<double> column_part;   // w [stride]
+  std::vector<double> column_scale;  // From Z to the next G [stride]
+};
+
+/// `estimate` of the readings: exact for ideal drivers, and for columns at 0 V.
+void estimate_from_readings(GroundedRowsState& state) noexcept;
+
+/// Starts at the estimate, no taxel held.
+void start_cold(GroundedRowsState& state) noexcept;
+
+/// Starts at the solution that `state` holds, moved by what the estimate has changed; `last_estimate` was its own.
+void start_warm(GroundedRowsState& state, const std::vector<double>& last_estimate) noexcept;
+
+/// Equations (b) and (c) at the present G; gives its certificate, as a ratio, and prepares advance().
+[[nodiscard]] double assess(GroundedRowsState& state) noexcept;
+
+/// Equations (d) and (e): the next G and y'.
+void advance(GroundedRowsState& state) noexcept;
+
+/// Standard deviation of G [rows, stride] from that of y, `sigma` [stride]; see GroundedRows::propagate_noise.
+void spread_noise(const GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept;
+
+/// After a change of G or y' from outside.
+void refresh(GroundedRowsState& state) noexcept;
+
+}  // namespace dermis::compensation
