@@ -13,11 +13,18 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxSteps = 80;
-constexpr double kLongestStep = 2.0;              // of x: a factor of e^2 where x is a logarithm
-constexpr double kShortestFraction = 1.0 / 64.0;  // of a step
+constexpr double kLongestStep = 2.0;             // of x: a factor of e^2 where x is a logarithm
+constexpr double kShortestFraction = 1.0 / 8.0;  // of a step
+constexpr double kLeastDamping = 1e-3;
+constexpr double kMostDamping = 1e3;
+constexpr double kDampingFactor = 10.0;
 constexpr double kLeastOpenShare = 1e-9;  // of the supply that a reading leaves to its taxel; less is no solution
 constexpr double kRounding = 1e-13;       // of the largest reading: what remains of a residual in double precision
 constexpr double kRoundingMerit = 1e-9;   // below it a step that does not halve the misfits is rounding
+// Of the solution of a step's equations: the better, the nearer the solution is.
+constexpr double kAccuracy = 0.1;
+constexpr double kBestAccuracy = 1e-6;
+constexpr double kLeastAccuracy = 1e-2;
 constexpr double kMostSiemens = 1e3;
 constexpr double kLeastOwnShare = 1e-3;  // of a taxel in its reading that the scaling of the equations counts on
 
@@ -60,8 +67,8 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
       readings_.push_back({sensed.gain, sensed.offset, drive + sensed.rho, noise_ratio / sensed.gain});
     }
   }
-  for (auto* values : {&measured_, &x_, &trial_, &siemens_, &misfit_, &own_slope_, &row_scale_, &column_scale_, &right_,
-                       &change_, &last_shift_}) {
+  for (auto* values : {&measured_, &x_, &last_x_, &scaled_, &siemens_, &misfit_, &own_slope_, &row_scale_,
+                       &column_scale_, &right_, &change_, &last_shift_}) {
     values->resize(array.taxel_count());
   }
   held_.resize(array.taxel_count());
@@ -103,6 +110,7 @@ void NewtonInversion::start(bool from_last_frame) noexcept {
     x_[k] = std::max(measured_[k] + (from_last_frame ? last_shift_[k] : 0.0), 0.0);
   }
   solve_at(x_);
+  damping_ = 0.0;
 }
 
 bool NewtonInversion::iterate() noexcept {
@@ -147,37 +155,50 @@ double NewtonInversion::moved(std::size_t taxel, double x, double change) const 
 }
 
 bool NewtonInversion::step() noexcept {
-  const std::size_t taxels = x_.size();
+  scale_equations();
+  std::copy(x_.begin(), x_.end(), last_x_.begin());
+  const double before = merit();
+  for (; damping_ <= kMostDamping; damping_ = std::max(kLeastDamping, kDampingFactor * damping_)) {
+    solve_equations(before);
+    for (double fraction = 1.0; fraction >= kShortestFraction; fraction *= 0.5) {
+      for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = moved(k, last_x_[k], fraction * change_[k]);
+      solve_at(x_);
+      const double after = merit();
+      if (!(after < before)) continue;
+      if (fraction == 1.0) damping_ = damping_ > kLeastDamping ? damping_ / kDampingFactor : 0.0;
+      return after > kRoundingMerit || after < 0.5 * before;
+    }
+    std::copy(last_x_.begin(), last_x_.end(), x_.begin());
+    solve_at(x_);
+    if (before < kRoundingMerit) return false;
+  }
+  return false;
+}
+
+void NewtonInversion::scale_equations() noexcept {
   model_.own_derivatives(own_slope_);
-  for (std::size_t k = 0; k < taxels; ++k) {
+  for (std::size_t k = 0; k < x_.size(); ++k) {
     const double slope = readings_[k].slope(model_.ratio()[k]);
+    const double least_own_slope = kLeastOwnShare * readings_[k].open_slope(model_.ratio()[k]);
+    row_scale_[k] = slope;
+    column_scale_[k] = 1.0 / (slope * std::max(own_slope_[k], least_own_slope));
     held_[k] = x_[k] + misfit_[k] <= 0.0;
-    row_scale_[k] = held_[k] ? 0.0 : slope;
-    column_scale_[k] =
-        1.0 / (slope * std::max(own_slope_[k], kLeastOwnShare * readings_[k].open_slope(model_.ratio()[k])));
     right_[k] = held_[k] ? -siemens_[k] / column_scale_[k] : misfit_[k];
   }
+}
+
+void NewtonInversion::solve_equations(double merit) noexcept {
+  const std::size_t taxels = x_.size();
   const auto product = [&](std::span<const double> in, std::span<double> out) {
-    for (std::size_t k = 0; k < taxels; ++k) trial_[k] = in[k] * column_scale_[k];
-    model_.multiply_taxel_jacobian(trial_, out);
-    for (std::size_t k = 0; k < taxels; ++k) out[k] = held_[k] ? in[k] : out[k] * row_scale_[k];
+    for (std::size_t k = 0; k < taxels; ++k) scaled_[k] = in[k] * column_scale_[k];
+    model_.multiply_taxel_jacobian(scaled_, out);
+    for (std::size_t k = 0; k < taxels; ++k) out[k] = held_[k] ? in[k] : out[k] * row_scale_[k] + damping_ * in[k];
   };
-  const double before = merit();
-  const double accuracy = std::clamp(0.1 * before / std::sqrt(static_cast<double>(taxels)), 1e-6, 1e-2);
-  solver_.solve(product, right_, change_, accuracy);
+  const double accuracy = kAccuracy * merit / std::sqrt(static_cast<double>(taxels));
+  solver_.solve(product, right_, change_, std::clamp(accuracy, kBestAccuracy, kLeastAccuracy));
   for (std::size_t k = 0; k < taxels; ++k) {
     change_[k] = held_[k] ? -x_[k] : change_[k] * column_scale_[k] / readings_[k].siemens_slope(x_[k]);
   }
-  std::copy(x_.begin(), x_.end(), trial_.begin());
-  for (double fraction = 1.0; fraction >= kShortestFraction; fraction *= 0.5) {
-    for (std::size_t k = 0; k < taxels; ++k) x_[k] = moved(k, trial_[k], fraction * change_[k]);
-    solve_at(x_);
-    const double after = merit();
-    if (after < before) return after > kRoundingMerit || after < 0.5 * before;
-  }
-  x_ = trial_;
-  solve_at(x_);
-  return false;
 }
 
 void NewtonInversion::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {

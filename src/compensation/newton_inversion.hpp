@@ -56,6 +56,8 @@ class NewtonInversion final : public CrosstalkInversion {
   void start(bool from_last_frame) noexcept;
   [[nodiscard]] bool iterate() noexcept;
   [[nodiscard]] bool step() noexcept;
+  void scale_equations() noexcept;
+  void solve_equations(double merit) noexcept;
   [[nodiscard]] double moved(std::size_t taxel, double x, double change) const noexcept;
   void solve_at(std::span<const double> x) noexcept;
   [[nodiscard]] double merit() const noexcept;
@@ -68,7 +70,8 @@ class NewtonInversion final : public CrosstalkInversion {
   std::span<const double> ratio_;
   std::vector<double> measured_;  // x of the readings
   std::vector<double> x_;         // of the taxels
-  std::vector<double> trial_;
+  std::vector<double> last_x_;
+  std::vector<double> scaled_;
   std::vector<double> siemens_;
   std::vector<double> misfit_;  // r at siemens_
   std::vector<double> own_slope_;
@@ -77,6 +80,7 @@ class NewtonInversion final : public CrosstalkInversion {
   std::vector<double> right_;
   std::vector<double> change_;
   std::vector<bool> held_;
+  double damping_ = 0.0;
   bool has_last_frame_ = false;
   std::vector<double> last_shift_;  // x - measured of the last solved frame
 };
