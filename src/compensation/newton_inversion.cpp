@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "compensation/sensed_line.hpp"
+#include "dermis/core/random.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -27,6 +29,10 @@ constexpr double kBestAccuracy = 1e-6;
 constexpr double kLeastAccuracy = 1e-2;
 constexpr double kMostSiemens = 1e3;
 constexpr double kLeastOwnShare = 1e-3;  // of a taxel in its reading that the scaling of the equations counts on
+
+constexpr std::size_t kMostInvertedTaxels = 400;
+constexpr int kNoiseSamples = 12;
+constexpr std::uint64_t kNoiseSeed = 1;
 
 }  // namespace
 
@@ -68,10 +74,11 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
     }
   }
   for (auto* values : {&measured_, &x_, &last_x_, &scaled_, &siemens_, &misfit_, &own_slope_, &row_scale_,
-                       &column_scale_, &right_, &change_, &last_shift_}) {
+                       &column_scale_, &right_, &solution_, &change_, &last_shift_}) {
     values->resize(array.taxel_count());
   }
   held_.resize(array.taxel_count());
+  if (x_.size() <= kMostInvertedTaxels) inverse_ = std::make_unique<DenseInverse>(x_.size());
 }
 
 double NewtonInversion::siemens_per_ratio() const noexcept {
@@ -158,8 +165,12 @@ bool NewtonInversion::step() noexcept {
   scale_equations();
   std::copy(x_.begin(), x_.end(), last_x_.begin());
   const double before = merit();
+  const double accuracy = kAccuracy * before / std::sqrt(static_cast<double>(x_.size()));
   for (; damping_ <= kMostDamping; damping_ = std::max(kLeastDamping, kDampingFactor * damping_)) {
-    solve_equations(before);
+    solve_equations(std::clamp(accuracy, kBestAccuracy, kLeastAccuracy));
+    for (std::size_t k = 0; k < x_.size(); ++k) {
+      change_[k] = held_[k] ? -x_[k] : solution_[k] * column_scale_[k] / readings_[k].siemens_slope(x_[k]);
+    }
     for (double fraction = 1.0; fraction >= kShortestFraction; fraction *= 0.5) {
       for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = moved(k, last_x_[k], fraction * change_[k]);
       solve_at(x_);
@@ -187,23 +198,58 @@ void NewtonInversion::scale_equations() noexcept {
   }
 }
 
-void NewtonInversion::solve_equations(double merit) noexcept {
+void NewtonInversion::solve_equations(double accuracy) noexcept {
   const std::size_t taxels = x_.size();
   const auto product = [&](std::span<const double> in, std::span<double> out) {
     for (std::size_t k = 0; k < taxels; ++k) scaled_[k] = in[k] * column_scale_[k];
     model_.multiply_taxel_jacobian(scaled_, out);
     for (std::size_t k = 0; k < taxels; ++k) out[k] = held_[k] ? in[k] : out[k] * row_scale_[k] + damping_ * in[k];
   };
-  const double accuracy = kAccuracy * merit / std::sqrt(static_cast<double>(taxels));
-  solver_.solve(product, right_, change_, std::clamp(accuracy, kBestAccuracy, kLeastAccuracy));
-  for (std::size_t k = 0; k < taxels; ++k) {
-    change_[k] = held_[k] ? -x_[k] : change_[k] * column_scale_[k] / readings_[k].siemens_slope(x_[k]);
+  solver_.solve(product, right_, solution_, accuracy);
+}
+
+// In units of x, with B = (d x / d ratio) J (d siemens / d x): the sums of squares of the rows of B^-1 (d x / d ratio).
+void NewtonInversion::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
+  scale_equations();
+  std::fill(sigma_siemens.begin(), sigma_siemens.end(), 0.0);
+  if (x_.size() <= kMostInvertedTaxels) {
+    add_exact_variance(sigma_siemens);
+  } else {
+    add_sampled_variance(sigma_siemens);
+  }
+  for (std::size_t k = 0; k < x_.size(); ++k) {
+    const double sigma = sigma_ratio * column_scale_[k] * std::sqrt(sigma_siemens[k]);
+    sigma_siemens[k] = sigma < kMostSiemens ? sigma : kMostSiemens;  // also where nothing is known: not a number
   }
 }
 
-void NewtonInversion::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
-  model_.own_derivatives(sigma_siemens);
-  for (double& sigma : sigma_siemens) sigma = sigma_ratio / sigma;
+void NewtonInversion::add_exact_variance(std::span<double> variance) noexcept {
+  const std::size_t taxels = x_.size();
+  auto& matrix = inverse_->matrix();
+  model_.taxel_jacobian({matrix.data(), taxels * taxels});
+  const Eigen::Map<const Eigen::VectorXd> row_scale(row_scale_.data(), matrix.rows());
+  const Eigen::Map<const Eigen::VectorXd> column_scale(column_scale_.data(), matrix.cols());
+  for (Eigen::Index k = 0; k < matrix.rows(); ++k) {
+    matrix.row(k).array() *= row_scale(k) * column_scale.transpose().array();
+  }
+  inverse_->invert();
+  for (Eigen::Index k = 0; k < matrix.rows(); ++k) {
+    variance[static_cast<std::size_t>(k)] += matrix.row(k).cwiseProduct(row_scale.transpose()).squaredNorm();
+  }
+}
+
+// The variance of a taxel over readings of random signs.
+void NewtonInversion::add_sampled_variance(std::span<double> variance) noexcept {
+  Random random(kNoiseSeed);
+  damping_ = 0.0;
+  std::fill(held_.begin(), held_.end(), false);
+  for (int sample = 0; sample < kNoiseSamples; ++sample) {
+    for (std::size_t k = 0; k < x_.size(); ++k) {
+      right_[k] = random.below(2) == 0 ? row_scale_[k] : -row_scale_[k];
+    }
+    solve_equations(kLeastAccuracy);
+    for (std::size_t k = 0; k < x_.size(); ++k) variance[k] += solution_[k] * solution_[k] / kNoiseSamples;
+  }
 }
 
 }  // namespace dermis::compensation

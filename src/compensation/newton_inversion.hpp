@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "compensation/dense_inverse.hpp"
 #include "compensation/krylov_solver.hpp"
 #include "dermis/compensation/circuit_model.hpp"
 #include "dermis/compensation/crosstalk.hpp"
@@ -57,7 +59,9 @@ class NewtonInversion final : public CrosstalkInversion {
   [[nodiscard]] bool iterate() noexcept;
   [[nodiscard]] bool step() noexcept;
   void scale_equations() noexcept;
-  void solve_equations(double merit) noexcept;
+  void solve_equations(double accuracy) noexcept;
+  void add_exact_variance(std::span<double> variance) noexcept;
+  void add_sampled_variance(std::span<double> variance) noexcept;
   [[nodiscard]] double moved(std::size_t taxel, double x, double change) const noexcept;
   void solve_at(std::span<const double> x) noexcept;
   [[nodiscard]] double merit() const noexcept;
@@ -66,6 +70,7 @@ class NewtonInversion final : public CrosstalkInversion {
   std::vector<Reading> readings_;
   CircuitModel model_;
   KrylovSolver solver_;
+  std::unique_ptr<DenseInverse> inverse_;  // of small arrays
   double tolerance_;
   std::span<const double> ratio_;
   std::vector<double> measured_;  // x of the readings
@@ -78,6 +83,7 @@ class NewtonInversion final : public CrosstalkInversion {
   std::vector<double> row_scale_;
   std::vector<double> column_scale_;
   std::vector<double> right_;
+  std::vector<double> solution_;
   std::vector<double> change_;
   std::vector<bool> held_;
   double damping_ = 0.0;
