@@ -22,7 +22,7 @@ constexpr double kMostDamping = 1e3;
 constexpr double kDampingFactor = 10.0;
 constexpr double kLeastOpenShare = 1e-9;  // of the supply that a reading leaves to its taxel; less is no solution
 constexpr double kRounding = 1e-13;       // of the largest reading: what remains of a residual in double precision
-constexpr double kRoundingMerit = 1e-9;   // below it a step that does not halve the misfits is rounding
+constexpr double kRoundingMerit = 1e-12;  // below it a step that does not halve the misfits is rounding
 // Of the solution of a step's equations: the better, the nearer the solution is.
 constexpr double kAccuracy = 0.1;
 constexpr double kBestAccuracy = 1e-6;
@@ -36,16 +36,17 @@ constexpr std::uint64_t kNoiseSeed = 1;
 
 }  // namespace
 
-double NewtonInversion::Reading::scaled(double ratio) const noexcept {
+double NewtonInversion::Reading::apparent_siemens(double ratio) const noexcept {
   const double current = (ratio - offset) / gain;
-  const double siemens = current / std::max(1.0 - series * current, kLeastOpenShare);
-  return std::asinh(siemens / (2.0 * noise));
+  return current / std::max(1.0 - series * current, kLeastOpenShare);
+}
+
+double NewtonInversion::Reading::scaled(double ratio) const noexcept {
+  return std::asinh(apparent_siemens(ratio) / (2.0 * scale));
 }
 
 double NewtonInversion::Reading::slope(double ratio) const noexcept {
-  const double current = (ratio - offset) / gain;
-  const double open = std::max(1.0 - series * current, kLeastOpenShare);
-  return 1.0 / (gain * open * open * std::hypot(current / open, 2.0 * noise));
+  return 1.0 / (open_slope(ratio) * std::hypot(apparent_siemens(ratio), 2.0 * scale));
 }
 
 double NewtonInversion::Reading::open_slope(double ratio) const noexcept {
@@ -54,11 +55,11 @@ double NewtonInversion::Reading::open_slope(double ratio) const noexcept {
 }
 
 double NewtonInversion::Reading::siemens(double x) const noexcept {
-  return std::min(2.0 * noise * std::sinh(x), kMostSiemens);
+  return std::min(2.0 * scale * std::sinh(x), kMostSiemens);
 }
 
 double NewtonInversion::Reading::siemens_slope(double x) const noexcept {
-  return 2.0 * noise * std::cosh(x);
+  return 2.0 * scale * std::cosh(x);
 }
 
 NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio)
@@ -70,7 +71,7 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
     for (std::size_t col = 0; col < array.cols; ++col) {
       const SensedLine sensed = sensed_line(readout, columns_are_driven ? row : col);
       const double drive = readout.drive_ohm[columns_are_driven ? col : row];
-      readings_.push_back({sensed.gain, sensed.offset, drive + sensed.rho, noise_ratio / sensed.gain});
+      readings_.push_back({sensed.gain, sensed.offset, drive + sensed.rho, noise_ratio / sensed.gain, 0.0});
     }
   }
   for (auto* values : {&measured_, &x_, &last_x_, &scaled_, &siemens_, &misfit_, &own_slope_, &row_scale_,
@@ -93,7 +94,10 @@ InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span
     return {false, std::numeric_limits<double>::infinity()};
   }
   ratio_ = ratio;
-  for (std::size_t k = 0; k < ratio.size(); ++k) measured_[k] = readings_[k].scaled(ratio[k]);
+  for (std::size_t k = 0; k < ratio.size(); ++k) {
+    readings_[k].scale = std::max(readings_[k].noise, -readings_[k].apparent_siemens(ratio[k]));
+    measured_[k] = readings_[k].scaled(ratio[k]);
+  }
   bool solved = false;
   if (has_last_frame_) {
     start(true);
@@ -156,9 +160,8 @@ double NewtonInversion::residual_ratio() const noexcept {
 
 // A weak taxel adds to what flows around it: its reading is linear in its conductance up to that of the reading.
 double NewtonInversion::moved(std::size_t taxel, double x, double change) const noexcept {
-  if (change <= 0.0) return std::max(x + std::max(change, -kLongestStep), 0.0);
   const double linear = std::asinh(std::sinh(x) + change * std::cosh(x));
-  return std::min(linear, std::max(x, measured_[taxel]) + kLongestStep);
+  return std::clamp(linear, std::max(x - kLongestStep, 0.0), std::max(x, measured_[taxel]) + kLongestStep);
 }
 
 bool NewtonInversion::step() noexcept {
@@ -176,7 +179,7 @@ bool NewtonInversion::step() noexcept {
       solve_at(x_);
       const double after = merit();
       if (!(after < before)) continue;
-      if (fraction == 1.0) damping_ = damping_ > kLeastDamping ? damping_ / kDampingFactor : 0.0;
+      damping_ = damping_ > kLeastDamping ? damping_ / kDampingFactor : 0.0;
       return after > kRoundingMerit || after < 0.5 * before;
     }
     std::copy(last_x_.begin(), last_x_.end(), x_.begin());

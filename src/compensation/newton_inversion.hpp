@@ -43,11 +43,13 @@ class NewtonInversion final : public CrosstalkInversion {
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
 
  private:
-  struct Reading {        // what a reading would mean without crosstalk
+  struct Reading {
     double gain = 1.0;    // d ratio / d current [ohm]
     double offset = 0.0;  // ratio at no current
     double series = 0.0;  // rho_d + rho_s [ohm]
     double noise = 0.0;   // g_n [S]
+    double scale = 0.0;   // g_n, and the size of a reading below 0, which an amplifier's offset may cause [S]
+    [[nodiscard]] double apparent_siemens(double ratio) const noexcept;  // y
     [[nodiscard]] double scaled(double ratio) const noexcept;
     [[nodiscard]] double slope(double ratio) const noexcept;       // d scaled / d ratio
     [[nodiscard]] double open_slope(double ratio) const noexcept;  // d ratio / d siemens without crosstalk
