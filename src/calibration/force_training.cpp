@@ -122,7 +122,7 @@ fusion::ForceNetworks make_networks(const network::PerceptronShape& shape, const
   networks.gain.assign(taxels, 1.0F);
   networks.offset_sigma_siemens.assign(evidence.unloaded.offset_sigma_siemens.begin(),
                                        evidence.unloaded.offset_sigma_siemens.end());
-  networks.relative_sigma.assign(taxels, kUnknownRelativeSigma);
+  networks.relative_sigma.assign(fusion::kSigmaKnots * taxels, kUnknownRelativeSigma);
   networks.parameters.assign(shape.parameter_count() * taxels, 0.0F);
   for (const bool dead : evidence.dead) networks.dead.push_back(dead ? 1 : 0);
   return networks;

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -24,7 +25,8 @@ constexpr double kMostTemperatureNoise = 1.0;
 constexpr std::size_t kMostLoads = 4000;  // more do not make the estimates better
 constexpr std::size_t kLoadsPerTask = 100;
 constexpr double kLeastRelativeSigma = 1e-3;
-constexpr double kMostRelativeSigma = 10.0;
+constexpr double kStartRelativeSigma = 0.1;
+constexpr std::size_t kLoadsPerKnot = 50;
 
 /// The smallest value that at least `share` of `values` do not exceed.
 double quantile(std::vector<double> values, double share) {
@@ -77,20 +79,23 @@ double half_square_difference(const SampleDatabase& database, const Sample& a, c
 
 // -------------------------------------------------------------------------------------------- error on tested loads
 
+/// Squares of the relative error at the knots of fusion::ForceNetworks::relative_sigma.
+using Profile = std::array<double, fusion::kSigmaKnots>;
+
 /// A tested load with the variances of the sum of its taxels' forces, by where they come from [N^2].
 struct JudgedLoad {
   double square_noise = 0.0;
   double square_error = 0.0;
   double instruments = 0.0;  // ADC, temperature sensor, unloaded conductance
   double supply = 0.0;       // for a supply error of kUnitSupplyNoise, which all taxels share
-  double material = 0.0;     // for a relative error of 1 of every taxel
+  Profile material{};        // for a relative error of 1 at each knot
 
-  [[nodiscard]] double variance(double supply_noise, double relative_sigma) const {
-    return instruments + std::pow(supply_noise / kUnitSupplyNoise, 2) * supply +
-           relative_sigma * relative_sigma * material;
+  [[nodiscard]] double variance(double supply_noise, const Profile& profile) const {
+    const double known = instruments + std::pow(supply_noise / kUnitSupplyNoise, 2) * supply;
+    return std::inner_product(profile.begin(), profile.end(), material.begin(), known);
   }
 
-  static constexpr double kUnitSupplyNoise = 0.05;
+  static constexpr double kUnitSupplyNoise = 0.005;
 };
 
 /// Units 3 and 4 with a given error of the supply and networks that have hardly any of their own.
@@ -128,7 +133,8 @@ class ErrorBudget {
   ForceFrame force_;
 };
 
-JudgedLoad judge(const TestedLoad& load, const ForceFrame& without_supply, const ForceFrame& with_supply) {
+JudgedLoad judge(const TestedLoad& load, const fusion::ForceNetworks& networks, const ForceFrame& without_supply,
+                 const ForceFrame& with_supply) {
   JudgedLoad judged;
   judged.square_noise = load.noise_n * load.noise_n;
   judged.square_error = load.error_n * load.error_n;
@@ -138,7 +144,11 @@ JudgedLoad judge(const TestedLoad& load, const ForceFrame& without_supply, const
     const double square = std::pow(static_cast<double>(without_supply.sigma_newtons[taxel]), 2);
     const double square_with_supply = std::pow(static_cast<double>(with_supply.sigma_newtons[taxel]), 2);
     judged.instruments += square;
-    judged.material += newtons * newtons;
+    const double place = networks.sigma_place(std::log(without_supply.newtons[taxel]));
+    for (std::size_t k = 0; k < judged.material.size(); ++k) {
+      const double weight = std::max(1.0 - std::abs(place - static_cast<double>(k)), 0.0);
+      judged.material[k] += weight * newtons * newtons;
+    }
     supply_n += std::sqrt(std::max(square_with_supply - square, 0.0));
   }
   judged.supply = supply_n * supply_n;
@@ -160,40 +170,54 @@ Result<std::vector<JudgedLoad>> judge_loads(const SampleDatabase& database, cons
       const TestedLoad& load = loads[k * loads.size() / count];
       const Sample& sample = database.samples[load.sample];
       const double sigma_ratio = noise_ratio * sample.sigma_ratio;
-      judged[k] = judge(load, without_supply->forces(sample, sigma_ratio), with_supply->forces(sample, sigma_ratio));
+      judged[k] = judge(load, model.networks, without_supply->forces(sample, sigma_ratio),
+                        with_supply->forces(sample, sigma_ratio));
     }
   });
-  std::erase_if(judged, [](const JudgedLoad& load) {
-    return !std::isfinite(load.instruments + load.supply + load.material) || load.material == 0.0;
+  Profile one;
+  one.fill(1.0);
+  std::erase_if(judged, [&](const JudgedLoad& load) {
+    return !std::isfinite(load.variance(1.0, one)) || load.variance(0.0, one) <= load.instruments;
   });
   return judged;
 }
 
 using Square = double JudgedLoad::*;
 
-/// The relative error with which 68.3 % of the loads are within one standard deviation; bisection in its logarithm.
-double relative_sigma_of(const std::vector<JudgedLoad>& loads, Square square, double supply_noise) {
-  double low = kLeastRelativeSigma;
-  double high = kMostRelativeSigma;
+/// The multiple of `profile` with which 68.3 % of the loads are within one standard deviation; bisection in its
+/// logarithm.
+Profile scaled(const Profile& profile, const std::vector<JudgedLoad>& loads, Square square, double supply_noise) {
+  double low = 1e-4;
+  double high = 1e4;
+  Profile result = profile;
   std::vector<double> scores(loads.size());
-  constexpr int kSteps = 20;
+  constexpr int kSteps = 24;
   for (int step = 0; step < kSteps; ++step) {
-    const double middle = std::sqrt(low * high);
-    for (std::size_t k = 0; k < loads.size(); ++k) {
-      scores[k] = loads[k].*square / loads[k].variance(supply_noise, middle);
-    }
-    (quantile(scores, kOneSigmaShare) > 1.0 ? low : high) = middle;
+    const double scale = std::sqrt(low * high);
+    std::transform(profile.begin(), profile.end(), result.begin(), [&](double variance) {
+      return std::max(scale * variance, kLeastRelativeSigma * kLeastRelativeSigma);
+    });
+    for (std::size_t k = 0; k < loads.size(); ++k)
+      scores[k] = loads[k].*square / loads[k].variance(supply_noise, result);
+    (quantile(scores, kOneSigmaShare) > 1.0 ? low : high) = scale;
   }
-  return low;
+  return result;
+}
+
+/// The same relative error at all forces.
+Profile even_profile(const std::vector<JudgedLoad>& loads, Square square, double supply_noise) {
+  Profile start;
+  start.fill(kStartRelativeSigma * kStartRelativeSigma);
+  return scaled(start, loads, square, supply_noise);
 }
 
 /// Minus the logarithm of the likelihood of the noise; a load beyond three standard deviations counts as three.
 double surprise(const std::vector<JudgedLoad>& loads, double supply_noise) {
   if (loads.empty()) return 0.0;
-  const double relative_sigma = relative_sigma_of(loads, &JudgedLoad::square_noise, supply_noise);
+  const Profile profile = even_profile(loads, &JudgedLoad::square_noise, supply_noise);
   double sum = 0.0;
   for (const JudgedLoad& load : loads) {
-    const double variance = load.variance(supply_noise, relative_sigma);
+    const double variance = load.variance(supply_noise, profile);
     sum += 0.5 * (std::log(variance) + std::min(load.square_noise / variance, kOutlierRatio));
   }
   return sum;
@@ -215,10 +239,56 @@ double likeliest_supply_noise(const std::vector<JudgedLoad>& own, const std::vec
   return best;
 }
 
-void set_relative_sigma(const std::vector<TestedLoad>& loads, double relative_sigma, std::vector<float>& of_taxel) {
-  for (const TestedLoad& load : loads) {
-    for (const std::size_t taxel : load.taxels) of_taxel[taxel] = static_cast<float>(relative_sigma);
+/// The relative errors at the knots that make the errors likeliest: the fixed point of the variance components of a
+/// normal distribution (the multiplicative step of Lange's MM algorithm), outliers as above.
+Profile likeliest_profile(const std::vector<JudgedLoad>& loads, double supply_noise) {
+  Profile profile = even_profile(loads, &JudgedLoad::square_error, supply_noise);
+  if (loads.size() < kLoadsPerKnot * profile.size()) return profile;
+  constexpr int kSteps = 100;
+  for (int step = 0; step < kSteps; ++step) {
+    Profile found{};
+    Profile expected{};
+    for (const JudgedLoad& load : loads) {
+      const double variance = load.variance(supply_noise, profile);
+      const double score = std::min(load.square_error / variance, kOutlierRatio);
+      for (std::size_t k = 0; k < profile.size(); ++k) {
+        found[k] += load.material[k] / variance * score;
+        expected[k] += load.material[k] / variance;
+      }
+    }
+    for (std::size_t k = 0; k < profile.size(); ++k) {
+      if (found[k] > 0.0) profile[k] *= std::sqrt(found[k] / expected[k]);
+    }
   }
+  return scaled(profile, loads, &JudgedLoad::square_error, supply_noise);
+}
+
+/// The profile of the taxels that carry the loads, in the networks and for the report.
+RelativeSigma set_relative_sigma(const std::vector<TestedLoad>& loads, const Profile& profile,
+                                 fusion::ForceNetworks& networks) {
+  RelativeSigma sigma{};
+  for (std::size_t k = 0; k < profile.size(); ++k) {
+    sigma[k] = std::sqrt(profile[k]);
+    float* const of_taxel = networks.relative_sigma.data() + k * networks.taxel_count();
+    for (const TestedLoad& load : loads) {
+      for (const std::size_t taxel : load.taxels) of_taxel[taxel] = static_cast<float>(sigma[k]);
+    }
+  }
+  return sigma;
+}
+
+/// Knots over the loads; far below a load that many taxels share.
+void place_knots(const ForceTraining& training, fusion::ForceNetworks& networks) {
+  constexpr double kWidestRange = 1000.0;
+  const double heaviest = training.report.heaviest_newtons;
+  double lightest = std::max(training.report.lightest_newtons, heaviest / kWidestRange);
+  if (!training.tested_shared.empty() || lightest > 0.5 * heaviest) lightest = heaviest / kWidestRange;
+  networks.sigma_knots_newtons = {static_cast<float>(lightest), static_cast<float>(heaviest)};
+}
+
+std::string range_text(const RelativeSigma& sigma) {
+  const auto [least, most] = std::minmax_element(sigma.begin(), sigma.end());
+  return fmt::format("+- {:.2f} to {:.2f} % beside that", 100.0 * *least, 100.0 * *most);
 }
 
 }  // namespace
@@ -271,10 +341,9 @@ std::string describe(const UncertaintyReport& report, const ArrayDescription& ar
   if (report.temperature_sigma_celsius > 0.0) {
     text += fmt::format(", temperature +- {:.2f} C", report.temperature_sigma_celsius);
   }
-  if (report.relative_sigma) text += fmt::format(", forces +- {:.2f} % beside that", 100.0 * *report.relative_sigma);
+  if (report.relative_sigma) text += ", forces " + range_text(*report.relative_sigma);
   if (report.relative_sigma_of_shared) {
-    text +=
-        fmt::format(", forces of the shared network +- {:.2f} % beside that", 100.0 * *report.relative_sigma_of_shared);
+    text += ", forces of the shared network " + range_text(*report.relative_sigma_of_shared);
   }
   return text;
 }
@@ -287,6 +356,7 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   report.temperature_sigma_celsius = measure_temperature_noise(database);
   model.networks.temperature_sigma_celsius = report.temperature_sigma_celsius;
 
+  place_knots(training, model.networks);
   const Result<std::vector<JudgedLoad>> own = judge_loads(database, training.tested_own, model);
   if (!own) return own.error();
   const Result<std::vector<JudgedLoad>> shared = judge_loads(database, training.tested_shared, model);
@@ -294,12 +364,12 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   report.supply_noise = likeliest_supply_noise(*own, *shared);
   model.array.readout.supply_noise = report.supply_noise;
   if (!shared->empty()) {
-    report.relative_sigma_of_shared = relative_sigma_of(*shared, &JudgedLoad::square_error, report.supply_noise);
-    set_relative_sigma(training.tested_shared, *report.relative_sigma_of_shared, model.networks.relative_sigma);
+    report.relative_sigma_of_shared =
+        set_relative_sigma(training.tested_shared, likeliest_profile(*shared, report.supply_noise), model.networks);
   }
   if (!own->empty()) {
-    report.relative_sigma = relative_sigma_of(*own, &JudgedLoad::square_error, report.supply_noise);
-    set_relative_sigma(training.tested_own, *report.relative_sigma, model.networks.relative_sigma);
+    report.relative_sigma =
+        set_relative_sigma(training.tested_own, likeliest_profile(*own, report.supply_noise), model.networks);
   }
   return report;
 }

@@ -8,7 +8,8 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr int kMaxRounds = 12;
+constexpr int kMaxRounds = 20;
+constexpr double kMostStretch = 5.0;
 constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end
 constexpr double kMostRise = 1.0;        // of the logarithm above both neighbours
 constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
@@ -29,6 +30,9 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
       unknown_(array.taxel_count()),
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
+      difference_(array.taxel_count()),
+      last_difference_(array.taxel_count()),
+      last_corrected_(array.taxel_count()),
       healthy_ratio_(array.taxel_count()),
       faulty_ratio_(array.taxel_count()) {
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
@@ -114,21 +118,34 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
     circuits_->healthy.solve(siemens, healthy_ratio_);
     circuits_->faulty.solve(siemens, faulty_ratio_);
     result.residual_ratio = misfit(siemens);
-    if (correct() <= tolerance_) return result;
+    if (correct(round == 0) <= tolerance_) return result;
     result.solved = healthy.invert(equivalent_, siemens).solved;
   }
   result.solved = false;
   return result;
 }
 
-/// T' from both circuits at the present conductances; the largest change of it.
-double FaultInversion::correct() noexcept {
+/// T' from both circuits at the present conductances; how far it is from the T' that led to them. The step is
+/// Anderson's of depth 1: along the last change of T' as far as makes the difference smallest, were it linear.
+double FaultInversion::correct(bool first) noexcept {
   double change = 0.0;
+  double along = 0.0;
+  double square = 0.0;
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     const double known = unknown_[taxel] != 0 ? 0.0 : measured_[taxel] - faulty_ratio_[taxel];
-    const double corrected = healthy_ratio_[taxel] + known;
-    change = std::max(change, std::abs(corrected - equivalent_[taxel]));
-    equivalent_[taxel] = corrected;
+    const double difference = healthy_ratio_[taxel] + known - equivalent_[taxel];
+    change = std::max(change, std::abs(difference));
+    const double turn = difference - last_difference_[taxel];
+    along += difference * turn;
+    square += turn * turn;
+    difference_[taxel] = difference;
+  }
+  const double share = first || square == 0.0 ? 0.0 : std::clamp(along / square, -kMostStretch, kMostStretch);
+  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
+    const double corrected = equivalent_[taxel] + difference_[taxel];
+    equivalent_[taxel] = corrected - share * (corrected - last_corrected_[taxel]);
+    last_corrected_[taxel] = corrected;
+    last_difference_[taxel] = difference_[taxel];
   }
   return change;
 }

@@ -55,7 +55,7 @@ class FaultInversion {
   void mask(std::size_t taxel, bool unknown);
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
-  double correct() noexcept;
+  double correct(bool first) noexcept;
   void estimate_unknown(std::span<double> values) const noexcept;
   [[nodiscard]] double misfit(std::span<const double> siemens) const noexcept;
 
@@ -67,10 +67,13 @@ class FaultInversion {
   std::vector<std::uint8_t> unknown_;  // [taxels]
   std::vector<std::size_t> supplied_rows_;
   std::vector<ShortedLines> shorted_;
-  std::vector<double> measured_;       // T without what supplied rows add [taxels]
-  std::vector<double> equivalent_;     // T' [taxels]
-  std::vector<double> healthy_ratio_;  // [taxels]
-  std::vector<double> faulty_ratio_;   // [taxels]
+  std::vector<double> measured_;         // T without what supplied rows add [taxels]
+  std::vector<double> equivalent_;       // T' [taxels]
+  std::vector<double> difference_;       // T' found less T' put in [taxels]
+  std::vector<double> last_difference_;  // [taxels]
+  std::vector<double> last_corrected_;   // [taxels]
+  std::vector<double> healthy_ratio_;    // [taxels]
+  std::vector<double> faulty_ratio_;     // [taxels]
 };
 
 }  // namespace dermis::compensation

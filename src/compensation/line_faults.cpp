@@ -99,6 +99,21 @@ struct DriftFit {
 
 }  // namespace
 
+const char* to_string(LineFaultKind kind) noexcept {
+  switch (kind) {
+    case LineFaultKind::silent_row: return "silent_row";
+    case LineFaultKind::silent_column: return "silent_column";
+    case LineFaultKind::supplied_row: return "supplied_row";
+    case LineFaultKind::supplied_column: return "supplied_column";
+    case LineFaultKind::shorted_rows: return "shorted_rows";
+    case LineFaultKind::shorted_columns: return "shorted_columns";
+    case LineFaultKind::stuck_taxel: return "stuck_taxel";
+    case LineFaultKind::dead_taxel: return "dead_taxel";
+    case LineFaultKind::drifting_driver: break;
+  }
+  return "drifting_driver";
+}
+
 std::string place_name(const LineFault& fault, const ArrayDescription& array) {
   const std::string line = std::to_string(fault.place);
   const std::string next = std::to_string(fault.place + 1);
@@ -154,6 +169,7 @@ class LineFaultMonitor::Implementation {
   void mark_line(bool row, std::size_t line, std::uint8_t cause);
 
   void expect_unloaded(const Inputs& in);
+  void expect_unloaded_beside_no_press(const Inputs& in);
   void judge_silent_lines(const Inputs& in, bool row);
   void judge_dead_taxels(const Inputs& in);
   void judge_stuck_taxels(const Inputs& in);
@@ -169,7 +185,6 @@ class LineFaultMonitor::Implementation {
   [[nodiscard]] Untouched untouched_on(const Inputs& in, bool row, std::size_t line) const;
   [[nodiscard]] double silence_evidence(double reading, double expected, double sigma) const;
   [[nodiscard]] double counts(const Inputs& in, std::size_t taxel) const;
-  [[nodiscard]] bool is_pressed(const Inputs& in, std::size_t taxel) const;
 
   ArrayDescription array_;
   std::vector<double> unloaded_siemens_;  // [taxels]
@@ -186,7 +201,8 @@ class LineFaultMonitor::Implementation {
   std::vector<std::uint8_t> untouched_;  // [taxels]
   double common_share_ = 0.0;
 
-  std::vector<PageTest> silent_[2];  // [0] columns, [1] rows
+  std::vector<std::uint8_t> is_pressed_[2];  // lines; [0] columns, [1] rows
+  std::vector<PageTest> silent_[2];          // [0] columns, [1] rows
   std::vector<PageTest> alive_[2];
   std::vector<PageTest> dead_;
   std::vector<PageTest> undead_;
@@ -235,6 +251,7 @@ LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
       drift_(array.driven_lines()) {
   assert(unloaded_siemens.size() == taxels());
   for (const bool row : {false, true}) {
+    is_pressed_[row].resize(lines(row));
     silent_[row].resize(lines(row));
     alive_[row].resize(lines(row));
     shorted_[row].resize(lines(row));
@@ -332,6 +349,7 @@ void LineFaultMonitor::Implementation::mark_line(bool row, std::size_t line, std
 void LineFaultMonitor::Implementation::expect_unloaded(const Inputs& in) {
   const bool by_row = driven_is_row();
   const Readout& readout = array_.readout;
+  if (readout.circuit == Circuit::none) return expect_unloaded_beside_no_press(in);
   std::fill(line_siemens_.begin(), line_siemens_.end(), 0.0);
   for (std::size_t taxel = 0; taxel < taxels() && in.solved; ++taxel) {
     line_siemens_[by_row ? taxel / array_.cols : taxel % array_.cols] += in.conductance.siemens[taxel];
@@ -344,11 +362,25 @@ void LineFaultMonitor::Implementation::expect_unloaded(const Inputs& in) {
     }
     const double left = std::clamp(1.0 - taken, 0.0, 1.0);
     for (std::size_t driven = 0; driven < array_.driven_lines(); ++driven) {
-      const double drive_ohm = readout.circuit == Circuit::none ? 0.0 : readout.drive_ohm[driven];
-      const double sag = in.solved ? 1.0 / (1.0 + drive_ohm * line_siemens_[driven]) : kUnloadedShare;
+      const double sag = in.solved ? 1.0 / (1.0 + readout.drive_ohm[driven] * line_siemens_[driven]) : kUnloadedShare;
       const std::size_t taxel = at(by_row, driven, sensed);
       expected_[taxel] = kUnloadedShare * unloaded_ratio_[taxel] * left * sag;
     }
+  }
+}
+
+/// In an unknown circuit nobody knows what a press takes from the taxels of its lines.
+void LineFaultMonitor::Implementation::expect_unloaded_beside_no_press(const Inputs& in) {
+  for (const bool row : {false, true}) std::fill(is_pressed_[row].begin(), is_pressed_[row].end(), std::uint8_t{0});
+  for (std::size_t taxel = 0; taxel < taxels(); ++taxel) {
+    const double most = kPressedShare * unloaded_ratio_[taxel] + kDifferentSigmas * in.conditioned.sigma_ratio;
+    if (in.conditioned.ratio[taxel] <= most) continue;
+    is_pressed_[true][taxel / array_.cols] = 1;
+    is_pressed_[false][taxel % array_.cols] = 1;
+  }
+  for (std::size_t taxel = 0; taxel < taxels(); ++taxel) {
+    const bool beside = is_pressed_[true][taxel / array_.cols] != 0 || is_pressed_[false][taxel % array_.cols] != 0;
+    expected_[taxel] = beside ? 0.0 : kUnloadedShare * unloaded_ratio_[taxel];
   }
 }
 
@@ -356,11 +388,6 @@ void LineFaultMonitor::Implementation::expect_unloaded(const Inputs& in) {
 double LineFaultMonitor::Implementation::silence_evidence(double reading, double expected, double sigma) const {
   const double mean = std::min(expected / sigma, kMostMean);
   return std::clamp(mean * (0.5 * mean - reading / sigma), kMostAgainst, kMostFor);
-}
-
-bool LineFaultMonitor::Implementation::is_pressed(const Inputs& in, std::size_t taxel) const {
-  const double ratio = in.conditioned.ratio[taxel];
-  return ratio > kPressedShare * unloaded_ratio_[taxel] + kDifferentSigmas * in.conditioned.sigma_ratio;
 }
 
 void LineFaultMonitor::Implementation::judge_silent_lines(const Inputs& in, bool row) {
@@ -399,7 +426,7 @@ void LineFaultMonitor::Implementation::judge_dead_taxels(const Inputs& in) {
       dead_[taxel].restart();
       continue;
     }
-    const double expected = kUnloadedShare * unloaded_siemens_[taxel];
+    const double expected = expected_[taxel] > 0.0 ? kUnloadedShare * unloaded_siemens_[taxel] : 0.0;
     const double siemens = in.conductance.siemens[taxel];
     const double evidence = silence_evidence(siemens, expected, in.conductance.sigma_siemens[taxel]);
     const bool is_known = (causes_[taxel] & kDeadCause) != 0;

@@ -166,3 +166,21 @@ TEST(Explore, Accuracy) {
 
 }  // namespace
 }  // namespace dermis::compensation
+namespace dermis::compensation { namespace {
+TEST(Explore, Healthy) {
+  const std::size_t n = getenv("N") ? static_cast<std::size_t>(atol(getenv("N"))) : 10000;
+  for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance, Circuit::none}) {
+    for (const char* scene : {"multitouch", "idle"}) {
+      for (std::size_t size : {8UL, 16UL}) {
+        Rig rig(make_array(size, size, circuit), scene, 77, n);
+        int before = 0;
+        while (rig.next()) {
+          if (rig.changes() != before && before < 5) std::printf("%s %s %zu @%zu %.300s\n", to_string(circuit), scene, size, rig.frame() - 1, names(rig.monitor().faults(), make_array(size, size, circuit)).c_str());
+          before = rig.changes();
+        }
+        std::printf("%s %s %zu: %d changes in %zu\n", to_string(circuit), scene, size, rig.changes(), rig.frame());
+      }
+    }
+  }
+}
+}}

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -23,16 +24,19 @@ namespace dermis::calibration {
 /// error of the networks. Thread-safe.
 [[nodiscard]] double measure_temperature_noise(const SampleDatabase& database);
 
+/// At the knots of fusion::ForceNetworks::relative_sigma.
+using RelativeSigma = std::array<double, fusion::kSigmaKnots>;
+
 /// How sure the forces of a calibration are.
 struct UncertaintyReport {
   std::optional<double> adc_noise_counts;  ///< Empty: it could not be measured, and the array's stays.
   double temperature_sigma_celsius = 0.0;
-  double supply_noise = 0.0;                       ///< Relative.
-  std::optional<double> relative_sigma;            ///< Of taxels with a network of their own.
-  std::optional<double> relative_sigma_of_shared;  ///< Of taxels on the shared network.
+  double supply_noise = 0.0;                              ///< Relative.
+  std::optional<RelativeSigma> relative_sigma;            ///< Of taxels with a network of their own.
+  std::optional<RelativeSigma> relative_sigma_of_shared;  ///< Of taxels on the shared network.
 };
 
-/// "readings +- 1.05 counts, supply +- 0.10 %, temperature +- 0.30 C, forces +- 0.4 % beside that".
+/// "readings +- 1.05 counts, supply +- 0.10 %, temperature +- 0.30 C, forces +- 0.2 to 0.4 % beside that".
 [[nodiscard]] std::string describe(const UncertaintyReport& report, const ArrayDescription& array);
 
 /// Fills in what `model` is still to know of its own uncertainty, in its array's readout and in its networks. The noise

@@ -39,6 +39,9 @@ struct LineFault {
   bool grounded = false;  ///< Taken to be shorted to 0 V, not open: from evidence 10 until it has fallen to -10.
 };
 
+/// "silent_row", ...
+[[nodiscard]] const char* to_string(LineFaultKind kind) noexcept;
+
 /// "row 3", "columns 4 and 5", "taxel r3c5", "driver of row 3".
 [[nodiscard]] std::string place_name(const LineFault& fault, const ArrayDescription& array);
 
