@@ -188,12 +188,6 @@ struct Pressed {
   VectorXd slope;  // d siemens / d parameter
 };
 
-/// Scale of the forces: x = (ln F - centre) / half_span.
-struct ForceScale {
-  double centre = 0.0;
-  double half_span = 1.0;
-};
-
 ForceScale force_scale(const CircuitFrames& frames) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
@@ -291,6 +285,7 @@ class ResistanceFitter {
         lines_(array),
         scale_(force_scale(frames)),
         taxels_(array.taxel_count()),
+        reference_siemens_(1.0 / lines_.reference_ohm()),
         unloaded_terms_(unloaded_basis(0.0, frames.has_temperature).size()),
         sheet_mean_(VectorXd::Zero(kSheetTerms)),
         shape_variance_(VectorXd::Constant(kShapeTerms, kShapeSpread * kShapeSpread)) {}
@@ -305,7 +300,55 @@ class ResistanceFitter {
     return report();
   }
 
+  /// Frames that a fit has not seen, against its laws.
+  std::vector<double> judge(const ResistanceFit& fit, double cut) {
+    scale_ = fit.force_scale;
+    reference_siemens_ = fit.reference_siemens;
+    laws_ = fit.laws;
+    sheet_mean_ = fit.common;
+    rubber_variance_ = kRubberScatter * kRubberScatter;  // the same for all circuits
+    std::vector<double> squares(frames_.frames.size(), cut);
+    parallel_for((squares.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
+      auto inversion = SlopedInversion::create(lines_, VectorXd(0), false);
+      if (!inversion) return;
+      const std::size_t end = std::min(squares.size(), (task + 1) * kFramesPerTask);
+      for (std::size_t k = task * kFramesPerTask; k < end; ++k) squares[k] = judge_frame(*inversion, k, cut);
+    });
+    return squares;
+  }
+
  private:
+  double judge_frame(SlopedInversion& inversion, std::size_t k, double cut) const {
+    const CircuitFrame& frame = frames_.frames[k];
+    std::vector<double> siemens(taxels_);
+    std::vector<double> sigma(taxels_);
+    if (!inversion.invert(frame.ratio, siemens)) {
+      inversion.forget();
+      return cut;
+    }
+    inversion.propagate_noise(frame.sigma_ratio, sigma);
+    const VectorXd basis = unloaded_basis(frame.temperature, frames_.has_temperature);
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t taxel = 0; taxel < taxels_; ++taxel) {
+      const auto newtons = static_cast<double>(frame.newtons[taxel]);
+      double square = 0.0;
+      if (newtons == 0.0 && laws_[taxel].unloaded.size() > 0) {
+        const double expected = laws_[taxel].unloaded.dot(basis) * reference_siemens_;
+        square = std::pow((siemens[taxel] - expected) / sigma[taxel], 2);
+      } else if (newtons > 0.0 && laws_[taxel].pressed.size() > 0) {
+        const PressedPoint point = pressed_point({taxel, (std::log(newtons) - scale_.centre) / scale_.half_span,
+                                                  frame.temperature, siemens[taxel], sigma[taxel], {}});
+        square = point.usable ? point.residual * point.residual / (point.relative_variance + rubber_variance_) : cut;
+      } else {
+        continue;
+      }
+      sum += square < cut ? square : cut;
+      count += 1.0;
+    }
+    return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+  }
+
   Status iterate_until(double enough) {
     for (int k = 0; k < kMaxIterations; ++k) {
       const Result<double> step = iterate();
@@ -470,7 +513,7 @@ class ResistanceFitter {
            kLeastIdleSigmas * sigma;
   }
 
-  [[nodiscard]] double reference_siemens() const { return 1.0 / lines_.reference_ohm(); }
+  [[nodiscard]] double reference_siemens() const { return reference_siemens_; }
 
   /// The readings that the circuit would give with the idle taxels at their laws. Derivatives taken at noisy readings
   /// would follow the noise, and the fit would do away with the noise by making all conductances small.
@@ -666,16 +709,17 @@ class ResistanceFitter {
     Index p = of_drives ? 0 : static_cast<Index>(lines_.drives().size());
     for (const std::size_t line : of_drives ? lines_.drives() : lines_.loads()) result.parameters[line] = p++;
     constexpr double kLeastUnit = 1e-4;
-    if (of_drives) result.unit = std::max(kLeastUnit, result.values.mean());
+    if (of_drives && !ohms.empty()) result.unit = std::max(kLeastUnit, result.values.mean());
     return result;
   }
 
   /// Resistances of one kind are alike: each lies about their mean with a spread that is learned.
   void add_line_priors(MatrixXd& normal) const {
     for (const bool of_drives : {true, false}) {
-      const Group lines = of_drives ? group(true) : group(false);
+      const Group lines = group(of_drives);
+      if (lines.values.size() == 0) continue;
       const auto count = static_cast<double>(lines.values.size());
-      const double mean = lines.values.size() > 0 ? lines.values.mean() : 0.0;
+      const double mean = lines.values.mean();
       VectorXd mean_row = VectorXd::Zero(lines_.count());
       for (const Index p : lines.parameters) {
         if (p >= 0) mean_row[p] += 1.0 / count;
@@ -788,6 +832,8 @@ class ResistanceFitter {
     fit.has_absolute = lines_.has_absolute();
     fit.reference_siemens = reference_siemens();
     fit.laws = laws_;
+    fit.common = sheet_mean_;
+    fit.force_scale = scale_;
     return fit;
   }
 
@@ -796,6 +842,7 @@ class ResistanceFitter {
   LineParameters lines_;
   ForceScale scale_;
   std::size_t taxels_;
+  double reference_siemens_;
   Index unloaded_terms_;
   VectorXd parameters_;
   std::vector<TaxelLaw> laws_;
@@ -817,6 +864,10 @@ class ResistanceFitter {
 
 Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const CircuitFrames& frames) {
   return ResistanceFitter(array, frames).run();
+}
+
+std::vector<double> judge_frames(const ResistanceFit& fit, const CircuitFrames& frames, double cut) {
+  return ResistanceFitter(fit.array, frames).judge(fit, cut);
 }
 
 }  // namespace dermis::calibration

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/calibration/circuit_fit.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
@@ -40,6 +41,7 @@ struct SampleDatabase {
   double siemens_per_count = 0.0;  ///< Conductance of one ADC count at an unloaded taxel [S].
   std::size_t frames_rejected = 0;
   std::string first_rejection;  ///< "frame 17: a reading outside the ADC range"; empty when none.
+  std::optional<CircuitFit> circuit_fit;  ///< Where resistances or the circuit were unknown; `array` holds its result.
 };
 
 /// Runs labelled frames after `settle_time` through units 2 and 3. Errors: no labelled frame, no unloaded frame (a
