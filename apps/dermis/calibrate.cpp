@@ -80,6 +80,7 @@ void print_text(const CalibrationReport& report, const std::optional<BankTrainin
   fmt::print("loads {:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons);
   if (training.uses_temperature) fmt::print(", {:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius);
   fmt::print("\nfit: {}\n", calibration::describe_fit(training, array));
+  fmt::print("1-sigma: {}\n", calibration::describe(report.uncertainty, array));
   if (std::max(training.median_fit_error, training.shared_leave_one_out_error) > kPoorFit) {
     fmt::print(stderr,
                "warning: a poor fit; do frames and loads belong together, and are circuit and polarity right?\n");
@@ -114,9 +115,17 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
                                  {"median_fit_error", training.median_fit_error},
                                  {"worst_fit_error", training.worst_fit_error},
                                  {"shared_leave_one_out_error", training.shared_leave_one_out_error},
+                                 {"supply_noise", report.uncertainty.supply_noise},
+                                 {"temperature_sigma_celsius", report.uncertainty.temperature_sigma_celsius},
                                  {"dead_taxels", taxel_names(training.dead_taxels, array)},
                                  {"seconds", nlohmann::ordered_json::object()}};
   for (const calibration::StageTime& stage : report.stages) json["seconds"][stage.stage] = stage.seconds;
+  const calibration::UncertaintyReport& uncertainty = report.uncertainty;
+  json["adc_noise_counts"] = uncertainty.adc_noise_counts.value_or(array.readout.adc_noise_counts);
+  if (uncertainty.relative_sigma) json["relative_sigma"] = *uncertainty.relative_sigma;
+  if (uncertainty.relative_sigma_of_shared) {
+    json["relative_sigma_of_shared"] = *uncertainty.relative_sigma_of_shared;
+  }
   if (bank) {
     json["bank"] = {{"unknowns", bank->unknowns}, {"steps", bank->steps}, {"last_error", bank->curve.back()}};
     json["bank"]["never_loaded"] = taxel_names(bank->never_loaded, array);

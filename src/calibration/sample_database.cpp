@@ -57,6 +57,7 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, const RawFr
   sample.reading.resize(array.taxel_count());
   preprocessing::bare_readings(array, raw, sample.reading);
   sample.ratio = conditioned.ratio;
+  sample.sigma_ratio = conditioned.sigma_ratio;
   sample.siemens = std::move(conductance.siemens);
   expand_loads(array, loads, sample);
   // A reading at the end of the ADC no longer tells its force.

@@ -111,8 +111,8 @@ double GroundedRows::certify() noexcept {
   return assess(state_);
 }
 
-/// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in (b)
-/// leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction.
+/// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in
+/// (b) leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction.
 void GroundedRows::follow_sources() noexcept {
   double change = std::numeric_limits<double>::infinity();
   double last_change = change;

@@ -17,7 +17,9 @@ constexpr double kLongestStep = 2.0;              // of x: a factor of e^2 where
 constexpr double kShortestFraction = 1.0 / 64.0;  // of a step
 constexpr double kLeastOpenShare = 1e-9;  // of the supply that a reading leaves to its taxel; less is no solution
 constexpr double kRounding = 1e-13;       // of the largest reading: what remains of a residual in double precision
+constexpr double kRoundingMerit = 1e-9;   // below it a step that does not halve the misfits is rounding
 constexpr double kMostSiemens = 1e3;
+constexpr double kLeastOwnShare = 1e-3;  // of a taxel in its reading that the scaling of the equations counts on
 
 }  // namespace
 
@@ -31,6 +33,11 @@ double NewtonInversion::Reading::slope(double ratio) const noexcept {
   const double current = (ratio - offset) / gain;
   const double open = std::max(1.0 - series * current, kLeastOpenShare);
   return 1.0 / (gain * open * open * std::hypot(current / open, 2.0 * noise));
+}
+
+double NewtonInversion::Reading::open_slope(double ratio) const noexcept {
+  const double open = std::max(1.0 - series * (ratio - offset) / gain, kLeastOpenShare);
+  return gain * open * open;
 }
 
 double NewtonInversion::Reading::siemens(double x) const noexcept {
@@ -53,7 +60,8 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
       readings_.push_back({sensed.gain, sensed.offset, drive + sensed.rho, noise_ratio / sensed.gain});
     }
   }
-  for (auto* values : {&measured_, &x_, &trial_, &siemens_, &misfit_, &own_slope_, &right_, &change_, &last_shift_}) {
+  for (auto* values : {&measured_, &x_, &trial_, &siemens_, &misfit_, &own_slope_, &row_scale_, &column_scale_, &right_,
+                       &change_, &last_shift_}) {
     values->resize(array.taxel_count());
   }
   held_.resize(array.taxel_count());
@@ -142,24 +150,30 @@ bool NewtonInversion::step() noexcept {
   const std::size_t taxels = x_.size();
   model_.own_derivatives(own_slope_);
   for (std::size_t k = 0; k < taxels; ++k) {
+    const double slope = readings_[k].slope(model_.ratio()[k]);
     held_[k] = x_[k] + misfit_[k] <= 0.0;
-    const double siemens_slope = readings_[k].siemens_slope(x_[k]);
-    own_slope_[k] = std::max(own_slope_[k] * siemens_slope, std::numeric_limits<double>::min());
-    right_[k] = held_[k] ? -x_[k] : misfit_[k] / (readings_[k].slope(model_.ratio()[k]) * own_slope_[k]);
+    row_scale_[k] = held_[k] ? 0.0 : slope;
+    column_scale_[k] =
+        1.0 / (slope * std::max(own_slope_[k], kLeastOwnShare * readings_[k].open_slope(model_.ratio()[k])));
+    right_[k] = held_[k] ? -siemens_[k] / column_scale_[k] : misfit_[k];
   }
   const auto product = [&](std::span<const double> in, std::span<double> out) {
-    for (std::size_t k = 0; k < taxels; ++k) trial_[k] = in[k] * readings_[k].siemens_slope(x_[k]);
+    for (std::size_t k = 0; k < taxels; ++k) trial_[k] = in[k] * column_scale_[k];
     model_.multiply_taxel_jacobian(trial_, out);
-    for (std::size_t k = 0; k < taxels; ++k) out[k] = held_[k] ? in[k] : out[k] / own_slope_[k];
+    for (std::size_t k = 0; k < taxels; ++k) out[k] = held_[k] ? in[k] : out[k] * row_scale_[k];
   };
   const double before = merit();
   const double accuracy = std::clamp(0.1 * before / std::sqrt(static_cast<double>(taxels)), 1e-6, 1e-2);
   solver_.solve(product, right_, change_, accuracy);
+  for (std::size_t k = 0; k < taxels; ++k) {
+    change_[k] = held_[k] ? -x_[k] : change_[k] * column_scale_[k] / readings_[k].siemens_slope(x_[k]);
+  }
   std::copy(x_.begin(), x_.end(), trial_.begin());
   for (double fraction = 1.0; fraction >= kShortestFraction; fraction *= 0.5) {
     for (std::size_t k = 0; k < taxels; ++k) x_[k] = moved(k, trial_[k], fraction * change_[k]);
     solve_at(x_);
-    if (merit() < before) return true;
+    const double after = merit();
+    if (after < before) return after > kRoundingMerit || after < 0.5 * before;
   }
   x_ = trial_;
   solve_at(x_);

@@ -47,7 +47,8 @@ class NewtonInversion final : public CrosstalkInversion {
     double series = 0.0;  // rho_d + rho_s [ohm]
     double noise = 0.0;   // g_n [S]
     [[nodiscard]] double scaled(double ratio) const noexcept;
-    [[nodiscard]] double slope(double ratio) const noexcept;  // d scaled / d ratio
+    [[nodiscard]] double slope(double ratio) const noexcept;       // d scaled / d ratio
+    [[nodiscard]] double open_slope(double ratio) const noexcept;  // d ratio / d siemens without crosstalk
     [[nodiscard]] double siemens(double x) const noexcept;
     [[nodiscard]] double siemens_slope(double x) const noexcept;
   };
@@ -71,6 +72,8 @@ class NewtonInversion final : public CrosstalkInversion {
   std::vector<double> siemens_;
   std::vector<double> misfit_;  // r at siemens_
   std::vector<double> own_slope_;
+  std::vector<double> row_scale_;
+  std::vector<double> column_scale_;
   std::vector<double> right_;
   std::vector<double> change_;
   std::vector<bool> held_;

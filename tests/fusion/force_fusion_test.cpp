@@ -50,7 +50,7 @@ ForceNetworks power_law() {
   networks.gain = {1.0F};
   networks.dead = {0};
   networks.offset_sigma_siemens = {0.0F};
-  networks.relative_sigma = {0.01F};
+  networks.relative_sigma.assign(kSigmaKnots, 0.01F);
   networks.parameters = {std::log(10.0F), 0.9F, 0.0F};  // c, s_0, s_1
   return networks;
 }
@@ -67,7 +67,7 @@ ForceNetworks two_power_laws() {
   twice(networks.gain);
   twice(networks.dead);
   twice(networks.offset_sigma_siemens);
-  twice(networks.relative_sigma);
+  networks.relative_sigma.assign(2 * kSigmaKnots, 0.01F);
   networks.parameters = {std::log(10.0F), std::log(10.0F), 0.9F, 0.9F, 0.0F, 0.0F};
   return networks;
 }

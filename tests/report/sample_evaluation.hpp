@@ -157,7 +157,8 @@ inline calibration::Evaluation paper_sample() {
   Random random(3);
   for (std::size_t frame = 0; frame < 48; ++frame) {
     const double truth = frame < 16 ? 10.0 : frame < 32 ? 20.0 : 50.0;
-    evaluation.taxels.push_back({frame, 5 * frame, truth, 20.0, 5.0, 1, sample_estimates(truth, 20.0, 1, random), 0.02F});
+    evaluation.taxels.push_back(
+        {frame, 5 * frame, truth, 20.0, 5.0, 1, sample_estimates(truth, 20.0, 1, random), 0.02F});
   }
   summarise_sample(evaluation);
   return evaluation;

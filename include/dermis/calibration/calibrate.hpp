@@ -9,6 +9,7 @@
 
 #include "dermis/calibration/force_training.hpp"
 #include "dermis/calibration/sample_database.hpp"
+#include "dermis/calibration/uncertainty.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/core/result.hpp"
@@ -28,6 +29,7 @@ struct CalibrationReport {
   std::size_t frames_rejected = 0;
   std::string first_rejection;
   TrainingReport training;
+  UncertaintyReport uncertainty;
   std::vector<StageTime> stages;
 };
 
