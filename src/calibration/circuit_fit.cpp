@@ -17,10 +17,10 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr double kWellKnown = 0.02;    // relative standard error below which a resistance counts as found
-constexpr double kUnknown = 0.5;       // and above which nothing can be said
-constexpr double kSureSigmas = 3.0;    // by which a circuit must be better to be told from another
-constexpr double kCutSquare = 25.0;    // no single reading decides
+constexpr double kWellKnown = 0.02;         // relative standard error below which a resistance counts as found
+constexpr double kUnknown = 0.5;            // and above which nothing can be said
+constexpr double kSureSigmas = 3.0;         // by which a circuit must be better to be told from another
+constexpr double kCutSquare = 25.0;         // no single reading decides
 constexpr std::size_t kTrainFrames = 1200;  // of each half of the frames that choose the circuit
 constexpr std::uint64_t kSplitSeed = 2;
 
@@ -136,8 +136,8 @@ Result<std::vector<CircuitCandidate>> choose_kind(const ArrayDescription& array,
     }
     trials.push_back(std::move(trial));
   }
-  const auto best = std::min_element(trials.begin(), trials.end(),
-                                     [](const Trial& a, const Trial& b) { return a.mean < b.mean; });
+  const auto best =
+      std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.mean < b.mean; });
   if (!std::isfinite(best->mean)) return bad_input("readout: no circuit explains the calibration frames");
   chosen = best->kind;
   std::vector<CircuitCandidate> candidates;

@@ -27,8 +27,8 @@ constexpr int kMaxIterations = 8;
 constexpr std::size_t kFirstFrames = 1500;  // the way to the solution is found with these
 constexpr double kMostWork = 2e8;           // frames x taxels x inversions of one pass
 constexpr std::uint64_t kSelectionSeed = 1;
-constexpr double kEnoughAtFirst = 0.1;  // a step this small against the standard errors ends the fit
-constexpr double kEnough = 0.25;        // the same, with all frames
+constexpr double kEnoughAtFirst = 0.1;     // a step this small against the standard errors ends the fit
+constexpr double kEnough = 0.25;           // the same, with all frames
 constexpr double kSlopeStep = 1e-3;        // of a parameter, for the derivatives of the inversion
 constexpr double kTolerance = 1e-12;       // of the inversions, in readings over the supply
 constexpr double kLeastIdleSigmas = 3.0;   // an idle reading below this is cut at 0 too often
@@ -40,8 +40,8 @@ constexpr double kLeastShapeSpread = 1e-4;
 constexpr double kRubberScatter = 0.01;  // first guess
 constexpr double kLeastRubberScatter = 1e-4;
 constexpr double kMostRubberScatter = 1.0;
-constexpr Index kFreeTerms = 3;   // of a pressed law: level, exponent, temperature
-constexpr Index kShapeTerms = 4;  // x^2, x^3, t^2, t x: alike in all taxels of a piece of rubber
+constexpr Index kFreeTerms = 3;    // of a pressed law: level, exponent, temperature
+constexpr Index kShapeTerms = 4;   // x^2, x^3, t^2, t x: alike in all taxels of a piece of rubber
 constexpr Index kCommonTerms = 7;  // x^4, x^5, x^6, t x^2, t x^3, t^2 x, a resistance in series: the same in all
 constexpr Index kSheetTerms = kShapeTerms + kCommonTerms;
 constexpr std::array kCommonRatios = {0.003, 0.01, 0.03, 0.1, 0.3, 1.0};  // drivers to loads, tried at the start
@@ -337,8 +337,12 @@ class ResistanceFitter {
         const double expected = laws_[taxel].unloaded.dot(basis) * reference_siemens_;
         square = std::pow((siemens[taxel] - expected) / sigma[taxel], 2);
       } else if (newtons > 0.0 && laws_[taxel].pressed.size() > 0) {
-        const PressedPoint point = pressed_point({taxel, (std::log(newtons) - scale_.centre) / scale_.half_span,
-                                                  frame.temperature, siemens[taxel], sigma[taxel], {}});
+        const PressedPoint point = pressed_point({taxel,
+                                                  (std::log(newtons) - scale_.centre) / scale_.half_span,
+                                                  frame.temperature,
+                                                  siemens[taxel],
+                                                  sigma[taxel],
+                                                  {}});
         square = point.usable ? point.residual * point.residual / (point.relative_variance + rubber_variance_) : cut;
       } else {
         continue;
@@ -486,7 +490,6 @@ class ResistanceFitter {
     }
     return all;
   }
-
 
   bool solve_frame(SlopedInversion& inversion, const CircuitFrame& frame, std::vector<double>& siemens,
                    std::vector<double>& sigma, MatrixXd& slopes) const {
@@ -771,8 +774,8 @@ class ResistanceFitter {
       weight += 1.0 / (total * total);
     }
     if (weight == 0.0) return;
-    rubber_variance_ = std::clamp(rubber_variance_ + excess_variance / weight, kLeastRubberScatter * kLeastRubberScatter,
-                                  kMostRubberScatter * kMostRubberScatter);
+    rubber_variance_ = std::clamp(rubber_variance_ + excess_variance / weight,
+                                  kLeastRubberScatter * kLeastRubberScatter, kMostRubberScatter * kMostRubberScatter);
   }
 
   /// Scatter of the shapes over the taxels: MacKay's fixed point (Neural Computation 4, 1992).
@@ -782,8 +785,7 @@ class ResistanceFitter {
     for (std::size_t taxel = 0; taxel < taxels_; ++taxel) {
       if (pressed.laws[taxel].size() == 0) continue;
       squares += (pressed.laws[taxel].bottomRows(kShapeTerms) * step).cwiseAbs2();
-      freedom.array() +=
-          1.0 - pressed.covariance[taxel].diagonal().tail(kShapeTerms).array() / shape_variance_.array();
+      freedom.array() += 1.0 - pressed.covariance[taxel].diagonal().tail(kShapeTerms).array() / shape_variance_.array();
     }
     constexpr double kLeastFreedom = 1.0;
     shape_variance_ = squares.cwiseQuotient(freedom.cwiseMax(kLeastFreedom))
