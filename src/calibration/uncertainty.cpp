@@ -18,6 +18,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kOneSigmaShare = 0.682689;  // of a normal distribution within one standard deviation
+constexpr double kTwoSigmaShare = 0.954500;  // within two
 constexpr double kOutlierRatio = 9.0;        // of mean squares: three standard deviations
 constexpr std::size_t kLeastUnloadedSamples = 5;
 constexpr std::size_t kLeastTemperatures = 20;
@@ -184,8 +185,15 @@ Result<std::vector<JudgedLoad>> judge_loads(const SampleDatabase& database, cons
 
 using Square = double JudgedLoad::*;
 
-/// The multiple of `profile` with which 68.3 % of the loads are within one standard deviation; bisection in its
-/// logarithm.
+/// Whether more loads are outside their intervals than a normal distribution has outside: of one and of two standard
+/// deviations together, since the errors of a material with memory have longer tails.
+bool is_too_sure(const std::vector<double>& square_scores) {
+  const double one = quantile(square_scores, kOneSigmaShare);
+  const double two = quantile(square_scores, kTwoSigmaShare) / 4.0;
+  return one * two > 1.0;
+}
+
+/// The multiple of `profile` with which the standard deviations are right; bisection in its logarithm.
 Profile scaled(const Profile& profile, const std::vector<JudgedLoad>& loads, Square square, double supply_noise) {
   double low = 1e-4;
   double high = 1e4;
@@ -199,7 +207,7 @@ Profile scaled(const Profile& profile, const std::vector<JudgedLoad>& loads, Squ
     });
     for (std::size_t k = 0; k < loads.size(); ++k)
       scores[k] = loads[k].*square / loads[k].variance(supply_noise, result);
-    (quantile(scores, kOneSigmaShare) > 1.0 ? low : high) = scale;
+    (is_too_sure(scores) ? low : high) = scale;
   }
   return result;
 }

@@ -42,7 +42,8 @@ struct UncertaintyReport {
 /// Fills in what `model` is still to know of its own uncertainty, in its array's readout and in its networks. The noise
 /// of the ADC and the temperature sensor is measured; the error of the supply and the relative error of the networks
 /// (misfit, hysteresis, creep, noise of the material) are those which together make the errors on tested loads
-/// likeliest, the latter such that 68.3 % of them are within one standard deviation.
+/// likeliest, the latter scaled so that of them 68.3 % are within one standard deviation and 95.4 % within two; where
+/// longer tails allow no such scale, too many are within one by the same factor as too few are within two.
 /// `model` holds the array and the networks of `training`. Errors: those of Compensator::create().
 [[nodiscard]] Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const ForceTraining& training,
                                                         pipeline::Model& model);
