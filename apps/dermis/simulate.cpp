@@ -39,6 +39,10 @@ Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOp
 Status simulate(const SimulateOptions& options) {
   const Result<ArrayDescription> array = store::read_array(options.array);
   if (!array) return array.error();
+  if (array->has_unknown_circuit()) {
+    return bad_input(options.array +
+                     ": a circuit that is to be fitted cannot be simulated; name it and give its resistances in ohm");
+  }
   Result<std::unique_ptr<simulation::Simulator>> simulator = create_simulator(options, *array);
   if (!simulator) return simulator.error();
 

@@ -3,11 +3,14 @@
 #include "dermis/compensation/crosstalk.hpp"
 
 #include <algorithm>
-#include <string>
+#include <utility>
 
+#include "compensation/fault_inversion.hpp"
 #include "compensation/grounded_rows.hpp"
+#include "compensation/newton_inversion.hpp"
 #include "compensation/proportional.hpp"
 #include "compensation/supply_error.hpp"
+#include "compensation/transposed.hpp"
 #include "compensation/virtual_ground.hpp"
 
 namespace dermis::compensation {
@@ -15,6 +18,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr double kToleranceCounts = 0.01;
+constexpr double kFaultToleranceCounts = 0.05;  // around an inversion that is right to kToleranceCounts
 
 using Inversion = Result<std::unique_ptr<CrosstalkInversion>>;
 
@@ -23,8 +27,30 @@ Inversion inversion(const Arguments&... arguments) {
   return std::unique_ptr<CrosstalkInversion>(std::make_unique<Kind>(arguments...));
 }
 
-Error not_yet(const char* what) {
-  return bad_input(std::string(what) + " cannot be inverted yet: set circuit = \"none\"");
+/// One column driven, the others grounded, one row sensed: the divider with one load, rows and columns exchanged.
+Inversion flexitac(const ArrayDescription& array, double tolerance) {
+  ArrayDescription exchanged = array;
+  std::swap(exchanged.rows, exchanged.cols);
+  exchanged.readout.circuit = Circuit::divider;
+  exchanged.readout.idle_columns = IdleColumns::floating;
+  return std::unique_ptr<CrosstalkInversion>(
+      std::make_unique<Transposed>(std::make_unique<GroundedRows>(exchanged, tolerance), array.rows, array.cols));
+}
+
+bool has_ideal_amplifiers(const Readout& readout) {
+  return readout.column_switch_ohm.empty() && readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
+}
+
+bool has_resistive_lines(const Readout& readout) {
+  const auto is_resistance = [](double ohm) { return ohm > 0.0; };
+  return std::any_of(readout.row_segment_ohm.begin(), readout.row_segment_ohm.end(), is_resistance) ||
+         std::any_of(readout.column_segment_ohm.begin(), readout.column_segment_ohm.end(), is_resistance);
+}
+
+Inversion newton(const ArrayDescription& array, double tolerance) {
+  auto model = CircuitModel::create(array);
+  if (!model) return model.error();
+  return std::unique_ptr<CrosstalkInversion>(std::make_unique<NewtonInversion>(array, std::move(*model), tolerance));
 }
 
 }  // namespace
@@ -36,24 +62,32 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   }
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
-  if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty()) return not_yet("lines with resistance");
-  if (readout.circuit == Circuit::flexitac) return not_yet("readout.circuit = \"flexitac\"");
-  if (readout.circuit == Circuit::transimpedance) return inversion<VirtualGround>(array);
-  if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\" with a divider");
+  if (has_resistive_lines(readout)) return newton(array, tolerance);
+  if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance);
+  if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
+    return inversion<VirtualGround>(array);
+  }
+  if (readout.idle_rows == IdleRows::floating) return newton(array, tolerance);
   return inversion<GroundedRows>(array, tolerance);
 }
 
 Result<Compensator> Compensator::create(const ArrayDescription& array) {
   Inversion inversion = make_crosstalk_inversion(array);
   if (!inversion) return inversion.error();
-  return Compensator(std::move(*inversion), std::make_unique<SupplyError>(array));
+  return Compensator(array, std::move(*inversion));
 }
 
-Compensator::Compensator(std::unique_ptr<CrosstalkInversion> inversion, std::unique_ptr<SupplyError> supply_error)
-    : inversion_(std::move(inversion)), supply_error_(std::move(supply_error)) {}
+Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion)
+    : inversion_(std::move(inversion)),
+      supply_error_(std::make_unique<SupplyError>(array)),
+      faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts())) {}
 Compensator::Compensator(Compensator&&) noexcept = default;
 Compensator& Compensator::operator=(Compensator&&) noexcept = default;
 Compensator::~Compensator() = default;
+
+void Compensator::set_faults(std::span<const LineFault> faults) {
+  faults_->set_faults(faults);
+}
 
 void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
   conductance.time = conditioned.time;
@@ -68,13 +102,23 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
     return;
   }
-  const InversionResult result = inversion_->invert(conditioned.ratio, conductance.siemens);
+  const InversionResult result = faults_->any() ? faults_->invert(*inversion_, conditioned.ratio, conductance.siemens)
+                                                : inversion_->invert(conditioned.ratio, conductance.siemens);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
   supply_error_->add(conductance.siemens, conductance.sigma_siemens);
-  if (result.solved) return;
-  conductance.status |= FrameStatus::not_converged;
-  std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
+  if (!result.solved) {
+    conductance.status |= FrameStatus::not_converged;
+    std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
+  }
+  if (faults_->any()) mask_faulty_taxels(conductance);
+}
+
+void Compensator::mask_faulty_taxels(ConductanceFrame& conductance) const noexcept {
+  conductance.status |= FrameStatus::line_fault;
+  for (std::size_t taxel = 0; taxel < conductance.taxels.size(); ++taxel) {
+    if (faults_->is_masked(taxel)) conductance.taxels[taxel] = TaxelStatus::line_fault;
+  }
 }
 
 }  // namespace dermis::compensation

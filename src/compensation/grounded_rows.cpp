@@ -13,11 +13,13 @@ namespace {
 constexpr int kPlainSteps = 24;
 constexpr double kShrinks = 0.7;  // of the certificate in a step; what shrinks less is left to the mixing
 constexpr int kMixedSteps = 400;
+constexpr int kDampedSteps = 200;
 constexpr int kStepsWithoutGain = 60;
 constexpr int kRoundedStepsWithoutGain = 5;
 constexpr double kRounded = 1e-12;  // certificate; what is left of it is rounding
 constexpr std::size_t kMixingDepth = 8;
 constexpr double kLeastSiemens = 1e-12;  // held at 0 below
+constexpr double kSourceShare = 1e-3;    // of the tolerance, to which the sources' column voltages are found
 constexpr double kMostLogStep = 2.0;
 constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
 
@@ -26,21 +28,40 @@ constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
 GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio)
     : tolerance_(tolerance_ratio),
       state_(array.rows, array.cols, array.readout.idle_columns),
+      reading_siemens_(state_.stride),
+      offset_siemens_(state_.stride),
+      source_siemens_(state_.stride),
+      column_ratio_(state_.stride),
+      column_return_(state_.stride),
+      column_sum_(state_.stride),
       last_estimate_(state_.siemens.size()),
       best_siemens_(state_.siemens.size()),
       best_explained_(state_.siemens.size()),
       mixing_(state_.siemens.size(), kMixingDepth),
       log_siemens_(state_.siemens.size()),
       last_log_siemens_(state_.siemens.size()),
-      log_step_(state_.siemens.size()) {
-  state_.drive_ohm = array.readout.drive_ohm;
+      log_step_(state_.siemens.size()),
+      sigma_column_(state_.stride),
+      sigma_(state_.siemens.size()) {
+  const Readout& readout = array.readout;
+  state_.drive_ohm = readout.drive_ohm;
   const double weakest_driver = *std::max_element(state_.drive_ohm.begin(), state_.drive_ohm.end());
+  const bool amplified = readout.circuit == Circuit::transimpedance;
+  const double inverse_gain = readout.amplifier_gain ? 1.0 / *readout.amplifier_gain : 0.0;
   for (std::size_t col = 0; col < array.cols; ++col) {
-    const double load_ohm = array.readout.load_ohm[col];
-    const bool one_loaded = state_.idle_columns == IdleColumns::floating;
-    reading_siemens_.push_back(1.0 / load_ohm);
-    state_.column_ohm[col] = load_ohm;
-    state_.certificate_ratio[col] = load_ohm * (one_loaded ? 1.0 + weakest_driver / load_ohm : 1.0);
+    const double load = readout.load_ohm[col];
+    reading_siemens_[col] = (amplified ? 1.0 + inverse_gain : 1.0) / load;
+    state_.column_ohm[col] = amplified ? load * inverse_gain / (1.0 + inverse_gain) : load;
+    if (!readout.column_switch_ohm.empty()) state_.column_ohm[col] += readout.column_switch_ohm[col];
+    const bool one_loaded = readout.idle_columns == IdleColumns::floating;
+    state_.certificate_ratio[col] = (one_loaded ? 1.0 + weakest_driver / load : 1.0) / reading_siemens_[col];
+  }
+  if (readout.amplifier_offset_v.empty()) return;
+  source_.resize(state_.stride);
+  for (std::size_t col = 0; col < array.cols; ++col) {
+    const double offset = readout.amplifier_offset_v[col] / readout.supply_v.value_or(1.0);
+    offset_siemens_[col] = offset / readout.load_ohm[col];
+    source_[col] = offset / (1.0 + inverse_gain);
   }
 }
 
@@ -58,18 +79,79 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
     start_cold(state_);
   }
   double certificate = iterate();
-  if (!(certificate <= tolerance_)) certificate = iterate_with_mixing(certificate);
-  has_last_ = certificate <= std::max(tolerance_, kRounded);
+  if (!(certificate <= tolerance_)) certificate = iterate_with_mixing(certificate, 0);
+  if (!(certificate <= std::max(tolerance_, kRounded))) certificate = iterate_with_mixing(certificate, kDampedSteps);
+  const bool solved = certificate <= std::max(tolerance_, kRounded);
+  if (!solved) forget();
+  has_last_ = solved;
   for (std::size_t row = 0; row < state_.rows; ++row) {
     std::copy_n(&state_.siemens[row * state_.stride], state_.cols, &siemens[row * state_.cols]);
   }
-  return {has_last_, certificate};
+  return {solved, certificate};
 }
 
+void GroundedRows::forget() noexcept {
+  has_last_ = false;
+  std::fill(source_siemens_.begin(), source_siemens_.end(), 0.0);
+  std::fill(column_ratio_.begin(), column_ratio_.end(), 0.0);
+}
+
+/// y of the readings, with what the sources drove into the array in the last frame.
 void GroundedRows::load(std::span<const double> ratio) noexcept {
   for (std::size_t row = 0; row < state_.rows; ++row) {
     for (std::size_t col = 0; col < state_.cols; ++col) {
-      state_.measured[row * state_.stride + col] = reading_siemens_[col] * ratio[row * state_.cols + col];
+      const double reading = reading_siemens_[col] * ratio[row * state_.cols + col];
+      state_.measured[row * state_.stride + col] = reading + offset_siemens_[col] + source_siemens_[col];
+    }
+  }
+}
+
+double GroundedRows::certify() noexcept {
+  if (!source_.empty()) follow_sources();
+  return assess(state_);
+}
+
+/// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in
+/// (b) leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction.
+void GroundedRows::follow_sources() noexcept {
+  double change = std::numeric_limits<double>::infinity();
+  double last_change = change;
+  do {
+    last_change = change;
+    change = 0.0;
+    find_row_currents();
+    for (std::size_t col = 0; col < state_.cols; ++col) {
+      const double ratio = (source_[col] + state_.column_ohm[col] * column_return_[col]) * state_.column_part[col];
+      change = std::max(change, std::abs(ratio - column_ratio_[col]));
+      column_ratio_[col] = ratio;
+    }
+  } while (change > kSourceShare * tolerance_ && change < last_change);
+  find_row_currents();
+  for (std::size_t col = 0; col < state_.cols; ++col) {
+    const double current = column_ratio_[col] * column_sum_[col] - column_return_[col];
+    for (std::size_t row = 0; row < state_.rows; ++row) {
+      const std::size_t k = row * state_.stride + col;
+      const bool held = state_.explained[k] > state_.measured[k];
+      state_.measured[k] += current - source_siemens_[col];
+      state_.explained[k] = held ? std::max(state_.explained[k], state_.measured[k]) : state_.measured[k];
+      state_.dropped[k] = state_.drive_ohm[row] * state_.explained[k];
+    }
+    source_siemens_[col] = current;
+  }
+}
+
+/// G^T diag(Rd / a) G v and G^T 1.
+void GroundedRows::find_row_currents() noexcept {
+  std::fill(column_return_.begin(), column_return_.end(), 0.0);
+  std::fill(column_sum_.begin(), column_sum_.end(), 0.0);
+  for (std::size_t row = 0; row < state_.rows; ++row) {
+    const double* const siemens = &state_.siemens[row * state_.stride];
+    double current = 0.0;
+    for (std::size_t col = 0; col < state_.cols; ++col) current += siemens[col] * column_ratio_[col];
+    const double line_ratio = current * state_.drive_ohm[row] / state_.line_gain[row];
+    for (std::size_t col = 0; col < state_.cols; ++col) {
+      column_return_[col] += siemens[col] * line_ratio;
+      column_sum_[col] += siemens[col];
     }
   }
 }
@@ -78,7 +160,7 @@ void GroundedRows::load(std::span<const double> ratio) noexcept {
 double GroundedRows::iterate() noexcept {
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0;; ++step) {
-    const double certificate = assess(state_);
+    const double certificate = certify();
     if (certificate <= tolerance_) return certificate;
     if (step > 0 && !(certificate < last)) break;
     keep();
@@ -96,18 +178,23 @@ void GroundedRows::keep() noexcept {
   best_explained_ = state_.explained;
 }
 
-double GroundedRows::iterate_with_mixing(double best) noexcept {
+/// From the start, the first steps halved (A.5, alpha = 0.5), the others mixed.
+double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept {
   for (std::size_t k = 0; k < log_siemens_.size(); ++k) {
     log_siemens_[k] = std::log(std::max(state_.estimate[k], kLeastSiemens));
   }
   mixing_.forget();
   int without_gain = 0;
-  for (int step = 0; step < kMixedSteps && best > tolerance_; ++step) {
+  for (int step = 0; step < damped_steps + kMixedSteps && best > tolerance_; ++step) {
     take_step();
-    const double certificate = assess(state_);
+    const double certificate = certify();
     if (certificate < best) {
       best = certificate;
       keep();
+      without_gain = 0;
+    }
+    if (step < damped_steps) {
+      mixing_.forget();
       without_gain = 0;
     }
     if (++without_gain > (best <= kRounded ? kRoundedStepsWithoutGain : kStepsWithoutGain)) break;
@@ -156,11 +243,15 @@ void GroundedRows::choose_step() noexcept {
   }
 }
 
+/// The first order of the circuit's equations about the solution, d(S D^-1 y) = d(G diag(w)), without the two terms
+/// that couple a taxel to those of other rows and columns at once:
+///
+///   dG_ij = base_ij + Rd_i G_ij sum_j' base_ij' + RL_j G_ij sum_i' base_i'j,   base_ij = a_i dy_ij / w_j
 void GroundedRows::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
-  for (std::size_t k = 0; k < sigma_siemens.size(); ++k) {
-    const std::size_t row = k / state_.cols;
-    const std::size_t col = k % state_.cols;
-    sigma_siemens[k] = sigma_ratio * reading_siemens_[col] * state_.line_gain[row] / state_.column_part[col];
+  for (std::size_t col = 0; col < state_.cols; ++col) sigma_column_[col] = sigma_ratio * reading_siemens_[col];
+  spread_noise(state_, sigma_column_, sigma_);
+  for (std::size_t row = 0; row < state_.rows; ++row) {
+    std::copy_n(&sigma_[row * state_.stride], state_.cols, &sigma_siemens[row * state_.cols]);
   }
 }
 

@@ -43,37 +43,52 @@ namespace dermis::compensation {
 ///
 /// With one load w_j depends on y, which adds at most T_kj max(Rd)/RL_j b_j: |y - y(G)|_kj <= (1 + max(Rd)/RL_j) b_j.
 ///
+/// Amplifiers (`transimpedance`): RL is what the column sees, the switch and the feedback resistor over 1 + gain, to a
+/// voltage e = offset gain / (1 + gain); the reading is (I load_ohm - offset) / (1 + 1/gain). The currents that e alone
+/// drives into the array are common to all scans; they are found anew for every G and added to y.
+///
 /// G is not always unique: on large arrays of low resistance beside weak drivers (max Rd sum_j G_ij above about 2.5)
 /// two arrays can give the same readings. The one found is that which the readings lead to from G = 0 as all of them
 /// grow.
 class GroundedRows final : public CrosstalkInversion {
  public:
-  /// `array` is a divider with grounded idle rows.
+  /// `array` is a divider or transimpedance with grounded idle rows.
   GroundedRows(const ArrayDescription& array, double tolerance_ratio);
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
-  void forget() noexcept override { has_last_ = false; }
+  void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
 
  private:
   void load(std::span<const double> ratio) noexcept;
+  [[nodiscard]] double certify() noexcept;
+  void follow_sources() noexcept;
+  void find_row_currents() noexcept;
   double iterate() noexcept;
-  double iterate_with_mixing(double best) noexcept;
+  double iterate_with_mixing(double best, int damped_steps) noexcept;
   void choose_step() noexcept;
   void take_step() noexcept;
   void keep() noexcept;
 
   double tolerance_;
-  std::vector<double> reading_siemens_;  // y of a ratio of 1 [cols]
   GroundedRowsState state_;
-  bool has_last_ = false;              // `state_` holds the solution of the last frame
-  std::vector<double> last_estimate_;  // and this is the estimate that belongs to it
+  std::vector<double> reading_siemens_;  // y of a ratio of 1 [stride]
+  std::vector<double> offset_siemens_;   // y of a ratio of 0 [stride]
+  std::vector<double> source_;           // e over the supply [stride]; empty: none
+  std::vector<double> source_siemens_;   // what e drives into the array, over the supply [stride]
+  std::vector<double> column_ratio_;     // column voltages then, over the supply [stride]
+  std::vector<double> column_return_;    // currents from the rows into the columns then [stride]
+  std::vector<double> column_sum_;       // G^T 1 [stride]
+  bool has_last_ = false;                // `state_` holds the solution of the last frame
+  std::vector<double> last_estimate_;    // and this is the estimate that belongs to it
   std::vector<double> best_siemens_;
   std::vector<double> best_explained_;
   AndersonMixing mixing_;
   std::vector<double> log_siemens_;
   std::vector<double> last_log_siemens_;
   std::vector<double> log_step_;
+  std::vector<double> sigma_column_;  // of y [stride]
+  std::vector<double> sigma_;         // of G [rows, stride]
 };
 
 }  // namespace dermis::compensation

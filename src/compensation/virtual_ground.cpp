@@ -3,10 +3,12 @@
 #include "compensation/virtual_ground.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace dermis::compensation {
 
-VirtualGround::VirtualGround(const ArrayDescription& array) : drive_ohm_(array.readout.drive_ohm) {
+VirtualGround::VirtualGround(const ArrayDescription& array)
+    : drive_ohm_(array.readout.drive_ohm), line_gain_(array.rows, 1.0), siemens_(array.taxel_count()) {
   for (const double ohm : array.readout.load_ohm) load_siemens_.push_back(1.0 / ohm);
 }
 
@@ -18,7 +20,7 @@ InversionResult VirtualGround::invert(std::span<const double> ratio, std::span<d
     const std::span<double> conductances = siemens.subspan(row * cols, cols);
     double row_siemens = 0.0;
     for (std::size_t col = 0; col < cols; ++col) {
-      conductances[col] = readings[col] * load_siemens_[col];
+      conductances[col] = std::max(readings[col], 0.0) * load_siemens_[col];  // held at 0 S below
       row_siemens += conductances[col];
     }
     const double line_ratio = 1.0 - drive_ohm_[row] * row_siemens;  // row voltage / supply
@@ -26,14 +28,24 @@ InversionResult VirtualGround::invert(std::span<const double> ratio, std::span<d
       solvable = false;
       continue;
     }
-    for (double& conductance : conductances) conductance = std::max(conductance / line_ratio, 0.0);
+    line_gain_[row] = 1.0 / line_ratio;
+    for (double& conductance : conductances) conductance *= line_gain_[row];
   }
+  std::copy(siemens.begin(), siemens.end(), siemens_.begin());
   return {solvable, 0.0};
 }
 
+/// dG_kj = a_k dy_kj + Rd_k G_kj sum_j' a_k dy_kj', a_k = 1 / (1 - Rd_k Y_k) = 1 + Rd_k sum_j G_kj.
 void VirtualGround::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
+  const std::size_t cols = load_siemens_.size();
+  double all_columns = 0.0;
+  for (const double siemens : load_siemens_) all_columns += siemens * siemens;
   for (std::size_t taxel = 0; taxel < sigma_siemens.size(); ++taxel) {
-    sigma_siemens[taxel] = sigma_ratio * load_siemens_[taxel % load_siemens_.size()];
+    const std::size_t row = taxel / cols;
+    const double square = load_siemens_[taxel % cols] * load_siemens_[taxel % cols];
+    const double drop = drive_ohm_[row] * siemens_[taxel];
+    const double variance = square * (1.0 + drop) * (1.0 + drop) + (all_columns - square) * drop * drop;
+    sigma_siemens[taxel] = sigma_ratio * line_gain_[row] * std::sqrt(variance);
   }
 }
 

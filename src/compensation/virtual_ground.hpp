@@ -26,6 +26,8 @@ class VirtualGround final : public CrosstalkInversion {
  private:
   std::vector<double> drive_ohm_;     // [rows]
   std::vector<double> load_siemens_;  // [cols]
+  std::vector<double> line_gain_;     // a of the last frame [rows]
+  std::vector<double> siemens_;       // of the last frame [rows, cols]
 };
 
 }  // namespace dermis::compensation

@@ -54,8 +54,8 @@ Status validate_amplifiers(const Readout& readout, std::size_t cols) {
   if (Status valid = validate_extra_resistors("column_switch_ohm", readout.column_switch_ohm, cols); !valid) {
     return valid;
   }
-  if (readout.amplifier_gain && !(*readout.amplifier_gain >= 1.0)) {
-    return bad_input("readout.amplifier_gain: must be 1 or more");
+  if (readout.amplifier_gain && !(std::isfinite(*readout.amplifier_gain) && *readout.amplifier_gain >= 1.0)) {
+    return bad_input("readout.amplifier_gain: must be 1 or more; leave it out for an ideal amplifier");
   }
   if (readout.amplifier_offset_v.empty()) return Done{};
   const std::string name = "readout.amplifier_offset_v";
@@ -65,6 +65,18 @@ Status validate_amplifiers(const Readout& readout, std::size_t cols) {
     if (!(std::abs(volt) < *readout.supply_v)) return bad_input(name + ": must be less than the supply");
   }
   return Done{};
+}
+
+/// Which lines have drivers, and so how many, is not known before the circuit is: one value stands for all.
+Status validate_automatic(const Readout& readout) {
+  if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty()) {
+    return bad_input("readout.circuit: \"auto\" takes lines for ideal; leave out the segment resistances");
+  }
+  if (!readout.drive_ohm.empty()) {
+    if (Status drive = validate_resistors("drive_ohm", readout.drive_ohm, 1, true); !drive) return drive;
+  }
+  if (readout.load_ohm.empty()) return Done{};
+  return validate_resistors("load_ohm", readout.load_ohm, 1, false);
 }
 
 Status validate_readout(const ArrayDescription& array) {
@@ -82,15 +94,16 @@ Status validate_readout(const ArrayDescription& array) {
   if (!(readout.supply_noise >= 0.0 && readout.supply_noise <= kMostSupplyNoise)) {
     return bad_input("readout.supply_noise: must be 0 to 0.1");
   }
-  if (readout.circuit == Circuit::none || readout.circuit == Circuit::automatic) return Done{};
+  if (readout.circuit == Circuit::none) return Done{};
   if (readout.idle_columns == IdleColumns::floating && readout.circuit != Circuit::divider) {
     return bad_input("readout.idle_columns: belongs to circuit = \"divider\"");
   }
+  if (Status valid = validate_amplifiers(readout, array.cols); !valid) return valid;
+  if (readout.circuit == Circuit::automatic) return validate_automatic(readout);
   if (Status drive = validate_resistors("drive_ohm", readout.drive_ohm, array.driven_lines(), true); !drive) {
     return drive;
   }
   if (Status load = validate_resistors("load_ohm", readout.load_ohm, array.sensed_lines(), false); !load) return load;
-  if (Status valid = validate_amplifiers(readout, array.cols); !valid) return valid;
   if (Status row = validate_extra_resistors("row_segment_ohm", readout.row_segment_ohm, array.rows); !row) return row;
   return validate_extra_resistors("column_segment_ohm", readout.column_segment_ohm, array.cols);
 }

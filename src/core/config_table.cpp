@@ -98,10 +98,18 @@ std::optional<double> finite_number(const toml::node& node) {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
-std::optional<std::vector<double>> finite_numbers(const toml::array& list) {
+using OptionalWord = std::optional<ConfigFile::Word>;
+
+std::optional<double> finite_number_or(const OptionalWord& word, const toml::node& node) {
+  const toml::value<std::string>* text = node.as_string();
+  if (word && text != nullptr && text->get() == word->text) return word->number;
+  return finite_number(node);
+}
+
+std::optional<std::vector<double>> finite_numbers(const toml::array& list, const OptionalWord& word) {
   std::vector<double> numbers;
   for (const toml::node& node : list) {
-    const std::optional<double> number = finite_number(node);
+    const std::optional<double> number = finite_number_or(word, node);
     if (!number) return std::nullopt;
     numbers.push_back(*number);
   }
@@ -162,17 +170,27 @@ struct ConfigFile::Parsed {
     first_error_is_missing_key = node == nullptr;
   }
 
-  void read_list(const toml::node& node, std::string_view key, std::size_t size, std::string wanted,
-                 std::vector<double>& values) {
+  void read_list(const toml::node& node, std::string_view key, std::size_t size, const OptionalWord& word,
+                 std::string wanted, std::vector<double>& values) {
     const toml::array* list = node.as_array();
     std::optional<std::vector<double>> numbers;
-    if (list != nullptr) numbers = finite_numbers(*list);
+    if (list != nullptr) numbers = finite_numbers(*list, word);
     if (numbers && numbers->size() == size) {
       values = std::move(*numbers);
       return;
     }
     if (numbers) wanted += ", has " + std::to_string(numbers->size());
     keep(&node, key, wanted);
+  }
+
+  void read_per_line(std::string_view key, std::size_t size, const OptionalWord& word, const std::string& wanted,
+                     std::vector<double>& values) {
+    const toml::node* node = ask(key);
+    if (node == nullptr) return;
+    if (node->is_array()) return read_list(*node, key, size, word, wanted, values);
+    const std::optional<double> number = finite_number_or(word, *node);
+    if (!number) return keep(node, key, wanted);
+    values.assign(size, *number);
   }
 
   /// The unknown key that stands first in the file.
@@ -281,19 +299,21 @@ void ConfigFile::text(std::string_view key, std::string& value) {
 }
 
 void ConfigFile::number_per_line(std::string_view key, std::size_t size, std::vector<double>& values) {
-  const toml::node* node = parsed_->ask(key);
-  if (node == nullptr) return;
-  const std::string wanted = "must be one number or a list of " + std::to_string(size) + " numbers";
-  if (node->is_array()) return parsed_->read_list(*node, key, size, wanted, values);
-  const std::optional<double> number = finite_number(*node);
-  if (!number) return parsed_->keep(node, key, wanted);
-  values.assign(size, *number);
+  parsed_->read_per_line(key, size, std::nullopt,
+                         "must be one number or a list of " + std::to_string(size) + " numbers", values);
+}
+
+void ConfigFile::number_per_line(std::string_view key, std::size_t size, const Word& word,
+                                 std::vector<double>& values) {
+  const std::string wanted =
+      "must be a number or \"" + word.text + "\", or a list of " + std::to_string(size) + " of these";
+  parsed_->read_per_line(key, size, word, wanted, values);
 }
 
 void ConfigFile::numbers(std::string_view key, std::size_t size, std::vector<double>& values) {
   const toml::node* node = parsed_->ask(key);
   if (node == nullptr) return;
-  parsed_->read_list(*node, key, size, "must be a list of " + std::to_string(size) + " numbers", values);
+  parsed_->read_list(*node, key, size, std::nullopt, "must be a list of " + std::to_string(size) + " numbers", values);
 }
 
 void ConfigFile::counts(std::string_view key, std::vector<std::size_t>& values) {

@@ -17,12 +17,19 @@ Result<Pipeline> Pipeline::create(const Model& model) {
 }
 
 Pipeline::Pipeline(const Model& model, compensation::Compensator compensator)
-    : conditioner_(model.array), compensator_(std::move(compensator)), fusion_(model.networks) {}
+    : conditioner_(model.array),
+      compensator_(std::move(compensator)),
+      monitor_(model.array, model.networks.offset_siemens),
+      fusion_(model.networks) {}
 
 void Pipeline::process(const RawFrame& raw, ForceFrame& force) noexcept {
   conditioner_.process(raw, conditioned_);           // unit 2: validated, supply divided out
   compensator_.process(conditioned_, conductance_);  // unit 3: crosstalk solved
-  fusion_.process(conductance_, force);              // unit 4: material and temperature fused to newtons
+  if (monitor_.observe(conditioned_, conductance_)) {
+    compensator_.set_faults(monitor_.faults());
+    compensator_.process(conditioned_, conductance_);
+  }
+  fusion_.process(conductance_, force);  // unit 4: material and temperature fused to newtons
 }
 
 }  // namespace dermis::pipeline

@@ -204,9 +204,18 @@ void add_array(Page& page, const ArrayDescription& array) {
     facts.emplace_back("pressed area of a taxel", fmt::format("{:.4g} mm2", 1e6 * *array.taxel_area_m2));
   }
   facts.emplace_back("circuit", to_string(readout.circuit));
-  if (readout.circuit != Circuit::none) facts.emplace_back("idle rows", to_string(readout.idle_rows));
+  if (readout.circuit == Circuit::divider || readout.circuit == Circuit::transimpedance) {
+    facts.emplace_back("idle rows", to_string(readout.idle_rows));
+  }
+  if (readout.circuit == Circuit::divider) facts.emplace_back("idle columns", to_string(readout.idle_columns));
   if (!readout.drive_ohm.empty()) facts.emplace_back("drive", resistances(readout.drive_ohm));
   if (!readout.load_ohm.empty()) facts.emplace_back("load", resistances(readout.load_ohm));
+  if (!readout.row_segment_ohm.empty()) {
+    facts.emplace_back("row lines, a taxel", resistances(readout.row_segment_ohm));
+  }
+  if (!readout.column_segment_ohm.empty()) {
+    facts.emplace_back("column lines, a taxel", resistances(readout.column_segment_ohm));
+  }
   facts.emplace_back("ADC", fmt::format("{} bit", readout.adc_bits));
   if (readout.supply_v) facts.emplace_back("nominal supply", fmt::format("{:.4g} V", *readout.supply_v));
   page.heading("Array");

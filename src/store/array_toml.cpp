@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "dermis/core/config_table.hpp"
@@ -46,25 +47,59 @@ void read_choice(ConfigFile& file, std::string_view key, std::initializer_list<C
   value = *(choices.begin() + index);
 }
 
-void read_resistors(ConfigFile& file, std::string_view key, Circuit circuit, std::size_t lines,
-                    std::vector<double>& ohms) {
-  const bool is_fit = file.is_text(key, "fit");
-  if (circuit == Circuit::none) {  // known or not, the resistances are not used
-    std::vector<double> unused;
-    if (!is_fit) file.number_per_line(key, lines, unused);
-    return;
-  }
-  if (is_fit) file.fail(key, "\"fit\" is not available yet; give the resistance in ohm");
-  file.require(key);
-  file.number_per_line(key, lines, ohms);
+/// The circuits in which a key has a meaning. `none` may keep the keys that describe most arrays, and ignores them.
+std::vector<Circuit> circuits_with(std::string_view key) {
+  using enum Circuit;
+  if (key == "readout.idle_rows") return {divider, transimpedance, none};
+  if (key == "readout.idle_columns") return {divider};
+  if (key == "readout.row_segment_ohm" || key == "readout.column_segment_ohm")
+    return {divider, transimpedance, flexitac};
+  return {transimpedance};
 }
 
-void read_readout(ConfigFile& file, std::size_t rows, std::size_t cols, Readout& readout) {
+bool has_key(std::string_view key, Circuit circuit) {
+  const std::vector<Circuit> circuits = circuits_with(key);
+  return std::find(circuits.begin(), circuits.end(), circuit) != circuits.end();
+}
+
+void refuse_keys_of_other_circuits(ConfigFile& file, Circuit circuit) {
+  for (const char* const key :
+       {"readout.idle_rows", "readout.idle_columns", "readout.column_switch_ohm", "readout.amplifier_offset_v",
+        "readout.amplifier_gain", "readout.row_segment_ohm", "readout.column_segment_ohm"}) {
+    if (has_key(key, circuit) || !file.contains(key)) continue;
+    std::vector<std::string> owners;
+    for (const Circuit owner : circuits_with(key)) {
+      if (owner != Circuit::none) owners.push_back(fmt::format("\"{}\"", to_string(owner)));
+    }
+    file.fail(key, fmt::format("has no meaning with circuit = \"{}\", only with {}; remove it", to_string(circuit),
+                               fmt::join(owners, " or ")));
+  }
+}
+
+void read_resistors(ConfigFile& file, std::string_view key, Circuit circuit, std::size_t lines,
+                    std::vector<double>& ohms) {
+  if (circuit != Circuit::none && circuit != Circuit::automatic) file.require(key);
+  // Which lines have drivers and which loads, and so how many there are of each, is not known before the circuit is.
+  file.number_per_line(key, circuit == Circuit::automatic ? 1 : lines, {"fit", kFitOhm}, ohms);
+  if (circuit == Circuit::none) ohms.clear();  // known or not, the resistances are not used
+}
+
+void read_readout(ConfigFile& file, ArrayDescription& array) {
+  Readout& readout = array.readout;
   file.require("readout.circuit");
-  read_choice(file, "readout.circuit", {Circuit::divider, Circuit::transimpedance, Circuit::none}, readout.circuit);
+  read_choice(file, "readout.circuit",
+              {Circuit::divider, Circuit::transimpedance, Circuit::flexitac, Circuit::none, Circuit::automatic},
+              readout.circuit);
+  refuse_keys_of_other_circuits(file, readout.circuit);
   read_choice(file, "readout.idle_rows", {IdleRows::grounded, IdleRows::floating}, readout.idle_rows);
-  read_resistors(file, "readout.drive_ohm", readout.circuit, rows, readout.drive_ohm);
-  read_resistors(file, "readout.load_ohm", readout.circuit, cols, readout.load_ohm);
+  read_choice(file, "readout.idle_columns", {IdleColumns::loaded, IdleColumns::floating}, readout.idle_columns);
+  read_resistors(file, "readout.drive_ohm", readout.circuit, array.driven_lines(), readout.drive_ohm);
+  read_resistors(file, "readout.load_ohm", readout.circuit, array.sensed_lines(), readout.load_ohm);
+  file.number_per_line("readout.column_switch_ohm", array.cols, readout.column_switch_ohm);
+  file.number_per_line("readout.amplifier_offset_v", array.cols, readout.amplifier_offset_v);
+  file.number("readout.amplifier_gain", readout.amplifier_gain);
+  file.number_per_line("readout.row_segment_ohm", array.rows, readout.row_segment_ohm);
+  file.number_per_line("readout.column_segment_ohm", array.cols, readout.column_segment_ohm);
   file.require("readout.adc_bits");
   file.integer("readout.adc_bits", readout.adc_bits);
   file.number("readout.adc_noise_counts", readout.adc_noise_counts);
@@ -85,7 +120,7 @@ void fail_invalid(ConfigFile& file, const std::string& message) {
 Result<ArrayDescription> read_array(ConfigFile& file) {
   ArrayDescription array;
   read_geometry(file, array);
-  read_readout(file, array.rows, array.cols, array.readout);
+  read_readout(file, array);
   if (const Status read = file.finish(); !read) return read.error();
   if (const Status valid = array.validate(); !valid) fail_invalid(file, valid.error().message);
   if (const Status valid = file.finish(); !valid) return valid.error();
@@ -107,9 +142,36 @@ std::string quoted_toml(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string resistors_toml(const std::vector<double>& ohms) {
-  const bool is_uniform = std::all_of(ohms.begin(), ohms.end(), [&](double ohm) { return ohm == ohms.front(); });
-  return is_uniform ? fmt::format("{}", ohms.front()) : fmt::format("[{}]", fmt::join(ohms, ", "));
+std::string ohm_toml(double ohm) {
+  return std::isnan(ohm) ? "\"fit\"" : fmt::format("{}", ohm);
+}
+
+/// A line "key = ..." for one value a line; nothing for an empty list.
+std::string per_line_toml(std::string_view key, const std::vector<double>& values) {
+  if (values.empty()) return {};
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(ohm_toml(value));
+  const bool is_uniform = std::all_of(texts.begin(), texts.end(), [&](const auto& text) { return text == texts[0]; });
+  return fmt::format("{} = {}\n", key, is_uniform ? texts[0] : fmt::format("[{}]", fmt::join(texts, ", ")));
+}
+
+std::string circuit_toml(const Readout& readout) {
+  std::string text = fmt::format("circuit = \"{}\"\n", to_string(readout.circuit));
+  if (has_key("readout.idle_rows", readout.circuit)) {
+    text += fmt::format("idle_rows = \"{}\"\n", to_string(readout.idle_rows));
+  }
+  if (has_key("readout.idle_columns", readout.circuit)) {
+    text += fmt::format("idle_columns = \"{}\"\n", to_string(readout.idle_columns));
+  }
+  if (readout.circuit == Circuit::none) return text;
+  text += per_line_toml("drive_ohm", readout.drive_ohm);
+  text += per_line_toml("load_ohm", readout.load_ohm);
+  text += per_line_toml("column_switch_ohm", readout.column_switch_ohm);
+  text += per_line_toml("amplifier_offset_v", readout.amplifier_offset_v);
+  if (readout.amplifier_gain) text += fmt::format("amplifier_gain = {}\n", *readout.amplifier_gain);
+  text += per_line_toml("row_segment_ohm", readout.row_segment_ohm);
+  text += per_line_toml("column_segment_ohm", readout.column_segment_ohm);
+  return text;
 }
 
 }  // namespace
@@ -134,12 +196,7 @@ std::string array_to_toml(const ArrayDescription& array) {
   if (array.taxel_area_m2) {
     text += fmt::format("taxel_area_mm2 = {:.15g}\n", *array.taxel_area_m2 * kSquareMillimetresPerSquareMetre);
   }
-  text += fmt::format("\n[readout]\ncircuit = \"{}\"\nidle_rows = \"{}\"\n", to_string(readout.circuit),
-                      to_string(readout.idle_rows));
-  if (readout.circuit != Circuit::none) {
-    text += fmt::format("drive_ohm = {}\nload_ohm = {}\n", resistors_toml(readout.drive_ohm),
-                        resistors_toml(readout.load_ohm));
-  }
+  text += "\n[readout]\n" + circuit_toml(readout);
   text += fmt::format("adc_bits = {}\nadc_noise_counts = {}\nsupply_noise = {}\nadc_reference_v = {}\n",
                       readout.adc_bits, readout.adc_noise_counts, readout.supply_noise,
                       readout.adc_reference_v ? fmt::format("{}", *readout.adc_reference_v) : "\"supply\"");

@@ -98,6 +98,14 @@ class ArrayFile(SmallArray):
     def test_broken_toml(self):
         self.refuse_array(ARRAY.replace("rows = 4", "rows 4"), [":3"])
 
+    def test_a_key_of_another_circuit(self):
+        self.refuse_array(ARRAY + "amplifier_gain = 1e5\n", [":14", "amplifier_gain", "transimpedance"])
+
+    def test_a_circuit_that_is_not_known_yet(self):
+        for text in (ARRAY.replace("load_ohm = 200.0", 'load_ohm = "fit"'),
+                     ARRAY.replace('"divider"', '"auto"')):
+            self.refuse_array(text, ["fitted"])
+
     def test_unknown_physics(self):
         physics = self.written("physics.toml", "[rubber]\nexponnt = 0.9\n")
         self.refuse(["simulate", "--array", self.array, "--physics", physics, "--scene", "idle",

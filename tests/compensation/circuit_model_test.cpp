@@ -120,5 +120,125 @@ TEST_P(EveryCircuit, derivatives_are_those_of_finite_differences) {
   }
 }
 
+/// Some taxels at 0 S, whole lines of them among them.
+std::vector<double> sparse_siemens(const ArrayDescription& array, Random& random) {
+  auto siemens = random_siemens(array, random, 200.0, 1e5);
+  for (double& value : siemens) value = random.below(3) == 0 ? value : 0.0;
+  const std::size_t row = random.below(array.rows);
+  const std::size_t col = random.below(array.cols);
+  for (std::size_t j = 0; j < array.cols; ++j) siemens[array.index(row, j)] = 0.0;
+  for (std::size_t i = 0; i < array.rows; ++i) siemens[array.index(i, col)] = 0.0;
+  return siemens;
+}
+
+TEST_P(EveryCircuit, diagonal_and_product_are_those_of_the_jacobian) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const auto array = random_array(GetParam(), 1 + random.below(9), 1 + random.below(9), random);
+    auto model = model_of(array);
+    model.solve(seed % 2 == 0 ? sparse_siemens(array, random) : random_siemens(array, random));
+    const std::size_t taxels = array.taxel_count();
+    std::vector<double> jacobian(taxels * taxels);
+    std::vector<double> own(taxels);
+    std::vector<double> change(taxels);
+    std::vector<double> product(taxels);
+    for (double& value : change) value = random.normal();
+    model.taxel_jacobian(jacobian);
+    model.own_derivatives(own);
+    model.multiply_taxel_jacobian(change, product);
+    for (std::size_t k = 0; k < taxels; ++k) {
+      EXPECT_EQ(own[k], jacobian[k * taxels + k]);
+      double sum = 0.0;
+      double size = 0.0;
+      for (std::size_t c = 0; c < taxels; ++c) {
+        sum += jacobian[k * taxels + c] * change[c];
+        size += std::abs(jacobian[k * taxels + c] * change[c]);
+      }
+      ASSERT_NEAR(product[k], sum, 1e-12 * size) << "reading " << k;
+    }
+  }
+}
+
+TEST_P(EveryCircuit, a_first_taxel_of_an_open_line_reads_as_its_derivative_says) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const auto array = random_array(GetParam(), 2 + random.below(3), 2 + random.below(3), random);
+    auto siemens = sparse_siemens(array, random);
+    auto model = model_of(array);
+    const auto ratio = ratios_of(model, siemens);
+    const std::size_t taxels = array.taxel_count();
+    std::vector<double> jacobian(taxels * taxels);
+    model.taxel_jacobian(jacobian);
+    for (std::size_t c = 0; c < taxels; ++c) {
+      constexpr double kFirstSiemens = 1e-12;
+      const double before = std::exchange(siemens[c], siemens[c] + kFirstSiemens);
+      const auto changed = ratios_of(model, siemens);
+      siemens[c] = before;
+      for (std::size_t k = 0; k < taxels; ++k) {
+        ASSERT_NEAR((changed[k] - ratio[k]) / kFirstSiemens, jacobian[k * taxels + c], 1e-2 * array.readout.load_ohm[0])
+            << "reading " << k << " by taxel " << c;
+      }
+    }
+  }
+}
+
+TEST_P(EveryCircuit, an_open_array_reads_nothing_but_offsets) {
+  Random random(1);
+  const auto array = random_array(GetParam(), 3, 4, random);
+  auto model = model_of(array);
+  const auto ratio = ratios_of(model, std::vector<double>(12, 0.0));
+  for (std::size_t k = 0; k < ratio.size(); ++k) {
+    const bool has_offset = !array.readout.amplifier_offset_v.empty();
+    const double offset = has_offset ? array.readout.amplifier_offset_v[k % 4] / 5.0 / (1.0 + 1e-4) : 0.0;
+    EXPECT_NEAR(ratio[k], -offset, 1e-12);
+  }
+}
+
+TEST_P(EveryCircuit, later_solutions_allocate_nothing) {
+  if (!support::kAllocationsAreCounted) GTEST_SKIP() << "the sanitizer owns malloc";
+  Random random(2);
+  const auto array = random_array(GetParam(), 20, 16, random);
+  const auto siemens = random_siemens(array, random);
+  auto model = model_of(array);
+  std::vector<double> product(siemens.size());
+  model.solve(siemens);
+  const support::AllocationGuard guard;
+  model.solve(siemens);
+  model.own_derivatives(product);
+  model.multiply_taxel_jacobian(siemens, product);
+  EXPECT_EQ(guard.count(), 0);
+}
+
+TEST(CircuitModel, far_apart_conductances_are_solved_to_rounding) {
+  // One taxel: T = RL / (Rd + 1/G + RL), with another of 1e12 times the resistance beside it in each direction.
+  const NamedCircuit two_terminal{"", Circuit::divider, IdleRows::floating, IdleColumns::floating};
+  Random random(3);
+  const auto array = random_array(two_terminal, 2, 2, random);
+  auto model = model_of(array);
+  const auto ratio = ratios_of(model, {1e-2, 1e-14, 1e-14, 1e-3});
+  const double around = 1.0 / (1e-14 + 1.0 / (1e2 + 1e14 + 1e3));  // the weak taxel beside its sneak path
+  const double load = array.readout.load_ohm[1];
+  EXPECT_NEAR(ratio[1] * (array.readout.drive_ohm[0] + around + load) / load, 1.0, 1e-14);
+}
+
+TEST(CircuitModel, refuses_what_cannot_be_computed_with_one_line) {
+  ArrayDescription array;
+  array.rows = array.cols = 2;
+  array.readout.circuit = Circuit::none;
+  EXPECT_EQ(CircuitModel::create(array).error().kind, ErrorKind::bad_input);
+  array.readout.circuit = Circuit::divider;
+  array.readout.drive_ohm = {1.0, kFitOhm};
+  array.readout.load_ohm = {1.0, 1.0};
+  EXPECT_NE(CircuitModel::create(array).error().message.find("must be known"), std::string::npos);
+  array.readout.drive_ohm.clear();
+  EXPECT_FALSE(CircuitModel::create(array));
+  array.rows = array.cols = 1024;
+  array.readout.drive_ohm.assign(1024, 1.0);
+  array.readout.load_ohm.assign(1024, 1.0);
+  EXPECT_NE(CircuitModel::create(array).error().message.find("too large"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace dermis::compensation

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 namespace dermis {
 namespace {
@@ -75,6 +76,92 @@ TEST(ArrayDescription, names_the_field_out_of_range) {
             "readout.load_ohm: has 2 values, the array needs 3");
 }
 
+TEST(ArrayDescription, counts_the_lines_that_are_driven_and_sensed) {
+  ArrayDescription array = valid_array();
+  EXPECT_EQ(array.driven_lines(), 2U);
+  EXPECT_EQ(array.sensed_lines(), 3U);
+  array.readout.circuit = Circuit::flexitac;
+  EXPECT_EQ(array.driven_lines(), 3U);
+  EXPECT_EQ(array.sensed_lines(), 2U);
+  EXPECT_EQ(array.validate().error().message, "readout.drive_ohm: has 2 values, the array needs 3");
+  std::swap(array.readout.drive_ohm, array.readout.load_ohm);
+  array.readout.load_ohm = {100.0, 200.0};
+  EXPECT_TRUE(array.validate());
+}
+
+TEST(ArrayDescription, knows_whether_a_reading_can_be_computed) {
+  ArrayDescription array = valid_array();
+  EXPECT_FALSE(array.has_unknown_circuit());
+  array.readout.load_ohm[1] = kFitOhm;
+  EXPECT_TRUE(array.validate());
+  EXPECT_TRUE(array.has_unknown_circuit());
+  array.readout.circuit = Circuit::none;
+  EXPECT_FALSE(array.has_unknown_circuit());
+  array.readout.circuit = Circuit::automatic;
+  array.readout.drive_ohm = {20.0};
+  array.readout.load_ohm.clear();
+  EXPECT_TRUE(array.validate());
+  EXPECT_TRUE(array.has_unknown_circuit());
+}
+
+TEST(ArrayDescription, names_the_part_of_the_circuit_out_of_range) {
+  using Array = ArrayDescription;
+  const auto amplified = [](Array& array) { array.readout.circuit = Circuit::transimpedance; };
+  EXPECT_EQ(message_after([](Array& array) { array.readout.adc_noise_counts = 0.0; }),
+            "readout.adc_noise_counts: must be more than 0");
+  EXPECT_EQ(message_after([&](Array& array) {
+              amplified(array);
+              array.readout.idle_columns = IdleColumns::floating;
+            }),
+            "readout.idle_columns: belongs to circuit = \"divider\"");
+  EXPECT_EQ(message_after([](Array& array) { array.readout.amplifier_gain = 100.0; }),
+            "readout.circuit: column_switch_ohm, amplifier_offset_v and amplifier_gain belong to \"transimpedance\"");
+  EXPECT_EQ(message_after([&](Array& array) {
+              amplified(array);
+              array.readout.amplifier_gain = INFINITY;
+            }),
+            "readout.amplifier_gain: must be 1 or more; leave it out for an ideal amplifier");
+  EXPECT_EQ(message_after([&](Array& array) {
+              amplified(array);
+              array.readout.column_switch_ohm = {1.0, kFitOhm, 1.0};
+            }),
+            "readout.column_switch_ohm: must be 0 or more ohm");
+  EXPECT_EQ(message_after([&](Array& array) {
+              amplified(array);
+              array.readout.amplifier_offset_v = {0.0, 0.0, NAN};
+            }),
+            "readout.amplifier_offset_v: must be less than the supply");
+  EXPECT_EQ(message_after([&](Array& array) {
+              amplified(array);
+              array.readout.amplifier_offset_v = {0.0, 0.0, 0.0};
+              array.readout.supply_v.reset();
+            }),
+            "readout.amplifier_offset_v: needs readout.supply_v, the nominal supply");
+  EXPECT_EQ(message_after([](Array& array) { array.readout.row_segment_ohm = {1.0}; }),
+            "readout.row_segment_ohm: has 1 values, the array needs 2");
+  EXPECT_EQ(message_after([](Array& array) {
+              array.readout.column_segment_ohm = {1.0, -1.0, 1.0};
+            }),
+            "readout.column_segment_ohm: must be 0 or more ohm");
+}
+
+TEST(ArrayDescription, an_unknown_circuit_has_one_value_for_all_lines) {
+  using Array = ArrayDescription;
+  EXPECT_EQ(message_after([](Array& array) { array.readout.circuit = Circuit::automatic; }),
+            "readout.drive_ohm: has 2 values, the array needs 1");
+  EXPECT_EQ(message_after([](Array& array) {
+              array.readout.circuit = Circuit::automatic;
+              array.readout.drive_ohm.clear();
+              array.readout.load_ohm = {0.0};
+            }),
+            "readout.load_ohm: must be more than 0 ohm");
+  EXPECT_EQ(message_after([](Array& array) {
+              array.readout.circuit = Circuit::automatic;
+              array.readout.row_segment_ohm = {1.0, 1.0};
+            }),
+            "readout.circuit: \"auto\" takes lines for ideal; leave out the segment resistances");
+}
+
 TEST(Readout, has_the_full_scale_of_its_adc) {
   Readout readout;
   EXPECT_EQ(readout.full_scale_counts(), 4095.0);
@@ -86,9 +173,13 @@ TEST(ArrayDescription, has_names_as_in_files) {
   EXPECT_EQ(taxel_name(3, 15), "r3c15");
   EXPECT_STREQ(to_string(Circuit::divider), "divider");
   EXPECT_STREQ(to_string(Circuit::transimpedance), "transimpedance");
+  EXPECT_STREQ(to_string(Circuit::flexitac), "flexitac");
   EXPECT_STREQ(to_string(Circuit::none), "none");
+  EXPECT_STREQ(to_string(Circuit::automatic), "auto");
   EXPECT_STREQ(to_string(IdleRows::grounded), "grounded");
   EXPECT_STREQ(to_string(IdleRows::floating), "floating");
+  EXPECT_STREQ(to_string(IdleColumns::loaded), "loaded");
+  EXPECT_STREQ(to_string(IdleColumns::floating), "floating");
 }
 
 TEST(ArrayDescription, names_a_taxel_by_its_row_major_index) {

@@ -88,6 +88,20 @@ TEST(ConfigFile, leaves_defaults_where_the_key_is_absent) {
   EXPECT_EQ(index, 5U);
 }
 
+TEST(ConfigFile, takes_a_word_for_a_number_where_it_may) {
+  const ConfigFile::Word fit{"fit", -1.0};
+  std::vector<double> all;
+  std::vector<double> some;
+  EXPECT_EQ(message_after("a = \"fit\"\nb = [2, \"fit\", 3.5]\n",
+                          [&](ConfigFile& file) {
+                            file.number_per_line("a", 2, fit, all);
+                            file.number_per_line("b", 3, fit, some);
+                          }),
+            "ok");
+  EXPECT_EQ(all, (std::vector<double>{-1.0, -1.0}));
+  EXPECT_EQ(some, (std::vector<double>{2.0, -1.0, 3.5}));
+}
+
 TEST(ConfigFile, reads_keys_in_tables_however_they_are_written) {
   for (const char* text : {"[a.b]\nc = 1\n", "a.b.c = 1\n", "a = {b = {c = 1}}\n", "[a]\nb.c = 1\n"}) {
     int value = 0;
@@ -145,6 +159,11 @@ TEST(ConfigFile, names_place_and_expectation_of_a_wrong_type) {
             "c.toml:1: a: must be one number or a list of 2 numbers");
   EXPECT_EQ(message_after("a = [1, 2, 3]", [&](File& file) { file.number_per_line("a", 2, list); }),
             "c.toml:1: a: must be one number or a list of 2 numbers, has 3");
+  const File::Word fit{"fit", -1.0};
+  EXPECT_EQ(message_after("a = \"fits\"", [&](File& file) { file.number_per_line("a", 2, fit, list); }),
+            "c.toml:1: a: must be a number or \"fit\", or a list of 2 of these");
+  EXPECT_EQ(message_after("a = [\"fit\", 2, 3]", [&](File& file) { file.number_per_line("a", 2, fit, list); }),
+            "c.toml:1: a: must be a number or \"fit\", or a list of 2 of these, has 3");
   EXPECT_EQ(message_after("a = 1", [&](File& file) { file.numbers("a", 2, list); }),
             "c.toml:1: a: must be a list of 2 numbers");
   EXPECT_EQ(message_after("a = \"x\"",

@@ -17,10 +17,12 @@ namespace dermis::compensation {
 ///
 ///   d T_kj / d g = -(w_a - w_b) (u_a - u_b)            formula (5) of research/literature.md A.5
 ///
-/// Readings stand at their taxel's row-major index. Not thread-safe: one per thread.
+/// Potentials are found by star-mesh elimination, without a subtraction: readings are right to a few roundings however
+/// far apart the conductances are. Readings stand at their taxel's row-major index. Not thread-safe: one per thread.
 class CircuitModel {
  public:
-  /// Errors: an invalid array, `none`, or a circuit with unknown resistances.
+  /// Errors: an invalid array, `none`, a circuit with unknown resistances, or an array too large: with
+  /// 128x128 taxels every circuit is solved, with resistive lines read between two terminals 64x64.
   [[nodiscard]] static Result<CircuitModel> create(const ArrayDescription& array);
   CircuitModel(CircuitModel&&) noexcept;
   CircuitModel& operator=(CircuitModel&&) noexcept;
@@ -38,6 +40,13 @@ class CircuitModel {
 
   /// d ratio / d siemens at the last solution, [reading, taxel], row-major [ohm].
   void taxel_jacobian(std::span<double> jacobian) const noexcept;
+
+  /// Its diagonal: d ratio / d siemens of the same taxel [rows, cols] [ohm].
+  void own_derivatives(std::span<double> derivatives) const noexcept;
+
+  /// product = taxel_jacobian change without the matrix: the change of every reading [rows, cols] for a change of every
+  /// taxel [rows, cols] [S]. Allocates nothing.
+  void multiply_taxel_jacobian(std::span<const double> change, std::span<double> product) noexcept;
 
   /// d ratio / d drive_ohm [reading, driven line] and d ratio / d load_ohm [reading, sensed line], row-major [1/ohm].
   void drive_jacobian(std::span<double> jacobian) const noexcept;

@@ -41,7 +41,8 @@ enum class IdleColumns {
 inline constexpr double kFitOhm = std::numeric_limits<double>::quiet_NaN();
 
 /// The path from taxel resistance to counts (the paper's Fig. 3). Lists with one value a line may be empty where the
-/// circuit does not have that part.
+/// circuit does not have that part; for `automatic`, where it is open which lines are driven, drive_ohm and load_ohm
+/// are empty (to be fitted) or hold one value for all lines.
 struct Readout {
   Circuit circuit = Circuit::divider;
   IdleRows idle_rows = IdleRows::grounded;         ///< divider, transimpedance
@@ -51,7 +52,7 @@ struct Readout {
   std::vector<double> column_switch_ohm;  ///< transimpedance: between a column and its amplifier [ohm], >= 0.
   std::vector<double>
       amplifier_offset_v;                ///< transimpedance: input offset of a column's amplifier [V]; needs supply_v.
-  std::optional<double> amplifier_gain;  ///< transimpedance: open-loop gain, >= 1; empty: infinite.
+  std::optional<double> amplifier_gain;  ///< transimpedance: open-loop gain, >= 1; empty: ideal.
   std::vector<double> row_segment_ohm;   ///< Of each row line, from one taxel to the next [ohm], >= 0.
   std::vector<double> column_segment_ohm;  ///< Of each column line, from one taxel to the next [ohm], >= 0.
   int adc_bits = 12;                       ///< Resolution [bit], 1 ... 24.

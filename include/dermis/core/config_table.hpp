@@ -40,6 +40,13 @@ class ConfigFile {
   void text(std::string_view key, std::string& value);
   /// One number for all, or a list of exactly `size` numbers.
   void number_per_line(std::string_view key, std::size_t size, std::vector<double>& values);
+  /// A word that stands for a number.
+  struct Word {
+    std::string text;
+    double number = 0.0;
+  };
+  /// The same, where each number may be the word instead.
+  void number_per_line(std::string_view key, std::size_t size, const Word& word, std::vector<double>& values);
   /// A list of exactly `size` numbers.
   void numbers(std::string_view key, std::size_t size, std::vector<double>& values);
   /// A list of any size of integers of 0 or more, or of texts.

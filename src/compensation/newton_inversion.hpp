@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "compensation/krylov_solver.hpp"
+#include "dermis/compensation/circuit_model.hpp"
+#include "dermis/compensation/crosstalk.hpp"
+
+namespace dermis::compensation {
+
+/// Any readout circuit, by Newton's method with the exact Jacobian J of CircuitModel (formula (5) of
+/// research/literature.md A.5).
+///
+/// Both the readings and the taxels are taken on the scale x(g) = asinh(g / 2 g_n): the logarithm of a conductance
+/// above the noise of its reading g_n, proportional to it below, and 0 at 0 S. A reading I_ds (current over the supply)
+/// stands there as the conductance that it would mean without crosstalk, y = I / (1 - (rho_d + rho_s) I), the textbook
+/// divider. With it, Newton's method converges from the textbook estimate in about 14 steps (four and five decades of
+/// taxels, 2x2 to 64x64, every circuit).
+///
+/// Non-negative: wanted are x >= 0 with r = x(y measured) - x(y of the circuit) = 0, or r < 0 where x = 0, that is
+/// max(r, -x) = 0. Its Newton step holds those taxels at 0 S for which x + r <= 0 and solves for the others; steps of x
+/// are at most 2 and halved until |max(r, -x)| falls.
+///
+/// The equations of a step are solved by GMRES. In units of x and divided by the derivative of each reading by its own
+/// taxel they are so well conditioned that 10 to 50 products with J suffice, whatever the circuit; a product takes
+/// rows^2 cols^2 multiplications, an LU decomposition rows^3 cols^3 / 3.
+///
+/// Floating lines read every taxel through all others. What noise becomes there is in the nature of the circuit: at
+/// 16x16 the relative noise of a reading grows by 12 to 104 (rms, two terminals; A.6), of a single one by thousands.
+class NewtonInversion final : public CrosstalkInversion {
+ public:
+  /// `model` is of `array`.
+  NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio);
+
+  [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
+  void forget() noexcept override { has_last_frame_ = false; }
+  void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
+  [[nodiscard]] double siemens_per_ratio() const noexcept override;
+
+ private:
+  struct Reading {        // what a reading would mean without crosstalk
+    double gain = 1.0;    // d ratio / d current [ohm]
+    double offset = 0.0;  // ratio at no current
+    double series = 0.0;  // rho_d + rho_s [ohm]
+    double noise = 0.0;   // g_n [S]
+    [[nodiscard]] double scaled(double ratio) const noexcept;
+    [[nodiscard]] double slope(double ratio) const noexcept;       // d scaled / d ratio
+    [[nodiscard]] double open_slope(double ratio) const noexcept;  // d ratio / d siemens without crosstalk
+    [[nodiscard]] double siemens(double x) const noexcept;
+    [[nodiscard]] double siemens_slope(double x) const noexcept;
+  };
+
+  void start(bool from_last_frame) noexcept;
+  [[nodiscard]] bool iterate() noexcept;
+  [[nodiscard]] bool step() noexcept;
+  [[nodiscard]] double moved(std::size_t taxel, double x, double change) const noexcept;
+  void solve_at(std::span<const double> x) noexcept;
+  [[nodiscard]] double merit() const noexcept;
+  [[nodiscard]] double residual_ratio() const noexcept;
+
+  std::vector<Reading> readings_;
+  CircuitModel model_;
+  KrylovSolver solver_;
+  double tolerance_;
+  std::span<const double> ratio_;
+  std::vector<double> measured_;  // x of the readings
+  std::vector<double> x_;         // of the taxels
+  std::vector<double> trial_;
+  std::vector<double> siemens_;
+  std::vector<double> misfit_;  // r at siemens_
+  std::vector<double> own_slope_;
+  std::vector<double> row_scale_;
+  std::vector<double> column_scale_;
+  std::vector<double> right_;
+  std::vector<double> change_;
+  std::vector<bool> held_;
+  bool has_last_frame_ = false;
+  std::vector<double> last_shift_;  // x - measured of the last solved frame
+};
+
+}  // namespace dermis::compensation
