@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "dermis/compensation/circuit_model.hpp"
@@ -124,6 +125,71 @@ TEST(CramerRao, the_inversion_reaches_the_bound_under_the_noise_of_the_adc) {
   }
   RecordProperty("worst_overall_ratio", std::to_string(worst_overall));
   RecordProperty("worst_taxel_ratio", std::to_string(worst_taxel));
+}
+
+/// The Compensator's standard deviation where hardly anything but the supply is wrong, over what the inversion makes of
+/// readings that are all wrong by that share; the greatest and the smallest over the taxels.
+std::pair<double, double> supply_sigma_over_error(ArrayDescription array, Random& random) {
+  const std::size_t taxels = array.taxel_count();
+  array.readout.adc_reference_v = 5.0;
+  array.readout.supply_v = 5.0;
+  array.readout.supply_noise = 1e-4;
+  std::vector<double> truth(taxels);
+  for (double& siemens : truth) siemens = random.below(4) == 0 ? 1.0 / random.log_uniform(200.0, 2000.0) : 5e-6;
+  auto circuit = CircuitModel::create(array);
+  circuit->solve(truth);
+  ConditionedFrame conditioned;
+  conditioned.ratio.assign(circuit->ratio().begin(), circuit->ratio().end());
+  conditioned.sigma_ratio = 1e-12;
+  conditioned.taxels.assign(taxels, TaxelStatus::ok);
+  ConductanceFrame right;
+  auto compensator = Compensator::create(array);
+  compensator->process(conditioned, right);
+  const InversionOptions exact{0.0};
+  auto inversion = make_crosstalk_inversion(array, exact);
+  std::vector<double> wrong(taxels);
+  for (double& ratio : conditioned.ratio) ratio *= 1.0 + 1e-4;
+  EXPECT_TRUE((*inversion)->invert(conditioned.ratio, wrong).solved);
+  std::pair<double, double> range{1e9, 0.0};
+  for (std::size_t k = 0; k < taxels; ++k) {
+    if (truth[k] < 1e-4) continue;
+    const double share = right.sigma_siemens[k] / std::abs(wrong[k] - truth[k]);
+    range = {std::min(range.first, share), std::max(range.second, share)};
+  }
+  return range;
+}
+
+TEST(SupplyError, is_what_the_inversion_makes_of_a_wrong_supply) {
+  for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+      SCOPED_TRACE(testing::Message() << to_string(circuit) << ", seed " << seed);
+      Random random(seed);
+      ArrayDescription array = random_array(8, circuit, random);
+      const auto [low, high] = supply_sigma_over_error(array, random);
+      EXPECT_GT(low, 0.6);
+      EXPECT_LT(high, 1.4);
+      array.readout.drive_ohm.assign(8, circuit == Circuit::divider ? 1e-3 : 20.0);
+      const auto [ideal_low, ideal_high] = supply_sigma_over_error(array, random);
+      EXPECT_NEAR(ideal_low, 1.0, 2e-3);
+      EXPECT_NEAR(ideal_high, 1.0, 2e-3);
+    }
+  }
+}
+
+TEST(SupplyError, is_nothing_where_the_reference_is_the_supply) {
+  Random random(1);
+  ArrayDescription array = random_array(4, Circuit::divider, random);
+  array.readout.supply_noise = 0.05;
+  ConditionedFrame conditioned;
+  conditioned.ratio.assign(16, 0.05);
+  conditioned.sigma_ratio = 1e-6;
+  conditioned.taxels.assign(16, TaxelStatus::ok);
+  ConductanceFrame with;
+  ConductanceFrame without;
+  Compensator::create(array)->process(conditioned, with);
+  array.readout.supply_noise = 0.0;
+  Compensator::create(array)->process(conditioned, without);
+  EXPECT_EQ(with.sigma_siemens, without.sigma_siemens);
 }
 
 }  // namespace
