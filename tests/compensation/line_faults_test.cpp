@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <functional>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -261,6 +263,57 @@ TEST(LineFaultMonitor, TellsAnOpenRowFromOneShortedToGround) {
     ASSERT_EQ(rig.monitor().faults().size(), 1U);
     EXPECT_EQ(rig.monitor().faults()[0].grounded, grounded);
     EXPECT_GT(std::abs(rig.monitor().faults()[0].ground_evidence), 5.0);
+  }
+}
+
+/// Counts of a frames.csv without a supply: time, temperature, then the taxels.
+std::vector<std::vector<double>> read_counts(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<std::vector<double>> frames;
+  std::string line;
+  std::getline(file, line);
+  while (std::getline(file, line)) {
+    std::vector<double> values;
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) values.push_back(std::stod(cell));
+    frames.emplace_back(values.begin() + 2, values.end());
+  }
+  return frames;
+}
+
+/// Hour-long recordings of six vendor modules that warm up unloaded (13 x 6 and 14 x 6 taxels, circuit unknown). The
+/// unloaded readings are those of the first frames, as a calibration would take them.
+TEST(LineFaultMonitor, FindsNothingOnRealModulesThatWarmUp) {
+  constexpr std::size_t kCalibrationFrames = 50;
+  for (int module = 0; module < 6; ++module) {
+    SCOPED_TRACE(testing::Message() << "module " << module);
+    const auto frames = read_counts(std::string(DERMIS_SHARED_DATA) + "/dsa_recordings/unloaded_warmup_m" +
+                                    std::to_string(module) + ".csv");
+    if (frames.empty()) GTEST_SKIP() << "no recordings here";
+    ArrayDescription array;
+    array.cols = 6;
+    array.rows = frames[0].size() / array.cols;
+    array.readout.circuit = Circuit::none;
+    std::vector<double> unloaded(array.taxel_count(), 0.0);
+    for (std::size_t frame = 0; frame < kCalibrationFrames; ++frame) {
+      for (std::size_t taxel = 0; taxel < unloaded.size(); ++taxel) {
+        unloaded[taxel] += frames[frame][taxel] / array.readout.full_scale_counts() / kCalibrationFrames;
+      }
+    }
+    LineFaultMonitor monitor(array, unloaded);
+    auto compensator = Compensator::create(array).value();
+    ConditionedFrame conditioned;
+    ConductanceFrame conductance;
+    conditioned.sigma_ratio = array.readout.adc_noise_counts / array.readout.full_scale_counts();
+    for (const std::vector<double>& frame : frames) {
+      conditioned.ratio.clear();
+      for (const double count : frame) conditioned.ratio.push_back(count / array.readout.full_scale_counts());
+      conditioned.taxels.assign(frame.size(), TaxelStatus::ok);
+      compensator.process(conditioned, conductance);
+      monitor.observe(conditioned, conductance);
+      ASSERT_TRUE(monitor.faults().empty()) << describe(monitor.faults(), array);
+    }
+    EXPECT_TRUE(monitor.sees_silent_row(6));
   }
 }
 
