@@ -49,6 +49,7 @@ Status run(const RunOptions& options) {
   std::size_t frames = 0;
   std::size_t rejected = 0;
   std::size_t unsolved = 0;
+  std::size_t faulty = 0;
   std::string first_rejection;
   RawFrame raw;
   ForceFrame force;
@@ -64,6 +65,7 @@ Status run(const RunOptions& options) {
     }
     ++frames;
     if (has(force.status, FrameStatus::not_converged)) ++unsolved;
+    if (has(force.status, FrameStatus::line_fault)) ++faulty;
     if (!has(force.status, FrameStatus::rejected)) continue;
     if (rejected++ == 0) {
       first_rejection =
@@ -80,6 +82,10 @@ Status run(const RunOptions& options) {
   if (unsolved > 0) {
     fmt::print(stderr, "{} of {} frames without forces: their readings do not fit the circuit of the array\n", unsolved,
                frames);
+  }
+  if (faulty > 0) {
+    fmt::print(stderr, "{} of {} frames with faulty lines or taxels, which are masked: 'dermis doctor' tells which\n",
+               faulty, frames);
   }
   return Done{};
 }
