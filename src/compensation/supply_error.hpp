@@ -14,8 +14,9 @@ namespace dermis::compensation {
 ///
 ///   d ln G_ij = (1 + Rd_i sum_k G_ik) (1 + Rl_j sum_k G_kj) d        (without the second factor at virtual ground)
 ///
-/// so that the more a line is loaded the more it counts. Lines with resistance and floating lines are taken as if they
-/// were ideal and grounded.
+/// so that the more a line is loaded the more it counts (drivers up to 50 ohm, a quarter of the taxels at 200 to 2000
+/// ohm: 0.6 to 1.6 times the true change). Lines with resistance and floating lines are taken as if they were ideal and
+/// grounded.
 class SupplyError {
  public:
   explicit SupplyError(const ArrayDescription& array);
