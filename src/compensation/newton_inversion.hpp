@@ -58,8 +58,8 @@ class NewtonInversion final : public CrosstalkInversion {
   };
 
   void start(bool from_last_frame) noexcept;
-  [[nodiscard]] bool iterate() noexcept;
-  [[nodiscard]] bool step() noexcept;
+  [[nodiscard]] bool iterate(int bold_steps) noexcept;
+  [[nodiscard]] bool step(double allowed_rise) noexcept;
   void scale_equations() noexcept;
   void solve_equations(double accuracy) noexcept;
   void add_exact_variance(std::span<double> variance) noexcept;
