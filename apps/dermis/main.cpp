@@ -33,6 +33,8 @@ int run(int argc, char** argv) {
   dermis::app::add_calibrate(app, action);
   dermis::app::add_run(app, action);
   dermis::app::add_evaluate(app, action);
+  dermis::app::add_circuit(app, action);
+  dermis::app::add_doctor(app, action);
   dermis::app::add_paper(app, action);
   try {
     app.parse(argc, argv);
@@ -42,7 +44,9 @@ int run(int argc, char** argv) {
     return kExitBadInput;
   }
   if (!action) {
-    fmt::print(stderr, "dermis: name a command: simulate, calibrate, run, evaluate or paper (see dermis --help)\n");
+    fmt::print(stderr,
+               "dermis: name a command: simulate, calibrate, run, evaluate, circuit, doctor or paper (see dermis "
+               "--help)\n");
     return kExitBadInput;
   }
   dermis::Status status = action();

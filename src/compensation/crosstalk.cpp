@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compensation/fault_inversion.hpp"
 #include "compensation/grounded_rows.hpp"
 #include "compensation/newton_inversion.hpp"
 #include "compensation/proportional.hpp"
@@ -17,6 +18,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr double kToleranceCounts = 0.01;
+constexpr double kFaultToleranceCounts = 0.05;  // around an inversion that is right to kToleranceCounts
 
 using Inversion = Result<std::unique_ptr<CrosstalkInversion>>;
 
@@ -69,17 +71,25 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   return inversion<GroundedRows>(array, tolerance);
 }
 
-Result<Compensator> Compensator::create(const ArrayDescription& array) {
+Result<Compensator> Compensator::create(const ArrayDescription& array, std::span<const double> typical_siemens) {
   Inversion inversion = make_crosstalk_inversion(array);
   if (!inversion) return inversion.error();
-  return Compensator(std::move(*inversion), std::make_unique<SupplyError>(array));
+  return Compensator(array, std::move(*inversion), typical_siemens);
 }
 
-Compensator::Compensator(std::unique_ptr<CrosstalkInversion> inversion, std::unique_ptr<SupplyError> supply_error)
-    : inversion_(std::move(inversion)), supply_error_(std::move(supply_error)) {}
+Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
+                         std::span<const double> typical_siemens)
+    : inversion_(std::move(inversion)),
+      supply_error_(std::make_unique<SupplyError>(array)),
+      faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts(),
+                                               typical_siemens)) {}
 Compensator::Compensator(Compensator&&) noexcept = default;
 Compensator& Compensator::operator=(Compensator&&) noexcept = default;
 Compensator::~Compensator() = default;
+
+void Compensator::set_faults(std::span<const LineFault> faults) {
+  faults_->set_faults(faults);
+}
 
 void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
   conductance.time = conditioned.time;
@@ -94,13 +104,23 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
     return;
   }
-  const InversionResult result = inversion_->invert(conditioned.ratio, conductance.siemens);
+  const InversionResult result = faults_->any() ? faults_->invert(*inversion_, conditioned.ratio, conductance.siemens)
+                                                : inversion_->invert(conditioned.ratio, conductance.siemens);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
   supply_error_->add(conductance.siemens, conductance.sigma_siemens);
-  if (result.solved) return;
-  conductance.status |= FrameStatus::not_converged;
-  std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
+  if (!result.solved) {
+    conductance.status |= FrameStatus::not_converged;
+    std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
+  }
+  if (faults_->any()) mask_faulty_taxels(conductance);
+}
+
+void Compensator::mask_faulty_taxels(ConductanceFrame& conductance) const noexcept {
+  conductance.status |= FrameStatus::line_fault;
+  for (std::size_t taxel = 0; taxel < conductance.taxels.size(); ++taxel) {
+    if (faults_->is_masked(taxel)) conductance.taxels[taxel] = TaxelStatus::line_fault;
+  }
 }
 
 }  // namespace dermis::compensation

@@ -153,7 +153,7 @@ class Scan {
 
  private:
   struct Line {
-    bool open;
+    bool open = false;
     std::optional<double> short_to;
   };
 

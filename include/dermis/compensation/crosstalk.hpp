@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "dermis/compensation/line_faults.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
@@ -56,16 +57,24 @@ class CrosstalkInversion {
 [[nodiscard]] Result<std::unique_ptr<CrosstalkInversion>> make_crosstalk_inversion(
     const ArrayDescription& array, const InversionOptions& options = {});
 
+class FaultInversion;
 class SupplyError;
 
 /// Unit 3 of the paper, the Compensation Unit: data "that deviate from the actual values by a known relationship" are
 /// put right by that relationship. Not thread-safe: one per stream.
 class Compensator {
  public:
-  [[nodiscard]] static Result<Compensator> create(const ArrayDescription& array);
+  /// `typical_siemens` [rows, cols], > 0, or empty: conductance of each taxel under one same force, in any unit; tells
+  /// what the neighbours of a masked taxel say about it.
+  [[nodiscard]] static Result<Compensator> create(const ArrayDescription& array,
+                                                  std::span<const double> typical_siemens = {});
   Compensator(Compensator&&) noexcept;
   Compensator& operator=(Compensator&&) noexcept;
   ~Compensator();
+
+  /// Masks what these faults spoil (TaxelStatus::line_fault) and solves the rest with them in the circuit, from the
+  /// next frame on; none: as before. Allocates nothing.
+  void set_faults(std::span<const LineFault> faults);
 
   /// Allocates nothing once `conductance` has the array's size.
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
@@ -75,9 +84,13 @@ class Compensator {
   [[nodiscard]] double siemens_per_ratio() const noexcept { return inversion_->siemens_per_ratio(); }
 
  private:
-  Compensator(std::unique_ptr<CrosstalkInversion> inversion, std::unique_ptr<SupplyError> supply_error);
+  Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
+              std::span<const double> typical_siemens);
+  void mask_faulty_taxels(ConductanceFrame& conductance) const noexcept;
+
   std::unique_ptr<CrosstalkInversion> inversion_;
   std::unique_ptr<SupplyError> supply_error_;
+  std::unique_ptr<FaultInversion> faults_;
 };
 
 }  // namespace dermis::compensation

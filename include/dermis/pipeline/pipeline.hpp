@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dermis/compensation/crosstalk.hpp"
+#include "dermis/compensation/line_faults.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/force_fusion.hpp"
@@ -16,19 +17,22 @@ class Pipeline {
  public:
   [[nodiscard]] static Result<Pipeline> create(const Model& model);
 
-  /// Never fails: what is wrong with a frame is in its status. Allocates nothing after the first frame.
+  /// Never fails: what is wrong with a frame is in its status. Line faults are found from the frames, masked, and the
+  /// rest is solved with them in the circuit. Allocates nothing after the first frame.
   void process(const RawFrame& raw, ForceFrame& force) noexcept;
 
   /// Intermediate stages of the last frame, for pictures and diagnosis.
   [[nodiscard]] const ConditionedFrame& conditioned() const noexcept { return conditioned_; }
   [[nodiscard]] const ConductanceFrame& conductance() const noexcept { return conductance_; }
   [[nodiscard]] preprocessing::Rejection rejection() const noexcept { return conditioner_.rejection(); }
+  [[nodiscard]] const compensation::LineFaultMonitor& line_faults() const noexcept { return monitor_; }
 
  private:
   Pipeline(const Model& model, compensation::Compensator compensator);
 
   preprocessing::Conditioner conditioner_;
   compensation::Compensator compensator_;
+  compensation::LineFaultMonitor monitor_;
   fusion::ForceFusion fusion_;
   ConditionedFrame conditioned_;
   ConductanceFrame conductance_;

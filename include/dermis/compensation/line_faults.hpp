@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::compensation {
+
+/// What can be seen of a fault from the readings alone.
+enum class LineFaultKind {
+  silent_row,       ///< Open or shorted to 0 V: nothing arrives from the row.
+  silent_column,    ///< The same of a column.
+  supplied_row,     ///< Shorted to the supply: every scan also holds its readings.
+  supplied_column,  ///< Shorted to the supply: it reads full scale whatever is pressed.
+  shorted_rows,     ///< Shorted to the next row: both read their sum.
+  shorted_columns,  ///< Shorted to the next column.
+  stuck_taxel,      ///< Its reading stays the same, noise included.
+  dead_taxel,       ///< Reads less than an unloaded taxel can.
+  drifting_driver,  ///< The resistance of a driver has risen: the whole line sags with its own current.
+};
+
+struct LineFault {
+  LineFaultKind kind = LineFaultKind::silent_row;
+  std::size_t place = 0;   ///< Row or column (the first of two), driven line, or row-major taxel.
+  std::size_t frame = 0;   ///< First frame in which it showed, counted from 0.
+  Nanos time{};            ///< Time of that frame.
+  double drive_ohm = 0.0;  ///< drifting_driver: its resistance now [ohm].
+  /// Silent lines: log-likelihood ratio of a short to 0 V against an open line, -30 ... 30. Both read the same, but
+  /// take different currents from the other lines where they are pressed; 0 until they have been.
+  double ground_evidence = 0.0;
+  bool grounded = false;  ///< Taken to be shorted to 0 V, not open: from evidence 10 until it has fallen to -10.
+};
+
+/// "silent_row", ...
+[[nodiscard]] const char* to_string(LineFaultKind kind) noexcept;
+
+/// "row 3", "columns 4 and 5", "taxel r3c5", "driver of row 3".
+[[nodiscard]] std::string place_name(const LineFault& fault, const ArrayDescription& array);
+
+/// Finds line faults in a stream of frames, and sees when they are gone. What it knows is the conductance of the
+/// unloaded taxels and the noise of a reading:
+///
+/// silent lines, dead taxels   an unloaded taxel that works reads at least half of its unloaded value, less what the
+///                             other taxels of its lines take; log-likelihood ratio against reading nothing, summed
+///                             over the line and the frames (Page's test), 3 frames at least; a dead taxel 12
+/// stuck taxels                equal readings beside a noise that makes others change, about 30 frames in a row
+/// shorted lines               equal readings of both lines and of no other line, in 10 different presses, and no
+///                             press in which they differ
+/// supplied lines              a column at full scale in all rows, 3 frames; a row whose presses show in all rows, 6
+/// drifting drivers            unloaded taxels that read less the more current their line carries
+///
+/// What it cannot see: a line whose unloaded taxels read below about 2.3 standard deviations each, 16 of them (sees_silent_*); a
+/// short between lines that nothing presses; a taxel that stands at an end of the ADC. With `circuit = "none"` silent
+/// lines and taxels are judged where nothing is pressed, drivers not at all. Not thread-safe: one per stream.
+class LineFaultMonitor {
+ public:
+  /// `unloaded_siemens` [rows, cols]: conductance of the unloaded taxels [S]; 0 or less where it is not known or the
+  /// taxel is dead since calibration. The array is valid and its circuit known.
+  LineFaultMonitor(const ArrayDescription& array, std::span<const double> unloaded_siemens);
+  LineFaultMonitor(LineFaultMonitor&&) noexcept;
+  LineFaultMonitor& operator=(LineFaultMonitor&&) noexcept;
+  ~LineFaultMonitor();
+
+  /// One frame before and after the crosstalk was solved, with the faults found so far in the model. True where
+  /// faults() has changed. Allocates nothing.
+  bool observe(const ConditionedFrame& conditioned, const ConductanceFrame& conductance) noexcept;
+
+  /// The faults that are there now, in the order in which they were found.
+  [[nodiscard]] std::span<const LineFault> faults() const noexcept;
+
+  /// The line's unloaded taxels stand far enough above the noise for it to be missed when it is silent; false until the
+  /// first frame.
+  [[nodiscard]] bool sees_silent_row(std::size_t row) const noexcept;
+  [[nodiscard]] bool sees_silent_column(std::size_t col) const noexcept;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::compensation

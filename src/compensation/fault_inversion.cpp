@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/fault_inversion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dermis::compensation {
+namespace {
+
+constexpr int kMaxRounds = 20;
+constexpr double kMostStretch = 5.0;
+constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end
+constexpr double kMostRise = 1.0;        // of the logarithm above both neighbours
+constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
+
+bool is_modelled(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
+  return array.rows + array.cols <= kMostLines && readout.circuit != Circuit::none && readout.row_segment_ohm.empty() &&
+         readout.column_segment_ohm.empty() && readout.column_switch_ohm.empty() &&
+         readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
+}
+
+/// The value between four of which some are known: on a parabola, as the logarithm of a Gaussian contact is. Beyond the
+/// last known taxel a contact falls on as it comes, and never rises.
+std::optional<double> between(const std::array<std::optional<double>, 4>& near) {
+  const auto& [far_before, before, after, far_after] = near;
+  if (!before || !after) {
+    const std::optional<double>& next = before ? before : after;
+    const std::optional<double>& far = before ? far_before : far_after;
+    return next && far ? *next - std::max(*far - *next, 0.0) : next;
+  }
+  double value = 0.5 * (*before + *after);
+  if (far_before && far_after) {
+    value = (4.0 * (*before + *after) - (*far_before + *far_after)) / 6.0;
+  } else if (far_before) {
+    value = *before + (*after - *far_before) / 3.0;
+  } else if (far_after) {
+    value = *after + (*before - *far_after) / 3.0;
+  }
+  return std::min(value, std::max(*before, *after) + kMostRise);
+}
+
+}  // namespace
+
+FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_ratio,
+                               std::span<const double> typical_siemens)
+    : array_(array),
+      tolerance_(tolerance_ratio),
+      typical_siemens_(typical_siemens.begin(), typical_siemens.end()),
+      masked_(array.taxel_count()),
+      unknown_(array.taxel_count()),
+      measured_(array.taxel_count()),
+      equivalent_(array.taxel_count()),
+      difference_(array.taxel_count()),
+      last_difference_(array.taxel_count()),
+      last_corrected_(array.taxel_count()),
+      healthy_ratio_(array.taxel_count()),
+      faulty_ratio_(array.taxel_count()) {
+  if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
+  typical_siemens_.resize(array.taxel_count(), 1.0);
+  supplied_rows_.reserve(array.rows);
+  shorted_.reserve(array.rows + array.cols);
+}
+
+void FaultInversion::set_faults(std::span<const LineFault> faults) {
+  any_ = !faults.empty();
+  std::fill(masked_.begin(), masked_.end(), std::uint8_t{0});
+  std::fill(unknown_.begin(), unknown_.end(), std::uint8_t{0});
+  supplied_rows_.clear();
+  shorted_.clear();
+  if (circuits_) circuits_->faulty.restore();
+  for (const LineFault& fault : faults) add(fault);
+}
+
+void FaultInversion::add(const LineFault& fault) {
+  LumpedCircuit* const circuit = circuits_ ? &circuits_->faulty : nullptr;
+  switch (fault.kind) {
+    case LineFaultKind::silent_row:
+      mask_row(fault.place, true);
+      if (circuit != nullptr) fault.grounded ? circuit->ground_row(fault.place) : circuit->open_row(fault.place);
+      break;
+    case LineFaultKind::silent_column:
+      mask_column(fault.place, true);
+      if (circuit != nullptr) {
+        fault.grounded ? circuit->ground_column(fault.place) : circuit->open_column(fault.place);
+      }
+      break;
+    case LineFaultKind::supplied_row:  // its readings subtracted, it is a row with an ideal driver
+      mask_row(fault.place, false);
+      supplied_rows_.push_back(fault.place);
+      if (circuit != nullptr && array_.readout.circuit != Circuit::flexitac) circuit->set_drive_ohm(fault.place, 0.0);
+      break;
+    case LineFaultKind::supplied_column:
+      mask_column(fault.place, true);
+      if (circuit != nullptr) circuit->tie_column_to_supply(fault.place);
+      break;
+    case LineFaultKind::shorted_rows:
+      mask_row(fault.place, false);
+      mask_row(fault.place + 1, false);
+      shorted_.push_back({true, fault.place, ratio_of_shorted_lines(array_, true, fault.place)});
+      if (circuit != nullptr) circuit->join_rows(fault.place);
+      break;
+    case LineFaultKind::shorted_columns:
+      mask_column(fault.place, false);
+      mask_column(fault.place + 1, false);
+      shorted_.push_back({false, fault.place, ratio_of_shorted_lines(array_, false, fault.place)});
+      if (circuit != nullptr) circuit->join_columns(fault.place);
+      break;
+    case LineFaultKind::stuck_taxel: mask(fault.place, true); break;
+    case LineFaultKind::dead_taxel: mask(fault.place, false); break;
+    case LineFaultKind::drifting_driver:
+      if (circuit != nullptr) circuit->set_drive_ohm(fault.place, fault.drive_ohm);
+      break;
+  }
+}
+
+void FaultInversion::mask_row(std::size_t row, bool unknown) {
+  for (std::size_t col = 0; col < array_.cols; ++col) mask(array_.index(row, col), unknown);
+}
+
+void FaultInversion::mask_column(std::size_t col, bool unknown) {
+  for (std::size_t row = 0; row < array_.rows; ++row) mask(array_.index(row, col), unknown);
+}
+
+void FaultInversion::mask(std::size_t taxel, bool unknown) {
+  masked_[taxel] = 1;
+  if (unknown) unknown_[taxel] = 1;
+}
+
+InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<const double> ratio,
+                                       std::span<double> siemens) noexcept {
+  subtract_supplied_rows(ratio);
+  average_shorted_lines();
+  std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
+  estimate_unknown(equivalent_);
+  InversionResult result = healthy.invert(equivalent_, siemens);
+  if (!circuits_) return result;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    estimate_unknown(siemens);
+    circuits_->healthy.solve(siemens, healthy_ratio_);
+    circuits_->faulty.solve(siemens, faulty_ratio_);
+    result.residual_ratio = misfit(siemens);
+    if (correct(round == 0) <= tolerance_) return result;
+    result.solved = healthy.invert(equivalent_, siemens).solved;
+  }
+  result.solved = false;
+  return result;
+}
+
+/// T' from both circuits at the present conductances; how far it is from the T' that led to them. The step is
+/// Anderson's of depth 1: along the last change of T' as far as makes the difference smallest, were it linear.
+double FaultInversion::correct(bool first) noexcept {
+  double change = 0.0;
+  double along = 0.0;
+  double square = 0.0;
+  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
+    const double known = unknown_[taxel] != 0 ? 0.0 : measured_[taxel] - faulty_ratio_[taxel];
+    const double difference = healthy_ratio_[taxel] + known - equivalent_[taxel];
+    change = std::max(change, std::abs(difference));
+    const double turn = difference - last_difference_[taxel];
+    along += difference * turn;
+    square += turn * turn;
+    difference_[taxel] = difference;
+  }
+  const double share = first || square == 0.0 ? 0.0 : std::clamp(along / square, -kMostStretch, kMostStretch);
+  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
+    const double corrected = equivalent_[taxel] + difference_[taxel];
+    equivalent_[taxel] = corrected - share * (corrected - last_corrected_[taxel]);
+    last_corrected_[taxel] = corrected;
+    last_difference_[taxel] = difference_[taxel];
+  }
+  return change;
+}
+
+/// Two lines that are one node give the same reading twice, in a known ratio; what differs is noise.
+void FaultInversion::average_shorted_lines() noexcept {
+  for (const ShortedLines& pair : shorted_) {
+    for (std::size_t k = 0; k < (pair.rows ? array_.cols : array_.rows); ++k) {
+      double& first = measured_[pair.rows ? array_.index(pair.first, k) : array_.index(k, pair.first)];
+      double& second = measured_[pair.rows ? array_.index(pair.first + 1, k) : array_.index(k, pair.first + 1)];
+      const double fitted = (pair.ratio * first + second) / (pair.ratio * pair.ratio + 1.0);
+      first = pair.ratio * fitted;
+      second = fitted;
+    }
+  }
+}
+
+/// A row at the supply adds to every scan what its own scan reads (superposition).
+void FaultInversion::subtract_supplied_rows(std::span<const double> ratio) noexcept {
+  std::copy(ratio.begin(), ratio.end(), measured_.begin());
+  for (const std::size_t supplied : supplied_rows_) {
+    for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+      if (taxel / array_.cols != supplied) measured_[taxel] -= ratio[array_.index(supplied, taxel % array_.cols)];
+    }
+  }
+}
+
+/// Taxels that no reading tells, from their neighbours on the row and on the column; the geometric mean where both
+/// tell.
+void FaultInversion::estimate_unknown(std::span<double> values) const noexcept {
+  const double floor = kFloorShare * *std::max_element(values.begin(), values.end());
+  if (!(floor > 0.0)) return;
+  const auto logarithm = [&](std::size_t taxel) -> std::optional<double> {
+    if (unknown_[taxel] != 0) return std::nullopt;
+    return std::log(std::max(values[taxel], floor) / typical_siemens_[taxel]);
+  };
+  // Of the taxels at `place` on a line, -2, -1, +1 and +2 steps away.
+  const auto along = [&](std::size_t taxel, std::size_t place, std::size_t size, std::size_t step) {
+    std::array<std::optional<double>, 4> near;
+    if (place > 1) near[0] = logarithm(taxel - 2 * step);
+    if (place > 0) near[1] = logarithm(taxel - step);
+    if (place + 1 < size) near[2] = logarithm(taxel + step);
+    if (place + 2 < size) near[3] = logarithm(taxel + 2 * step);
+    return between(near);
+  };
+  for (std::size_t taxel = 0; taxel < values.size(); ++taxel) {
+    if (unknown_[taxel] == 0) continue;
+    const std::optional<double> down = along(taxel, taxel / array_.cols, array_.rows, array_.cols);
+    const std::optional<double> right = along(taxel, taxel % array_.cols, array_.cols, 1);
+    const double count = (down ? 1.0 : 0.0) + (right ? 1.0 : 0.0);
+    const double sum = down.value_or(0.0) + right.value_or(0.0);
+    values[taxel] = count > 0.0 ? typical_siemens_[taxel] * std::exp(sum / count) : 0.0;
+  }
+}
+
+double FaultInversion::misfit(std::span<const double> siemens) const noexcept {
+  double largest = 0.0;
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (unknown_[taxel] != 0) continue;
+    const double difference = measured_[taxel] - faulty_ratio_[taxel];
+    if (siemens[taxel] == 0.0 && difference < 0.0) continue;
+    largest = std::max(largest, std::abs(difference));
+  }
+  return largest;
+}
+
+}  // namespace dermis::compensation

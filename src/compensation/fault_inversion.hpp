@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "compensation/lumped_circuit.hpp"
+#include "dermis/compensation/crosstalk.hpp"
+#include "dermis/compensation/line_faults.hpp"
+
+namespace dermis::compensation {
+
+/// Inverts the circuit with its faults by defect correction around the inversion of the healthy circuit: the readings
+/// that the healthy circuit would give,
+///
+///   T' = T + T_healthy(G) - T_faulty(G),   G <- invert_healthy(T')
+///
+/// Taxels whose conductance no reading tells (on a silent line, stuck) are estimated from their neighbours. An open row
+/// still couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. For resistive lines,
+/// switches, real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit: the readings of
+/// faulty lines are replaced by those of their neighbours, and the rest is solved as if healthy.
+class FaultInversion {
+ public:
+  /// `typical_siemens`: see Compensator::create.
+  FaultInversion(const ArrayDescription& array, double tolerance_ratio, std::span<const double> typical_siemens);
+
+  void set_faults(std::span<const LineFault> faults);  ///< Allocates nothing.
+  [[nodiscard]] bool any() const noexcept { return any_; }
+
+  /// The taxel has no force of its own to report.
+  [[nodiscard]] bool is_masked(std::size_t taxel) const noexcept { return masked_[taxel] != 0; }
+
+  /// As CrosstalkInversion::invert; `healthy` inverts the circuit without faults.
+  InversionResult invert(CrosstalkInversion& healthy, std::span<const double> ratio,
+                         std::span<double> siemens) noexcept;
+
+ private:
+  /// Both circuits; where it is not modelled there is none.
+  struct Circuits {
+    LumpedCircuit healthy;
+    LumpedCircuit faulty;
+  };
+
+  struct ShortedLines {
+    bool rows;
+    std::size_t first;
+    double ratio;  ///< Reading of the first line over that of the second.
+  };
+
+  void add(const LineFault& fault);
+  void mask_row(std::size_t row, bool unknown);
+  void mask_column(std::size_t col, bool unknown);
+  void mask(std::size_t taxel, bool unknown);
+  void subtract_supplied_rows(std::span<const double> ratio) noexcept;
+  void average_shorted_lines() noexcept;
+  double correct(bool first) noexcept;
+  void estimate_unknown(std::span<double> values) const noexcept;
+  [[nodiscard]] double misfit(std::span<const double> siemens) const noexcept;
+
+  ArrayDescription array_;
+  double tolerance_;
+  std::vector<double> typical_siemens_;  // [taxels]
+  bool any_ = false;
+  std::optional<Circuits> circuits_;
+  std::vector<std::uint8_t> masked_;   // [taxels]
+  std::vector<std::uint8_t> unknown_;  // [taxels]
+  std::vector<std::size_t> supplied_rows_;
+  std::vector<ShortedLines> shorted_;
+  std::vector<double> measured_;         // T without what supplied rows add [taxels]
+  std::vector<double> equivalent_;       // T' [taxels]
+  std::vector<double> difference_;       // T' found less T' put in [taxels]
+  std::vector<double> last_difference_;  // [taxels]
+  std::vector<double> last_corrected_;   // [taxels]
+  std::vector<double> healthy_ratio_;    // [taxels]
+  std::vector<double> faulty_ratio_;     // [taxels]
+};
+
+}  // namespace dermis::compensation

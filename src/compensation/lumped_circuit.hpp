@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+
+namespace dermis::compensation {
+
+/// The nodal equations of a circuit with faults in it: row and column lines are nodes, and every fault is a change of
+/// a conductance between two nodes, 0 V or the supply. Ideal drivers and virtual grounds are
+/// conductances far above all others; what they leave cancels in the difference of two circuits, which is all that
+/// FaultInversion uses. Lines and switches have no resistance of their own.
+class LumpedCircuit {
+ public:
+  /// `array` has a known circuit that is not `none`.
+  explicit LumpedCircuit(const ArrayDescription& array);
+
+  /// Takes all faults away.
+  void restore();
+
+  void open_row(std::size_t row);
+  void open_column(std::size_t col);
+  void ground_row(std::size_t row);
+  void ground_column(std::size_t col);
+  void tie_column_to_supply(std::size_t col);
+  void join_rows(std::size_t row);     ///< With the next row.
+  void join_columns(std::size_t col);  ///< With the next column.
+  void set_drive_ohm(std::size_t driven_line, double ohm);
+
+  /// Readings over the supply [rows, cols]. Allocates nothing.
+  void solve(std::span<const double> siemens, std::span<double> ratio) noexcept;
+
+ private:
+  [[nodiscard]] bool flexitac() const noexcept { return array_.readout.circuit == Circuit::flexitac; }
+  [[nodiscard]] double ground_gain() const noexcept;
+  [[nodiscard]] bool rows_float() const noexcept;
+  [[nodiscard]] bool one_loaded() const noexcept;
+  [[nodiscard]] std::size_t driven_node(std::size_t line) const noexcept {
+    return flexitac() ? array_.rows + line : line;
+  }
+  [[nodiscard]] std::size_t sensed_node(std::size_t line) const noexcept {
+    return flexitac() ? line : array_.rows + line;
+  }
+  void open_line(std::size_t node);
+  void assemble(std::span<const double> siemens) noexcept;
+  void add_drivers(std::size_t driven) noexcept;
+  void add_sources(std::size_t scan, std::size_t driven) noexcept;
+  void add_probes(std::size_t first) noexcept;
+  void connect(std::size_t a, std::size_t b, double siemens) noexcept;
+  void factorise() noexcept;
+  void substitute(std::size_t columns) noexcept;
+  void read(std::size_t scan, std::size_t driven, std::size_t first_probe, std::span<double> ratio) const noexcept;
+
+  ArrayDescription array_;
+  std::size_t nodes_;                   // rows, then columns
+  std::vector<double> drive_siemens_;   // [driven lines]
+  std::vector<double> load_siemens_;    // [sensed lines]
+  std::vector<double> supply_siemens_;  // from every node to the supply [nodes]
+  std::vector<double> joint_siemens_;   // from every node to the next one [nodes]
+  std::vector<double> ground_siemens_;  // from every node to 0 V, beside driver and load [nodes]
+  std::vector<bool> is_open_;           // [nodes]
+  std::size_t right_columns_;
+  std::vector<double> matrix_;     // [nodes, nodes], the lower triangle; then its Cholesky factor
+  std::vector<double> assembled_;  // the same without drivers
+  std::vector<double> right_;      // [nodes, right_columns]: sources, then probes; then the voltages
+};
+
+/// Reading of a row (or column) over that of the next one where both are one node: grounded idle rows work against the
+/// driven one through their drivers.
+[[nodiscard]] double ratio_of_shorted_lines(const ArrayDescription& array, bool rows, std::size_t line) noexcept;
+
+}  // namespace dermis::compensation
