@@ -295,6 +295,17 @@ TEST_P(EveryInversion, noise_becomes_what_the_jacobian_says) {
   }
 }
 
+TEST(LargeInversion, floating_rows_and_resistive_lines_come_back) {
+  for (const NamedCircuit& circuit : support::all_circuits()) {
+    if (circuit.name != "divider_floating_rows" && circuit.name != "divider_floating_rows_resistive_lines") continue;
+    SCOPED_TRACE(circuit.name);
+    EXPECT_EQ(campaign_of(circuit, 32, 32, 1).failed, 0);
+    if (!circuit.resistive_lines) {
+      EXPECT_EQ(campaign_of(circuit, 64, 64, 1).failed, 0);
+    }
+  }
+}
+
 TEST_P(EveryInversion, DISABLED_campaign) {
   for (const std::size_t size : {2, 4, 8, 12, 16}) {
     print(GetParam(), size, size, campaign_of(GetParam(), size, size, 100));
