@@ -20,6 +20,8 @@ constexpr double kShortestFraction = 1.0 / 8.0;  // of a step
 constexpr double kLeastDamping = 1e-3;
 constexpr double kMostDamping = 1e3;
 constexpr double kDampingFactor = 10.0;
+constexpr int kBoldSteps = 5;             // that may lead uphill, where no way down was found from the start
+constexpr double kBoldRise = 4.0;         // of the misfits
 constexpr double kLeastOpenShare = 1e-9;  // of the supply that a reading leaves to its taxel; less is no solution
 constexpr double kRounding = 1e-13;       // of the largest reading: what remains of a residual in double precision
 constexpr double kRoundingMerit = 1e-12;  // below it a step that does not halve the misfits is rounding
@@ -101,11 +103,12 @@ InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span
   bool solved = false;
   if (has_last_frame_) {
     start(true);
-    solved = iterate();
+    solved = iterate(0);
   }
-  if (!solved) {
+  for (const int bold_steps : {0, kBoldSteps}) {
+    if (solved) break;
     start(false);
-    solved = iterate();
+    solved = iterate(bold_steps);
   }
   std::copy(siemens_.begin(), siemens_.end(), siemens.begin());
   if (solved) {
@@ -124,12 +127,12 @@ void NewtonInversion::start(bool from_last_frame) noexcept {
   damping_ = 0.0;
 }
 
-bool NewtonInversion::iterate() noexcept {
+bool NewtonInversion::iterate(int bold_steps) noexcept {
   double largest = 0.0;
   for (const double value : ratio_) largest = std::max(largest, std::abs(value));
   for (int k = 0; k < kMaxSteps; ++k) {
     if (tolerance_ > 0.0 && residual_ratio() <= tolerance_) return true;
-    if (!step()) break;
+    if (!step(k < bold_steps ? kBoldRise : 1.0)) break;
   }
   return residual_ratio() <= std::max(tolerance_, kRounding * largest);
 }
@@ -164,7 +167,7 @@ double NewtonInversion::moved(std::size_t taxel, double x, double change) const 
   return std::clamp(linear, std::max(x - kLongestStep, 0.0), std::max(x, measured_[taxel]) + kLongestStep);
 }
 
-bool NewtonInversion::step() noexcept {
+bool NewtonInversion::step(double allowed_rise) noexcept {
   scale_equations();
   std::copy(x_.begin(), x_.end(), last_x_.begin());
   const double before = merit();
@@ -178,7 +181,7 @@ bool NewtonInversion::step() noexcept {
       for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = moved(k, last_x_[k], fraction * change_[k]);
       solve_at(x_);
       const double after = merit();
-      if (!(after < before)) continue;
+      if (!(after < allowed_rise * before)) continue;
       damping_ = damping_ > kLeastDamping ? damping_ / kDampingFactor : 0.0;
       return after > kRoundingMerit || after < 0.5 * before;
     }

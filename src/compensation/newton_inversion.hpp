@@ -23,12 +23,17 @@ namespace dermis::compensation {
 /// taxels, 2x2 to 64x64, every circuit).
 ///
 /// Non-negative: wanted are x >= 0 with r = x(y measured) - x(y of the circuit) = 0, or r < 0 where x = 0, that is
-/// max(r, -x) = 0. Its Newton step holds those taxels at 0 S for which x + r <= 0 and solves for the others; steps of x
-/// are at most 2 and halved until |max(r, -x)| falls.
+/// max(r, -x) = 0. Its Newton step holds those taxels at 0 S for which x + r <= 0 and solves for the others. Steps are
+/// bounded, halved, and then damped as Levenberg and Marquardt do, until |max(r, -x)| falls.
 ///
-/// The equations of a step are solved by GMRES. In units of x and divided by the derivative of each reading by its own
-/// taxel they are so well conditioned that 10 to 50 products with J suffice, whatever the circuit; a product takes
-/// rows^2 cols^2 multiplications, an LU decomposition rows^3 cols^3 / 3.
+/// The equations of a step are solved by GMRES. In units of y and divided by the derivative of each reading by its own
+/// taxel they are so well conditioned that 5 to 60 products with J suffice, whatever the circuit; for lines of no
+/// resistance a product takes rows^2 cols^2 multiplications, an LU decomposition rows^3 cols^3 / 3.
+///
+/// Two solutions: a divider with grounded idle rows whose drivers and loads are large beside its taxels (row and column
+/// together) can have two positive arrays with the same readings, apart by a fold where det(J) = 0; about 2 of 100
+/// random arrays of 16x16 do, with taxels from 200 ohm, drivers to 200 ohm and loads to 10 kohm. The start from the
+/// textbook estimate then gives the array on the idle one's side of the fold, det(J) > 0.
 ///
 /// Floating lines read every taxel through all others. What noise becomes there is in the nature of the circuit: at
 /// 16x16 the relative noise of a reading grows by 12 to 104 (rms, two terminals; A.6), of a single one by thousands.
@@ -58,8 +63,8 @@ class NewtonInversion final : public CrosstalkInversion {
   };
 
   void start(bool from_last_frame) noexcept;
-  [[nodiscard]] bool iterate() noexcept;
-  [[nodiscard]] bool step() noexcept;
+  [[nodiscard]] bool iterate(int bold_steps) noexcept;
+  [[nodiscard]] bool step(double allowed_rise) noexcept;
   void scale_equations() noexcept;
   void solve_equations(double accuracy) noexcept;
   void add_exact_variance(std::span<double> variance) noexcept;
