@@ -212,7 +212,7 @@ TEST(ArrayToml, refuses_a_key_of_another_circuit) {
             "array.toml:10: readout.idle_rows: has no meaning with circuit = \"flexitac\", only with \"divider\" or "
             "\"transimpedance\"; remove it");
   EXPECT_EQ(error_of(std::string(kAmplifiers) + "idle_columns = \"loaded\"\n"),
-            "array.toml:17: readout.idle_columns: has no meaning with circuit = \"transimpedance\", only with "
+            "array.toml:18: readout.idle_columns: has no meaning with circuit = \"transimpedance\", only with "
             "\"divider\"; remove it");
   EXPECT_EQ(error_of(std::string(kComplete) + "amplifier_gain = 1e5\n"),
             "array.toml:17: readout.amplifier_gain: has no meaning with circuit = \"divider\", only with "
