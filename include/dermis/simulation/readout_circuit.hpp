@@ -20,8 +20,7 @@ namespace dermis::simulation {
 ///                      the ADC
 ///   none:              conductance times kUnknownCircuitOhm, without crosstalk
 /// and 1 minus this where pressure lowers the reading. A line with a segment resistance has its driver, load or
-/// amplifier at the taxel of row or column 0. Relative precision: some roundings of each reading itself.
-/// Thread-safe: ratios() only reads.
+/// amplifier at the taxel of row or column 0. Right to about 1e-12 of each reading. Thread-safe: ratios() only reads.
 class ReadoutCircuit {
  public:
   static constexpr double kUnknownCircuitOhm = 100.0;  ///< Reading per conductance of `circuit = "none"` [ohm].
