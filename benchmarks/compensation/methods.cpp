@@ -21,7 +21,7 @@ namespace dermis::benchmarks {
 namespace {
 
 constexpr std::size_t kSize = 16;
-constexpr int kRepeats = 200;
+constexpr int kRepeats = 20;
 
 struct Sample {
   ArrayDescription array;

@@ -11,7 +11,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kPlainSteps = 24;
-constexpr double kShrinks = 0.7;  // of the certificate in a step; what shrinks less is left to the mixing
+constexpr double kShrinks = 0.95;  // of the certificate in a step; what shrinks less is left to the mixing
 constexpr int kMixedSteps = 400;
 constexpr int kDampedSteps = 200;
 constexpr int kStepsWithoutGain = 60;
