@@ -3,6 +3,7 @@
 #include "dermis/calibration/calibrate.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <mutex>
@@ -35,6 +36,7 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
   facts["temperature"] = training.uses_temperature
                              ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)
                              : "not an input (less than 3 C apart, or missing in many frames)";
+  if (!report.circuit.empty()) facts["circuit"] = fmt::format("{}", fmt::join(report.circuit, "; "));
   return facts;
 }
 
@@ -81,6 +83,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, const Progress& pr
   if (!uncertainty) return uncertainty.error();
   report.uncertainty = *uncertainty;
   report.training = std::move(training->report);
+  if (database.circuit_fit) report.circuit = database.circuit_fit->statements;
   calibration.model.provenance = provenance(database.array, report);
   return calibration;
 }

@@ -111,8 +111,7 @@ std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<c
 Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time) {
   if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
-  std::vector<Labelled> labelled =
-      labelled_frames(array, frames, group_by_frame(loads, frames.size()), settle_time);
+  std::vector<Labelled> labelled = labelled_frames(array, frames, group_by_frame(loads, frames.size()), settle_time);
   if (labelled.empty()) return bad_input("no labelled frame is left after settling");
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;

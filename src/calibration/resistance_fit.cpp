@@ -27,8 +27,8 @@ constexpr int kMaxIterations = 8;
 constexpr std::size_t kFirstFrames = 1500;  // the way to the solution is found with these
 constexpr double kMostWork = 2e8;           // frames x taxels x inversions of one pass
 constexpr std::uint64_t kSelectionSeed = 1;
-constexpr double kEnoughAtFirst = 0.1;  // a step this small against the standard errors ends the fit
-constexpr double kEnough = 0.25;        // the same, with all frames
+constexpr double kEnoughAtFirst = 0.1;     // a step this small against the standard errors ends the fit
+constexpr double kEnough = 0.25;           // the same, with all frames
 constexpr double kSlopeStep = 1e-3;        // of a parameter, for the derivatives of the inversion
 constexpr double kTolerance = 1e-12;       // of the inversions, in readings over the supply
 constexpr double kLeastIdleSigmas = 3.0;   // an idle reading below this is cut at 0 too often
@@ -40,8 +40,8 @@ constexpr double kLeastShapeSpread = 1e-4;
 constexpr double kRubberScatter = 0.01;  // first guess
 constexpr double kLeastRubberScatter = 1e-4;
 constexpr double kMostRubberScatter = 1.0;
-constexpr Index kFreeTerms = 3;   // of a pressed law: level, exponent, temperature
-constexpr Index kShapeTerms = 4;  // x^2, x^3, t^2, t x: alike in all taxels of a piece of rubber
+constexpr Index kFreeTerms = 3;    // of a pressed law: level, exponent, temperature
+constexpr Index kShapeTerms = 4;   // x^2, x^3, t^2, t x: alike in all taxels of a piece of rubber
 constexpr Index kCommonTerms = 7;  // x^4, x^5, x^6, t x^2, t x^3, t^2 x, a resistance in series: the same in all
 constexpr Index kSheetTerms = kShapeTerms + kCommonTerms;
 constexpr std::array kCommonRatios = {0.003, 0.01, 0.03, 0.1, 0.3, 1.0};  // drivers to loads, tried at the start
@@ -188,12 +188,6 @@ struct Pressed {
   VectorXd slope;  // d siemens / d parameter
 };
 
-/// Scale of the forces: x = (ln F - centre) / half_span.
-struct ForceScale {
-  double centre = 0.0;
-  double half_span = 1.0;
-};
-
 ForceScale force_scale(const CircuitFrames& frames) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
@@ -291,6 +285,7 @@ class ResistanceFitter {
         lines_(array),
         scale_(force_scale(frames)),
         taxels_(array.taxel_count()),
+        reference_siemens_(1.0 / lines_.reference_ohm()),
         unloaded_terms_(unloaded_basis(0.0, frames.has_temperature).size()),
         sheet_mean_(VectorXd::Zero(kSheetTerms)),
         shape_variance_(VectorXd::Constant(kShapeTerms, kShapeSpread * kShapeSpread)) {}
@@ -305,7 +300,59 @@ class ResistanceFitter {
     return report();
   }
 
+  /// Frames that a fit has not seen, against its laws.
+  std::vector<double> judge(const ResistanceFit& fit, double cut) {
+    scale_ = fit.force_scale;
+    reference_siemens_ = fit.reference_siemens;
+    laws_ = fit.laws;
+    sheet_mean_ = fit.common;
+    rubber_variance_ = kRubberScatter * kRubberScatter;  // the same for all circuits
+    std::vector<double> squares(frames_.frames.size(), cut);
+    parallel_for((squares.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
+      auto inversion = SlopedInversion::create(lines_, VectorXd(0), false);
+      if (!inversion) return;
+      const std::size_t end = std::min(squares.size(), (task + 1) * kFramesPerTask);
+      for (std::size_t k = task * kFramesPerTask; k < end; ++k) squares[k] = judge_frame(*inversion, k, cut);
+    });
+    return squares;
+  }
+
  private:
+  double judge_frame(SlopedInversion& inversion, std::size_t k, double cut) const {
+    const CircuitFrame& frame = frames_.frames[k];
+    std::vector<double> siemens(taxels_);
+    std::vector<double> sigma(taxels_);
+    if (!inversion.invert(frame.ratio, siemens)) {
+      inversion.forget();
+      return cut;
+    }
+    inversion.propagate_noise(frame.sigma_ratio, sigma);
+    const VectorXd basis = unloaded_basis(frame.temperature, frames_.has_temperature);
+    double sum = 0.0;
+    double count = 0.0;
+    for (std::size_t taxel = 0; taxel < taxels_; ++taxel) {
+      const auto newtons = static_cast<double>(frame.newtons[taxel]);
+      double square = 0.0;
+      if (newtons == 0.0 && laws_[taxel].unloaded.size() > 0) {
+        const double expected = laws_[taxel].unloaded.dot(basis) * reference_siemens_;
+        square = std::pow((siemens[taxel] - expected) / sigma[taxel], 2);
+      } else if (newtons > 0.0 && laws_[taxel].pressed.size() > 0) {
+        const PressedPoint point = pressed_point({taxel,
+                                                  (std::log(newtons) - scale_.centre) / scale_.half_span,
+                                                  frame.temperature,
+                                                  siemens[taxel],
+                                                  sigma[taxel],
+                                                  {}});
+        square = point.usable ? point.residual * point.residual / (point.relative_variance + rubber_variance_) : cut;
+      } else {
+        continue;
+      }
+      sum += square < cut ? square : cut;
+      count += 1.0;
+    }
+    return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+  }
+
   Status iterate_until(double enough) {
     for (int k = 0; k < kMaxIterations; ++k) {
       const Result<double> step = iterate();
@@ -444,7 +491,6 @@ class ResistanceFitter {
     return all;
   }
 
-
   bool solve_frame(SlopedInversion& inversion, const CircuitFrame& frame, std::vector<double>& siemens,
                    std::vector<double>& sigma, MatrixXd& slopes) const {
     siemens.resize(taxels_);
@@ -470,7 +516,7 @@ class ResistanceFitter {
            kLeastIdleSigmas * sigma;
   }
 
-  [[nodiscard]] double reference_siemens() const { return 1.0 / lines_.reference_ohm(); }
+  [[nodiscard]] double reference_siemens() const { return reference_siemens_; }
 
   /// The readings that the circuit would give with the idle taxels at their laws. Derivatives taken at noisy readings
   /// would follow the noise, and the fit would do away with the noise by making all conductances small.
@@ -666,16 +712,17 @@ class ResistanceFitter {
     Index p = of_drives ? 0 : static_cast<Index>(lines_.drives().size());
     for (const std::size_t line : of_drives ? lines_.drives() : lines_.loads()) result.parameters[line] = p++;
     constexpr double kLeastUnit = 1e-4;
-    if (of_drives) result.unit = std::max(kLeastUnit, result.values.mean());
+    if (of_drives && !ohms.empty()) result.unit = std::max(kLeastUnit, result.values.mean());
     return result;
   }
 
   /// Resistances of one kind are alike: each lies about their mean with a spread that is learned.
   void add_line_priors(MatrixXd& normal) const {
     for (const bool of_drives : {true, false}) {
-      const Group lines = of_drives ? group(true) : group(false);
+      const Group lines = group(of_drives);
+      if (lines.values.size() == 0) continue;
       const auto count = static_cast<double>(lines.values.size());
-      const double mean = lines.values.size() > 0 ? lines.values.mean() : 0.0;
+      const double mean = lines.values.mean();
       VectorXd mean_row = VectorXd::Zero(lines_.count());
       for (const Index p : lines.parameters) {
         if (p >= 0) mean_row[p] += 1.0 / count;
@@ -727,8 +774,8 @@ class ResistanceFitter {
       weight += 1.0 / (total * total);
     }
     if (weight == 0.0) return;
-    rubber_variance_ = std::clamp(rubber_variance_ + excess_variance / weight, kLeastRubberScatter * kLeastRubberScatter,
-                                  kMostRubberScatter * kMostRubberScatter);
+    rubber_variance_ = std::clamp(rubber_variance_ + excess_variance / weight,
+                                  kLeastRubberScatter * kLeastRubberScatter, kMostRubberScatter * kMostRubberScatter);
   }
 
   /// Scatter of the shapes over the taxels: MacKay's fixed point (Neural Computation 4, 1992).
@@ -738,8 +785,7 @@ class ResistanceFitter {
     for (std::size_t taxel = 0; taxel < taxels_; ++taxel) {
       if (pressed.laws[taxel].size() == 0) continue;
       squares += (pressed.laws[taxel].bottomRows(kShapeTerms) * step).cwiseAbs2();
-      freedom.array() +=
-          1.0 - pressed.covariance[taxel].diagonal().tail(kShapeTerms).array() / shape_variance_.array();
+      freedom.array() += 1.0 - pressed.covariance[taxel].diagonal().tail(kShapeTerms).array() / shape_variance_.array();
     }
     constexpr double kLeastFreedom = 1.0;
     shape_variance_ = squares.cwiseQuotient(freedom.cwiseMax(kLeastFreedom))
@@ -788,6 +834,8 @@ class ResistanceFitter {
     fit.has_absolute = lines_.has_absolute();
     fit.reference_siemens = reference_siemens();
     fit.laws = laws_;
+    fit.common = sheet_mean_;
+    fit.force_scale = scale_;
     return fit;
   }
 
@@ -796,6 +844,7 @@ class ResistanceFitter {
   LineParameters lines_;
   ForceScale scale_;
   std::size_t taxels_;
+  double reference_siemens_;
   Index unloaded_terms_;
   VectorXd parameters_;
   std::vector<TaxelLaw> laws_;
@@ -817,6 +866,10 @@ class ResistanceFitter {
 
 Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const CircuitFrames& frames) {
   return ResistanceFitter(array, frames).run();
+}
+
+std::vector<double> judge_frames(const ResistanceFit& fit, const CircuitFrames& frames, double cut) {
+  return ResistanceFitter(fit.array, frames).judge(fit, cut);
 }
 
 }  // namespace dermis::calibration

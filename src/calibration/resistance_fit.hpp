@@ -20,6 +20,12 @@ struct TaxelLaw {
   Eigen::VectorXd pressed;   ///< ln(g - u) = a + b x + c t + d x^2 + e x^3 + f t^2 + g t x; empty: never pressed.
 };
 
+/// x = (ln F - centre) / half_span.
+struct ForceScale {
+  double centre = 0.0;
+  double half_span = 1.0;
+};
+
 /// The resistances of one circuit that fit the frames best.
 struct ResistanceFit {
   ArrayDescription array;           ///< With numbers for all resistances.
@@ -35,6 +41,8 @@ struct ResistanceFit {
   bool has_absolute = false;  ///< A resistance was given; if not, the loads' geometric mean is kNominalLoadOhm.
   double reference_siemens = 0.0;
   std::vector<TaxelLaw> laws;
+  Eigen::VectorXd common;  ///< What the pressed laws have in common.
+  ForceScale force_scale;
 };
 
 inline constexpr double kNominalLoadOhm = 1000.0;
