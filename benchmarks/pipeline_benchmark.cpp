@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// Time of one frame, one thread: the whole pipeline (counts -> newtons) and the crosstalk inversion alone, beside the
-// same fixed point written with Eigen. Frames are those of the simulator's multitouch scene; the networks have random
-// parameters, as their values do not change the time.
+// Time of one frame, one thread, counts to newtons. Frames are those of the simulator's multitouch scene, each a touch
+// of its own; the networks have random parameters, as their values do not change the time.
 #include <benchmark/benchmark.h>
 #include <fmt/core.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "dermis/compensation/crosstalk.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "rows.hpp"
@@ -23,7 +20,6 @@
 namespace dermis {
 namespace {
 
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kFrames = 256;
@@ -98,73 +94,7 @@ void frame_counts_to_newtons(benchmark::State& state) {
   state.counters["checked"] = checked ? 1 : 0;
 }
 
-/// Formula (4) of research/literature.md A.5 with Eigen's matrix products.
-int invert_with_eigen(const ArrayDescription& array, const Matrix& ratio, Matrix& siemens) {
-  const auto& readout = array.readout;
-  const double tolerance = 0.01 / readout.full_scale_counts();
-  const Eigen::Map<const Eigen::VectorXd> drive(readout.drive_ohm.data(), ratio.rows());
-  const Eigen::RowVectorXd load =
-      Eigen::Map<const Eigen::RowVectorXd>(readout.load_ohm.data(), ratio.cols()).cwiseInverse();
-  const Matrix weighted = drive.asDiagonal() * ratio;
-  const Eigen::RowVectorXd start_share = ratio.colwise().sum();
-  siemens = ratio * (load.array() / (1.0 - start_share.array())).matrix().asDiagonal();
-  for (int step = 1;; ++step) {
-    const Eigen::VectorXd line_gain = 1.0 + drive.array() * siemens.rowwise().sum().array();
-    const Eigen::VectorXd column = (load + siemens.colwise().sum()).transpose();
-    const Matrix coupling = column.cwiseInverse().asDiagonal() * (siemens.transpose() * weighted);
-    const Matrix undriven = line_gain.asDiagonal() * ratio - siemens * coupling;
-    const Eigen::RowVectorXd scale = load.array() / (1.0 - undriven.colwise().sum().array());
-    const Matrix next = undriven * scale.asDiagonal();
-    const double change = ((next - siemens) * scale.cwiseInverse().asDiagonal()).cwiseAbs().maxCoeff();
-    siemens = next;
-    if (change <= tolerance || step == 200) return step;
-  }
-}
-
-struct InversionInput {
-  ArrayDescription array;
-  std::vector<ConditionedFrame> frames;
-};
-
-InversionInput conditioned_frames(std::size_t lines) {
-  InversionInput input{square_array(lines), std::vector<ConditionedFrame>(kFrames)};
-  preprocessing::Conditioner conditioner(input.array);
-  const std::vector<RawFrame> raw = multitouch_frames(input.array);
-  for (std::size_t k = 0; k < kFrames; ++k) conditioner.process(raw[k], input.frames[k]);
-  return input;
-}
-
-void crosstalk_inversion(benchmark::State& state) {
-  const InversionInput input = conditioned_frames(static_cast<std::size_t>(state.range(0)));
-  auto inversion = compensation::make_crosstalk_inversion(input.array);
-  std::vector<double> siemens(input.array.taxel_count());
-  bool checked = true;
-  Matrix reference;
-  for (const ConditionedFrame& frame : input.frames) {
-    const Eigen::Map<const Matrix> ratio(frame.ratio.data(), state.range(0), state.range(0));
-    invert_with_eigen(input.array, ratio, reference);
-    checked = checked && (*inversion)->invert(frame.ratio, siemens).solved;
-    const Eigen::Map<const Matrix> ours(siemens.data(), state.range(0), state.range(0));
-    checked = checked && (ours - reference).cwiseAbs().maxCoeff() <= 1e-6 * reference.cwiseAbs().maxCoeff();
-  }
-  measure_frames(
-      state, [&](std::size_t k) { benchmark::DoNotOptimize((*inversion)->invert(input.frames[k].ratio, siemens)); });
-  state.counters["checked"] = checked ? 1 : 0;
-}
-
-void crosstalk_inversion_eigen(benchmark::State& state) {
-  const InversionInput input = conditioned_frames(static_cast<std::size_t>(state.range(0)));
-  Matrix siemens;
-  measure_frames(state, [&](std::size_t k) {
-    const Eigen::Map<const Matrix> ratio(input.frames[k].ratio.data(), state.range(0), state.range(0));
-    benchmark::DoNotOptimize(invert_with_eigen(input.array, ratio, siemens));
-  });
-  state.counters["checked"] = 1;
-}
-
 BENCHMARK(frame_counts_to_newtons)->Name("frame: counts to newtons|dermis")->Arg(16)->Arg(32)->UseManualTime();
-BENCHMARK(crosstalk_inversion)->Name("crosstalk inversion|dermis")->Arg(16)->Arg(32)->UseManualTime();
-BENCHMARK(crosstalk_inversion_eigen)->Name("crosstalk inversion|eigen")->Arg(16)->Arg(32)->UseManualTime();
 
 /// Prints a line a benchmark and keeps the rows of the JSON file.
 class TableReporter final : public benchmark::BenchmarkReporter {

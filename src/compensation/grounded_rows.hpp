@@ -47,7 +47,7 @@ namespace dermis::compensation {
 /// voltage e = offset gain / (1 + gain); the reading is (I load_ohm - offset) / (1 + 1/gain). The currents that e alone
 /// drives into the array are common to all scans; they are found anew for every G and added to y.
 ///
-/// G is not always unique: on large arrays of low resistance beside weak drivers (max Rd sum_j G_ij above about 2.5)
+/// G is not always unique: on large arrays of low resistance beside weak drivers (max Rd sum_j G_ij above about 2)
 /// two arrays can give the same readings. The one found is that which the readings lead to from G = 0 as all of them
 /// grow.
 class GroundedRows final : public CrosstalkInversion {
