@@ -3,12 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -28,6 +28,7 @@ constexpr double kMuchOffsetDrift = 0.3;    // of the unloaded conductance, comm
 constexpr double kMuchSaturation = 0.01;    // of all readings
 constexpr double kTemperatureMargin = 1.0;  // sensor noise [C]
 constexpr std::size_t kLeastUnloadedFrames = 10;
+constexpr std::size_t kReach = 3;  // taxels around a touched one that may be touched a little
 
 struct DoctorOptions {
   std::string model;
@@ -41,44 +42,54 @@ struct FaultHistory {
   std::optional<std::size_t> until{};  ///< First frame without it; empty while it stands.
 };
 
-/// Standard deviation of the readings from what they differ by from one frame to the next, presses left out.
+/// Standard deviation of a reading, from how much the readings differ from one frame to the next where least moves: in
+/// the quietest tenth of the recording, without the readings that move most.
 class NoiseMeter {
  public:
   void add(const RawFrame& raw, double full_scale) {
+    differences_.clear();
     for (std::size_t taxel = 0; taxel < raw.counts.size() && last_.size() == raw.counts.size(); ++taxel) {
       const auto before = static_cast<double>(last_[taxel]);
       const auto now = static_cast<double>(raw.counts[taxel]);
-      if (std::min(before, now) < 0.5 || std::max(before, now) > full_scale - 0.5) continue;
-      const auto bin = static_cast<std::size_t>(kBinsPerCount * std::abs(now - before) + 0.5);
-      if (bin < bins_.size()) ++bins_[bin];
+      const bool is_cut_off = std::min(before, now) < 0.5 || std::max(before, now) > full_scale - 0.5;
+      if (!is_cut_off) differences_.push_back(std::abs(now - before));
     }
     last_ = raw.counts;
+    if (differences_.size() >= kLeastReadings) deviations_.push_back(deviation());
   }
 
   /// Empty where too few readings stand inside the ADC's range.
   [[nodiscard]] std::optional<double> counts() const {
-    if (std::accumulate(bins_.begin(), bins_.end(), std::size_t{0}) < kLeastDifferences) return std::nullopt;
-    double limit = static_cast<double>(bins_.size());
-    double deviation = 0.0;
-    for (int round = 0; round < kRounds; ++round) {
-      double square = 0.0;
-      double count = 0.0;
-      for (std::size_t bin = 0; bin < bins_.size() && static_cast<double>(bin) <= limit; ++bin) {
-        count += static_cast<double>(bins_[bin]);
-        square += static_cast<double>(bins_[bin]) * static_cast<double>(bin * bin);
-      }
-      deviation = std::sqrt(square / std::max(count, 1.0));
-      limit = std::max(3.0 * deviation, 1.0);
-    }
-    return deviation / kBinsPerCount / std::sqrt(2.0);
+    if (deviations_.empty()) return std::nullopt;
+    std::vector<double> sorted = deviations_;
+    const auto quietest = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 10);
+    std::nth_element(sorted.begin(), quietest, sorted.end());
+    return *quietest;
   }
 
  private:
-  static constexpr double kBinsPerCount = 8.0;
-  static constexpr std::size_t kLeastDifferences = 100;
-  static constexpr int kRounds = 20;
+  [[nodiscard]] double deviation() const {
+    double limit = std::numeric_limits<double>::infinity();
+    double rms = 0.0;
+    for (int round = 0; round < kRounds; ++round) {
+      double square = 0.0;
+      double count = 0.0;
+      for (const double difference : differences_) {
+        if (difference > limit) continue;
+        square += difference * difference;
+        count += 1.0;
+      }
+      rms = std::sqrt(square / std::max(count, 1.0));
+      limit = std::max(3.0 * rms, 1.0);
+    }
+    return rms / std::sqrt(2.0);
+  }
+
+  static constexpr std::size_t kLeastReadings = 8;
+  static constexpr int kRounds = 10;
   std::vector<float> last_;
-  std::array<std::size_t, 1024> bins_{};
+  std::vector<double> differences_;
+  std::vector<double> deviations_;
 };
 
 /// What the frames of a recording say about an array.
@@ -140,15 +151,31 @@ class Examination {
     return a.kind == b.kind && a.place == b.place && a.frame == b.frame;
   }
 
+  /// Frames in which neither the taxel nor one of its neighbours is touched tell what it conducts unloaded.
   void follow_offsets(const ConductanceFrame& conductance) {
+    const ArrayDescription& array = model_.array;
     const auto& networks = model_.networks;
     const double offset_celsius = conductance.temperature_celsius.value_or(networks.temperature_centre_celsius) -
                                   networks.temperature_centre_celsius;
+    const auto expected = [&](std::size_t taxel) {
+      return networks.offset_siemens[taxel] + networks.offset_per_celsius[taxel] * offset_celsius;
+    };
+    const auto is_touched = [&](std::size_t taxel) {
+      const double most = 3.0 * std::max(expected(taxel), 0.0) + 3.0 * conductance.sigma_siemens[taxel];
+      return conductance.siemens[taxel] > most;
+    };
     for (std::size_t taxel = 0; taxel < unloaded_share_.size(); ++taxel) {
-      const double expected = networks.offset_siemens[taxel] + networks.offset_per_celsius[taxel] * offset_celsius;
-      if (conductance.taxels[taxel] != TaxelStatus::ok || !(expected > 0.0)) continue;
-      if (conductance.siemens[taxel] > 3.0 * expected + 3.0 * conductance.sigma_siemens[taxel]) continue;
-      unloaded_share_[taxel] += conductance.siemens[taxel] / expected;
+      if (conductance.taxels[taxel] != TaxelStatus::ok || !(expected(taxel) > 0.0)) continue;
+      const std::size_t row = taxel / array.cols;
+      const std::size_t col = taxel % array.cols;
+      bool near_touch = false;
+      for (std::size_t i = row - std::min(row, kReach); i <= std::min(row + kReach, array.rows - 1); ++i) {
+        for (std::size_t j = col - std::min(col, kReach); j <= std::min(col + kReach, array.cols - 1); ++j) {
+          near_touch = near_touch || is_touched(array.index(i, j));
+        }
+      }
+      if (near_touch) continue;
+      unloaded_share_[taxel] += conductance.siemens[taxel] / expected(taxel);
       ++unloaded_frames_[taxel];
     }
   }

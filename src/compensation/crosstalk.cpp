@@ -71,16 +71,18 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   return inversion<GroundedRows>(array, tolerance);
 }
 
-Result<Compensator> Compensator::create(const ArrayDescription& array) {
+Result<Compensator> Compensator::create(const ArrayDescription& array, std::span<const double> typical_siemens) {
   Inversion inversion = make_crosstalk_inversion(array);
   if (!inversion) return inversion.error();
-  return Compensator(array, std::move(*inversion));
+  return Compensator(array, std::move(*inversion), typical_siemens);
 }
 
-Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion)
+Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
+                         std::span<const double> typical_siemens)
     : inversion_(std::move(inversion)),
       supply_error_(std::make_unique<SupplyError>(array)),
-      faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts())) {}
+      faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts(),
+                                               typical_siemens)) {}
 Compensator::Compensator(Compensator&&) noexcept = default;
 Compensator& Compensator::operator=(Compensator&&) noexcept = default;
 Compensator::~Compensator() = default;

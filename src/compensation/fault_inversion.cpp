@@ -3,6 +3,7 @@
 #include "compensation/fault_inversion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace dermis::compensation {
@@ -21,11 +22,33 @@ bool is_modelled(const ArrayDescription& array) {
          readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
 }
 
+/// The value between four of which some are known: on a parabola, as the logarithm of a Gaussian contact is. Beyond the
+/// last known taxel a contact falls on as it comes, and never rises.
+std::optional<double> between(const std::array<std::optional<double>, 4>& near) {
+  const auto& [far_before, before, after, far_after] = near;
+  if (!before || !after) {
+    const std::optional<double>& next = before ? before : after;
+    const std::optional<double>& far = before ? far_before : far_after;
+    return next && far ? *next - std::max(*far - *next, 0.0) : next;
+  }
+  double value = 0.5 * (*before + *after);
+  if (far_before && far_after) {
+    value = (4.0 * (*before + *after) - (*far_before + *far_after)) / 6.0;
+  } else if (far_before) {
+    value = *before + (*after - *far_before) / 3.0;
+  } else if (far_after) {
+    value = *after + (*before - *far_after) / 3.0;
+  }
+  return std::min(value, std::max(*before, *after) + kMostRise);
+}
+
 }  // namespace
 
-FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_ratio)
+FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_ratio,
+                               std::span<const double> typical_siemens)
     : array_(array),
       tolerance_(tolerance_ratio),
+      typical_siemens_(typical_siemens.begin(), typical_siemens.end()),
       masked_(array.taxel_count()),
       unknown_(array.taxel_count()),
       measured_(array.taxel_count()),
@@ -36,6 +59,7 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
       healthy_ratio_(array.taxel_count()),
       faulty_ratio_(array.taxel_count()) {
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
+  typical_siemens_.resize(array.taxel_count(), 1.0);
   supplied_rows_.reserve(array.rows);
   shorted_.reserve(array.rows + array.cols);
 }
@@ -173,34 +197,31 @@ void FaultInversion::subtract_supplied_rows(std::span<const double> ratio) noexc
   }
 }
 
-/// From the neighbours that are known, in logarithms: half way between their mean and the parabola through two on
-/// either side, which a Gaussian contact is. Beside one neighbour its value; the mean where the row and the column
+/// Taxels that no reading tells, from their neighbours on the row and on the column; the geometric mean where both
 /// tell.
 void FaultInversion::estimate_unknown(std::span<double> values) const noexcept {
   const double floor = kFloorShare * *std::max_element(values.begin(), values.end());
   if (!(floor > 0.0)) return;
-  const auto along = [&](std::size_t taxel, std::size_t place, std::size_t size, std::size_t stride) {
-    const auto known = [&](bool exists, std::size_t neighbour) -> std::optional<double> {
-      if (!exists || unknown_[neighbour] != 0) return std::nullopt;
-      return std::log(std::max(values[neighbour], floor));
-    };
-    const std::optional<double> before = known(place > 0, taxel - stride);
-    const std::optional<double> after = known(place + 1 < size, taxel + stride);
-    if (!before || !after) return before ? before : after;
-    const std::optional<double> far_before = known(place > 1, taxel - 2 * stride);
-    const std::optional<double> far_after = known(place + 2 < size, taxel + 2 * stride);
-    if (!far_before || !far_after) return std::optional<double>(0.5 * (*before + *after));
-    const double mean = 0.5 * (*before + *after);
-    const double parabola = (4.0 * (*before + *after) - (*far_before + *far_after)) / 6.0;
-    const double between = 0.5 * (mean + parabola);
-    return std::optional<double>(std::min(between, std::max(*before, *after) + kMostRise));
+  const auto logarithm = [&](std::size_t taxel) -> std::optional<double> {
+    if (unknown_[taxel] != 0) return std::nullopt;
+    return std::log(std::max(values[taxel], floor) / typical_siemens_[taxel]);
+  };
+  // Of the taxels at `place` on a line, -2, -1, +1 and +2 steps away.
+  const auto along = [&](std::size_t taxel, std::size_t place, std::size_t size, std::size_t step) {
+    std::array<std::optional<double>, 4> near;
+    if (place > 1) near[0] = logarithm(taxel - 2 * step);
+    if (place > 0) near[1] = logarithm(taxel - step);
+    if (place + 1 < size) near[2] = logarithm(taxel + step);
+    if (place + 2 < size) near[3] = logarithm(taxel + 2 * step);
+    return between(near);
   };
   for (std::size_t taxel = 0; taxel < values.size(); ++taxel) {
     if (unknown_[taxel] == 0) continue;
     const std::optional<double> down = along(taxel, taxel / array_.cols, array_.rows, array_.cols);
     const std::optional<double> right = along(taxel, taxel % array_.cols, array_.cols, 1);
     const double count = (down ? 1.0 : 0.0) + (right ? 1.0 : 0.0);
-    values[taxel] = count > 0.0 ? std::exp((down.value_or(0.0) + right.value_or(0.0)) / count) : 0.0;
+    const double sum = down.value_or(0.0) + right.value_or(0.0);
+    values[taxel] = count > 0.0 ? typical_siemens_[taxel] * std::exp(sum / count) : 0.0;
   }
 }
 

@@ -24,7 +24,8 @@ namespace dermis::compensation {
 /// faulty lines are replaced by those of their neighbours, and the rest is solved as if healthy.
 class FaultInversion {
  public:
-  FaultInversion(const ArrayDescription& array, double tolerance_ratio);
+  /// `typical_siemens`: see Compensator::create.
+  FaultInversion(const ArrayDescription& array, double tolerance_ratio, std::span<const double> typical_siemens);
 
   void set_faults(std::span<const LineFault> faults);  ///< Allocates nothing.
   [[nodiscard]] bool any() const noexcept { return any_; }
@@ -61,6 +62,7 @@ class FaultInversion {
 
   ArrayDescription array_;
   double tolerance_;
+  std::vector<double> typical_siemens_;  // [taxels]
   bool any_ = false;
   std::optional<Circuits> circuits_;
   std::vector<std::uint8_t> masked_;   // [taxels]

@@ -2,16 +2,63 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/pipeline/pipeline.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 namespace dermis::pipeline {
+
+namespace {
+
+/// Conductance of every taxel under a force that is typical for the array [S], or 1 where the networks do not tell.
+std::vector<double> typical_siemens(const fusion::ForceNetworks& networks) {
+  const std::size_t taxels = networks.taxel_count();
+  fusion::ForceFusion fusion(networks);
+  ConductanceFrame conductance;
+  conductance.temperature_celsius = networks.temperature_centre_celsius;
+  conductance.siemens.resize(taxels);
+  conductance.sigma_siemens.assign(taxels, 0.0);
+  conductance.taxels.assign(taxels, TaxelStatus::ok);
+  ForceFrame force;
+  const auto press = [&](const std::vector<double>& share) {
+    for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+      conductance.siemens[taxel] =
+          networks.offset_siemens[taxel] + share[taxel] * static_cast<double>(networks.reference_siemens[taxel]);
+    }
+    fusion.process(conductance, force);
+  };
+
+  press(std::vector<double>(taxels, 1.0));
+  std::vector<float> newtons;
+  std::copy_if(force.newtons.begin(), force.newtons.end(), std::back_inserter(newtons),
+               [](float value) { return std::isfinite(value); });
+  if (newtons.empty()) return std::vector<double>(taxels, 1.0);
+  const auto middle = newtons.begin() + static_cast<std::ptrdiff_t>(newtons.size() / 2);
+  std::nth_element(newtons.begin(), middle, newtons.end());
+  const float typical_newtons = *middle;
+
+  std::vector<double> share(taxels, 1.0);
+  for (double factor = 8.0; factor > 1.0 + 1e-6; factor = std::sqrt(factor)) {
+    press(share);
+    for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+      share[taxel] *= force.newtons[taxel] < typical_newtons ? factor : 1.0 / factor;
+    }
+  }
+  press(share);
+  return conductance.siemens;
+}
+
+}  // namespace
 
 Result<Pipeline> Pipeline::create(const Model& model) {
   if (Status valid = model.array.validate(); !valid) return valid.error();
   if (model.networks.taxel_count() != model.array.taxel_count() || !model.networks.is_consistent()) {
     return bad_input("the model's networks do not fit its array, or hold values out of range");
   }
-  Result<compensation::Compensator> compensator = compensation::Compensator::create(model.array);
+  Result<compensation::Compensator> compensator =
+      compensation::Compensator::create(model.array, typical_siemens(model.networks));
   if (!compensator) return compensator.error();
   return Pipeline(model, std::move(*compensator));
 }

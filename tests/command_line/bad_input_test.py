@@ -20,7 +20,7 @@ class Usage(SmallArray):
 
     def test_missing_options(self):
         for command, option in (("simulate", "--array"), ("calibrate", "--array"), ("run", "--model"),
-                                ("evaluate", "--model")):
+                                ("evaluate", "--model"), ("doctor", "--model")):
             with self.subTest(command):
                 self.refuse([command], [option])
 
@@ -49,7 +49,7 @@ class MissingFiles(SmallArray):
         absent = self.work / "absent"
         model, forces = self.work / "m", self.work / "f.csv"
         cases = [self.calibrate_arguments(model, array=absent), self.calibrate_arguments(model, frames=absent),
-                 self.calibrate_arguments(model, loads=absent), self.run_arguments(forces, model=absent),
+                 self.calibrate_arguments(model, loads=absent), ("doctor", "--model", self.model, "--in", absent), self.run_arguments(forces, model=absent),
                  self.run_arguments(forces, **{"in": absent}), self.evaluate_arguments(model=absent),
                  self.evaluate_arguments(frames=absent), self.evaluate_arguments(loads=absent),
                  ("simulate", "--array", absent, "--scene", "idle", "--out", self.work / "o"),

@@ -18,6 +18,7 @@
 #include "dermis/simulation/readout_circuit.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/circuits.hpp"
+#include "support/dense_solve.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -256,6 +257,42 @@ TEST_P(EveryInversion, later_frames_allocate_nothing) {
   EXPECT_TRUE(inversion->invert(second, inverted).solved);
   inversion->propagate_noise(1e-4, sigma);
   EXPECT_EQ(guard.count(), 0);
+}
+
+/// sigma_ratio times the norms of the rows of (d ratio / d siemens)^-1.
+std::vector<double> noise_of(const ArrayDescription& array, const std::vector<double>& siemens, double sigma_ratio) {
+  const std::size_t size = siemens.size();
+  std::vector<double> jacobian(size * size);
+  std::vector<double> identity(size * size, 0.0);
+  auto model = CircuitModel::create(array);
+  model->solve(siemens);
+  model->taxel_jacobian(jacobian);
+  for (std::size_t k = 0; k < size; ++k) identity[k * size + k] = 1.0;
+  const auto inverse = support::solve(std::move(jacobian), std::move(identity), size);
+  std::vector<double> sigma(size, 0.0);
+  for (std::size_t k = 0; k < size; ++k) {
+    for (std::size_t l = 0; l < size; ++l) sigma[k] += inverse[k * size + l] * inverse[k * size + l];
+    sigma[k] = sigma_ratio * std::sqrt(sigma[k]);
+  }
+  return sigma;
+}
+
+TEST_P(EveryInversion, noise_becomes_what_the_jacobian_says) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    auto array = random_array(GetParam(), 4 + random.below(5), 4 + random.below(5), random);
+    for (double& ohm : array.readout.drive_ohm) ohm = random.uniform(1.0, 50.0);
+    for (double& ohm : array.readout.load_ohm) ohm = random.uniform(100.0, 1000.0);
+    const auto siemens = random_siemens(array, random, 1e3, 1e5);
+    std::vector<double> inverted(siemens.size());
+    std::vector<double> sigma(siemens.size());
+    const auto inversion = inversion_for(array, {0.0});
+    EXPECT_TRUE(inversion->invert(model_ratios(array, siemens), inverted).solved);
+    inversion->propagate_noise(1e-4, sigma);
+    const auto expected = noise_of(array, siemens, 1e-4);
+    for (std::size_t k = 0; k < sigma.size(); ++k) EXPECT_NEAR(sigma[k] / expected[k], 1.0, 0.1) << "taxel " << k;
+  }
 }
 
 TEST_P(EveryInversion, DISABLED_campaign) {

@@ -15,9 +15,11 @@
 namespace dermis::app {
 namespace {
 
-constexpr std::size_t kSparsePatterns = 8;
+constexpr std::size_t kSparsePatterns = 4;
 constexpr std::size_t kSparseShare = 10;  // one taxel in ten
 constexpr double kTolerableGrowth = 1.1;  // of the error, for the sake of cheap drivers
+constexpr int kBisections = 12;
+constexpr int kOtherTrials = 10;  // the circuit as it is, loads near the best, ideal drivers: about that many
 
 struct Pattern {
   std::vector<double> siemens;
@@ -76,14 +78,17 @@ Precision precision_of(std::vector<double> errors) {
 /// Judges circuits that differ in their resistances.
 class Judge {
  public:
-  Judge(const ArrayDescription& array, double least_ohm, double most_ohm, double noise_ratio)
-      : patterns_(PatternMaker(array, least_ohm, most_ohm).make()),
+  Judge(const ArrayDescription& array, double least_ohm, double most_ohm, double noise_ratio,
+        std::function<void()> judged)
+      : judged_(std::move(judged)),
+        patterns_(PatternMaker(array, least_ohm, most_ohm).make()),
         noise_ratio_(noise_ratio),
         reading_(array.taxel_count()),
         siemens_(array.taxel_count()),
         sigma_(array.taxel_count()) {}
 
   Result<std::optional<Precision>> judge(const ArrayDescription& array) {
+    judged_();
     const Result<simulation::ReadoutCircuit> circuit = simulation::ReadoutCircuit::create(array);
     if (!circuit) return circuit.error();
     auto inversion = compensation::make_crosstalk_inversion(array);
@@ -109,6 +114,7 @@ class Judge {
     return std::any_of(reading_.begin(), reading_.end(), [&](double reading) { return reading > full_scale; });
   }
 
+  std::function<void()> judged_;  // is told of every circuit
   std::vector<Pattern> patterns_;
   double noise_ratio_;
   std::vector<double> reading_;
@@ -165,7 +171,7 @@ Status try_loads(const ArrayDescription& array, const std::vector<double>& ohms,
 Result<double> most_drive(const ArrayDescription& array, double ideal_mean, double most_ohm, Judge& judge) {
   double low = 1e-3;
   double high = 10.0 * most_ohm;
-  while (high / low > 1.02) {
+  for (int step = 0; step < kBisections; ++step) {
     const double ohm = std::sqrt(low * high);
     const Result<std::optional<Precision>> precision = judge.judge(with_drive(array, ohm));
     if (!precision) return precision.error();
@@ -177,13 +183,17 @@ Result<double> most_drive(const ArrayDescription& array, double ideal_mean, doub
 
 }  // namespace
 
-Result<Advice> advise(const ArrayDescription& array, double least_ohm, double most_ohm, double noise_ratio) {
-  Judge judge(array, least_ohm, most_ohm, noise_ratio);
+Result<Advice> advise(const ArrayDescription& array, double least_ohm, double most_ohm, double noise_ratio,
+                      const std::function<void(double share)>& progress) {
+  const std::vector<double> coarse = series(3, least_ohm / 100.0, 10.0 * most_ohm);
+  const double expected = static_cast<double>(coarse.size()) + kBisections + kOtherTrials;
+  double judged = 0.0;
+  Judge judge(array, least_ohm, most_ohm, noise_ratio, [&] { progress(std::min(1.0, judged++ / expected)); });
   Advice advice;
   const Result<std::optional<Precision>> present = judge.judge(array);
   if (!present) return present.error();
   advice.present = *present;
-  if (Status tried = try_loads(array, series(3, least_ohm / 100.0, 10.0 * most_ohm), judge, advice); !tried) {
+  if (Status tried = try_loads(array, coarse, judge, advice); !tried) {
     return tried.error();
   }
   if (!advice.loads[advice.best].precision) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -35,8 +36,8 @@ struct Advice {
 
 /// For taxels from `least_ohm` to `most_ohm`, log-uniform, and an ADC whose readings have a standard deviation of
 /// `noise_ratio` over the supply. Loads from least_ohm/100 to 10 most_ohm are tried. Deterministic.
-/// Errors: no load gives readings that the ADC can take.
+/// `progress` is told the share that is done. Errors: no load gives readings that the ADC can take.
 [[nodiscard]] Result<Advice> advise(const ArrayDescription& array, double least_ohm, double most_ohm,
-                                    double noise_ratio);
+                                    double noise_ratio, const std::function<void(double share)>& progress);
 
 }  // namespace dermis::app

@@ -10,6 +10,7 @@
 
 #include "circuit/advice.hpp"
 #include "circuit/known_circuit.hpp"
+#include "progress.hpp"
 
 namespace dermis::app {
 namespace {
@@ -113,7 +114,10 @@ Status circuit_advise(const AdviseOptions& options) {
   if (!array) return array.error();
   const Result<double> noise = adc_noise_ratio(*array);
   if (!noise) return in_file(options.array, noise.error());
-  const Result<Advice> advice = advise(*array, least_ohm, most_ohm, *noise);
+  Progress progress;
+  const Result<Advice> advice =
+      advise(*array, least_ohm, most_ohm, *noise, [&](double share) { progress.show("advice", share); });
+  progress.show("advice", 1.0);
   if (!advice) return in_file(options.array, advice.error());
   options.json ? print_json(*advice, *noise) : print_text(*array, options, *noise, *advice);
   return Done{};

@@ -15,8 +15,8 @@ namespace dermis::calibration {
 /// Noise of one reading [counts], rounding included: from the differences of successive unloaded samples, each against
 /// the resolution of its own supply, so that neither the level of a taxel nor its drift counts. Samples that something
 /// touched and taxels that flicker are left out. At least 1 / sqrt(12), what rounding alone does. Empty where there are
-/// fewer than 5 unloaded samples, or where more than half of the taxels then stand at an end of the ADC, which hides
-/// the noise. Thread-safe.
+/// fewer than 5 unloaded samples, or where an end of the ADC hides the noise: more than half of the taxels stand at it in
+/// more than a tenth of the samples. Thread-safe.
 [[nodiscard]] std::optional<double> measure_adc_noise(const SampleDatabase& database);
 
 /// Noise of the temperature sensor [C], from second differences of successive samples. 0 where samples carry no
@@ -42,7 +42,8 @@ struct UncertaintyReport {
 /// Fills in what `model` is still to know of its own uncertainty, in its array's readout and in its networks. The noise
 /// of the ADC and the temperature sensor is measured; the error of the supply and the relative error of the networks
 /// (misfit, hysteresis, creep, noise of the material) are those which together make the errors on tested loads
-/// likeliest, the latter such that 68.3 % of them are within one standard deviation.
+/// likeliest, the latter scaled so that of them 68.3 % are within one standard deviation and 95.4 % within two; where
+/// longer tails allow no such scale, too many are within one by the same factor as too few are within two.
 /// `model` holds the array and the networks of `training`. Errors: those of Compensator::create().
 [[nodiscard]] Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const ForceTraining& training,
                                                         pipeline::Model& model);

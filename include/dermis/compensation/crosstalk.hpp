@@ -64,7 +64,10 @@ class SupplyError;
 /// put right by that relationship. Not thread-safe: one per stream.
 class Compensator {
  public:
-  [[nodiscard]] static Result<Compensator> create(const ArrayDescription& array);
+  /// `typical_siemens` [rows, cols], > 0, or empty: conductance of each taxel under one same force, in any unit; tells
+  /// what the neighbours of a masked taxel say about it.
+  [[nodiscard]] static Result<Compensator> create(const ArrayDescription& array,
+                                                  std::span<const double> typical_siemens = {});
   Compensator(Compensator&&) noexcept;
   Compensator& operator=(Compensator&&) noexcept;
   ~Compensator();
@@ -81,7 +84,8 @@ class Compensator {
   [[nodiscard]] double siemens_per_ratio() const noexcept { return inversion_->siemens_per_ratio(); }
 
  private:
-  Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion);
+  Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
+              std::span<const double> typical_siemens);
   void mask_faulty_taxels(ConductanceFrame& conductance) const noexcept;
 
   std::unique_ptr<CrosstalkInversion> inversion_;

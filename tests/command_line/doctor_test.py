@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""`dermis doctor`: a healthy array is called healthy, and each fault by its name, its place and its first frame."""
+import json
+
+import support
+from support import SmallArray, dermis, error_lines
+
+
+class Doctor(SmallArray):
+    def recording(self, faults):
+        """Frames of several contacts with faults."""
+        physics = self.written("physics.toml", "[faults]\n" + faults)
+        self.succeed("simulate", "--array", self.array, "--scene", "multitouch", "--frames", 300, "--seed", 5,
+                     "--physics", physics, "--out", self.work / "faulty")
+        return self.work / "faulty" / "frames.csv"
+
+    def examine(self, frames, *options):
+        return dermis("doctor", "--model", self.model, "--in", frames, *options)
+
+    def unhealthy(self, frames):
+        result = self.examine(frames, "--json")
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(len(error_lines(result)), 1)
+        self.assertIn("not healthy", result.stderr)
+        report = json.loads(result.stdout)
+        self.assertFalse(report["healthy"])
+        return report
+
+    def test_a_healthy_array(self):
+        result = self.examine(self.calibration / "frames.csv")
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertTrue(result.stdout.endswith("healthy\n"), result.stdout)
+        report = json.loads(self.examine(self.calibration / "frames.csv", "--json").stdout)
+        self.assertTrue(report["healthy"])
+        self.assertEqual((report["faults"], report["problems"], report["frames_unsolved"]), ([], [], 0))
+        self.assertAlmostEqual(report["noise_counts"], 1.04, delta=0.2)
+        self.assertAlmostEqual(report["offset_drift"], 0.0, delta=0.05)
+
+    def test_an_open_row_in_plain_words(self):
+        frames = self.recording("open_rows = [2]\nfrom_frame = 120\n")
+        result = self.examine(frames)
+        self.assertEqual(result.returncode, 1)
+        sentence = next(line for line in result.stdout.splitlines() if line.startswith("row 2 is open"))
+        for part in ("since frame 120", "check the wire or crimp of row 2", "5 taxels are masked", "the rest is still good"):
+            self.assertIn(part, sentence)
+        report = self.unhealthy(frames)
+        self.assertEqual([(fault["kind"], fault["place"], fault["since_frame"]) for fault in report["faults"]],
+                         [("silent_row", "row 2", 120)])
+
+    def test_other_faults_by_name(self):
+        for faults, kind, place in (("open_columns = [1]", "silent_column", "column 1"),
+                                    ("supplied_columns = [3]", "supplied_column", "column 3"),
+                                    ("dead_taxels = ['r1c3']", "dead_taxel", "taxel r1c3"),
+                                    ("stuck_taxels = ['r3c0']", "stuck_taxel", "taxel r3c0")):
+            with self.subTest(faults):
+                report = self.unhealthy(self.recording(faults + "\n"))
+                self.assertEqual([(fault["kind"], fault["place"]) for fault in report["faults"]], [(kind, place)])
+
+    def test_a_fault_that_comes_and_goes(self):
+        report = self.unhealthy(self.recording("open_columns = [1]\nfrom_frame = 50\nuntil_frame = 100\n"))
+        self.assertEqual(report["faults"][0]["since_frame"], 50)
+        self.assertLessEqual(report["faults"][0]["until_frame"], 120)
+        self.assertIn("loose contact", report["problems"][0])
+
+    def test_forces_are_masked_and_run_says_so(self):
+        frames = self.recording("open_rows = [2]\n")
+        result = dermis(*self.run_arguments(self.work / "forces.csv", **{"in": frames}))
+        self.assertEqual(result.returncode, 0)
+        self.assertIn("'dermis doctor' tells which", result.stderr)
+        last = (self.work / "forces.csv").read_text().splitlines()[-1].split(",")
+        self.assertIn("line_fault", last[1])
+        self.assertEqual([k for k, cell in enumerate(last[2:]) if cell == "nan"], list(range(10, 15)))
+
+    def test_faults_that_the_array_cannot_have(self):
+        for faults, places in (("open_rows = [4]", ["faults.open_rows", "below 4"]),
+                               ("open_rows = 1", ["physics.toml:2", "faults.open_rows", "list"]),
+                               ("dead_taxels = ['r9c9']", ["faults.dead_taxels", "r9c9"]),
+                               ("dead_taxels = [9]", ["faults.dead_taxels", "texts"]),
+                               ("broken_rows = [1]", ["broken_rows"])):
+            with self.subTest(faults):
+                physics = self.written("physics.toml", "[faults]\n" + faults + "\n")
+                self.refuse(("simulate", "--array", self.array, "--scene", "idle", "--physics", physics, "--out",
+                             self.work / "o"), places)
+
+
+if __name__ == "__main__":
+    support.main()
