@@ -216,7 +216,7 @@ void describe_drives(const ResistanceFit& fit, std::vector<std::string>& stateme
     statements.back() += fmt::format(", {:.1f} % their mean", 100.0 * fit.common_drive_error);
   }
   if (drives.worst_error > kWellKnown) {
-    statements.push_back(
+    statements.emplace_back(
         "drive_ohm: a few frames with heavy weights on several taxels of each row at once, or with a uniform load "
         "on the whole array, determine it better than any number of single presses");
   }

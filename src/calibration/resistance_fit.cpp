@@ -26,6 +26,7 @@ constexpr std::size_t kFramesPerTask = 256;
 constexpr int kMaxIterations = 8;
 constexpr std::size_t kFirstFrames = 1500;  // the way to the solution is found with these
 constexpr double kMostWork = 2e8;           // frames x taxels x inversions of one pass
+constexpr double kNewtonSlowness = 100.0;   // of an inversion by Newton's method, against the fixed point
 constexpr std::uint64_t kSelectionSeed = 1;
 constexpr double kEnoughAtFirst = 0.1;     // a step this small against the standard errors ends the fit
 constexpr double kEnough = 0.25;           // the same, with all frames
@@ -364,7 +365,7 @@ class ResistanceFitter {
 
   /// The common ratio of drivers to loads that leaves least; also the first unloaded laws.
   Status choose_start() {
-    choose_frames(kFirstFrames);
+    choose_frames(std::min(kFirstFrames, most_frames()));
     double best = std::numeric_limits<double>::infinity();
     VectorXd best_parameters;
     for (const double ratio : kCommonRatios) {
@@ -403,7 +404,8 @@ class ResistanceFitter {
   /// As many as the time allows: an inversion for each parameter and frame.
   [[nodiscard]] std::size_t most_frames() const {
     const auto cost = static_cast<double>(taxels_ * static_cast<std::size_t>(lines_.count() + 4));
-    return static_cast<std::size_t>(kMostWork / cost);
+    const bool is_slow = array_.readout.circuit == Circuit::divider && array_.readout.idle_rows == IdleRows::floating;
+    return static_cast<std::size_t>(kMostWork / cost / (is_slow ? kNewtonSlowness : 1.0));
   }
 
   /// The laws at the parameters, and what they leave, in standard deviations of the readings a frame.

@@ -95,6 +95,20 @@ class Workflow(SmallArray):
         self.assertTrue(0.9 < report["adc_noise_counts"] < 1.2, report["adc_noise_counts"])
         self.assertTrue(0.2 < report["temperature_sigma_celsius"] < 0.4, report["temperature_sigma_celsius"])
 
+    def test_calibration_finds_the_circuit(self):
+        known = self.array.read_text()
+        for circuit in ('drive_ohm = "fit"', 'circuit = "auto"'):
+            key = circuit.split(" ")[0]
+            array = self.work / "unknown.toml"
+            kept = [line for line in known.splitlines()
+                    if not line.startswith((key, "idle_" if "auto" in circuit else key))]
+            array.write_text("\n".join(kept).replace("[readout]", "[readout]\n" + circuit) + "\n")
+            arguments = self.calibrate_arguments(self.work / "fitted.safetensors", array=array)
+            found = json.loads(self.succeed(*arguments, "--json"))["circuit"]
+            self.assertEqual(found["kind"], "divider")
+            self.assertEqual(len(found["candidates"]), 6 if "auto" in circuit else 0)
+            self.assertIn("drive_ohm", self.succeed(*arguments) if circuit.startswith("drive") else "drive_ohm")
+
     def test_settling_leaves_out_the_first_seconds(self):
         out = self.work / "forces.csv"
         self.succeed(*self.run_arguments(out), "--settle", 10)
