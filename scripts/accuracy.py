@@ -53,10 +53,11 @@ def calibrate(folder, array, recording):
 
 def evaluate(model, recording):
     return json.loads(dermis("evaluate", "--json", "--model", model, "--frames", recording / "frames.csv", "--loads",
-                             recording / "loads.csv"))["estimators"]
+                             recording / "loads.csv"))
 
 
-def report(work, estimators):
+def report(work, result):
+    estimators = result["estimators"]
     print(f"\n{work}\n  {'estimator':20}{'median %':>10}{'p95 %':>10}{'p99 %':>10}{'max %':>10}{'ghost p99 N':>13}")
     for result in estimators:
         shares = [100 * result[f"{key}_relative_error"] for key in ("median", "p95", "p99", "max")]
@@ -64,6 +65,28 @@ def report(work, estimators):
         print(f"  {result['name']:20}" + "".join(f"{share:10.2f}" for share in shares) + ghost)
         row(work, result["name"], shares[0], "% median error", p95=shares[1], p99=shares[2], max=shares[3],
             ghost_p99_n=result["ghost_p99_n"])
+    report_coverage(work, result)
+
+
+def report_coverage(work, result):
+    """How often the true force is within the 68 % and 95 % intervals of dermis."""
+    dermis_result = result["estimators"][0]
+    cover_68, cover_95 = (100 * dermis_result[f"coverage_{share}"] for share in (68, 95))
+    print(f"  68 % intervals cover {cover_68:.1f} %, 95 % intervals {cover_95:.1f} % of "
+          f"{dermis_result['coverage_taxels']} taxels")
+    for breakdown in ("by_force", "by_contacts"):
+        bins = [(b, b["estimators"]["dermis"]) for b in result[breakdown]]
+        print(f"    {breakdown}: " + ", ".join(
+            f"{b['from']:g}-{b['to']:g}: {100 * of['coverage_68']:.0f} / {100 * of['coverage_95']:.0f}"
+            for b, of in bins if of["coverage_68"] is not None))
+    row(f"{work}: 68 % interval", "dermis", cover_68, "% covered")
+    row(f"{work}: 95 % interval", "dermis", cover_95, "% covered")
+    bound = result.get("cramer_rao_bound")
+    if bound:
+        share, deviation = 100 * bound["median_relative_bound"], 100 * bound["median_relative_deviation"]
+        print(f"  Cramer-Rao bound of the ADC noise {share:.2f} %, dermis {deviation:.2f} % (median of "
+              f"{bound['taxels']} taxels)")
+        row(f"{work}: Cramer-Rao bound of the ADC noise", "bound", share, "% median", dermis=deviation)
 
 
 def row(work, engine, median, unit, **more):
@@ -120,10 +143,32 @@ def load_cell_recording(folder, array):
 def memory_of_the_material(folder):
     array = array_toml(folder, (16, 16))
     physics = folder / "physics.toml"
-    physics.write_text("[rubber]\nhysteresis = 0.10\ncreep = 0.05\n")
+    physics.write_text("[rubber]\npink_noise = 1e-6\n")
     model, _ = calibrate(folder, array, simulate(folder, array, "calibration", 1, physics))
-    report("16x16 with 10 % hysteresis and 5 % creep (not compensated yet)",
-           evaluate(model, simulate(folder, array, "multitouch", 2, physics)))
+    report("16x16 with pink noise of 0.3 %", evaluate(model, simulate(folder, array, "multitouch", 2, physics)))
+    physics.write_text("[rubber]\nhysteresis = 0.10\ncreep = 0.05\npink_noise = 1e-6\n")
+    model, _ = calibrate(folder, array, simulate(folder, array, "calibration", 1, physics))
+    multitouch = simulate(folder, array, "multitouch", 2, physics)
+    report("16x16 with 10 % hysteresis, 5 % creep and pink noise, calibrated from rest", evaluate(model, multitouch))
+    model, _ = calibrate(folder, array, touches_up_and_down(folder, array, physics))
+    report("16x16 with the same, calibrated on 600 frames of touches that rise and fall", evaluate(model, multitouch))
+
+
+def touches_up_and_down(folder, array, physics):
+    """A multitouch scene of which every taxel's force is known, then unloaded frames."""
+    recording = folder / "touches"
+    dermis("simulate", "--array", array, "--scene", "multitouch", "--frames", 600, "--seed", 11, "--physics", physics,
+           "--out", recording)
+    idle = simulate(folder, array, "idle", 9, physics)
+    frames = (recording / "frames.csv").read_text().splitlines()
+    last = float(frames[-1].split(",")[0])
+    unloaded = (idle / "frames.csv").read_text().splitlines()[1::10]
+    labels = [f"{len(frames) - 1 + k},force,all,0" for k in range(len(unloaded))]
+    frames += [f"{last + 1 + k}," + line.split(",", 1)[1] for k, line in enumerate(unloaded)]
+    (recording / "frames.csv").write_text("\n".join(frames) + "\n")
+    loads = (recording / "loads.csv").read_text()
+    (recording / "loads.csv").write_text(loads + "\n".join(labels) + "\n")
+    return recording
 
 
 def true_law(folder):
@@ -154,19 +199,34 @@ def real_weights(folder):
     array = folder / "dsa.toml"
     array.write_text('[array]\nrows = 13\ncols = 6\n[readout]\ncircuit = "none"\nadc_bits = 12\n')
     errors = defaultdict(list)
+    scores = []
     for held_out, (frame, newtons) in enumerate(presses):
         training = [press for k, press in enumerate(presses) if k != held_out]
         unloaded = [0.0, training[0][0][1]] + [0.0] * 78
         write_recording(folder / "dsa", header, [(unloaded, 0.0)] + training)
         model, _ = calibrate(folder, array, folder / "dsa")
         write_recording(folder / "held_out", header, [(frame, newtons)])
-        for result in evaluate(model, folder / "held_out"):
+        for result in evaluate(model, folder / "held_out")["estimators"]:
             errors[result["name"]].append(result["total_rmse_n"] * KPA_PER_NEWTON)
+        scores.append(errors["dermis"][-1] / KPA_PER_NEWTON / total_sigma(folder, model))
     print("\nreal hand (dsa_weights), total force of the press left out\n  estimator             RMSE kPa")
     for name, of_name in errors.items():
         rmse = math.sqrt(sum(error**2 for error in of_name) / len(of_name))
         print(f"  {name:20}{rmse:10.2f}")
         row("dsa_weights, leave one press out", name, rmse, "kPa RMSE")
+    for share, sigmas in ((68, 0.9945), (95, 1.96)):
+        covered = 100 * sum(score <= sigmas for score in scores) / len(scores)
+        print(f"  {share} % interval of the total covers {covered:.0f} % of {len(scores)} presses")
+        row(f"dsa_weights, leave one press out: {share} % interval", "dermis", covered, "% covered")
+
+
+def total_sigma(folder, model):
+    """Standard deviation of the total force of the one frame of held_out, were the errors of taxels independent."""
+    dermis("run", "--model", model, "--in", folder / "held_out/frames.csv", "--out", folder / "forces.csv", "--sigma",
+           folder / "sigma.csv")
+    forces, sigmas = ([float(cell) for cell in list(csv.reader((folder / name).open()))[1][2:]]
+                      for name in ("forces.csv", "sigma.csv"))
+    return math.sqrt(sum(sigma**2 for newtons, sigma in zip(forces, sigmas) if newtons > 0 and math.isfinite(sigma)))
 
 
 def write_recording(folder, header, labelled):

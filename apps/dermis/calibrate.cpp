@@ -76,10 +76,12 @@ void print_text(const CalibrationReport& report, const std::optional<BankTrainin
   const calibration::TrainingReport& training = report.training;
   fmt::print("{} labelled frames, {} rejected{}\n", report.frames, report.frames_rejected,
              report.frames_rejected > 0 ? " (" + report.first_rejection + ")" : "");
+  for (const std::string& statement : report.circuit) fmt::print("{}\n", statement);
   fmt::print("{}\n", training.choice);
   fmt::print("loads {:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons);
   if (training.uses_temperature) fmt::print(", {:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius);
   fmt::print("\nfit: {}\n", calibration::describe_fit(training, array));
+  fmt::print("1-sigma: {}\n", calibration::describe(report.uncertainty, array));
   if (std::max(training.median_fit_error, training.shared_leave_one_out_error) > kPoorFit) {
     fmt::print(stderr,
                "warning: a poor fit; do frames and loads belong together, and are circuit and polarity right?\n");
@@ -99,8 +101,29 @@ nlohmann::ordered_json taxel_names(const std::vector<std::size_t>& taxels, const
   return names;
 }
 
+nlohmann::ordered_json circuit_json(const calibration::CircuitFit& fit) {
+  const Readout& readout = fit.array.readout;
+  nlohmann::ordered_json json = {{"kind", to_string(readout.circuit)},
+                                 {"idle_rows", to_string(readout.idle_rows)},
+                                 {"idle_columns", to_string(readout.idle_columns)},
+                                 {"drive_ohm", readout.drive_ohm},
+                                 {"drive_relative_error", fit.drive_error},
+                                 {"common_drive_relative_error", fit.common_drive_error},
+                                 {"load_ohm", readout.load_ohm},
+                                 {"load_relative_error", fit.load_error},
+                                 {"statements", fit.statements},
+                                 {"candidates", nlohmann::ordered_json::array()}};
+  for (const calibration::CircuitCandidate& candidate : fit.candidates) {
+    json["candidates"].push_back({{"name", candidate.name},
+                                  {"held_out_error", candidate.held_out_error},  // null: not possible
+                                  {"chosen", candidate.chosen},
+                                  {"indistinguishable", candidate.indistinguishable}});
+  }
+  return json;
+}
+
 void print_json(const CalibrationReport& report, const std::optional<BankTrainingReport>& bank,
-                const ArrayDescription& array) {
+                const ArrayDescription& array, const std::optional<calibration::CircuitFit>& circuit) {
   const calibration::TrainingReport& training = report.training;
   nlohmann::ordered_json json = {{"frames", report.frames},
                                  {"frames_rejected", report.frames_rejected},
@@ -114,9 +137,18 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
                                  {"median_fit_error", training.median_fit_error},
                                  {"worst_fit_error", training.worst_fit_error},
                                  {"shared_leave_one_out_error", training.shared_leave_one_out_error},
+                                 {"supply_noise", report.uncertainty.supply_noise},
+                                 {"temperature_sigma_celsius", report.uncertainty.temperature_sigma_celsius},
                                  {"dead_taxels", taxel_names(training.dead_taxels, array)},
                                  {"seconds", nlohmann::ordered_json::object()}};
+  if (circuit) json["circuit"] = circuit_json(*circuit);
   for (const calibration::StageTime& stage : report.stages) json["seconds"][stage.stage] = stage.seconds;
+  const calibration::UncertaintyReport& uncertainty = report.uncertainty;
+  json["adc_noise_counts"] = uncertainty.adc_noise_counts.value_or(array.readout.adc_noise_counts);
+  if (uncertainty.relative_sigma) json["relative_sigma"] = *uncertainty.relative_sigma;
+  if (uncertainty.relative_sigma_of_shared) {
+    json["relative_sigma_of_shared"] = *uncertainty.relative_sigma_of_shared;
+  }
   if (bank) {
     json["bank"] = {{"unknowns", bank->unknowns}, {"steps", bank->steps}, {"last_error", bank->curve.back()}};
     json["bank"]["never_loaded"] = taxel_names(bank->never_loaded, array);
@@ -182,7 +214,8 @@ Status calibrate(const CalibrateOptions& options) {
     if (!trained) return trained.error();
     bank = std::move(*trained);
   }
-  options.json ? print_json(calibration->report, bank, *array) : print_text(calibration->report, bank, *array);
+  options.json ? print_json(calibration->report, bank, *array, database->circuit_fit)
+               : print_text(calibration->report, bank, *array);
   return Done{};
 }
 

@@ -17,6 +17,7 @@ void add_simulate(CLI::App& app, Action& action);
 void add_calibrate(CLI::App& app, Action& action);
 void add_run(CLI::App& app, Action& action);
 void add_evaluate(CLI::App& app, Action& action);
+void add_circuit(CLI::App& app, Action& action);
 void add_doctor(CLI::App& app, Action& action);
 void add_paper(CLI::App& app, Action& action);
 

@@ -49,11 +49,17 @@ void print_text(const Evaluation& evaluation) {
                percent(result.relative_error.p95), percent(result.relative_error.p99),
                percent(result.relative_error.max), newtons(result.ghost_n.p99), newtons(result.total_rmse_n));
   }
-  if (evaluation.coverage.count == 0) return;
-  fmt::print(
-      "\n1-sigma: the true force of {} taxels is within the 68 % interval of dermis in {:.1f} %, within the 95 % "
-      "interval in {:.1f} %\n",
-      evaluation.coverage.count, 100.0 * *evaluation.coverage.share_68, 100.0 * *evaluation.coverage.share_95);
+  if (evaluation.coverage.count > 0) {
+    fmt::print(
+        "\n1-sigma: of {} taxels, the true force is within the 68 % interval in {:.1f} %, the 95 % interval in {:.1f} "
+        "%\n",
+        evaluation.coverage.count, 100.0 * *evaluation.coverage.share_68, 100.0 * *evaluation.coverage.share_95);
+  }
+  const calibration::BoundComparison& bound = evaluation.bound;
+  if (bound.frames > 0) {
+    fmt::print("Cramer-Rao bound of the ADC noise: {:.2f} % of the force (median of {} taxels); dermis {:.2f} %\n",
+               100.0 * bound.median_bound, bound.taxels, 100.0 * bound.median_deviation);
+  }
 }
 
 Status evaluate(const EvaluateOptions& options) {

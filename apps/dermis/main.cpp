@@ -33,6 +33,7 @@ int run(int argc, char** argv) {
   dermis::app::add_calibrate(app, action);
   dermis::app::add_run(app, action);
   dermis::app::add_evaluate(app, action);
+  dermis::app::add_circuit(app, action);
   dermis::app::add_doctor(app, action);
   dermis::app::add_paper(app, action);
   try {
@@ -44,7 +45,8 @@ int run(int argc, char** argv) {
   }
   if (!action) {
     fmt::print(stderr,
-               "dermis: name a command: simulate, calibrate, run, evaluate, doctor or paper (see dermis --help)\n");
+               "dermis: name a command: simulate, calibrate, run, evaluate, circuit, doctor or paper (see dermis "
+               "--help)\n");
     return kExitBadInput;
   }
   dermis::Status status = action();

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "dermis/pipeline/model.hpp"
@@ -19,6 +20,7 @@ struct RunOptions {
   std::string model;
   std::string in;
   std::string out;
+  std::string sigma;
   double settle_s = 0.0;
 };
 
@@ -35,6 +37,13 @@ Status run(const RunOptions& options) {
   Result<store::ForcesCsvWriter> forces =
       store::ForcesCsvWriter::create(options.out, model->array.rows, model->array.cols);
   if (!forces) return forces.error();
+  std::optional<store::ForcesCsvWriter> sigmas;
+  if (!options.sigma.empty()) {
+    Result<store::ForcesCsvWriter> created = store::ForcesCsvWriter::create(
+        options.sigma, model->array.rows, model->array.cols, store::ForceColumn::sigma_newtons);
+    if (!created) return created.error();
+    sigmas.emplace(std::move(*created));
+  }
 
   preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
   std::size_t frames = 0;
@@ -51,6 +60,9 @@ Status run(const RunOptions& options) {
     if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) continue;
     pipeline->process(raw, force);
     if (Status written = forces->write(force); !written) return written;
+    if (sigmas) {
+      if (Status written = sigmas->write(force); !written) return written;
+    }
     ++frames;
     if (has(force.status, FrameStatus::not_converged)) ++unsolved;
     if (has(force.status, FrameStatus::line_fault)) ++faulty;
@@ -61,6 +73,9 @@ Status run(const RunOptions& options) {
     }
   }
   if (Status written = forces->commit(); !written) return written;
+  if (sigmas) {
+    if (Status written = sigmas->commit(); !written) return written;
+  }
   if (rejected > 0) {
     fmt::print(stderr, "{} of {} frames rejected, the first: {}\n", rejected, frames, first_rejection);
   }
@@ -83,6 +98,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("--model", options->model, "Model file of 'dermis calibrate'")->required();
   command->add_option("--in", options->in, "frames.csv: raw counts")->required();
   command->add_option("--out", options->out, "forces.csv to write")->required();
+  command->add_option("--sigma", options->sigma, "Also write the standard deviation of every force [N] to this CSV");
   command->add_option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
       ->capture_default_str();
   command->callback([&action, options] { action = [options] { return run(*options); }; });

@@ -3,6 +3,7 @@
 #include "dermis/calibration/calibrate.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <mutex>
@@ -31,9 +32,11 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
       {"loads", fmt::format("{:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons)},
       {"dead taxels", fmt::format("{}", training.dead_taxels.size())},
       {"fit error", describe_fit(training, array)}};
+  facts["uncertainty"] = describe(report.uncertainty, array);
   facts["temperature"] = training.uses_temperature
                              ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)
                              : "not an input (less than 3 C apart, or missing in many frames)";
+  if (!report.circuit.empty()) facts["circuit"] = fmt::format("{}", fmt::join(report.circuit, "; "));
   return facts;
 }
 
@@ -73,9 +76,14 @@ Result<Calibration> calibrate(const SampleDatabase& database, const Progress& pr
   report.frames = database.samples.size();
   report.frames_rejected = database.frames_rejected;
   report.first_rejection = database.first_rejection;
-  report.training = std::move(training->report);
   calibration.model.array = database.array;
-  calibration.model.networks = std::move(training->networks);
+  calibration.model.networks = training->networks;
+  Result<UncertaintyReport> uncertainty =
+      timed(report, "uncertainty", [&] { return fit_uncertainty(database, *training, calibration.model); });
+  if (!uncertainty) return uncertainty.error();
+  report.uncertainty = *uncertainty;
+  report.training = std::move(training->report);
+  if (database.circuit_fit) report.circuit = database.circuit_fit->statements;
   calibration.model.provenance = provenance(database.array, report);
   return calibration;
 }

@@ -11,6 +11,7 @@
 #include <type_traits>
 
 #include "calibration/labels.hpp"
+#include "calibration/noise_bound.hpp"
 #include "dermis/calibration/sample_database.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
@@ -59,6 +60,8 @@ class EstimatorRow {
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] const std::vector<std::vector<float>>& newtons() const { return newtons_; }
+  [[nodiscard]] const ForceFrame& force() const { return force_; }
+  [[nodiscard]] const pipeline::Pipeline& pipeline() const { return pipeline_; }
   [[nodiscard]] const std::vector<float>& sigma_newtons() const { return force_.sigma_newtons; }
   [[nodiscard]] const std::vector<double>& reading() const { return reading_; }
   [[nodiscard]] const std::vector<double>& siemens() const { return pipeline_.conductance().siemens; }
@@ -259,6 +262,48 @@ void break_down_all(Evaluation& evaluation) {
                                     contact_edges(evaluation.taxels));
 }
 
+/// Compares dermis with the bound on every so many of the labelled frames.
+class BoundCollector {
+ public:
+  BoundCollector(const pipeline::Model& model, std::size_t labelled) : bound_(NoiseBound::create(model)) {
+    if (bound_) stride_ = std::max<std::size_t>(labelled / bound_->affordable_frames(), 1);
+  }
+
+  /// To be called for every labelled frame that was accepted.
+  void offer(const Sample& truth, const EstimatorRow& row) {
+    if (!bound_ || offered_++ % stride_ != 0) return;
+    const auto is_judged = [](float newtons) { return newtons >= kJudgedNewtons; };
+    if (std::none_of(truth.known_newtons.begin(), truth.known_newtons.end(), is_judged)) return;
+    const std::vector<float> bound =
+        bound_->newtons(row.pipeline().conductance(), row.pipeline().conditioned().sigma_ratio);
+    ++frames_;
+    for (std::size_t taxel = 0; taxel < bound.size(); ++taxel) {
+      const double newtons = truth.known_newtons[taxel];
+      if (!(newtons >= kJudgedNewtons) || !std::isfinite(bound[taxel])) continue;
+      const double error = static_cast<double>(row.force().newtons[taxel]) - newtons;
+      bounds_.push_back(static_cast<double>(bound[taxel]) / newtons);
+      errors_.push_back(std::abs(error) / newtons);
+    }
+  }
+
+  [[nodiscard]] BoundComparison comparison() const {
+    if (bounds_.empty()) return {};
+    double square = 0.0;
+    for (std::size_t k = 0; k < bounds_.size(); ++k) square += std::pow(errors_[k] / bounds_[k], 2);
+    constexpr double kMedianOfNormal = 0.67449;
+    return {frames_, bounds_.size(), *summarise(bounds_).median, *summarise(errors_).median / kMedianOfNormal,
+            std::sqrt(square / static_cast<double>(bounds_.size()))};
+  }
+
+ private:
+  std::optional<NoiseBound> bound_;
+  std::size_t stride_ = 1;
+  std::size_t offered_ = 0;
+  std::size_t frames_ = 0;
+  std::vector<double> bounds_;  // over the true force
+  std::vector<double> errors_;  // over the true force
+};
+
 /// Frames for pictures: the first ones that press several taxels, or else the first ones that press any.
 class ExampleChoice {
  public:
@@ -337,6 +382,8 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   Errors errors(row.names().size());
   ExampleChoice examples;
   const std::vector<std::vector<Load>> loads_of = group_by_frame(loads, frames.size());
+  const auto labelled = std::count_if(loads_of.begin(), loads_of.end(), [](const auto& some) { return !some.empty(); });
+  BoundCollector bound(model, static_cast<std::size_t>(labelled));
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
     const bool accepted = row.run(frames[frame]);
     if (loads_of[frame].empty()) continue;
@@ -350,9 +397,11 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
     judge_taxels(frame, frames[frame], truth, row, evaluation, errors);
     judge_totals(frame, frames[frame], truth, row, evaluation, errors);
     examples.offer(frame, truth, row);
+    bound.offer(truth, row);
   }
   if (evaluation.frames == 0) return bad_input("no labelled frame fits the model's array");
   evaluation.estimators = summarise_estimators(row.names(), evaluation, errors);
+  evaluation.bound = bound.comparison();
   evaluation.coverage = coverage_of(evaluation.taxels);
   evaluation.examples = std::move(examples).chosen();
   break_down_all(evaluation);

@@ -60,13 +60,21 @@ std::string to_json(const Evaluation& evaluation) {
   for (const EstimatorResult& result : evaluation.estimators) estimators.push_back(estimator_json(result));
   add_coverage(evaluation.coverage, estimators.front());
   estimators.front()["coverage_taxels"] = evaluation.coverage.count;
-  const Json root = {{"frames", evaluation.frames},
-                     {"frames_rejected", evaluation.frames_rejected},
-                     {"estimators", std::move(estimators)},
-                     {"by_force", breakdown_json(evaluation, evaluation.by_force)},
-                     {"by_temperature", breakdown_json(evaluation, evaluation.by_temperature)},
-                     {"by_supply", breakdown_json(evaluation, evaluation.by_supply)},
-                     {"by_contacts", breakdown_json(evaluation, evaluation.by_contacts)}};
+  Json root = {{"frames", evaluation.frames},
+               {"frames_rejected", evaluation.frames_rejected},
+               {"estimators", std::move(estimators)},
+               {"by_force", breakdown_json(evaluation, evaluation.by_force)},
+               {"by_temperature", breakdown_json(evaluation, evaluation.by_temperature)},
+               {"by_supply", breakdown_json(evaluation, evaluation.by_supply)},
+               {"by_contacts", breakdown_json(evaluation, evaluation.by_contacts)}};
+  const BoundComparison& bound = evaluation.bound;
+  if (bound.frames > 0) {
+    root["cramer_rao_bound"] = {{"frames", bound.frames},
+                                {"taxels", bound.taxels},
+                                {"median_relative_bound", bound.median_bound},
+                                {"median_relative_deviation", bound.median_deviation},
+                                {"rms_error_over_bound", bound.rms_ratio}};
+  }
   return root.dump(2);
 }
 

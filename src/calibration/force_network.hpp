@@ -20,6 +20,8 @@ struct ForceNetwork {
   double heaviest_newtons = 0.0;
   double rms_error = 0.0;          ///< Root mean square relative error on its own samples.
   std::vector<double> parameters;  ///< [shape.parameter_count()]
+  std::vector<double> noise;       ///< ln(estimate / newtons) of each sample, as large as its noise.
+  std::vector<double> new_errors;  ///< The same, as large as a new sample there would have.
 
   using Inputs = std::array<double, fusion::kInputsWithTemperature>;
 

@@ -24,7 +24,8 @@ constexpr std::size_t kLeastForceLevels = 3;
 constexpr double kLevelWidth = 1.05;      // labels weighed by a load cell scatter about their level
 constexpr double kLeastForceRange = 2.0;  // heaviest over lightest load
 constexpr double kLeastTemperatureShare = 0.5;
-constexpr double kDetectable = 3.0;  // in standard deviations of the unloaded reading
+constexpr float kUnknownRelativeSigma = 0.01F;  // until fit_uncertainty()
+constexpr double kDetectable = 3.0;             // in standard deviations of the unloaded reading
 
 /// What the samples say about each taxel.
 struct Evidence {
@@ -36,11 +37,12 @@ struct Evidence {
 
 std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size_t taxel, const Evidence& evidence) {
   std::vector<TaxelPoint> points;
-  for (const Sample& sample : database.samples) {
+  for (std::size_t k = 0; k < database.samples.size(); ++k) {
+    const Sample& sample = database.samples[k];
     const double newtons = sample.known_newtons[taxel];
     if (!(newtons > 0.0)) continue;
     points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.span),
-                      normalised_temperature(sample, evidence.span), newtons});
+                      normalised_temperature(sample, evidence.span), newtons, k});
   }
   return points;
 }
@@ -118,8 +120,9 @@ fusion::ForceNetworks make_networks(const network::PerceptronShape& shape, const
   networks.heaviest_siemens.assign(taxels, 1.0F);
   networks.heaviest_newtons.assign(taxels, std::numeric_limits<float>::infinity());
   networks.gain.assign(taxels, 1.0F);
-  networks.offset_sigma_siemens.assign(taxels, 0.0F);
-  networks.relative_sigma.assign(taxels, 0.01F);
+  networks.offset_sigma_siemens.assign(evidence.unloaded.offset_sigma_siemens.begin(),
+                                       evidence.unloaded.offset_sigma_siemens.end());
+  networks.relative_sigma.assign(fusion::kSigmaKnots * taxels, kUnknownRelativeSigma);
   networks.parameters.assign(shape.parameter_count() * taxels, 0.0F);
   for (const bool dead : evidence.dead) networks.dead.push_back(dead ? 1 : 0);
   return networks;
@@ -171,6 +174,23 @@ void report_fit(const std::vector<std::size_t>& own, const std::vector<ForceNetw
   if (errors.empty()) return;
   std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
   report.median_fit_error = errors[errors.size() / 2];
+}
+
+std::vector<TestedLoad> tested_presses(const std::vector<std::size_t>& own, const std::vector<ForceNetwork>& networks,
+                                       const Evidence& evidence) {
+  std::vector<TestedLoad> presses;
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const std::vector<TaxelPoint>& points = evidence.points[own[k]];
+    for (std::size_t point = 0; point < points.size(); ++point) {
+      const double newtons = points[point].newtons;
+      presses.push_back({points[point].sample,
+                         {own[k]},
+                         newtons,
+                         newtons * std::expm1(networks[k].noise[point]),
+                         newtons * std::expm1(networks[k].new_errors[point])});
+    }
+  }
+  return presses;
 }
 
 /// Taxels by what trains them.
@@ -273,6 +293,8 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   for (const std::size_t taxel : division.shared) {
     put(training.networks, taxel, shared.network, shared.gain[taxel]);
   }
+  training.tested_own = tested_presses(division.own, own, evidence);
+  training.tested_shared = std::move(shared.tested);
   report_fit(division.own, own, report);
   report.choice = describe(report, shared.has_gains);
   return training;

@@ -57,6 +57,7 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, const RawFr
   sample.reading.resize(array.taxel_count());
   preprocessing::bare_readings(array, raw, sample.reading);
   sample.ratio = conditioned.ratio;
+  sample.sigma_ratio = conditioned.sigma_ratio;
   sample.siemens = std::move(conductance.siemens);
   expand_loads(array, loads, sample);
   // A reading at the end of the ADC no longer tells its force.
@@ -116,6 +117,13 @@ Status check_rejected(const SampleDatabase& database) {
 
 Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std::span<const RawFrame> frames,
                                              std::span<const Load> loads, Nanos settle_time) {
+  if (array.has_unknown_circuit()) {
+    Result<CircuitFit> fit = fit_circuit(array, frames, loads, settle_time);
+    if (!fit) return fit.error();
+    Result<SampleDatabase> database = build_sample_database(fit->array, frames, loads, settle_time);
+    if (database) database->circuit_fit = std::move(*fit);
+    return database;
+  }
   if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
   SampleDatabase database;
   database.array = array;

@@ -44,6 +44,7 @@ struct SharedLoad {
 
 /// All loads of the database with the excess conductances of their taxels, before normalisation.
 struct RawLoad {
+  std::size_t sample = 0;                              // in the database
   std::vector<std::pair<std::size_t, double>> excess;  // taxel, siemens > 0
   double temperature = 0.0;
   double newtons = 0.0;
@@ -53,12 +54,13 @@ class LoadCollector {
  public:
   LoadCollector(const SampleDatabase& database, const TemperatureSpan& span, const UnloadedFit& unloaded,
                 const std::vector<bool>& dead)
-      : span_(span), unloaded_(unloaded), dead_(dead), presses_(dead.size()) {
-    for (const Sample& sample : database.samples) {
-      for (const TotalForce& total : sample.totals) add(sample, total.taxels, total.newtons);
+      : database_(database), span_(span), unloaded_(unloaded), dead_(dead), presses_(dead.size()) {
+    for (std::size_t k = 0; k < database.samples.size(); ++k) {
+      const Sample& sample = database.samples[k];
+      for (const TotalForce& total : sample.totals) add(k, total.taxels, total.newtons);
       for (std::size_t taxel = 0; taxel < dead.size(); ++taxel) {
         const double newtons = sample.known_newtons[taxel];
-        if (newtons > 0.0) presses_[taxel].push_back({&sample, newtons});
+        if (newtons > 0.0) presses_[taxel].push_back({k, newtons});
       }
     }
     for (std::size_t taxel = 0; taxel < dead.size(); ++taxel) add_presses(taxel);
@@ -77,7 +79,7 @@ class LoadCollector {
 
  private:
   struct Press {
-    const Sample* sample;
+    std::size_t sample;
     double newtons;
   };
 
@@ -87,12 +89,14 @@ class LoadCollector {
     const std::size_t count = std::min(presses.size(), kMostPresses);
     for (std::size_t k = 0; k < count; ++k) {
       const Press& press = presses[k * presses.size() / count];
-      add(*press.sample, {taxel}, press.newtons);
+      add(press.sample, {taxel}, press.newtons);
     }
   }
 
-  void add(const Sample& sample, const std::vector<std::size_t>& taxels, double newtons) {
+  void add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons) {
+    const Sample& sample = database_.samples[index];
     RawLoad load;
+    load.sample = index;
     load.newtons = newtons;
     load.temperature = normalised_temperature(sample, span_);
     bool is_felt = false;
@@ -106,6 +110,7 @@ class LoadCollector {
     if (is_felt) loads_.push_back(std::move(load));
   }
 
+  const SampleDatabase& database_;
   const TemperatureSpan& span_;
   const UnloadedFit& unloaded_;
   const std::vector<bool>& dead_;
@@ -306,6 +311,26 @@ class GainFit {
   std::vector<std::vector<double>> forces_;  // weighted, of every share
 };
 
+/// The errors of the loads as if each were left out. The leverage knows of the network's parameters but not of the
+/// gains: the errors are scaled to the mean square that held-out loads have with them.
+std::vector<TestedLoad> tested_loads(const std::vector<RawLoad>& raw, const SharedProblem& problem,
+                                     const Candidate& chosen, double mean_square) {
+  const std::size_t count = raw.size();
+  const std::vector<network::FittedResidual> fitted = network::fitted_residuals(
+      problem.residual_function(chosen.shape), count, count + chosen.free.size(), chosen.free);
+  const double scale = std::max(std::sqrt(mean_square / chosen.leave_one_out), 1.0);
+  std::vector<TestedLoad> tested;
+  for (std::size_t k = 0; k < count; ++k) {
+    TestedLoad& load = tested.emplace_back();
+    load.sample = raw[k].sample;
+    for (const auto& [taxel, siemens] : raw[k].excess) load.taxels.push_back(taxel);
+    load.newtons = raw[k].newtons;
+    load.noise_n = scale * fitted[k].as_noise() / problem.loads()[k].weight;
+    load.error_n = scale * fitted[k].as_new_error() / problem.loads()[k].weight;
+  }
+  return tested;
+}
+
 }  // namespace
 
 SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan& span, const UnloadedFit& unloaded,
@@ -332,6 +357,7 @@ SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan
   }
   shared.network = problem.network(chosen.shape, chosen.free);
   shared.gain = problem.gain();
+  shared.tested = tested_loads(loads, problem, chosen, mean_square);
   shared.leave_one_out_error = kRelativeErrorOfResidual * std::sqrt(mean_square);
   return shared;
 }

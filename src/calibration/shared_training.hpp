@@ -6,6 +6,7 @@
 
 #include "calibration/force_network.hpp"
 #include "calibration/unloaded_fit.hpp"
+#include "dermis/calibration/force_training.hpp"
 #include "dermis/calibration/sample_database.hpp"
 
 namespace dermis::calibration {
@@ -16,6 +17,7 @@ struct SharedNetwork {
   std::vector<double> gain;  ///< [taxels]; all 1 where gains did not help.
   bool has_gains = false;
   double leave_one_out_error = 0.0;  ///< Root mean square relative error of a load that is held out.
+  std::vector<TestedLoad> tested;
 };
 
 /// Trains through the sum: for every load, sum over its taxels of gain_i f(e_i, t) = newtons. The number of hidden

@@ -71,6 +71,11 @@ ForceNetwork train_taxel(const network::PerceptronShape& shape, std::span<const 
     best = std::move(free);
     best_error = report.final_error;
   }
+  const auto fitted = network::fitted_residuals(residual_function, training.size(), training.size() + n, best);
+  for (std::size_t k = 0; k < training.size(); ++k) {
+    network.noise.push_back(fitted[k].as_noise() / training[k].weight);
+    network.new_errors.push_back(fitted[k].as_new_error() / training[k].weight);
+  }
   network::monotone::parameters(shape, best, network.parameters);
 
   double square = 0.0;

@@ -14,6 +14,7 @@ struct TaxelPoint {
   double excess_siemens = 0.0;  ///< > 0
   double temperature = 0.0;     ///< About [-1, 1]; 0 where temperature is not an input.
   double newtons = 0.0;         ///< > 0
+  std::size_t sample = 0;       ///< Where it comes from in the database.
 };
 
 /// Trains ln(newtons) of one taxel on its points by Levenberg-Marquardt. Every point counts by its noise:

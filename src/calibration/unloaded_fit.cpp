@@ -85,8 +85,8 @@ double normalised_temperature(const Sample& sample, const TemperatureSpan& span)
 UnloadedFit fit_unloaded(const SampleDatabase& database, const TemperatureSpan& span) {
   const std::size_t taxels = database.array.taxel_count();
   const double least_noise = kLeastNoiseCounts * database.siemens_per_count;
-  UnloadedFit fit{std::vector<double>(taxels), std::vector<double>(taxels), std::vector<double>(taxels, least_noise),
-                  std::vector<bool>(taxels)};
+  UnloadedFit fit{std::vector<double>(taxels), std::vector<double>(taxels), std::vector<double>(taxels),
+                  std::vector<double>(taxels, least_noise), std::vector<bool>(taxels)};
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     const std::vector<UnloadedPoint> points = unloaded_points(database, taxel, span);
     fit.is_stuck[taxel] = points.empty();
@@ -96,6 +96,8 @@ UnloadedFit fit_unloaded(const SampleDatabase& database, const TemperatureSpan& 
     fit.offset_per_celsius[taxel] = line.slope;
     fit.noise_siemens[taxel] =
         points.size() < kLeastFramesForNoise ? 3.0 * least_noise : std::max(least_noise, line.deviation);
+    const double fitted = line.slope == 0.0 ? 1.0 : 2.0;  // numbers of the line
+    fit.offset_sigma_siemens[taxel] = fit.noise_siemens[taxel] * std::sqrt(fitted / static_cast<double>(points.size()));
   }
   return fit;
 }

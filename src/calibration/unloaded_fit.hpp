@@ -27,6 +27,8 @@ struct TemperatureSpan {
 struct UnloadedFit {
   std::vector<double> offset_siemens;      ///< [taxels]
   std::vector<double> offset_per_celsius;  ///< [taxels]
+  std::vector<double>
+      offset_sigma_siemens;           ///< Standard deviation of the fit, averaged over its temperatures [taxels].
   std::vector<double> noise_siemens;  ///< Standard deviation of a single frame [taxels], at least a third of a count.
   std::vector<bool> is_stuck;         ///< Saturated although nothing presses [taxels].
 };

@@ -3,10 +3,11 @@
 #include "dermis/compensation/crosstalk.hpp"
 
 #include <algorithm>
-#include <string>
+#include <utility>
 
 #include "compensation/fault_inversion.hpp"
 #include "compensation/grounded_rows.hpp"
+#include "compensation/newton_inversion.hpp"
 #include "compensation/proportional.hpp"
 #include "compensation/supply_error.hpp"
 #include "compensation/transposed.hpp"
@@ -40,8 +41,16 @@ bool has_ideal_amplifiers(const Readout& readout) {
   return readout.column_switch_ohm.empty() && readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
 }
 
-Error not_yet(const char* what) {
-  return bad_input(std::string(what) + " cannot be inverted yet: set circuit = \"none\"");
+bool has_resistive_lines(const Readout& readout) {
+  const auto is_resistance = [](double ohm) { return ohm > 0.0; };
+  return std::any_of(readout.row_segment_ohm.begin(), readout.row_segment_ohm.end(), is_resistance) ||
+         std::any_of(readout.column_segment_ohm.begin(), readout.column_segment_ohm.end(), is_resistance);
+}
+
+Inversion newton(const ArrayDescription& array, double tolerance) {
+  auto model = CircuitModel::create(array);
+  if (!model) return model.error();
+  return std::unique_ptr<CrosstalkInversion>(std::make_unique<NewtonInversion>(array, std::move(*model), tolerance));
 }
 
 }  // namespace
@@ -53,12 +62,12 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   }
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
-  if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty()) return not_yet("lines with resistance");
+  if (has_resistive_lines(readout)) return newton(array, tolerance);
   if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance);
   if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
     return inversion<VirtualGround>(array);
   }
-  if (readout.idle_rows == IdleRows::floating) return not_yet("readout.idle_rows = \"floating\"");
+  if (readout.idle_rows == IdleRows::floating) return newton(array, tolerance);
   return inversion<GroundedRows>(array, tolerance);
 }
 
@@ -71,9 +80,9 @@ Result<Compensator> Compensator::create(const ArrayDescription& array, std::span
 Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
                          std::span<const double> typical_siemens)
     : inversion_(std::move(inversion)),
+      supply_error_(std::make_unique<SupplyError>(array)),
       faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts(),
-                                               typical_siemens)),
-      supply_error_(std::make_unique<SupplyError>(array)) {}
+                                               typical_siemens)) {}
 Compensator::Compensator(Compensator&&) noexcept = default;
 Compensator& Compensator::operator=(Compensator&&) noexcept = default;
 Compensator::~Compensator() = default;

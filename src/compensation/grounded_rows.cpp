@@ -20,6 +20,7 @@ constexpr double kRounded = 1e-12;  // certificate; what is left of it is roundi
 constexpr std::size_t kMixingDepth = 8;
 constexpr double kLeastSiemens = 1e-12;  // held at 0 below
 constexpr double kSourceShare = 1e-3;    // of the tolerance, to which the sources' column voltages are found
+constexpr int kSourcePasses = 200;
 constexpr double kMostLogStep = 2.0;
 constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
 
@@ -107,13 +108,15 @@ void GroundedRows::load(std::span<const double> ratio) noexcept {
 }
 
 double GroundedRows::certify() noexcept {
-  if (!source_.empty()) follow_sources();
-  return assess(state_);
+  const bool settled = source_.empty() || follow_sources();
+  const double certificate = assess(state_);
+  return settled ? certificate : std::numeric_limits<double>::infinity();
 }
 
-/// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in (b)
-/// leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction.
-void GroundedRows::follow_sources() noexcept {
+/// Puts into y what the sources drive into the array at the present G, all rows grounded. Eliminating the rows as in
+/// (b) leaves v = diag(w) (e + RL G^T diag(Rd / a) G v) for the columns, a contraction. Whether it settled.
+bool GroundedRows::follow_sources() noexcept {
+  int pass = 0;
   double change = std::numeric_limits<double>::infinity();
   double last_change = change;
   do {
@@ -125,7 +128,7 @@ void GroundedRows::follow_sources() noexcept {
       change = std::max(change, std::abs(ratio - column_ratio_[col]));
       column_ratio_[col] = ratio;
     }
-  } while (change > kSourceShare * tolerance_ && change < last_change);
+  } while (change > kSourceShare * tolerance_ && change < last_change && ++pass < kSourcePasses);
   find_row_currents();
   for (std::size_t col = 0; col < state_.cols; ++col) {
     const double current = column_ratio_[col] * column_sum_[col] - column_return_[col];
@@ -138,6 +141,7 @@ void GroundedRows::follow_sources() noexcept {
     }
     source_siemens_[col] = current;
   }
+  return pass < kSourcePasses;
 }
 
 /// G^T diag(Rd / a) G v and G^T 1.

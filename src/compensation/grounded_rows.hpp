@@ -62,7 +62,7 @@ class GroundedRows final : public CrosstalkInversion {
  private:
   void load(std::span<const double> ratio) noexcept;
   [[nodiscard]] double certify() noexcept;
-  void follow_sources() noexcept;
+  [[nodiscard]] bool follow_sources() noexcept;
   void find_row_currents() noexcept;
   double iterate() noexcept;
   double iterate_with_mixing(double best, int damped_steps) noexcept;

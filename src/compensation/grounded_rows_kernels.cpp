@@ -26,12 +26,12 @@ using Vec = hn::Vec<D>;
 constexpr double kLeastShare = 1e-6;      // What a column leaves of the supply stays positive under noise.
 constexpr double kLeastLineRatio = 0.05;  // What a row leaves of the supply, for the estimate.
 
-/// 1 / (1 - RL sum), and for one loaded column its drivers' share, the mean of Rd y weighted by Z: from Z to G.
-HWY_INLINE Vec column_scale(D d, const GroundedRowsState& state, std::size_t col, Vec sum, Vec drop) {
+/// (c): `sum` of Z; for one loaded column the mean of Rd y weighted by Z+ is `drop` over `weight`.
+HWY_INLINE Vec column_scale(D d, const GroundedRowsState& state, std::size_t col, Vec sum, Vec drop, Vec weight) {
   const Vec one = hn::Set(d, 1.0);
   Vec share = hn::NegMulAdd(hn::LoadU(d, state.column_ohm.data() + col), sum, one);
   if (state.idle_columns == IdleColumns::floating) {
-    share = hn::Sub(share, hn::IfThenElseZero(hn::Gt(sum, hn::Zero(d)), hn::Div(drop, sum)));
+    share = hn::Sub(share, hn::IfThenElseZero(hn::Gt(weight, hn::Zero(d)), hn::Div(drop, weight)));
   }
   return hn::Div(one, hn::Max(share, hn::Set(d, kLeastShare)));
 }
@@ -48,7 +48,7 @@ void estimate_kernel(GroundedRowsState& state) {
       sum = hn::Add(sum, y);
       drop = hn::MulAdd(hn::Mul(hn::Set(d, state.drive_ohm[row]), y), y, drop);
     }
-    const Vec scale = column_scale(d, state, col, sum, drop);
+    const Vec scale = column_scale(d, state, col, sum, drop, sum);
     for (std::size_t row = 0; row < state.rows; ++row) {
       const std::size_t k = row * state.stride + col;
       hn::StoreU(hn::Mul(hn::Max(hn::LoadU(d, &state.measured[k]), zero), scale), d, &state.estimate[k]);
@@ -127,6 +127,7 @@ double assess_kernel(GroundedRowsState& state) {
     const Vec part = hn::LoadU(d, &state.column_part[col]);
     Vec sum = zero;
     Vec drop = zero;
+    Vec weight = zero;
     Vec worst = zero;
     Vec spread = zero;
     for (std::size_t row = 0; row < state.rows; ++row) {
@@ -135,13 +136,15 @@ double assess_kernel(GroundedRowsState& state) {
       const Vec off_diagonal = hn::Set(d, 1.0 - 1.0 / state.line_gain[row]);
       const Vec returned = hn::LoadU(d, &state.returned[k]);
       const Vec z = hn::MulSub(gain, hn::LoadU(d, &state.explained[k]), returned);
+      const Vec positive = hn::Max(z, zero);
       sum = hn::Add(sum, z);
-      drop = hn::MulAdd(z, hn::LoadU(d, &state.dropped[k]), drop);
+      weight = hn::Add(weight, positive);
+      drop = hn::MulAdd(positive, hn::LoadU(d, &state.dropped[k]), drop);
       const Vec residual = hn::Abs(hn::NegMulAdd(hn::LoadU(d, &state.siemens[k]), part, z));
       worst = hn::Max(worst, residual);
       spread = hn::MulAdd(residual, off_diagonal, spread);
     }
-    hn::StoreU(column_scale(d, state, col, sum, drop), d, &state.column_scale[col]);
+    hn::StoreU(column_scale(d, state, col, sum, drop, weight), d, &state.column_scale[col]);
     const Vec bound = hn::Mul(hn::Add(worst, spread), hn::LoadU(d, &state.certificate_ratio[col]));
     largest = hn::Max(largest, bound);
     total = hn::Add(total, bound);
@@ -174,7 +177,7 @@ HWY_INLINE Vec column_noise(D d, const GroundedRowsState& state, const double* H
   return hn::Div(hn::LoadU(d, sigma + col), hn::LoadU(d, &state.column_part[col]));
 }
 
-void noise_kernel(const GroundedRowsState& state, const double* HWY_RESTRICT sigma, double* HWY_RESTRICT out) {
+void noise_kernel(GroundedRowsState& state, const double* HWY_RESTRICT sigma, double* HWY_RESTRICT out) {
   const D d;
   const std::size_t lanes = hn::Lanes(d);
   const Vec one = hn::Set(d, 1.0);
@@ -184,8 +187,16 @@ void noise_kernel(const GroundedRowsState& state, const double* HWY_RESTRICT sig
     columns = hn::MulAdd(base, base, columns);
   }
   const Vec all_columns = hn::Set(d, hn::GetLane(hn::SumOfLanes(d, columns)));
-  double rows = 0.0;
-  for (const double gain : state.line_gain) rows += gain * gain;
+  double all_rows = 0.0;
+  for (std::size_t row = 0; row < state.rows; ++row) {
+    Vec returned = hn::Zero(d);
+    for (std::size_t k = row * state.stride; k < (row + 1) * state.stride; k += lanes) {
+      returned = hn::MulAdd(hn::LoadU(d, &state.siemens[k]), hn::LoadU(d, &state.shunted[k]), returned);
+    }
+    const double own = state.line_gain[row] - state.drive_ohm[row] * hn::GetLane(hn::SumOfLanes(d, returned));
+    state.noise_gain[row] = own * own;
+    all_rows += own * own;
+  }
   for (std::size_t col = 0; col < state.stride; col += lanes) {
     const Vec base = column_noise(d, state, sigma, col);
     const Vec square = hn::Mul(base, base);
@@ -193,14 +204,14 @@ void noise_kernel(const GroundedRowsState& state, const double* HWY_RESTRICT sig
     const Vec ohm = hn::LoadU(d, &state.column_ohm[col]);
     for (std::size_t row = 0; row < state.rows; ++row) {
       const std::size_t k = row * state.stride + col;
-      const double gain = state.line_gain[row] * state.line_gain[row];
+      const double gain = state.noise_gain[row];
       const Vec g = hn::LoadU(d, &state.siemens[k]);
       const Vec p = hn::Mul(hn::Set(d, state.drive_ohm[row]), g);
       const Vec w = hn::Mul(ohm, g);
       const Vec own = hn::Add(one, hn::Add(p, w));
       Vec variance = hn::Mul(hn::Mul(hn::Set(d, gain), square), hn::Mul(own, own));
       variance = hn::MulAdd(hn::Mul(p, p), hn::Mul(hn::Set(d, gain), other_columns), variance);
-      variance = hn::MulAdd(hn::Mul(w, w), hn::Mul(hn::Set(d, rows - gain), square), variance);
+      variance = hn::MulAdd(hn::Mul(w, w), hn::Mul(hn::Set(d, all_rows - gain), square), variance);
       hn::StoreU(hn::Sqrt(variance), d, out + k);
     }
   }
@@ -242,6 +253,7 @@ GroundedRowsState::GroundedRowsState(std::size_t row_count, std::size_t col_coun
       coupling(cols * stride),
       returned(rows * stride),
       line_gain(rows),
+      noise_gain(rows),
       column_part(stride),
       column_scale(stride) {}
 
@@ -275,7 +287,7 @@ void advance(GroundedRowsState& state) noexcept {
   HWY_DYNAMIC_DISPATCH(advance_kernel)(state);
 }
 
-void spread_noise(const GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept {
+void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept {
   HWY_DYNAMIC_DISPATCH(noise_kernel)(state, sigma.data(), out.data());
 }
 

@@ -36,6 +36,7 @@ struct GroundedRowsState {
   std::vector<double> coupling;      // diag(eta) G^T Rd y' [cols, stride]
   std::vector<double> returned;      // G diag(eta) G^T Rd y'
   std::vector<double> line_gain;     // a [rows]
+  std::vector<double> noise_gain;    // square of the diagonal of S D^-1 [rows]
   std::vector<double> column_part;   // w [stride]
   std::vector<double> column_scale;  // From Z to the next G [stride]
 };
@@ -56,7 +57,7 @@ void start_warm(GroundedRowsState& state, const std::vector<double>& last_estima
 void advance(GroundedRowsState& state) noexcept;
 
 /// Standard deviation of G [rows, stride] from that of y, `sigma` [stride]; see GroundedRows::propagate_noise.
-void spread_noise(const GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept;
+void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept;
 
 /// After a change of G or y' from outside.
 void refresh(GroundedRowsState& state) noexcept;

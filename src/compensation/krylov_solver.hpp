@@ -58,7 +58,7 @@ class KrylovSolver {
 
  private:
   using Vector = Eigen::Map<const Eigen::VectorXd>;
-  static constexpr Eigen::Index kBasis = 50;
+  static constexpr Eigen::Index kBasis = 100;
   static constexpr int kRestarts = 4;
 
   std::span<double> row(Eigen::Index k) noexcept {

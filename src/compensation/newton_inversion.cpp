@@ -4,41 +4,62 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "compensation/sensed_line.hpp"
+#include "dermis/core/random.hpp"
 
 namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxSteps = 80;
-constexpr double kLongestStep = 2.0;              // of x: a factor of e^2 where x is a logarithm
-constexpr double kShortestFraction = 1.0 / 64.0;  // of a step
+constexpr double kLongestStep = 2.0;             // of x: a factor of e^2 where x is a logarithm
+constexpr double kShortestFraction = 1.0 / 8.0;  // of a step
+constexpr double kLeastDamping = 1e-3;
+constexpr double kMostDamping = 1e3;
+constexpr double kDampingFactor = 10.0;
 constexpr double kLeastOpenShare = 1e-9;  // of the supply that a reading leaves to its taxel; less is no solution
 constexpr double kRounding = 1e-13;       // of the largest reading: what remains of a residual in double precision
+constexpr double kRoundingMerit = 1e-12;  // below it a step that does not halve the misfits is rounding
+// Of the solution of a step's equations: the better, the nearer the solution is.
+constexpr double kAccuracy = 0.1;
+constexpr double kBestAccuracy = 1e-6;
+constexpr double kLeastAccuracy = 1e-2;
 constexpr double kMostSiemens = 1e3;
+constexpr double kLeastOwnShare = 1e-3;  // of a taxel in its reading that the scaling of the equations counts on
+
+constexpr std::size_t kMostInvertedTaxels = 400;
+constexpr int kNoiseSamples = 12;
+constexpr std::uint64_t kNoiseSeed = 1;
 
 }  // namespace
 
-double NewtonInversion::Reading::scaled(double ratio) const noexcept {
+double NewtonInversion::Reading::apparent_siemens(double ratio) const noexcept {
   const double current = (ratio - offset) / gain;
-  const double siemens = current / std::max(1.0 - series * current, kLeastOpenShare);
-  return std::asinh(siemens / (2.0 * noise));
+  return current / std::max(1.0 - series * current, kLeastOpenShare);
+}
+
+double NewtonInversion::Reading::scaled(double ratio) const noexcept {
+  return std::asinh(apparent_siemens(ratio) / (2.0 * scale));
 }
 
 double NewtonInversion::Reading::slope(double ratio) const noexcept {
-  const double current = (ratio - offset) / gain;
-  const double open = std::max(1.0 - series * current, kLeastOpenShare);
-  return 1.0 / (gain * open * open * std::hypot(current / open, 2.0 * noise));
+  return 1.0 / (open_slope(ratio) * std::hypot(apparent_siemens(ratio), 2.0 * scale));
+}
+
+double NewtonInversion::Reading::open_slope(double ratio) const noexcept {
+  const double open = std::max(1.0 - series * (ratio - offset) / gain, kLeastOpenShare);
+  return gain * open * open;
 }
 
 double NewtonInversion::Reading::siemens(double x) const noexcept {
-  return std::min(2.0 * noise * std::sinh(x), kMostSiemens);
+  return std::min(2.0 * scale * std::sinh(x), kMostSiemens);
 }
 
 double NewtonInversion::Reading::siemens_slope(double x) const noexcept {
-  return 2.0 * noise * std::cosh(x);
+  return 2.0 * scale * std::cosh(x);
 }
 
 NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio)
@@ -50,13 +71,15 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
     for (std::size_t col = 0; col < array.cols; ++col) {
       const SensedLine sensed = sensed_line(readout, columns_are_driven ? row : col);
       const double drive = readout.drive_ohm[columns_are_driven ? col : row];
-      readings_.push_back({sensed.gain, sensed.offset, drive + sensed.rho, noise_ratio / sensed.gain});
+      readings_.push_back({sensed.gain, sensed.offset, drive + sensed.rho, noise_ratio / sensed.gain, 0.0});
     }
   }
-  for (auto* values : {&measured_, &x_, &trial_, &siemens_, &misfit_, &own_slope_, &right_, &change_, &last_shift_}) {
+  for (auto* values : {&measured_, &x_, &last_x_, &scaled_, &siemens_, &misfit_, &own_slope_, &row_scale_,
+                       &column_scale_, &right_, &solution_, &change_, &last_shift_}) {
     values->resize(array.taxel_count());
   }
   held_.resize(array.taxel_count());
+  if (x_.size() <= kMostInvertedTaxels) inverse_ = std::make_unique<DenseInverse>(x_.size());
 }
 
 double NewtonInversion::siemens_per_ratio() const noexcept {
@@ -71,7 +94,10 @@ InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span
     return {false, std::numeric_limits<double>::infinity()};
   }
   ratio_ = ratio;
-  for (std::size_t k = 0; k < ratio.size(); ++k) measured_[k] = readings_[k].scaled(ratio[k]);
+  for (std::size_t k = 0; k < ratio.size(); ++k) {
+    readings_[k].scale = std::max(readings_[k].noise, -readings_[k].apparent_siemens(ratio[k]));
+    measured_[k] = readings_[k].scaled(ratio[k]);
+  }
   bool solved = false;
   if (has_last_frame_) {
     start(true);
@@ -95,6 +121,7 @@ void NewtonInversion::start(bool from_last_frame) noexcept {
     x_[k] = std::max(measured_[k] + (from_last_frame ? last_shift_[k] : 0.0), 0.0);
   }
   solve_at(x_);
+  damping_ = 0.0;
 }
 
 bool NewtonInversion::iterate() noexcept {
@@ -133,42 +160,99 @@ double NewtonInversion::residual_ratio() const noexcept {
 
 // A weak taxel adds to what flows around it: its reading is linear in its conductance up to that of the reading.
 double NewtonInversion::moved(std::size_t taxel, double x, double change) const noexcept {
-  if (change <= 0.0) return std::max(x + std::max(change, -kLongestStep), 0.0);
   const double linear = std::asinh(std::sinh(x) + change * std::cosh(x));
-  return std::min(linear, std::max(x, measured_[taxel]) + kLongestStep);
+  return std::clamp(linear, std::max(x - kLongestStep, 0.0), std::max(x, measured_[taxel]) + kLongestStep);
 }
 
 bool NewtonInversion::step() noexcept {
-  const std::size_t taxels = x_.size();
-  model_.own_derivatives(own_slope_);
-  for (std::size_t k = 0; k < taxels; ++k) {
-    held_[k] = x_[k] + misfit_[k] <= 0.0;
-    const double siemens_slope = readings_[k].siemens_slope(x_[k]);
-    own_slope_[k] = std::max(own_slope_[k] * siemens_slope, std::numeric_limits<double>::min());
-    right_[k] = held_[k] ? -x_[k] : misfit_[k] / (readings_[k].slope(model_.ratio()[k]) * own_slope_[k]);
-  }
-  const auto product = [&](std::span<const double> in, std::span<double> out) {
-    for (std::size_t k = 0; k < taxels; ++k) trial_[k] = in[k] * readings_[k].siemens_slope(x_[k]);
-    model_.multiply_taxel_jacobian(trial_, out);
-    for (std::size_t k = 0; k < taxels; ++k) out[k] = held_[k] ? in[k] : out[k] / own_slope_[k];
-  };
+  scale_equations();
+  std::copy(x_.begin(), x_.end(), last_x_.begin());
   const double before = merit();
-  const double accuracy = std::clamp(0.1 * before / std::sqrt(static_cast<double>(taxels)), 1e-6, 1e-2);
-  solver_.solve(product, right_, change_, accuracy);
-  std::copy(x_.begin(), x_.end(), trial_.begin());
-  for (double fraction = 1.0; fraction >= kShortestFraction; fraction *= 0.5) {
-    for (std::size_t k = 0; k < taxels; ++k) x_[k] = moved(k, trial_[k], fraction * change_[k]);
+  const double accuracy = kAccuracy * before / std::sqrt(static_cast<double>(x_.size()));
+  for (; damping_ <= kMostDamping; damping_ = std::max(kLeastDamping, kDampingFactor * damping_)) {
+    solve_equations(std::clamp(accuracy, kBestAccuracy, kLeastAccuracy));
+    for (std::size_t k = 0; k < x_.size(); ++k) {
+      change_[k] = held_[k] ? -x_[k] : solution_[k] * column_scale_[k] / readings_[k].siemens_slope(x_[k]);
+    }
+    for (double fraction = 1.0; fraction >= kShortestFraction; fraction *= 0.5) {
+      for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = moved(k, last_x_[k], fraction * change_[k]);
+      solve_at(x_);
+      const double after = merit();
+      if (!(after < before)) continue;
+      damping_ = damping_ > kLeastDamping ? damping_ / kDampingFactor : 0.0;
+      return after > kRoundingMerit || after < 0.5 * before;
+    }
+    std::copy(last_x_.begin(), last_x_.end(), x_.begin());
     solve_at(x_);
-    if (merit() < before) return true;
+    if (before < kRoundingMerit) return false;
   }
-  x_ = trial_;
-  solve_at(x_);
   return false;
 }
 
+void NewtonInversion::scale_equations() noexcept {
+  model_.own_derivatives(own_slope_);
+  for (std::size_t k = 0; k < x_.size(); ++k) {
+    const double slope = readings_[k].slope(model_.ratio()[k]);
+    const double least_own_slope = kLeastOwnShare * readings_[k].open_slope(model_.ratio()[k]);
+    row_scale_[k] = slope;
+    column_scale_[k] = 1.0 / (slope * std::max(own_slope_[k], least_own_slope));
+    held_[k] = x_[k] + misfit_[k] <= 0.0;
+    right_[k] = held_[k] ? -siemens_[k] / column_scale_[k] : misfit_[k];
+  }
+}
+
+void NewtonInversion::solve_equations(double accuracy) noexcept {
+  const std::size_t taxels = x_.size();
+  const auto product = [&](std::span<const double> in, std::span<double> out) {
+    for (std::size_t k = 0; k < taxels; ++k) scaled_[k] = in[k] * column_scale_[k];
+    model_.multiply_taxel_jacobian(scaled_, out);
+    for (std::size_t k = 0; k < taxels; ++k) out[k] = held_[k] ? in[k] : out[k] * row_scale_[k] + damping_ * in[k];
+  };
+  solver_.solve(product, right_, solution_, accuracy);
+}
+
+// In units of x, with B = (d x / d ratio) J (d siemens / d x): the sums of squares of the rows of B^-1 (d x / d ratio).
 void NewtonInversion::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
-  model_.own_derivatives(sigma_siemens);
-  for (double& sigma : sigma_siemens) sigma = sigma_ratio / sigma;
+  scale_equations();
+  std::fill(sigma_siemens.begin(), sigma_siemens.end(), 0.0);
+  if (x_.size() <= kMostInvertedTaxels) {
+    add_exact_variance(sigma_siemens);
+  } else {
+    add_sampled_variance(sigma_siemens);
+  }
+  for (std::size_t k = 0; k < x_.size(); ++k) {
+    const double sigma = sigma_ratio * column_scale_[k] * std::sqrt(sigma_siemens[k]);
+    sigma_siemens[k] = sigma < kMostSiemens ? sigma : kMostSiemens;  // also where nothing is known: not a number
+  }
+}
+
+void NewtonInversion::add_exact_variance(std::span<double> variance) noexcept {
+  const std::size_t taxels = x_.size();
+  auto& matrix = inverse_->matrix();
+  model_.taxel_jacobian({matrix.data(), taxels * taxels});
+  const Eigen::Map<const Eigen::VectorXd> row_scale(row_scale_.data(), matrix.rows());
+  const Eigen::Map<const Eigen::VectorXd> column_scale(column_scale_.data(), matrix.cols());
+  for (Eigen::Index k = 0; k < matrix.rows(); ++k) {
+    matrix.row(k).array() *= row_scale(k) * column_scale.transpose().array();
+  }
+  inverse_->invert();
+  for (Eigen::Index k = 0; k < matrix.rows(); ++k) {
+    variance[static_cast<std::size_t>(k)] += matrix.row(k).cwiseProduct(row_scale.transpose()).squaredNorm();
+  }
+}
+
+// The variance of a taxel over readings of random signs.
+void NewtonInversion::add_sampled_variance(std::span<double> variance) noexcept {
+  Random random(kNoiseSeed);
+  damping_ = 0.0;
+  std::fill(held_.begin(), held_.end(), false);
+  for (int sample = 0; sample < kNoiseSamples; ++sample) {
+    for (std::size_t k = 0; k < x_.size(); ++k) {
+      right_[k] = random.below(2) == 0 ? row_scale_[k] : -row_scale_[k];
+    }
+    solve_equations(kLeastAccuracy);
+    for (std::size_t k = 0; k < x_.size(); ++k) variance[k] += solution_[k] * solution_[k] / kNoiseSamples;
+  }
 }
 
 }  // namespace dermis::compensation

@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "compensation/dense_inverse.hpp"
 #include "compensation/krylov_solver.hpp"
 #include "dermis/compensation/circuit_model.hpp"
 #include "dermis/compensation/crosstalk.hpp"
@@ -41,13 +43,16 @@ class NewtonInversion final : public CrosstalkInversion {
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
 
  private:
-  struct Reading {        // what a reading would mean without crosstalk
+  struct Reading {
     double gain = 1.0;    // d ratio / d current [ohm]
     double offset = 0.0;  // ratio at no current
     double series = 0.0;  // rho_d + rho_s [ohm]
     double noise = 0.0;   // g_n [S]
+    double scale = 0.0;   // g_n, and the size of a reading below 0, which an amplifier's offset may cause [S]
+    [[nodiscard]] double apparent_siemens(double ratio) const noexcept;  // y
     [[nodiscard]] double scaled(double ratio) const noexcept;
-    [[nodiscard]] double slope(double ratio) const noexcept;  // d scaled / d ratio
+    [[nodiscard]] double slope(double ratio) const noexcept;       // d scaled / d ratio
+    [[nodiscard]] double open_slope(double ratio) const noexcept;  // d ratio / d siemens without crosstalk
     [[nodiscard]] double siemens(double x) const noexcept;
     [[nodiscard]] double siemens_slope(double x) const noexcept;
   };
@@ -55,6 +60,10 @@ class NewtonInversion final : public CrosstalkInversion {
   void start(bool from_last_frame) noexcept;
   [[nodiscard]] bool iterate() noexcept;
   [[nodiscard]] bool step() noexcept;
+  void scale_equations() noexcept;
+  void solve_equations(double accuracy) noexcept;
+  void add_exact_variance(std::span<double> variance) noexcept;
+  void add_sampled_variance(std::span<double> variance) noexcept;
   [[nodiscard]] double moved(std::size_t taxel, double x, double change) const noexcept;
   void solve_at(std::span<const double> x) noexcept;
   [[nodiscard]] double merit() const noexcept;
@@ -63,17 +72,23 @@ class NewtonInversion final : public CrosstalkInversion {
   std::vector<Reading> readings_;
   CircuitModel model_;
   KrylovSolver solver_;
+  std::unique_ptr<DenseInverse> inverse_;  // of small arrays
   double tolerance_;
   std::span<const double> ratio_;
   std::vector<double> measured_;  // x of the readings
   std::vector<double> x_;         // of the taxels
-  std::vector<double> trial_;
+  std::vector<double> last_x_;
+  std::vector<double> scaled_;
   std::vector<double> siemens_;
   std::vector<double> misfit_;  // r at siemens_
   std::vector<double> own_slope_;
+  std::vector<double> row_scale_;
+  std::vector<double> column_scale_;
   std::vector<double> right_;
+  std::vector<double> solution_;
   std::vector<double> change_;
   std::vector<bool> held_;
+  double damping_ = 0.0;
   bool has_last_frame_ = false;
   std::vector<double> last_shift_;  // x - measured of the last solved frame
 };

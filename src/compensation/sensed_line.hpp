@@ -20,7 +20,8 @@ struct SensedLine {
 };
 
 /// A load is the resistance itself. An amplifier of open-loop gain A0 and offset off (over the supply) reads
-/// r = (I RL - off) / (1 + 1/A0) and holds its input at off A0 / (1 + A0) + I RL / (1 + A0), behind the column's switch.
+/// r = (I RL - off) / (1 + 1/A0) and holds its input at off A0 / (1 + A0) + I RL / (1 + A0), behind the column's
+/// switch.
 inline SensedLine sensed_line(const Readout& readout, std::size_t line) noexcept {
   const double load = readout.load_ohm[line];
   if (readout.circuit != Circuit::transimpedance) return {load, load};

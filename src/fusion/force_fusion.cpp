@@ -9,10 +9,11 @@
 #include <numbers>
 #include <utility>
 
+#include "fusion/force_kernels.hpp"
+
 namespace dermis::fusion {
 namespace {
 
-constexpr float kLeastShare = 1e-20F;  // of the reference: keeps ln(e) finite
 constexpr float kNoForce = std::numeric_limits<float>::quiet_NaN();
 constexpr float kNoUpperBound = std::numeric_limits<float>::infinity();
 
@@ -53,18 +54,30 @@ bool ForceNetworks::is_consistent() const noexcept {
          all(dead, taxels, [](std::uint8_t value) { return value <= 1; }) &&
          all(parameters, shape.parameter_count() * taxels, is_finite) && std::isfinite(temperature_sigma_celsius) &&
          temperature_sigma_celsius >= 0.0 && all(offset_sigma_siemens, taxels, is_not_negative) &&
-         all(relative_sigma, taxels, is_positive) && rises_with_conductance(shape, parameters, taxels);
+         all(relative_sigma, kSigmaKnots * taxels, is_positive) &&
+         std::all_of(sigma_knots_newtons.begin(), sigma_knots_newtons.end(), is_positive) &&
+         sigma_knots_newtons[0] < sigma_knots_newtons[1] && rises_with_conductance(shape, parameters, taxels);
+}
+
+float ForceNetworks::sigma_place(float log_newtons) const noexcept {
+  const float first = std::log(sigma_knots_newtons[0]);
+  const float last = std::log(sigma_knots_newtons[1]);
+  constexpr auto kLastKnot = static_cast<float>(kSigmaKnots - 1);
+  return std::clamp(kLastKnot * (log_newtons - first) / (last - first), 0.0F, kLastKnot);
 }
 
 ForceFusion::ForceFusion(ForceNetworks networks)
     : networks_(std::move(networks)),
       bank_(networks_.shape, networks_.taxel_count(), networks_.parameters),
+      offset_per_celsius_(networks_.offset_per_celsius.begin(), networks_.offset_per_celsius.end()),
       excess_siemens_(networks_.taxel_count()),
       sigma_siemens_(networks_.taxel_count()),
       inputs_(networks_.shape.inputs * networks_.taxel_count()),
       outputs_(networks_.taxel_count()),
       gradient_(inputs_.size()) {
   assert(networks_.is_consistent());
+  for (const float gain : networks_.gain) log_gain_.push_back(std::log(gain));
+  for (const float sigma : networks_.relative_sigma) relative_variance_.push_back(sigma * sigma);
 }
 
 void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force) noexcept {
@@ -83,9 +96,10 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
     return;
   }
   const Temperature temperature = this->temperature(conductance, force);
-  prepare_inputs(conductance, temperature);
+  prepare_inputs(conductance, temperature.offset);
   bank_.evaluate(inputs_, outputs_, gradient_);
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) finish(taxel, temperature, force);
+  compute_forces(temperature.sigma, force);
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) apply_status(taxel, force);
 }
 
 ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conductance,
@@ -103,29 +117,43 @@ ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conduc
   return {clamped, std::hypot(networks_.temperature_sigma_celsius, outside)};
 }
 
-void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, const Temperature& temperature) noexcept {
+void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept {
   const std::size_t taxels = networks_.taxel_count();
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    const double offset = networks_.offset_siemens[taxel] + networks_.offset_per_celsius[taxel] * temperature.offset;
-    const auto excess = static_cast<float>(conductance.siemens[taxel] - offset);
+    const double offset = networks_.offset_siemens[taxel] + networks_.offset_per_celsius[taxel] * temperature_offset;
+    excess_siemens_[taxel] = static_cast<float>(conductance.siemens[taxel] - offset);
     const auto noise = static_cast<float>(conductance.sigma_siemens[taxel]);
     const float offset_sigma = networks_.offset_sigma_siemens[taxel];
-    const float sigma = std::sqrt(noise * noise + offset_sigma * offset_sigma);
-    excess_siemens_[taxel] = excess;
-    sigma_siemens_[taxel] = sigma;
-    const float reference = networks_.reference_siemens[taxel];
-    // An unloaded taxel has no force, but a detection limit: the network is asked for the force of one sigma.
-    const float calibrated = std::min(excess <= 0.0F ? sigma : excess, networks_.heaviest_siemens[taxel]);
-    const float share = std::max(calibrated / reference, kLeastShare);
-    inputs_[taxel] = std::log(share);
-    inputs_[taxels + taxel] = share - 1.0F;
+    sigma_siemens_[taxel] = std::sqrt(noise * noise + offset_sigma * offset_sigma);
   }
+  conductance_inputs({networks_.reference_siemens, networks_.heaviest_siemens, excess_siemens_, sigma_siemens_},
+                     std::span(inputs_).first(2 * taxels));
   if (!uses_temperature()) return;
-  const auto t = static_cast<float>(temperature.offset / networks_.temperature_half_span_celsius);
+  const auto t = static_cast<float>(temperature_offset / networks_.temperature_half_span_celsius);
   std::fill(inputs_.begin() + static_cast<std::ptrdiff_t>(2 * taxels), inputs_.end(), t);
 }
 
-void ForceFusion::finish(std::size_t taxel, const Temperature& temperature, ForceFrame& force) const noexcept {
+void ForceFusion::compute_forces(double temperature_sigma, ForceFrame& force) const noexcept {
+  const float first = std::log(networks_.sigma_knots_newtons[0]);
+  const float last = std::log(networks_.sigma_knots_newtons[1]);
+  ForceSources sources;
+  sources.excess = {networks_.reference_siemens, networks_.heaviest_siemens, excess_siemens_, sigma_siemens_};
+  sources.log_gain = log_gain_;
+  sources.inputs = inputs_;
+  sources.log_newtons = outputs_;
+  sources.gradient = gradient_;
+  sources.offset_per_celsius = offset_per_celsius_;
+  sources.relative_variance = relative_variance_;
+  sources.temperature_sigma = static_cast<float>(temperature_sigma);
+  if (uses_temperature()) {
+    sources.temperature_per_celsius = static_cast<float>(1.0 / networks_.temperature_half_span_celsius);
+  }
+  sources.log_first_knot = first;
+  sources.knots_per_log = static_cast<float>(kSigmaKnots - 1) / (last - first);
+  forces(sources, force.newtons, force.sigma_newtons);
+}
+
+void ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexcept {
   TaxelStatus& status = force.taxels[taxel];
   float& newtons = force.newtons[taxel];
   float& sigma = force.sigma_newtons[taxel];
@@ -140,36 +168,12 @@ void ForceFusion::finish(std::size_t taxel, const Temperature& temperature, Forc
     sigma = kNoForce;
     return;
   }
-  const float excess = excess_siemens_[taxel];
-  newtons = networks_.gain[taxel] * std::exp(outputs_[taxel]);
-  sigma = sigma_newtons(taxel, newtons, temperature.sigma);
-  if (excess <= 0.0F) newtons = 0.0F;
-  const bool is_above = excess > networks_.heaviest_siemens[taxel] || newtons > networks_.heaviest_newtons[taxel];
-  if (is_above) {
+  if (excess_siemens_[taxel] > networks_.heaviest_siemens[taxel] || newtons > networks_.heaviest_newtons[taxel]) {
     newtons = std::min(newtons, networks_.heaviest_newtons[taxel]);
     if (status == TaxelStatus::ok) status = TaxelStatus::above_range;
     force.status |= FrameStatus::above_range;
   }
   if (status == TaxelStatus::above_range || status == TaxelStatus::saturated) sigma = kNoUpperBound;
-}
-
-float ForceFusion::sigma_newtons(std::size_t taxel, float newtons, double temperature_sigma) const noexcept {
-  const std::size_t taxels = networks_.taxel_count();
-  const float share = inputs_[taxels + taxel] + 1.0F;
-  const float exponent = gradient_[taxel] + gradient_[taxels + taxel] * share;  // p
-  const float least = sigma_siemens_[taxel] / networks_.reference_siemens[taxel];
-  const float reached = std::max(share, least);
-  const float noise = exponent * least / reached;
-  float per_celsius = -exponent * static_cast<float>(networks_.offset_per_celsius[taxel]) /
-                      (reached * networks_.reference_siemens[taxel]);
-  if (uses_temperature()) {
-    per_celsius += gradient_[2 * taxels + taxel] / static_cast<float>(networks_.temperature_half_span_celsius);
-  }
-  const float drift = per_celsius * static_cast<float>(temperature_sigma);
-  const float material = networks_.relative_sigma[taxel];
-  const float relative = std::sqrt(noise * noise + drift * drift + material * material);
-  const float at_reached = share < least ? newtons * std::pow(least / share, exponent) : newtons;
-  return std::max(at_reached * relative, std::numeric_limits<float>::min());
 }
 
 }  // namespace dermis::fusion

@@ -172,8 +172,16 @@ LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamp
   return DampedDescent(NetworkProblem(network, samples), parameters, options).run();
 }
 
-double leave_one_out_mean_square(const ResidualFunction& residual_function, std::size_t data_count,
-                                 std::size_t residual_count, std::span<const double> parameters) {
+double FittedResidual::as_noise() const noexcept {
+  return residual / std::sqrt(1.0 - leverage);
+}
+
+double FittedResidual::as_new_error() const noexcept {
+  return residual * std::sqrt((1.0 + leverage) / (1.0 - leverage));
+}
+
+std::vector<FittedResidual> fitted_residuals(const ResidualFunction& residual_function, std::size_t data_count,
+                                             std::size_t residual_count, std::span<const double> parameters) {
   const auto n = static_cast<Eigen::Index>(parameters.size());
   Vector residuals(static_cast<Eigen::Index>(residual_count));
   Matrix jacobian(residuals.size(), n);
@@ -181,11 +189,19 @@ double leave_one_out_mean_square(const ResidualFunction& residual_function, std:
   Matrix normal = jacobian.transpose() * jacobian;
   normal.diagonal().array() += kDiagonalFloor * std::max(normal.diagonal().maxCoeff(), 1e-300);
   const Eigen::LDLT<Matrix> factors(normal);
-  double square = 0.0;
+  std::vector<FittedResidual> fitted;
   for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(data_count); ++j) {
     const Vector row = jacobian.row(j);
-    const double leverage = std::clamp(row.dot(factors.solve(row)), 0.0, kMaxLeverage);
-    square += std::pow(residuals[j] / (1.0 - leverage), 2);
+    fitted.push_back({residuals[j], std::clamp(row.dot(factors.solve(row)), 0.0, kMaxLeverage)});
+  }
+  return fitted;
+}
+
+double leave_one_out_mean_square(const ResidualFunction& residual_function, std::size_t data_count,
+                                 std::size_t residual_count, std::span<const double> parameters) {
+  double square = 0.0;
+  for (const FittedResidual& datum : fitted_residuals(residual_function, data_count, residual_count, parameters)) {
+    square += std::pow(datum.left_out(), 2);
   }
   return square / static_cast<double>(data_count);
 }

@@ -28,13 +28,12 @@ struct TaxelTensors {
   std::array<std::pair<const char*, std::vector<double> ForceNetworks::*>, 2> doubles{
       {{"networks.offset_siemens", &ForceNetworks::offset_siemens},
        {"networks.offset_per_celsius", &ForceNetworks::offset_per_celsius}}};
-  std::array<std::pair<const char*, std::vector<float> ForceNetworks::*>, 6> floats{
+  std::array<std::pair<const char*, std::vector<float> ForceNetworks::*>, 5> floats{
       {{"networks.reference_siemens", &ForceNetworks::reference_siemens},
        {"networks.heaviest_siemens", &ForceNetworks::heaviest_siemens},
        {"networks.heaviest_newtons", &ForceNetworks::heaviest_newtons},
        {"networks.gain", &ForceNetworks::gain},
-       {"networks.offset_sigma_siemens", &ForceNetworks::offset_sigma_siemens},
-       {"networks.relative_sigma", &ForceNetworks::relative_sigma}}};
+       {"networks.offset_sigma_siemens", &ForceNetworks::offset_sigma_siemens}}};
 };
 
 template <typename T>
@@ -88,6 +87,9 @@ void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
   for (const auto& [name, member] : tensors.doubles) put(file, name, {taxels}, networks.*member);
   for (const auto& [name, member] : tensors.floats) put(file, name, {taxels}, networks.*member);
   put(file, "networks.dead", {taxels}, networks.dead);
+  put(file, "networks.relative_sigma", {fusion::kSigmaKnots, taxels}, networks.relative_sigma);
+  put<float>(file, "networks.sigma_knots_newtons", {2},
+             {networks.sigma_knots_newtons.begin(), networks.sigma_knots_newtons.end()});
   put(file, "networks.parameters", {networks.shape.parameter_count(), taxels}, networks.parameters);
 }
 
@@ -105,6 +107,10 @@ ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, Tens
   for (const auto& [name, member] : tensors.doubles) reader.get(name, {taxels}, networks.*member);
   for (const auto& [name, member] : tensors.floats) reader.get(name, {taxels}, networks.*member);
   reader.get("networks.dead", {taxels}, networks.dead);
+  reader.get("networks.relative_sigma", {fusion::kSigmaKnots, taxels}, networks.relative_sigma);
+  std::vector<float> knots;
+  reader.get("networks.sigma_knots_newtons", {2}, knots);
+  if (knots.size() == 2) networks.sigma_knots_newtons = {knots[0], knots[1]};
   reader.get("networks.parameters", {networks.shape.parameter_count(), taxels}, networks.parameters);
   return networks;
 }

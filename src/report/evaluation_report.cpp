@@ -16,11 +16,13 @@ namespace {
 struct Figures {
   Figure calibration;
   std::vector<Figure> breakdowns;
+  Figure coverage;
   std::vector<Figure> tactile;
 };
 
 Figures all_figures(const calibration::Evaluation& evaluation) {
-  return {calibration_figure(evaluation), breakdown_figures(evaluation), tactile_figures(evaluation)};
+  return {calibration_figure(evaluation), breakdown_figures(evaluation), coverage_figure(evaluation),
+          tactile_figures(evaluation)};
 }
 
 std::string page_of(const calibration::Evaluation& evaluation, const pipeline::Model& model, const Figures& figures) {
@@ -30,6 +32,7 @@ std::string page_of(const calibration::Evaluation& evaluation, const pipeline::M
   add_estimators(page, evaluation, model);
   page.figure(figures.calibration);
   page.figures(figures.breakdowns);
+  page.figure(figures.coverage);
   for (const Figure& figure : figures.tactile) page.figure(figure);
   add_array(page, evaluation.array);
   add_provenance(page, model);
@@ -47,6 +50,7 @@ Status write_evaluation_report(const std::string& directory, const calibration::
   const Figures figures = all_figures(evaluation);
   std::vector<Figure> files = {figures.calibration};
   files.insert(files.end(), figures.breakdowns.begin(), figures.breakdowns.end());
+  files.push_back(figures.coverage);
   files.insert(files.end(), figures.tactile.begin(), figures.tactile.end());
   return write_files(directory, files, page_of(evaluation, model, figures));
 }

@@ -27,6 +27,10 @@ struct Figure {
 /// Errors against force, temperature, supply and number of contacts.
 [[nodiscard]] std::vector<Figure> breakdown_figures(const calibration::Evaluation& evaluation);
 
+/// Share of the true forces that lie within the interval of a given probability: a straight line where the standard
+/// deviations are right. No panel where nothing was judged.
+[[nodiscard]] Figure coverage_figure(const calibration::Evaluation& evaluation);
+
 /// Tactile images of the example frames.
 [[nodiscard]] std::vector<Figure> tactile_figures(const calibration::Evaluation& evaluation);
 

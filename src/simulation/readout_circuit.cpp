@@ -3,9 +3,12 @@
 #include "dermis/simulation/readout_circuit.hpp"
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cassert>
 #include <limits>
+#include <vector>
 
+#include "simulation/grounded_divider_forward.hpp"
 #include "simulation/terminal_network.hpp"
 
 namespace dermis::simulation {
@@ -153,11 +156,19 @@ Result<ReadoutCircuit> ReadoutCircuit::create(const ArrayDescription& array) {
   return ReadoutCircuit(array);
 }
 
+ReadoutCircuit::ReadoutCircuit(const ArrayDescription& array)
+    : readout_(array.readout),
+      rows_(array.rows),
+      cols_(array.cols),
+      is_grounded_divider_(fits_grounded_divider(array)) {}
+
 void ReadoutCircuit::ratios(std::span<const double> siemens, std::span<double> ratio) const {
   assert(siemens.size() == rows_ * cols_ && ratio.size() == rows_ * cols_);
   const auto taxels = as_table(siemens, rows_, cols_);
   auto reading = as_table(ratio, rows_, cols_);
-  if (readout_.circuit == Circuit::none) {
+  if (is_grounded_divider_) {
+    grounded_divider_ratios(readout_, siemens, ratio);
+  } else if (readout_.circuit == Circuit::none) {
     reading = kUnknownCircuitOhm * taxels;
   } else if (readout_.circuit == Circuit::flexitac) {
     const TerminalNetwork network =
@@ -167,6 +178,21 @@ void ReadoutCircuit::ratios(std::span<const double> siemens, std::span<double> r
     reading = readings(readout_, network_of(taxels, readout_.row_segment_ohm, readout_.column_segment_ohm));
   }
   if (!readout_.pressure_raises_reading) reading = 1.0 - reading.array();
+}
+
+void ReadoutCircuit::ratios(std::span<const float> siemens, std::span<float> ratio) const {
+  assert(siemens.size() == rows_ * cols_ && ratio.size() == rows_ * cols_);
+  if (!is_grounded_divider_) {
+    const std::vector<double> exact(siemens.begin(), siemens.end());
+    std::vector<double> reading(ratio.size());
+    ratios(exact, reading);
+    std::transform(reading.begin(), reading.end(), ratio.begin(),
+                   [](double value) { return static_cast<float>(value); });
+    return;
+  }
+  grounded_divider_ratios(readout_, siemens, ratio);
+  if (readout_.pressure_raises_reading) return;
+  for (float& reading : ratio) reading = 1.0F - reading;
 }
 
 }  // namespace dermis::simulation

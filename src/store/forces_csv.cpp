@@ -10,27 +10,29 @@
 
 namespace dermis::store {
 
-ForcesCsvWriter::ForcesCsvWriter(AtomicFile file, std::size_t taxel_count)
-    : file_(std::move(file)), taxel_count_(taxel_count) {}
+ForcesCsvWriter::ForcesCsvWriter(AtomicFile file, std::size_t taxel_count, ForceColumn column)
+    : file_(std::move(file)), taxel_count_(taxel_count), column_(column) {}
 
-Result<ForcesCsvWriter> ForcesCsvWriter::create(const std::string& path, std::size_t rows, std::size_t cols) {
+Result<ForcesCsvWriter> ForcesCsvWriter::create(const std::string& path, std::size_t rows, std::size_t cols,
+                                                ForceColumn column) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
   std::string header = "time_s,status";
   append_taxel_names(header, rows, cols);
   file->write(header + "\n");
-  return ForcesCsvWriter(*std::move(file), rows * cols);
+  return ForcesCsvWriter(*std::move(file), rows * cols, column);
 }
 
 Status ForcesCsvWriter::write(const ForceFrame& frame) {
-  assert(frame.newtons.size() == taxel_count_);
+  const std::vector<float>& values = column_ == ForceColumn::newtons ? frame.newtons : frame.sigma_newtons;
+  assert(values.size() == taxel_count_);
   line_.clear();
   append_seconds(line_, frame.time);
   line_ += ',';
   line_ += to_string(frame.status);
-  for (const float newtons : frame.newtons) {
+  for (const float value : values) {
     line_ += ',';
-    append_number(line_, newtons);
+    append_number(line_, value);
   }
   line_ += '\n';
   file_.write(line_);

@@ -145,8 +145,9 @@ TEST(Calibrate, tells_where_the_time_goes_and_shows_progress) {
       });
   ASSERT_TRUE(calibration);
   EXPECT_EQ(stages, (std::vector<std::string>{"circuit", "networks"}));
-  ASSERT_EQ(calibration->report.stages.size(), 3U);
+  ASSERT_EQ(calibration->report.stages.size(), 4U);
   EXPECT_EQ(calibration->report.stages[1].stage, "networks");
+  EXPECT_EQ(calibration->report.stages[3].stage, "uncertainty");
   EXPECT_EQ(calibration->model.baselines.size(), 3U);
 }
 

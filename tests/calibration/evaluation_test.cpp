@@ -139,6 +139,38 @@ TEST(Evaluation, has_the_documented_json_keys_and_no_bare_nan) {
   EXPECT_NE(json.find("\"max_relative_error\": null"), std::string::npos);
 }
 
+TEST(Evaluation, covered_shares_are_those_counted_by_hand) {
+  std::vector<JudgedTaxel> taxels(5);
+  for (JudgedTaxel& taxel : taxels) taxel = {0, 0, 10.0, {}, {}, 1, {10.0F}, 1.0F};
+  taxels[0].newtons[0] = 10.5F;
+  taxels[1].newtons[0] = 8.5F;
+  taxels[2].newtons[0] = 13.0F;
+  taxels[3].sigma_newtons = std::numeric_limits<float>::infinity();  // only a lower bound: not counted
+  const std::vector<double> shares = covered_shares(taxels, std::vector<double>{0.1, 1.0, 2.0, 3.0});
+  EXPECT_EQ(shares, (std::vector<double>{0.25, 0.5, 0.75, 1.0}));
+  EXPECT_TRUE(covered_shares(std::span(taxels).subspan(3, 1), std::vector<double>{1.0}).empty());
+}
+
+TEST(Evaluation, coverage_is_in_the_result_its_breakdowns_and_the_json) {
+  const pipeline::Model model = exact_model();
+  const std::vector<RawFrame> frames = {frame_under(model, {5.0, 0, 0, 0}), frame_under(model, {0, 20.0, 0, 0})};
+  const std::vector<Load> loads = {{0, LoadKind::force, {0, 0, 0, 0}, 5.0}, {1, LoadKind::force, {0, 1, 0, 1}, 30.0}};
+  const auto evaluation = evaluate(model, frames, loads);  // the second label is wrong by far more than sigma
+  ASSERT_TRUE(evaluation);
+  EXPECT_EQ(evaluation->coverage.count, 2U);
+  EXPECT_EQ(evaluation->coverage.share_68, 0.5);
+  EXPECT_EQ(evaluation->coverage.share_95, 0.5);
+  ASSERT_EQ(evaluation->by_force.size(), 2U);
+  EXPECT_EQ(evaluation->by_force[0].coverage.share_95, 1.0);
+  EXPECT_EQ(evaluation->by_force[1].coverage.share_95, 0.0);
+  EXPECT_EQ(evaluation->bound.frames, 2U);
+  EXPECT_EQ(evaluation->bound.taxels, 2U);
+  EXPECT_GT(evaluation->bound.median_bound, 0.0);
+  for (const char* key : {"coverage_68", "coverage_95", "coverage_taxels", "cramer_rao_bound"}) {
+    EXPECT_NE(to_json(*evaluation).find("\"" + std::string(key) + "\""), std::string::npos) << key;
+  }
+}
+
 TEST(Evaluation, refuses_loads_without_frames) {
   const auto evaluation = evaluate(exact_model(), {}, std::vector<Load>{{0, LoadKind::force, {0, 0, 0, 0}, 5.0}});
   ASSERT_FALSE(evaluation);

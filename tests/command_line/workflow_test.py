@@ -10,6 +10,7 @@ from support import SmallArray, dermis
 ESTIMATOR_KEYS = {"name", "median_relative_error", "p95_relative_error", "p99_relative_error", "max_relative_error",
                   "taxels_judged", "ghost_p99_n", "ghost_max_n", "ghost_taxels_judged", "total_rmse_n",
                   "total_median_relative_error", "total_max_relative_error", "totals_judged"}
+COVERAGE_KEYS = {"coverage_68", "coverage_95", "coverage_taxels"}
 BREAKDOWNS = ("by_force", "by_temperature", "by_supply", "by_contacts")
 
 
@@ -40,12 +41,12 @@ class Workflow(SmallArray):
 
     def test_evaluation_as_json(self):
         result = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))
-        self.assertEqual(set(result), {"frames", "frames_rejected", "estimators", *BREAKDOWNS})
+        self.assertEqual(set(result), {"frames", "frames_rejected", "estimators", *BREAKDOWNS, "cramer_rao_bound"})
         self.assertEqual((result["frames"], result["frames_rejected"]), (200, 0))
         names = [entry["name"] for entry in result["estimators"]]
         self.assertEqual(names, ["dermis", "raw_lookup", "temperature_lookup", "crosstalk_lookup"])
         for entry in result["estimators"]:
-            self.assertEqual(set(entry), ESTIMATOR_KEYS)
+            self.assertEqual(set(entry), ESTIMATOR_KEYS | (COVERAGE_KEYS if entry["name"] == "dermis" else set()))
             self.assertEqual(entry["taxels_judged"], result["estimators"][0]["taxels_judged"])
             self.assertIsNone(entry["total_rmse_n"])  # these loads name single taxels only
         for breakdown in BREAKDOWNS:
@@ -56,6 +57,19 @@ class Workflow(SmallArray):
         judged = result["estimators"][0]["taxels_judged"]
         for breakdown in BREAKDOWNS:
             self.assertEqual(sum(row["count"] for row in result[breakdown]), judged, breakdown)
+
+    def test_standard_deviations_have_the_shape_of_the_forces_and_cover_the_truth(self):
+        out, sigma = self.work / "forces.csv", self.work / "sigma.csv"
+        self.succeed(*self.run_arguments(out), "--sigma", sigma)
+        forces, sigmas = rows_of(out), rows_of(sigma)
+        self.assertEqual(sigmas[0], forces[0])
+        self.assertEqual([row[:2] for row in sigmas], [row[:2] for row in forces])
+        self.assertTrue(all(float(cell) > 0 for row in sigmas[1:] for cell in row[2:]))
+        result = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))
+        self.assertTrue(0.63 <= result["estimators"][0]["coverage_68"] <= 0.75, result["estimators"][0])
+        self.assertTrue(0.92 <= result["estimators"][0]["coverage_95"] <= 0.98, result["estimators"][0])
+        self.assertLess(result["cramer_rao_bound"]["median_relative_bound"],
+                        result["cramer_rao_bound"]["median_relative_deviation"])
 
     def test_evaluation_as_text_names_all_estimators(self):
         text = self.succeed(*self.evaluate_arguments())
@@ -78,6 +92,8 @@ class Workflow(SmallArray):
         self.assertEqual((report["own_networks"], report["shared_networks"]), (20, 0))
         self.assertTrue(report["uses_temperature"])
         self.assertEqual(report["dead_taxels"], [])
+        self.assertTrue(0.9 < report["adc_noise_counts"] < 1.2, report["adc_noise_counts"])
+        self.assertTrue(0.2 < report["temperature_sigma_celsius"] < 0.4, report["temperature_sigma_celsius"])
 
     def test_settling_leaves_out_the_first_seconds(self):
         out = self.work / "forces.csv"

@@ -109,6 +109,10 @@ TEST(ArrayDescription, names_the_part_of_the_circuit_out_of_range) {
   const auto amplified = [](Array& array) { array.readout.circuit = Circuit::transimpedance; };
   EXPECT_EQ(message_after([](Array& array) { array.readout.adc_noise_counts = 0.0; }),
             "readout.adc_noise_counts: must be more than 0");
+  for (const double noise : {-0.001, 0.101, static_cast<double>(NAN)}) {
+    EXPECT_EQ(message_after([&](Array& array) { array.readout.supply_noise = noise; }),
+              "readout.supply_noise: must be 0 to 0.1");
+  }
   EXPECT_EQ(message_after([&](Array& array) {
               amplified(array);
               array.readout.idle_columns = IdleColumns::floating;

@@ -50,7 +50,7 @@ ForceNetworks power_law() {
   networks.gain = {1.0F};
   networks.dead = {0};
   networks.offset_sigma_siemens = {0.0F};
-  networks.relative_sigma = {0.01F};
+  networks.relative_sigma.assign(kSigmaKnots, 0.01F);
   networks.parameters = {std::log(10.0F), 0.9F, 0.0F};  // c, s_0, s_1
   return networks;
 }
@@ -67,7 +67,7 @@ ForceNetworks two_power_laws() {
   twice(networks.gain);
   twice(networks.dead);
   twice(networks.offset_sigma_siemens);
-  twice(networks.relative_sigma);
+  networks.relative_sigma.assign(2 * kSigmaKnots, 0.01F);
   networks.parameters = {std::log(10.0F), std::log(10.0F), 0.9F, 0.9F, 0.0F, 0.0F};
   return networks;
 }
@@ -285,6 +285,113 @@ TEST(ForceFusion, flags_of_the_units_before_go_through) {
   EXPECT_EQ(force.time, Nanos(77));
 }
 
+/// sigma_newtons by the formula of ForceFusion, with derivatives by central differences of the reference network.
+double reference_sigma(const ForceNetworks& networks, std::size_t taxel, double siemens, double sigma_siemens,
+                       double temperature_offset) {
+  const auto log_newtons = [&](double g, double dt) {
+    return std::log(support::reference_newtons(networks, taxel, g, dt));
+  };
+  const double per_siemens =
+      (log_newtons(siemens * (1 + 1e-6), temperature_offset) - log_newtons(siemens * (1 - 1e-6), temperature_offset)) /
+      (2e-6 * siemens);
+  const double per_celsius =
+      networks.shape.inputs == 2 && networks.offset_per_celsius[taxel] == 0.0
+          ? 0.0
+          : (log_newtons(siemens, temperature_offset + 1e-4) - log_newtons(siemens, temperature_offset - 1e-4)) / 2e-4;
+  const double newtons = support::reference_newtons(networks, taxel, siemens, temperature_offset);
+  const double place = networks.sigma_place(static_cast<float>(std::log(newtons)));
+  double material = 0.0;
+  for (std::size_t k = 0; k < kSigmaKnots; ++k) {
+    const double weight = std::max(0.0, 1.0 - std::abs(place - static_cast<double>(k)));
+    material += weight * std::pow(static_cast<double>(networks.relative_sigma[k * networks.taxel_count() + taxel]), 2);
+  }
+  const double conductance = per_siemens * std::hypot(sigma_siemens, networks.offset_sigma_siemens[taxel]);
+  const double temperature = per_celsius * networks.temperature_sigma_celsius;
+  return newtons * std::sqrt(conductance * conductance + temperature * temperature + material);
+}
+
+TEST(ForceFusion, sigma_is_the_documented_formula) {
+  for (const std::size_t inputs : {2U, 3U}) {
+    for (const std::size_t hidden : {0U, 1U, 4U}) {
+      for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        SCOPED_TRACE(testing::Message() << inputs << "-" << hidden << "-1, seed " << seed);
+        Random random(seed);
+        const auto networks = support::random_networks(37, inputs, hidden, seed);
+        const double offset = random.uniform(-19.0, 19.0);
+        std::vector<double> siemens(37);
+        for (std::size_t k = 0; k < 37; ++k) {
+          siemens[k] = networks.offset_siemens[k] + random.log_uniform(2e-5, 1.4e-3);
+        }
+        auto frame = make_frame(siemens, 25.0 + offset);
+        for (double& sigma : frame.sigma_siemens) sigma = random.log_uniform(1e-7, 1e-5);
+        const auto force = fuse(networks, frame);
+        for (std::size_t k = 0; k < 37; ++k) {
+          const double expected = reference_sigma(networks, k, siemens[k], frame.sigma_siemens[k], offset);
+          EXPECT_NEAR(force.sigma_newtons[k] / expected, 1.0, 2e-3) << "taxel " << k;
+        }
+      }
+    }
+  }
+}
+
+TEST(ForceFusion, sigma_of_an_unloaded_taxel_is_its_detection_limit) {
+  // 10 N (1e-5 / 1e-3)^0.9 times the exponent: the force of one standard deviation of the conductance.
+  const double limit = 0.9 * 10.0 * std::pow(1e-2, 0.9);
+  for (const double excess : {-1e-3, -1e-6, 0.0, 1e-12, 1e-7, 5e-6, 1e-5}) {
+    auto frame = make_frame({1e-5 + excess}, 20.0);
+    frame.sigma_siemens = {1e-5};
+    const auto force = fuse(power_law(), frame);
+    EXPECT_NEAR(force.sigma_newtons[0] / limit, 1.0, 1e-3) << excess;
+  }
+  auto frame = make_frame({3e-5}, 20.0);
+  frame.sigma_siemens = {1e-5};
+  EXPECT_NEAR(fuse(power_law(), frame).sigma_newtons[0], 0.9 * 10.0 * std::pow(2e-2, 0.9) / 2.0, 1e-3);
+}
+
+TEST(ForceFusion, sigma_is_infinite_where_only_a_lower_bound_is_known) {
+  EXPECT_TRUE(std::isinf(fuse(power_law(), make_frame({1e-2}, 20.0)).sigma_newtons[0]));  // above range
+  auto frame = make_frame({1e-3}, 20.0);
+  frame.taxels[0] = TaxelStatus::saturated;
+  EXPECT_TRUE(std::isinf(fuse(power_law(), frame).sigma_newtons[0]));
+}
+
+TEST(ForceFusion, sigma_is_positive_where_there_is_a_force_and_nan_where_there_is_none) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    auto networks = support::random_networks(23, 3, 3, seed);
+    networks.dead[random.below(23)] = 1;
+    std::vector<double> siemens(23);
+    for (double& value : siemens) value = random.below(4) == 0 ? 0.0 : random.log_uniform(1e-12, 1.0);
+    siemens[random.below(23)] = kNan;
+    auto frame = make_frame(siemens, random.uniform(-40.0, 90.0));
+    frame.taxels[random.below(23)] = TaxelStatus::line_fault;
+    for (double& sigma : frame.sigma_siemens) sigma = random.below(4) == 0 ? 0.0 : random.log_uniform(1e-15, 1e-2);
+    const auto force = fuse(networks, frame);
+    for (std::size_t k = 0; k < 23; ++k) {
+      if (std::isnan(force.newtons[k])) {
+        EXPECT_TRUE(std::isnan(force.sigma_newtons[k])) << "taxel " << k;
+      } else {
+        EXPECT_GT(force.sigma_newtons[k], 0.0F) << "taxel " << k;
+      }
+    }
+  }
+}
+
+TEST(ForceFusion, an_unknown_or_far_temperature_costs_certainty) {
+  const auto networks = support::random_networks(8, 3, 2, 4);
+  const std::vector<double> siemens(8, 1e-3);
+  const auto known = fuse(networks, make_frame(siemens, 25.0));
+  const auto unknown = fuse(networks, make_frame(siemens, {}));
+  const auto at_end = fuse(networks, make_frame(siemens, 45.0));
+  const auto outside = fuse(networks, make_frame(siemens, 75.0));
+  for (std::size_t k = 0; k < 8; ++k) {
+    if (std::isinf(known.sigma_newtons[k])) continue;
+    EXPECT_GT(unknown.sigma_newtons[k], known.sigma_newtons[k]);
+    EXPECT_GT(outside.sigma_newtons[k], at_end.sigma_newtons[k]);
+  }
+}
+
 TEST(ForceNetworks, consistent_networks_are_consistent) {
   EXPECT_TRUE(power_law().is_consistent());
   EXPECT_TRUE(two_power_laws().is_consistent());
@@ -334,6 +441,18 @@ TEST(ForceNetworks, every_broken_field_is_found) {
       {"gain size", [](auto& n) { n.gain.pop_back(); }},
       {"dead 2", [](auto& n) { n.dead[1] = 2; }},
       {"dead size", [](auto& n) { n.dead.pop_back(); }},
+      {"temperature sigma negative", [](auto& n) { n.temperature_sigma_celsius = -0.1; }},
+      {"temperature sigma NaN", [](auto& n) { n.temperature_sigma_celsius = kNan; }},
+      {"offset sigma negative", [](auto& n) { n.offset_sigma_siemens[1] = -1e-9F; }},
+      {"offset sigma size", [](auto& n) { n.offset_sigma_siemens.pop_back(); }},
+      {"relative sigma 0", [](auto& n) { n.relative_sigma[1] = 0.0F; }},
+      {"relative sigma NaN", [](auto& n) { n.relative_sigma[1] = kNanF; }},
+      {"relative sigma size", [](auto& n) { n.relative_sigma.pop_back(); }},
+      {"sigma knots not rising",
+       [](auto& n) {
+         n.sigma_knots_newtons = {5.0F, 5.0F};
+       }},
+      {"sigma knot 0", [](auto& n) { n.sigma_knots_newtons[0] = 0.0F; }},
       {"parameter NaN", [](auto& n) { n.parameters.back() = kNanF; }},
       {"parameter infinite", [](auto& n) { n.parameters.front() = kInfinityF; }},
       {"parameters size", [](auto& n) { n.parameters.pop_back(); }},

@@ -355,6 +355,55 @@ TEST(LeaveOneOut, equals_refits_without_each_datum) {
   }
 }
 
+TEST(FittedResiduals, are_the_residuals_with_the_leverages_of_least_squares) {
+  const LinearProblem problem(25, 3, 4);
+  const auto minimum = problem.minimum(25);
+  const std::vector<FittedResidual> fitted = fitted_residuals(problem.residual(), 25, 25, minimum);
+  ASSERT_EQ(fitted.size(), 25U);
+  double leverages = 0.0;
+  for (std::size_t i = 0; i < 25; ++i) {
+    EXPECT_DOUBLE_EQ(fitted[i].residual, problem.residual_at(minimum, i));
+    EXPECT_NEAR(fitted[i].left_out() / problem.residual_at(problem.minimum(i), i), 1.0, 1e-8);
+    EXPECT_NEAR(fitted[i].as_new_error() / fitted[i].as_noise(), std::sqrt(1.0 + fitted[i].leverage), 1e-12);
+    leverages += fitted[i].leverage;
+  }
+  EXPECT_NEAR(leverages, 3.0, 1e-8);  // the trace of the hat matrix
+}
+
+TEST(FittedResiduals, tell_the_noise_that_was_there_and_the_error_on_new_data) {
+  // y = a + b x + c x^2 + noise of 1 on 8 points, 2000 times.
+  Random random(6);
+  double noise = 0.0;
+  double new_error = 0.0;
+  double true_new_error = 0.0;
+  for (int repeat = 0; repeat < 2000; ++repeat) {
+    std::vector<double> y(8);
+    for (double& value : y) value = random.normal();
+    const ResidualFunction residual = [&](std::span<const double> p, std::span<double> r, std::span<double> jacobian) {
+      for (std::size_t i = 0; i < 8; ++i) {
+        const auto x = static_cast<double>(i);
+        r[i] = p[0] + p[1] * x + p[2] * x * x - y[i];
+        if (jacobian.empty()) continue;
+        jacobian[3 * i] = 1.0;
+        jacobian[3 * i + 1] = x;
+        jacobian[3 * i + 2] = x * x;
+      }
+    };
+    std::vector<double> parameters(3, 0.0);
+    minimise(residual, 8, parameters);
+    for (const FittedResidual& datum : fitted_residuals(residual, 8, 8, parameters)) {
+      noise += std::pow(datum.as_noise(), 2);
+      new_error += std::pow(datum.as_new_error(), 2);
+    }
+    for (std::size_t i = 0; i < 8; ++i) {
+      const auto x = static_cast<double>(i);
+      true_new_error += std::pow(parameters[0] + parameters[1] * x + parameters[2] * x * x - random.normal(), 2);
+    }
+  }
+  EXPECT_NEAR(noise / 16000.0, 1.0, 0.03);
+  EXPECT_NEAR(new_error / true_new_error, 1.0, 0.04);
+}
+
 TEST(LeaveOneOut, rows_of_a_penalty_shape_the_fit_and_are_not_counted) {
   constexpr std::size_t kData = 10;
   constexpr std::size_t kParameters = 6;

@@ -35,6 +35,16 @@ double magnitude(const PerceptronShape& shape, const std::vector<double>& parame
   return sum;
 }
 
+/// d output / d x_i by a central difference.
+double input_derivative(const PerceptronShape& shape, const std::vector<double>& parameters, std::vector<double> x,
+                        std::size_t i) {
+  constexpr double kStep = 1e-5;
+  x[i] += kStep;
+  const double above = output(shape, parameters, x);
+  x[i] -= 2.0 * kStep;
+  return (above - output(shape, parameters, x)) / (2.0 * kStep);
+}
+
 void expect_what_the_perceptron_gives() {
   for (const PerceptronShape& shape : {PerceptronShape{1, 0, 0}, PerceptronShape{2, 4, 2}, PerceptronShape{3, 7, 2}}) {
     for (std::size_t networks = 1; networks <= 70; ++networks) {
@@ -46,10 +56,17 @@ void expect_what_the_perceptron_gives() {
       const PerceptronBank bank(shape, networks, parameters);
       ASSERT_EQ(bank.network_count(), networks);
       bank.evaluate(inputs, outputs);
+      std::vector<float> same(networks);
+      std::vector<float> gradient(inputs.size());
+      bank.evaluate(inputs, same, gradient);
+      EXPECT_EQ(same, outputs);
       for (std::size_t k = 0; k < networks; ++k) {
         const auto own = lane_of(parameters, networks, k);
         const auto x = lane_of(inputs, networks, k);
         EXPECT_NEAR(outputs[k], output(shape, own, x), 2e-6 * magnitude(shape, own, x)) << "network " << k;
+        for (std::size_t i = 0; i < shape.inputs; ++i) {
+          EXPECT_NEAR(gradient[i * networks + k], input_derivative(shape, own, x, i), 2e-5) << "network " << k;
+        }
       }
     }
   }

@@ -52,10 +52,13 @@ Model make_model() {
   model.array.readout.drive_ohm = {20.0, 21.5};
   model.array.readout.load_ohm = {200.0, 201.25, 1.0 / 3.0};
   model.array.readout.adc_bits = 14;
+  model.array.readout.adc_noise_counts = 1.0 / 3.0;
+  model.array.readout.supply_noise = 1.0 / 700.0;
   model.array.readout.adc_reference_v = 3.3;
   model.array.readout.supply_v = 5.1;
   model.array.readout.pressure_raises_reading = false;
   model.networks = support::random_networks(6, 3, 4, 77);
+  model.networks.sigma_knots_newtons = {0.3F, 77.0F};
   model.networks.heaviest_newtons[2] = std::numeric_limits<float>::infinity();
   model.networks.dead[5] = 1;
   model.baselines = {make_baseline(6, "raw look-up", fusion::LookUpSignal::reading),
@@ -77,6 +80,8 @@ void expect_equal(const Model& a, const Model& b) {
   EXPECT_EQ(a.array.readout.drive_ohm, b.array.readout.drive_ohm);
   EXPECT_EQ(a.array.readout.load_ohm, b.array.readout.load_ohm);
   EXPECT_EQ(a.array.readout.adc_bits, b.array.readout.adc_bits);
+  EXPECT_EQ(a.array.readout.adc_noise_counts, b.array.readout.adc_noise_counts);
+  EXPECT_EQ(a.array.readout.supply_noise, b.array.readout.supply_noise);
   EXPECT_EQ(a.array.readout.adc_reference_v, b.array.readout.adc_reference_v);
   EXPECT_EQ(a.array.readout.supply_v, b.array.readout.supply_v);
   EXPECT_EQ(a.array.readout.pressure_raises_reading, b.array.readout.pressure_raises_reading);
@@ -92,6 +97,10 @@ void expect_equal(const Model& a, const Model& b) {
   EXPECT_EQ(a.networks.gain, b.networks.gain);
   EXPECT_EQ(a.networks.dead, b.networks.dead);
   EXPECT_EQ(a.networks.parameters, b.networks.parameters);
+  EXPECT_EQ(a.networks.temperature_sigma_celsius, b.networks.temperature_sigma_celsius);
+  EXPECT_EQ(a.networks.offset_sigma_siemens, b.networks.offset_sigma_siemens);
+  EXPECT_EQ(a.networks.relative_sigma, b.networks.relative_sigma);
+  EXPECT_EQ(a.networks.sigma_knots_newtons, b.networks.sigma_knots_newtons);
 
   ASSERT_EQ(a.baselines.size(), b.baselines.size());
   for (std::size_t k = 0; k < a.baselines.size(); ++k) {
@@ -232,11 +241,18 @@ TEST(Model, safetensors_of_another_kind_are_refused_with_the_mend) {
   expect_refused(folder.file("m"), "dermis calibrate");
 }
 
+TEST(Model, the_format_that_did_not_know_its_uncertainty_is_refused_with_the_mend) {
+  const TemporaryFolder folder;
+  write_damaged(folder.file("m"), [](auto& file) { file.metadata["format"] = "dermis model 1"; });
+  expect_refused(folder.file("m"), "is of an older dermis that did not know how sure its forces are");
+  expect_refused(folder.file("m"), "dermis calibrate");
+}
+
 TEST(Model, every_tensor_must_be_there) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_model(folder.file("m"), make_model()));
   const auto names = tensor_names(folder.file("m"));
-  EXPECT_EQ(names.size(), 11U + 2U * 4U);
+  EXPECT_EQ(names.size(), 12U + 2U * 4U);
   for (const std::string& name : names) {
     SCOPED_TRACE(name);
     write_damaged(folder.file("m"), [&](auto& file) { file.tensors.erase(name); });

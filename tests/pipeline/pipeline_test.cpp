@@ -158,7 +158,7 @@ TEST(Pipeline, process_is_the_units_chained_by_hand) {
   }
 }
 
-TEST(Pipeline, frames_do_not_influence_each_other) {
+TEST(Pipeline, frames_influence_each_other_far_below_their_noise) {
   const Model model = hand_made_model(6, 6);
   const auto pipeline = make_pipeline(model);
   ForceFrame force;
@@ -168,7 +168,9 @@ TEST(Pipeline, frames_do_not_influence_each_other) {
     ForceFrame alone;
     make_pipeline(model)->process(raw, alone);
     pipeline->process(raw, force);
-    EXPECT_TRUE(same_bits(force.newtons, alone.newtons));
+    for (std::size_t taxel = 0; taxel < alone.newtons.size(); ++taxel) {
+      EXPECT_NEAR(force.newtons[taxel], alone.newtons[taxel], 0.05F * alone.sigma_newtons[taxel]) << taxel;
+    }
   }
 }
 

@@ -51,6 +51,7 @@ const std::set<std::string> kAllFiles = {"index.html",
                                          "error_vs_contacts.svg",
                                          "error_vs_temperature.svg",
                                          "error_vs_supply.svg",
+                                         "coverage.svg",
                                          "tactile_1.svg",
                                          "tactile_2.svg"};
 
@@ -61,6 +62,15 @@ TEST_F(ReportTest, WritesThePageAndEveryFigure) {
   EXPECT_TRUE(says("one in 2 is drawn"));
   EXPECT_TRUE(says("9f86d081884c7d65")) << "provenance";
   EXPECT_TRUE(says("BP networks of 2-4-1 units"));
+}
+
+TEST_F(ReportTest, ShowsHowSureItIsAndTheBound) {
+  calibration::Evaluation evaluation = sample_evaluation(16, 16, 300);
+  evaluation.bound = {20, 160, 0.0045, 0.0061, 1.34};
+  write(evaluation);
+  EXPECT_TRUE(says("The true force of 2,400 taxels is within the 68 % interval of dermis in"));
+  EXPECT_TRUE(
+      says("Cramer-Rao bound: 0.45 % of the force (median of 160 taxels of 20 frames); dermis scatters by 0.61 %"));
 }
 
 TEST_F(ReportTest, LoadsNothingFromElsewhere) {

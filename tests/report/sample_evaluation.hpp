@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -58,6 +59,8 @@ inline void summarise_sample(calibration::Evaluation& evaluation) {
   const auto& taxels = evaluation.taxels;
   evaluation.by_force =
       sample_bins(evaluation, {1, 2, 5, 10, 20, 50.0001}, [&](std::size_t i) { return taxels[i].true_newtons; });
+  const std::vector<double> shares = calibration::covered_shares(taxels, std::array{0.99446, 1.95996});
+  evaluation.coverage = {taxels.size(), shares[0], shares[1]};
   evaluation.by_temperature = sample_bins(evaluation, {0, 10, 20, 30, 40, 50},
                                           [&](std::size_t i) { return taxels[i].temperature_celsius.value_or(-1.0); });
   evaluation.by_supply = sample_bins(evaluation, {4.5, 4.7, 4.9, 5.1, 5.3, 5.5},
@@ -137,6 +140,7 @@ inline calibration::Evaluation sample_evaluation(std::size_t rows, std::size_t c
       const auto taxel = static_cast<std::size_t>(random.below(rows * cols));
       evaluation.taxels.push_back(
           {frame, taxel, truth, temperature, supply, contacts, sample_estimates(truth, temperature, contacts, random)});
+      evaluation.taxels.back().sigma_newtons = static_cast<float>(0.006 * truth);
     }
   }
   for (auto& estimator : evaluation.estimators) {
@@ -157,7 +161,8 @@ inline calibration::Evaluation paper_sample() {
   Random random(3);
   for (std::size_t frame = 0; frame < 48; ++frame) {
     const double truth = frame < 16 ? 10.0 : frame < 32 ? 20.0 : 50.0;
-    evaluation.taxels.push_back({frame, 5 * frame, truth, 20.0, 5.0, 1, sample_estimates(truth, 20.0, 1, random), 0.02F});
+    evaluation.taxels.push_back(
+        {frame, 5 * frame, truth, 20.0, 5.0, 1, sample_estimates(truth, 20.0, 1, random), 0.02F});
   }
   summarise_sample(evaluation);
   return evaluation;

@@ -165,6 +165,7 @@ row_segment_ohm = 0.5
 column_segment_ohm = [0, 1, 2]
 adc_bits = 16
 adc_noise_counts = 2.5
+supply_noise = 0.002
 supply_v = 5.0
 )";
 
@@ -189,6 +190,7 @@ TEST(ArrayToml, reads_the_parts_of_real_amplifiers_and_lines) {
   EXPECT_EQ(readout.row_segment_ohm, (std::vector<double>{0.5, 0.5}));
   EXPECT_EQ(readout.column_segment_ohm, (std::vector<double>{0.0, 1.0, 2.0}));
   EXPECT_EQ(readout.adc_noise_counts, 2.5);
+  EXPECT_EQ(readout.supply_noise, 0.002);
 }
 
 TEST(ArrayToml, flexitac_drives_columns_and_reads_rows) {
@@ -295,6 +297,7 @@ TEST(ArrayToml, writes_every_circuit_without_loss) {
     EXPECT_EQ(read->readout.row_segment_ohm, array.readout.row_segment_ohm);
     EXPECT_EQ(read->readout.column_segment_ohm, array.readout.column_segment_ohm);
     EXPECT_EQ(read->readout.adc_noise_counts, array.readout.adc_noise_counts);
+    EXPECT_EQ(read->readout.supply_noise, array.readout.supply_noise);
   }
 }
 

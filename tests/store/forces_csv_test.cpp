@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "dermis/core/random.hpp"
@@ -26,6 +27,21 @@ TEST(ForcesCsvWriter, writes_time_status_and_newtons) {
   ASSERT_TRUE(writer->commit());
   EXPECT_EQ(read_bytes(folder.file("f.csv")),
             "time_s,status,r0c0,r0c1,r0c2\n0.01,ok,0,9.81,50\n0.02,saturated+dead_taxels,nan,nan,0.125\n");
+}
+
+TEST(ForcesCsvWriter, writes_standard_deviations_in_the_same_shape) {
+  const TemporaryFolder folder;
+  auto writer = ForcesCsvWriter::create(folder.file("s.csv"), 1, 3, ForceColumn::sigma_newtons);
+  ASSERT_TRUE(writer);
+  const float infinity = std::numeric_limits<float>::infinity();
+  ASSERT_TRUE(writer->write({Nanos(10'000'000),
+                             FrameStatus::saturated | FrameStatus::dead_taxels,
+                             {5.0F, 50.0F, std::nanf("")},
+                             {0.25F, infinity, std::nanf("")},
+                             {}}));
+  ASSERT_TRUE(writer->commit());
+  EXPECT_EQ(read_bytes(folder.file("s.csv")),
+            "time_s,status,r0c0,r0c1,r0c2\n0.01,saturated+dead_taxels,0.25,inf,nan\n");
 }
 
 TEST(ForcesCsvWriter, writes_newtons_that_read_back_equal) {

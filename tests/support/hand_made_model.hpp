@@ -41,8 +41,8 @@ inline pipeline::Model hand_made_model(std::size_t rows, std::size_t cols) {
     networks.gain.push_back(1.0F);
     networks.dead.push_back(0);
     networks.offset_sigma_siemens.push_back(1e-7F);
-    networks.relative_sigma.push_back(0.005F);
   }
+  networks.relative_sigma.assign(fusion::kSigmaKnots * taxels, 0.005F);
   networks.parameters.assign(taxels, std::log(10.0F));                                // c
   networks.parameters.insert(networks.parameters.end(), taxels, kExponent);           // s of ln(e / reference)
   networks.parameters.insert(networks.parameters.end(), taxels, 0.0F);                // s of e / reference - 1

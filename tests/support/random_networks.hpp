@@ -32,14 +32,17 @@ inline fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inp
     networks.heaviest_newtons.push_back(1e4F);  // beyond what the network gives: the clamp has its own tests
     networks.gain.push_back(static_cast<float>(random.uniform(0.5, 2.0)));
     networks.dead.push_back(0);
-    networks.offset_sigma_siemens.push_back(static_cast<float>(random.log_uniform(1e-8, 1e-6)));
-    networks.relative_sigma.push_back(static_cast<float>(random.log_uniform(1e-3, 1e-1)));
     for (std::size_t k = 0; k < networks.shape.parameter_count(); ++k) {
       const bool positive = network::monotone::is_positive(networks.shape, k);
       const double value = positive ? random.log_uniform(0.05, 0.8) : 0.5 * random.normal();
       networks.parameters[k * taxels + taxel] = static_cast<float>(value);
     }
   }
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    networks.offset_sigma_siemens.push_back(static_cast<float>(random.log_uniform(1e-8, 1e-6)));
+  }
+  networks.relative_sigma.resize(fusion::kSigmaKnots * taxels);
+  for (float& sigma : networks.relative_sigma) sigma = static_cast<float>(random.log_uniform(1e-3, 1e-1));
   return networks;
 }
 

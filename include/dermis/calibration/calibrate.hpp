@@ -9,6 +9,7 @@
 
 #include "dermis/calibration/force_training.hpp"
 #include "dermis/calibration/sample_database.hpp"
+#include "dermis/calibration/uncertainty.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/core/result.hpp"
@@ -27,7 +28,9 @@ struct CalibrationReport {
   std::size_t frames = 0;  ///< Labelled frames used.
   std::size_t frames_rejected = 0;
   std::string first_rejection;
+  std::vector<std::string> circuit;  ///< What the fit of an unknown circuit found; empty where all was given.
   TrainingReport training;
+  UncertaintyReport uncertainty;
   std::vector<StageTime> stages;
 };
 

@@ -41,6 +41,16 @@ struct Coverage {
   std::optional<double> share_95;  ///< Within 1.96 sigma.
 };
 
+/// dermis beside the Cramer-Rao bound: the least standard deviation that the noise of the ADC leaves to an unbiased
+/// estimator that knows the circuit and the material. Over some of the frames, evenly, and their judged taxels.
+struct BoundComparison {
+  std::size_t frames = 0;  ///< 0 where there is no bound: circuit "none", more than 1024 taxels, no judged taxel.
+  std::size_t taxels = 0;
+  double median_bound = 0.0;      ///< Over the taxels: bound over true force.
+  double median_deviation = 0.0;  ///< |error| over true force, median over 0.6745: the standard deviation if normal.
+  double rms_ratio = 0.0;         ///< Root mean square of error over bound.
+};
+
 /// How one estimator did on all frames.
 struct EstimatorResult {
   std::string name;                    ///< "dermis" first, then the baselines, then kPaperBankName.
@@ -98,6 +108,7 @@ struct Evaluation {
   std::size_t frames_rejected = 0;
   std::vector<EstimatorResult> estimators;
   Coverage coverage;  ///< Of dermis, over all judged taxels.
+  BoundComparison bound;
   std::vector<JudgedTaxel> taxels;
   std::vector<JudgedTotal> totals;
   std::vector<BreakdownBin> by_force;        ///< [N]

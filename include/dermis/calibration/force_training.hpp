@@ -36,9 +36,20 @@ struct TrainingReport {
 /// network shows.
 [[nodiscard]] std::string describe_fit(const TrainingReport& report, const ArrayDescription& array);
 
+/// A load and the error of the networks on it, estimate less load, from the residual of the training.
+struct TestedLoad {
+  std::size_t sample = 0;           ///< In the database.
+  std::vector<std::size_t> taxels;  ///< That carry it.
+  double newtons = 0.0;             ///< The load, > 0.
+  double noise_n = 0.0;             ///< As large as the noise of the load [N].
+  double error_n = 0.0;             ///< As large as the error on a new load in the same place [N].
+};
+
 struct ForceTraining {
-  fusion::ForceNetworks networks;
+  fusion::ForceNetworks networks;  ///< Their uncertainty is still to be found: fit_uncertainty().
   TrainingReport report;
+  std::vector<TestedLoad> tested_own;     ///< Of taxels with a network of their own, one taxel each.
+  std::vector<TestedLoad> tested_shared;  ///< Of the shared network.
 };
 
 /// Trains what the samples support: a network per taxel where its own force is known often enough, one shared network

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/calibration/circuit_fit.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
@@ -27,6 +28,7 @@ struct Sample {
   std::optional<double> temperature_celsius;
   std::vector<double> reading;       ///< Bare readings [taxels], counts / full scale, for the baselines.
   std::vector<double> ratio;         ///< Reading / supply [taxels], for the paper's bank.
+  double sigma_ratio = 0.0;          ///< Standard deviation of every ratio for the array's adc_noise_counts.
   std::vector<double> siemens;       ///< Conductances [taxels].
   std::vector<float> known_newtons;  ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
   std::vector<TotalForce> totals;
@@ -39,12 +41,13 @@ struct SampleDatabase {
   std::vector<Sample> samples;
   double siemens_per_count = 0.0;  ///< Conductance of one ADC count at an unloaded taxel [S].
   std::size_t frames_rejected = 0;
-  std::string first_rejection;  ///< "frame 17: a reading outside the ADC range"; empty when none.
+  std::string first_rejection;            ///< "frame 17: a reading outside the ADC range"; empty when none.
+  std::optional<CircuitFit> circuit_fit;  ///< Where resistances or the circuit were unknown; `array` holds its result.
 };
 
 /// Runs labelled frames after `settle_time` through units 2 and 3. Errors: no labelled frame, no unloaded frame (a
 /// frame labelled `force,all,0`), a load beyond the frames, more than a tenth of the labelled frames rejected, a
-/// circuit that cannot be inverted.
+/// circuit that cannot be inverted. What is unknown of the circuit is found first: fit_circuit().
 [[nodiscard]] Result<SampleDatabase> build_sample_database(const ArrayDescription& array,
                                                            std::span<const RawFrame> frames,
                                                            std::span<const Load> loads, Nanos settle_time = Nanos{0});

@@ -89,8 +89,8 @@ class Compensator {
   void mask_faulty_taxels(ConductanceFrame& conductance) const noexcept;
 
   std::unique_ptr<CrosstalkInversion> inversion_;
-  std::unique_ptr<FaultInversion> faults_;
   std::unique_ptr<SupplyError> supply_error_;
+  std::unique_ptr<FaultInversion> faults_;
 };
 
 }  // namespace dermis::compensation

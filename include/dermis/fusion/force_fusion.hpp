@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace dermis::fusion {
 
 /// Inputs of a network that learned temperature; without it there is one less.
 inline constexpr std::size_t kInputsWithTemperature = 3;
+
+/// Forces at which the relative error of a network is known.
+inline constexpr std::size_t kSigmaKnots = 6;
 
 /// What calibration learns: one small BP network per taxel, (conductance, temperature) -> force. Each per-taxel vector
 /// has the size taxels; taxels without a calibration of their own carry the parameters of a shared network and a gain.
@@ -43,9 +47,15 @@ struct ForceNetworks {
   // What calibration found of its own uncertainty; see ForceFusion.
   double temperature_sigma_celsius = 0.0;   ///< Noise of the temperature sensor [C], >= 0.
   std::vector<float> offset_sigma_siemens;  ///< Standard deviation of offset_siemens [S], >= 0.
-  std::vector<float> relative_sigma;        ///< Of the force, from all that is not known otherwise, > 0.
+  /// Relative error of the force from all that is not known otherwise (misfit, hysteresis, creep), > 0, at kSigmaKnots
+  /// forces in equal ratios. In between its square is linear in ln(newtons), beyond the ends it is constant.
+  std::vector<float> relative_sigma;                       ///< [kSigmaKnots, taxels]
+  std::array<float, 2> sigma_knots_newtons{0.1F, 100.0F};  ///< First and last of the forces [N], > 0, rising.
 
   [[nodiscard]] std::size_t taxel_count() const noexcept { return gain.size(); }
+
+  /// Place of a force between the knots of relative_sigma: 0 at the first (and below), kSigmaKnots - 1 at the last.
+  [[nodiscard]] float sigma_place(float log_newtons) const noexcept;
 
   /// All vectors have the right size and every number is in its range.
   [[nodiscard]] bool is_consistent() const noexcept;
@@ -73,24 +83,27 @@ class ForceFusion {
   void process(const ConductanceFrame& conductance, ForceFrame& force) noexcept;
 
  private:
-  [[nodiscard]] bool uses_temperature() const noexcept { return networks_.shape.inputs == kInputsWithTemperature; }
   /// Offset from the centre, clamped, and its standard deviation [C].
   struct Temperature {
     double offset = 0.0;
     double sigma = 0.0;
   };
+  [[nodiscard]] bool uses_temperature() const noexcept { return networks_.shape.inputs == kInputsWithTemperature; }
   [[nodiscard]] Temperature temperature(const ConductanceFrame& conductance, ForceFrame& force) const noexcept;
-  void prepare_inputs(const ConductanceFrame& conductance, const Temperature& temperature) noexcept;
-  void finish(std::size_t taxel, const Temperature& temperature, ForceFrame& force) const noexcept;
-  [[nodiscard]] float sigma_newtons(std::size_t taxel, float newtons, double temperature_sigma) const noexcept;
+  void prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept;
+  void compute_forces(double temperature_sigma, ForceFrame& force) const noexcept;
+  void apply_status(std::size_t taxel, ForceFrame& force) const noexcept;
 
   ForceNetworks networks_;
   network::PerceptronBank bank_;
-  std::vector<float> excess_siemens_;  // [taxels]
-  std::vector<float> sigma_siemens_;   // of the excess [taxels]
-  std::vector<float> inputs_;          // [inputs, taxels]
-  std::vector<float> outputs_;         // [taxels]
-  std::vector<float> gradient_;        // of the outputs [inputs, taxels]
+  std::vector<float> log_gain_;            // [taxels]
+  std::vector<float> offset_per_celsius_;  // [taxels]
+  std::vector<float> relative_variance_;   // [kSigmaKnots, taxels]
+  std::vector<float> excess_siemens_;      // [taxels]
+  std::vector<float> sigma_siemens_;       // of the excess [taxels]
+  std::vector<float> inputs_;              // [inputs, taxels]
+  std::vector<float> outputs_;             // [taxels]
+  std::vector<float> gradient_;            // of the outputs [inputs, taxels]
 };
 
 }  // namespace dermis::fusion

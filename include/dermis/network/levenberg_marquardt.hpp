@@ -63,10 +63,28 @@ LevenbergMarquardtReport minimise(const ResidualFunction& residual_function, std
 LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamples<double>& samples,
                                   std::vector<double>& parameters, const LevenbergMarquardtOptions& options = {});
 
-/// Mean square of the first `data_count` residuals, each as it would be with its own datum left out of the fit:
-/// r_j / (1 - h_j), h_j <= 0.95 the leverage from the linearised problem at `parameters` (all residuals, a penalty's
-/// rows included, shape the normal matrix). data_count >= 1 and at least one parameter. Allen 1974 (PRESS), without a
-/// single refit. Thread-safe.
+/// A residual of a fit, and how much of its own datum the fit has made its own.
+struct FittedResidual {
+  double residual = 0.0;  ///< r
+  double leverage = 0.0;  ///< h, 0 ... 0.95, from the linearised problem.
+
+  /// What the residual would be with its datum left out of the fit: r / (1 - h). Allen 1974 (PRESS).
+  [[nodiscard]] double left_out() const noexcept { return residual / (1.0 - leverage); }
+
+  /// The noise of a datum has the variance s^2 and r has (1 - h) s^2: as large as that noise, and as the error on a new
+  /// datum in the same place, (1 + h) s^2.
+  [[nodiscard]] double as_noise() const noexcept;
+  [[nodiscard]] double as_new_error() const noexcept;
+};
+
+/// The first `data_count` residuals at the minimum `parameters` (all residuals, a penalty's rows included, shape the
+/// normal matrix). data_count >= 1 and at least one parameter. Thread-safe.
+[[nodiscard]] std::vector<FittedResidual> fitted_residuals(const ResidualFunction& residual_function,
+                                                           std::size_t data_count, std::size_t residual_count,
+                                                           std::span<const double> parameters);
+
+/// Mean square of the first `data_count` residuals, each as it would be with its own datum left out, without a single
+/// refit. As fitted_residuals().
 [[nodiscard]] double leave_one_out_mean_square(const ResidualFunction& residual_function, std::size_t data_count,
                                                std::size_t residual_count, std::span<const double> parameters);
 

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// One of the circuits that `auto` chooses among.
+struct CircuitCandidate {
+  std::string name;  ///< "divider, idle rows floating"
+  /// Root mean square of what the circuit leaves unexplained in presses that it was not fitted to, in standard
+  /// deviations of the readings; 1 is the noise, infinity a circuit that cannot give these readings.
+  double held_out_error = 0.0;
+  bool chosen = false;
+  bool indistinguishable = false;  ///< Less than three standard errors worse than the chosen one.
+};
+
+/// The resistances of a circuit as the calibration frames tell them.
+struct CircuitFit {
+  ArrayDescription array;  ///< Nothing is unknown any more.
+  /// Relative standard errors of drive_ohm and load_ohm (1: nothing is known); 0 where the value was given. They hold
+  /// the assumptions of docs/calibration.md.
+  std::vector<double> drive_error;
+  std::vector<double> load_error;
+  double common_drive_error = 0.0;  ///< Of the mean of the fitted drivers, relative.
+  double rubber_scatter = 0.0;      ///< Relative scatter of a press about the law of its taxel, found with the circuit.
+  std::size_t frames = 0;           ///< Frames the fit used, after repeated ones were averaged.
+  std::vector<CircuitCandidate> candidates;  ///< Of `auto`; empty otherwise.
+  std::vector<std::string> statements;       ///< What was found and what the data cannot determine, in plain words.
+};
+
+/// Finds the resistances that are kFitOhm, and the circuit where it is Circuit::automatic, from labelled frames: single
+/// presses, several at once or uniform loads, mixed. For each trial of the resistances every frame is inverted; a taxel
+/// that nothing presses must then keep its conductance, whatever presses beside it, and a pressed one must follow one
+/// smooth law of force and temperature in all frames. Gauss-Newton on what is left, the laws of the taxels eliminated
+/// (variable projection, Golub and Pereyra 1973). Deterministic, whatever the number of threads.
+/// Errors: those of build_sample_database() that concern frames and loads; no pressed frame.
+[[nodiscard]] Result<CircuitFit> fit_circuit(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                             std::span<const Load> loads, Nanos settle_time = Nanos{0});
+
+}  // namespace dermis::calibration

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <optional>
+
+#include "calibration/labels.hpp"
+#include "dermis/preprocessing/conditioner.hpp"
+#include "dermis/preprocessing/phase.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+constexpr double kLeastSpanCelsius = 3.0;
+constexpr double kSameCelsius = 1.0;  // frames this near in temperature are averaged
+
+/// A frame before repetitions are averaged.
+struct Labelled {
+  CircuitFrame frame;
+  std::optional<double> celsius;
+};
+
+/// Rubber spreads a load to the taxels around it: what is beside a pressed taxel is not known to be idle.
+void forget_neighbours(const ArrayDescription& array, std::vector<float>& newtons) {
+  const std::vector<float> labelled = newtons;
+  for (std::size_t row = 0; row < array.rows; ++row) {
+    for (std::size_t col = 0; col < array.cols; ++col) {
+      if (labelled[array.index(row, col)] == 0.0F) continue;
+      for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= std::min(row + 1, array.rows - 1); ++r) {
+        for (std::size_t c = col - std::min<std::size_t>(col, 1); c <= std::min(col + 1, array.cols - 1); ++c) {
+          float& neighbour = newtons[array.index(r, c)];
+          if (neighbour == 0.0F) neighbour = std::numeric_limits<float>::quiet_NaN();
+        }
+      }
+    }
+  }
+}
+
+std::vector<float> known_newtons(const ArrayDescription& array, std::span<const Load> loads,
+                                 const ConditionedFrame& conditioned) {
+  Sample sample;
+  expand_loads(array, loads, sample);
+  for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+    if (conditioned.taxels[taxel] != TaxelStatus::ok) {
+      sample.known_newtons[taxel] = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  forget_neighbours(array, sample.known_newtons);
+  return sample.known_newtons;
+}
+
+bool is_same_load(const std::vector<float>& a, const std::vector<float>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(),
+                    [](float x, float y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
+bool is_repetition(const Labelled& first, const Labelled& next) {
+  if (first.celsius.has_value() != next.celsius.has_value()) return false;
+  if (first.celsius && std::abs(*first.celsius - *next.celsius) > kSameCelsius) return false;
+  return is_same_load(first.frame.newtons, next.frame.newtons);
+}
+
+/// The running mean of frames with equal loads.
+void average_into(Labelled& mean, const Labelled& next) {
+  const auto count = static_cast<double>(mean.frame.averaged);
+  const double share = 1.0 / (count + 1.0);
+  for (std::size_t k = 0; k < mean.frame.ratio.size(); ++k) {
+    mean.frame.ratio[k] += share * (next.frame.ratio[k] - mean.frame.ratio[k]);
+  }
+  if (mean.celsius) *mean.celsius += share * (*next.celsius - *mean.celsius);
+  mean.frame.sigma_ratio *= std::sqrt(count / (count + 1.0));
+  ++mean.frame.averaged;
+}
+
+std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                      const std::vector<std::vector<Load>>& loads_of, Nanos settle_time) {
+  preprocessing::PhaseSelector phase(settle_time, preprocessing::Phase::calibrate);
+  preprocessing::Conditioner conditioner(array);
+  ConditionedFrame conditioned;
+  std::vector<Labelled> labelled;
+  bool unlabelled_between = true;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const bool is_labelled = !loads_of[k].empty();
+    if (phase.select(frames[k].time, is_labelled) != preprocessing::Destination::sample_database) {
+      unlabelled_between = true;
+      continue;
+    }
+    conditioner.process(frames[k], conditioned);
+    if (conditioner.rejection() != preprocessing::Rejection::none) continue;
+    Labelled next;
+    next.celsius = conditioned.temperature_celsius;
+    next.frame.ratio = conditioned.ratio;
+    next.frame.sigma_ratio = conditioned.sigma_ratio;
+    next.frame.newtons = known_newtons(array, loads_of[k], conditioned);
+    if (!unlabelled_between && !labelled.empty() && is_repetition(labelled.back(), next)) {
+      average_into(labelled.back(), next);
+    } else {
+      labelled.push_back(std::move(next));
+    }
+    unlabelled_between = false;
+  }
+  return labelled;
+}
+
+}  // namespace
+
+Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                     std::span<const Load> loads, Nanos settle_time) {
+  if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
+  std::vector<Labelled> labelled = labelled_frames(array, frames, group_by_frame(loads, frames.size()), settle_time);
+  if (labelled.empty()) return bad_input("no labelled frame is left after settling");
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  bool all_have_it = true;
+  for (const Labelled& frame : labelled) {
+    all_have_it = all_have_it && frame.celsius.has_value();
+    lowest = std::min(lowest, frame.celsius.value_or(lowest));
+    highest = std::max(highest, frame.celsius.value_or(highest));
+  }
+  CircuitFrames result;
+  result.has_temperature = all_have_it && highest - lowest >= kLeastSpanCelsius;
+  for (Labelled& frame : labelled) {
+    if (result.has_temperature) {
+      frame.frame.temperature = (2.0 * *frame.celsius - lowest - highest) / (highest - lowest);
+    }
+    result.frames.push_back(std::move(frame.frame));
+  }
+  return result;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// A labelled frame as the fit of the circuit sees it.
+struct CircuitFrame {
+  std::vector<double> ratio;   ///< Reading / supply [taxels].
+  double sigma_ratio = 0.0;    ///< Standard deviation of each.
+  std::vector<float> newtons;  ///< [taxels]: 0 idle, NaN unknown or beside a pressed taxel, which may touch it too.
+  double temperature = 0.0;    ///< In [-1, 1] over the recording; 0 where it is not an input.
+  std::size_t averaged = 1;    ///< Frames in a row with the same loads, taken as one.
+};
+
+struct CircuitFrames {
+  std::vector<CircuitFrame> frames;
+  bool has_temperature = false;  ///< Every frame has one and they differ enough.
+};
+
+/// Errors: bad loads, no labelled frame that can be used.
+[[nodiscard]] Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                                   std::span<const Load> loads, Nanos settle_time);
+
+}  // namespace dermis::calibration

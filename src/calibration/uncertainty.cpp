@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/uncertainty.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/parallel.hpp"
+#include "dermis/fusion/force_fusion.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+constexpr double kOneSigmaShare = 0.682689;  // of a normal distribution within one standard deviation
+constexpr double kTwoSigmaShare = 0.954500;  // within two
+constexpr double kOutlierRatio = 9.0;        // of mean squares: three standard deviations
+constexpr std::size_t kLeastUnloadedSamples = 5;
+constexpr double kMostShareAtEnd = 0.1;  // cuts 8 % off the standard deviation
+constexpr std::size_t kLeastTemperatures = 20;
+constexpr double kMostTemperatureNoise = 1.0;
+constexpr std::size_t kMostLoads = 4000;  // more do not make the estimates better
+constexpr std::size_t kLoadsPerTask = 100;
+constexpr double kLeastRelativeSigma = 1e-3;
+constexpr double kStartRelativeSigma = 0.1;
+constexpr std::size_t kLoadsPerKnot = 50;
+
+/// The smallest value that at least `share` of `values` do not exceed.
+double quantile(std::vector<double> values, double share) {
+  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Leaves out what is far above the median.
+void erase_outliers(std::vector<double>& mean_squares) {
+  const double most = kOutlierRatio * quantile(mean_squares, 0.5);
+  std::erase_if(mean_squares, [&](double square) { return square > most; });
+}
+
+// ---------------------------------------------------------------------------------------------- noise of the
+// instruments
+
+std::vector<const Sample*> unloaded_samples(const SampleDatabase& database) {
+  std::vector<const Sample*> samples;
+  for (const Sample& sample : database.samples) {
+    if (sample.unloaded) samples.push_back(&sample);
+  }
+  return samples;
+}
+
+/// Taxels that hardly any unloaded sample shows at an end of the ADC.
+std::vector<std::size_t> free_taxels(const SampleDatabase& database, const std::vector<const Sample*>& unloaded) {
+  const double half_count = 0.5 / database.array.readout.full_scale_counts();
+  std::vector<std::size_t> taxels;
+  for (std::size_t taxel = 0; taxel < database.array.taxel_count(); ++taxel) {
+    const auto at_end = std::count_if(unloaded.begin(), unloaded.end(), [&](const Sample* sample) {
+      return sample->reading[taxel] < half_count || sample->reading[taxel] > 1.0 - half_count;
+    });
+    const double share = static_cast<double>(at_end) / static_cast<double>(unloaded.size());
+    if (share <= kMostShareAtEnd) taxels.push_back(taxel);
+  }
+  return taxels;
+}
+
+/// Half the square of the difference of two readings [counts^2]: on average the variance of one.
+double half_square_difference(const SampleDatabase& database, const Sample& a, const Sample& b, std::size_t taxel) {
+  const double sigma = std::hypot(a.sigma_ratio, b.sigma_ratio);
+  const double difference = (a.ratio[taxel] - b.ratio[taxel]) / sigma * database.array.readout.adc_noise_counts;
+  return difference * difference;
+}
+
+// -------------------------------------------------------------------------------------------- error on tested loads
+
+/// Squares of the relative error at the knots of fusion::ForceNetworks::relative_sigma.
+using Profile = std::array<double, fusion::kSigmaKnots>;
+
+/// A tested load with the variances of the sum of its taxels' forces, by where they come from [N^2].
+struct JudgedLoad {
+  double square_noise = 0.0;
+  double square_error = 0.0;
+  double instruments = 0.0;  // ADC, temperature sensor, unloaded conductance
+  double supply = 0.0;       // for a supply error of kUnitSupplyNoise, which all taxels share
+  Profile material{};        // for a relative error of 1 at each knot
+
+  [[nodiscard]] double variance(double supply_noise, const Profile& profile) const {
+    const double known = instruments + std::pow(supply_noise / kUnitSupplyNoise, 2) * supply;
+    return std::inner_product(profile.begin(), profile.end(), material.begin(), known);
+  }
+
+  static constexpr double kUnitSupplyNoise = 0.005;
+};
+
+/// Units 3 and 4 with a given error of the supply and networks that have hardly any of their own.
+class ErrorBudget {
+ public:
+  static Result<ErrorBudget> create(pipeline::Model model, double supply_noise) {
+    model.array.readout.supply_noise = supply_noise;
+    Result<compensation::Compensator> compensator = compensation::Compensator::create(model.array);
+    if (!compensator) return compensator.error();
+    std::fill(model.networks.relative_sigma.begin(), model.networks.relative_sigma.end(), 1e-6F);
+    std::fill(model.networks.heaviest_newtons.begin(), model.networks.heaviest_newtons.end(),
+              std::numeric_limits<float>::infinity());  // a clamped force has no standard deviation
+    return ErrorBudget(std::move(*compensator), std::move(model.networks));
+  }
+
+  const ForceFrame& forces(const Sample& sample, double sigma_ratio) {
+    conditioned_.ratio = sample.ratio;
+    conditioned_.sigma_ratio = sigma_ratio;
+    conditioned_.temperature_celsius = sample.temperature_celsius;
+    conditioned_.taxels.assign(sample.ratio.size(), TaxelStatus::ok);
+    compensator_.forget();
+    compensator_.process(conditioned_, conductance_);
+    fusion_.process(conductance_, force_);
+    return force_;
+  }
+
+ private:
+  ErrorBudget(compensation::Compensator compensator, fusion::ForceNetworks networks)
+      : compensator_(std::move(compensator)), fusion_(std::move(networks)) {}
+
+  compensation::Compensator compensator_;
+  fusion::ForceFusion fusion_;
+  ConditionedFrame conditioned_;
+  ConductanceFrame conductance_;
+  ForceFrame force_;
+};
+
+JudgedLoad judge(const TestedLoad& load, const fusion::ForceNetworks& networks, const ForceFrame& without_supply,
+                 const ForceFrame& with_supply) {
+  JudgedLoad judged;
+  judged.square_noise = load.noise_n * load.noise_n;
+  judged.square_error = load.error_n * load.error_n;
+  double supply_n = 0.0;
+  for (const std::size_t taxel : load.taxels) {
+    const auto newtons = static_cast<double>(without_supply.newtons[taxel]);
+    const double square = std::pow(static_cast<double>(without_supply.sigma_newtons[taxel]), 2);
+    const double square_with_supply = std::pow(static_cast<double>(with_supply.sigma_newtons[taxel]), 2);
+    judged.instruments += square;
+    const double place = networks.sigma_place(std::log(without_supply.newtons[taxel]));
+    for (std::size_t k = 0; k < judged.material.size(); ++k) {
+      const double weight = std::max(1.0 - std::abs(place - static_cast<double>(k)), 0.0);
+      judged.material[k] += weight * newtons * newtons;
+    }
+    supply_n += std::sqrt(std::max(square_with_supply - square, 0.0));
+  }
+  judged.supply = supply_n * supply_n;
+  return judged;
+}
+
+Result<std::vector<JudgedLoad>> judge_loads(const SampleDatabase& database, const std::vector<TestedLoad>& loads,
+                                            const pipeline::Model& model) {
+  const double noise_ratio = model.array.readout.adc_noise_counts / database.array.readout.adc_noise_counts;
+  const Result<ErrorBudget> checked = ErrorBudget::create(model, 0.0);
+  if (!checked) return checked.error();
+  const std::size_t count = std::min(loads.size(), kMostLoads);
+  std::vector<JudgedLoad> judged(count);
+  parallel_for((count + kLoadsPerTask - 1) / kLoadsPerTask, [&](std::size_t task) {
+    Result<ErrorBudget> without_supply = ErrorBudget::create(model, 0.0);
+    Result<ErrorBudget> with_supply = ErrorBudget::create(model, JudgedLoad::kUnitSupplyNoise);
+    const std::size_t end = std::min(count, (task + 1) * kLoadsPerTask);
+    for (std::size_t k = task * kLoadsPerTask; k < end; ++k) {
+      const TestedLoad& load = loads[k * loads.size() / count];
+      const Sample& sample = database.samples[load.sample];
+      const double sigma_ratio = noise_ratio * sample.sigma_ratio;
+      judged[k] = judge(load, model.networks, without_supply->forces(sample, sigma_ratio),
+                        with_supply->forces(sample, sigma_ratio));
+    }
+  });
+  Profile one;
+  one.fill(1.0);
+  std::erase_if(judged, [&](const JudgedLoad& load) {
+    return !std::isfinite(load.variance(1.0, one)) || load.variance(0.0, one) <= load.instruments;
+  });
+  return judged;
+}
+
+using Square = double JudgedLoad::*;
+
+/// Whether more loads are outside their intervals than a normal distribution has outside: of one and of two standard
+/// deviations together, since the errors of a material with memory have longer tails.
+bool is_too_sure(const std::vector<double>& square_scores) {
+  const double one = quantile(square_scores, kOneSigmaShare);
+  const double two = quantile(square_scores, kTwoSigmaShare) / 4.0;
+  return one * two > 1.0;
+}
+
+/// The multiple of `profile` with which the standard deviations are right; bisection in its logarithm.
+Profile scaled(const Profile& profile, const std::vector<JudgedLoad>& loads, Square square, double supply_noise) {
+  double low = 1e-4;
+  double high = 1e4;
+  Profile result = profile;
+  std::vector<double> scores(loads.size());
+  constexpr int kSteps = 24;
+  for (int step = 0; step < kSteps; ++step) {
+    const double scale = std::sqrt(low * high);
+    std::transform(profile.begin(), profile.end(), result.begin(), [&](double variance) {
+      return std::max(scale * variance, kLeastRelativeSigma * kLeastRelativeSigma);
+    });
+    for (std::size_t k = 0; k < loads.size(); ++k)
+      scores[k] = loads[k].*square / loads[k].variance(supply_noise, result);
+    (is_too_sure(scores) ? low : high) = scale;
+  }
+  return result;
+}
+
+/// The same relative error at all forces.
+Profile even_profile(const std::vector<JudgedLoad>& loads, Square square, double supply_noise) {
+  Profile start;
+  start.fill(kStartRelativeSigma * kStartRelativeSigma);
+  return scaled(start, loads, square, supply_noise);
+}
+
+/// Minus the logarithm of the likelihood of the noise; a load beyond three standard deviations counts as three.
+double surprise(const std::vector<JudgedLoad>& loads, double supply_noise) {
+  if (loads.empty()) return 0.0;
+  const Profile profile = even_profile(loads, &JudgedLoad::square_noise, supply_noise);
+  double sum = 0.0;
+  for (const JudgedLoad& load : loads) {
+    const double variance = load.variance(supply_noise, profile);
+    sum += 0.5 * (std::log(variance) + std::min(load.square_noise / variance, kOutlierRatio));
+  }
+  return sum;
+}
+
+/// The supply error that makes the noise of all loads likeliest.
+double likeliest_supply_noise(const std::vector<JudgedLoad>& own, const std::vector<JudgedLoad>& shared) {
+  constexpr double kLowest = 1e-4;
+  constexpr double kHighest = 0.05;
+  constexpr double kStep = 1.1;
+  double best = 0.0;
+  double least = surprise(own, best) + surprise(shared, best);
+  for (double supply_noise = kLowest; supply_noise < kHighest; supply_noise *= kStep) {
+    const double sum = surprise(own, supply_noise) + surprise(shared, supply_noise);
+    if (sum >= least) continue;
+    least = sum;
+    best = supply_noise;
+  }
+  return best;
+}
+
+/// The relative errors at the knots that make the errors likeliest: the fixed point of the variance components of a
+/// normal distribution (the multiplicative step of Lange's MM algorithm), outliers as above.
+Profile likeliest_profile(const std::vector<JudgedLoad>& loads, double supply_noise) {
+  Profile profile = even_profile(loads, &JudgedLoad::square_error, supply_noise);
+  if (loads.size() < kLoadsPerKnot * profile.size()) return profile;
+  constexpr int kSteps = 100;
+  for (int step = 0; step < kSteps; ++step) {
+    Profile found{};
+    Profile expected{};
+    for (const JudgedLoad& load : loads) {
+      const double variance = load.variance(supply_noise, profile);
+      const double score = std::min(load.square_error / variance, kOutlierRatio);
+      for (std::size_t k = 0; k < profile.size(); ++k) {
+        found[k] += load.material[k] / variance * score;
+        expected[k] += load.material[k] / variance;
+      }
+    }
+    for (std::size_t k = 0; k < profile.size(); ++k) {
+      if (found[k] > 0.0) profile[k] *= std::sqrt(found[k] / expected[k]);
+    }
+  }
+  return scaled(profile, loads, &JudgedLoad::square_error, supply_noise);
+}
+
+/// The profile of the taxels that carry the loads, in the networks and for the report.
+RelativeSigma set_relative_sigma(const std::vector<TestedLoad>& loads, const Profile& profile,
+                                 fusion::ForceNetworks& networks) {
+  RelativeSigma sigma{};
+  for (std::size_t k = 0; k < profile.size(); ++k) {
+    sigma[k] = std::sqrt(profile[k]);
+    float* const of_taxel = networks.relative_sigma.data() + k * networks.taxel_count();
+    for (const TestedLoad& load : loads) {
+      for (const std::size_t taxel : load.taxels) of_taxel[taxel] = static_cast<float>(sigma[k]);
+    }
+  }
+  return sigma;
+}
+
+/// Knots over the loads; far below a load that many taxels share.
+void place_knots(const ForceTraining& training, fusion::ForceNetworks& networks) {
+  constexpr double kWidestRange = 1000.0;
+  const double heaviest = training.report.heaviest_newtons;
+  double lightest = std::max(training.report.lightest_newtons, heaviest / kWidestRange);
+  if (!training.tested_shared.empty() || lightest > 0.5 * heaviest) lightest = heaviest / kWidestRange;
+  networks.sigma_knots_newtons = {static_cast<float>(lightest), static_cast<float>(heaviest)};
+}
+
+std::string range_text(const RelativeSigma& sigma) {
+  const auto [least, most] = std::minmax_element(sigma.begin(), sigma.end());
+  return fmt::format("+- {:.2f} to {:.2f} % beside that", 100.0 * *least, 100.0 * *most);
+}
+
+}  // namespace
+
+std::optional<double> measure_adc_noise(const SampleDatabase& database) {
+  const std::vector<const Sample*> unloaded = unloaded_samples(database);
+  if (unloaded.size() < kLeastUnloadedSamples) return std::nullopt;
+  const std::vector<std::size_t> taxels = free_taxels(database, unloaded);
+  if (2 * taxels.size() < database.array.taxel_count()) return std::nullopt;
+  std::vector<double> of_pair(unloaded.size() - 1);
+  for (std::size_t k = 0; k < of_pair.size(); ++k) {
+    for (const std::size_t taxel : taxels) {
+      of_pair[k] += half_square_difference(database, *unloaded[k], *unloaded[k + 1], taxel);
+    }
+  }
+  const double most = kOutlierRatio * quantile(of_pair, 0.5);  // beyond: something touched the array
+  std::vector<double> of_taxel;
+  for (const std::size_t taxel : taxels) {
+    std::vector<double> squares;
+    for (std::size_t k = 0; k < of_pair.size(); ++k) {
+      if (of_pair[k] > most) continue;
+      squares.push_back(half_square_difference(database, *unloaded[k], *unloaded[k + 1], taxel));
+    }
+    of_taxel.push_back(mean(squares));
+  }
+  erase_outliers(of_taxel);
+  return std::sqrt(std::max(mean(of_taxel), 1.0 / 12.0));
+}
+
+double measure_temperature_noise(const SampleDatabase& database) {
+  std::vector<double> celsius;
+  for (const Sample& sample : database.samples) {
+    if (sample.temperature_celsius) celsius.push_back(*sample.temperature_celsius);
+  }
+  if (celsius.size() < kLeastTemperatures) return 0.0;
+  std::vector<double> differences;
+  for (std::size_t k = 1; k + 1 < celsius.size(); ++k) {
+    differences.push_back(std::abs(celsius[k - 1] - 2.0 * celsius[k] + celsius[k + 1]));
+  }
+  const double sigma = quantile(std::move(differences), kOneSigmaShare) / std::sqrt(6.0);  // 1 + 4 + 1 variances
+  return sigma <= kMostTemperatureNoise ? sigma : 0.0;
+}
+
+std::string describe(const UncertaintyReport& report, const ArrayDescription& array) {
+  std::string text = report.adc_noise_counts
+                         ? fmt::format("readings +- {:.2f} counts", *report.adc_noise_counts)
+                         : fmt::format("readings +- {:.2f} counts (from the array: unloaded readings do not tell)",
+                                       array.readout.adc_noise_counts);
+  if (report.supply_noise > 0.0) text += fmt::format(", supply +- {:.2f} %", 100.0 * report.supply_noise);
+  if (report.temperature_sigma_celsius > 0.0) {
+    text += fmt::format(", temperature +- {:.2f} C", report.temperature_sigma_celsius);
+  }
+  if (report.relative_sigma) text += ", forces " + range_text(*report.relative_sigma);
+  if (report.relative_sigma_of_shared) {
+    text += ", forces of the shared network " + range_text(*report.relative_sigma_of_shared);
+  }
+  return text;
+}
+
+Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const ForceTraining& training,
+                                          pipeline::Model& model) {
+  UncertaintyReport report;
+  report.adc_noise_counts = measure_adc_noise(database);
+  if (report.adc_noise_counts) model.array.readout.adc_noise_counts = *report.adc_noise_counts;
+  report.temperature_sigma_celsius = measure_temperature_noise(database);
+  model.networks.temperature_sigma_celsius = report.temperature_sigma_celsius;
+
+  place_knots(training, model.networks);
+  const Result<std::vector<JudgedLoad>> own = judge_loads(database, training.tested_own, model);
+  if (!own) return own.error();
+  const Result<std::vector<JudgedLoad>> shared = judge_loads(database, training.tested_shared, model);
+  if (!shared) return shared.error();
+  report.supply_noise = likeliest_supply_noise(*own, *shared);
+  model.array.readout.supply_noise = report.supply_noise;
+  if (!shared->empty()) {
+    report.relative_sigma_of_shared =
+        set_relative_sigma(training.tested_shared, likeliest_profile(*shared, report.supply_noise), model.networks);
+  }
+  if (!own->empty()) {
+    report.relative_sigma =
+        set_relative_sigma(training.tested_own, likeliest_profile(*own, report.supply_noise), model.networks);
+  }
+  return report;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+namespace dermis::compensation {
+
+/// The inverse of a square matrix by Gauss-Jordan elimination of blocks, each a matrix product; pivots are sought
+/// within a block only, which suits matrices of unit diagonal that are well conditioned.
+class DenseInverse {
+ public:
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+  explicit DenseInverse(std::size_t size);
+
+  [[nodiscard]] Matrix& matrix() noexcept { return matrix_; }
+
+  /// Puts the inverse in the place of matrix(). Allocates nothing. A singular matrix gives values that are not finite.
+  void invert() noexcept;
+
+ private:
+  static constexpr Eigen::Index kBlock = 32;
+
+  Matrix matrix_;
+  Matrix product_;  // [size, size]
+  Matrix left_;     // [size, kBlock]
+  Matrix right_;    // [kBlock, size]
+  Matrix pivot_;    // [kBlock, kBlock]
+};
+
+}  // namespace dermis::compensation

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "fusion/force_kernels.hpp"
+
+#include <cstddef>
+#include <limits>
+
+#include "dermis/fusion/force_fusion.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "fusion/force_kernels.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h comes first: it includes this file again for every instruction set.
+#include "hwy/contrib/math/math-inl.h"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace dermis::fusion::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// work(d, first) for the taxels first ... first + lanes(d) - 1, until all are done.
+template <typename Work>
+void for_all_lanes(std::size_t taxels, Work work) {
+  const hn::ScalableTag<float> d;
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t first = 0;
+  for (; first + lanes <= taxels; first += lanes) work(d, first);
+  for (; first < taxels; ++first) work(hn::CappedTag<float, 1>(), first);
+}
+
+void compute_inputs(const ExcessConductance& excess, float* inputs) {
+  constexpr float kLeastShare = 1e-20F;  // of the reference: keeps ln(e) finite
+  const std::size_t taxels = excess.siemens.size();
+  for_all_lanes(taxels, [&](auto d, std::size_t first) {
+    const auto load = [&](std::span<const float> values) { return hn::LoadU(d, values.data() + first); };
+    const auto siemens = load(excess.siemens);
+    const auto is_loaded = hn::Gt(siemens, hn::Zero(d));
+    const auto asked = hn::IfThenElse(is_loaded, siemens, load(excess.sigma_siemens));
+    const auto calibrated = hn::Min(asked, load(excess.heaviest_siemens));
+    const auto share = hn::Max(hn::Div(calibrated, load(excess.reference_siemens)), hn::Set(d, kLeastShare));
+    hn::StoreU(hn::Log(d, share), d, inputs + first);
+    hn::StoreU(hn::Sub(share, hn::Set(d, 1.0F)), d, inputs + taxels + first);
+  });
+}
+
+/// Square of the relative error at a force between its knots.
+template <class D>
+hn::Vec<D> material_variance(D d, const ForceSources& sources, hn::Vec<D> log_newtons, std::size_t first) {
+  const auto knot =
+      hn::Mul(hn::Sub(log_newtons, hn::Set(d, sources.log_first_knot)), hn::Set(d, sources.knots_per_log));
+  const auto place = hn::Clamp(knot, hn::Zero(d), hn::Set(d, static_cast<float>(kSigmaKnots - 1)));
+  auto variance = hn::Zero(d);
+  for (std::size_t k = 0; k < kSigmaKnots; ++k) {
+    const auto distance = hn::Abs(hn::Sub(place, hn::Set(d, static_cast<float>(k))));
+    const auto weight = hn::Max(hn::Sub(hn::Set(d, 1.0F), distance), hn::Zero(d));
+    const float* at_knot = sources.relative_variance.data() + k * sources.log_gain.size() + first;
+    variance = hn::MulAdd(weight, hn::LoadU(d, at_knot), variance);
+  }
+  return variance;
+}
+
+void compute_forces(const ForceSources& sources, float* newtons, float* sigma_newtons) {
+  constexpr float kLargestLog = 88.0F;  // of a float
+  const std::size_t taxels = sources.log_gain.size();
+  for_all_lanes(taxels, [&](auto d, std::size_t first) {
+    const auto load = [&](std::span<const float> values, std::size_t row = 0) {
+      return hn::LoadU(d, values.data() + row * taxels + first);
+    };
+    const auto one = hn::Set(d, 1.0F);
+    const auto reference = load(sources.excess.reference_siemens);
+    const auto log_share = load(sources.inputs);
+    const auto share = hn::Add(load(sources.inputs, 1), one);
+    const auto exponent = hn::MulAdd(load(sources.gradient, 1), share, load(sources.gradient));  // p
+    const auto log_newtons =
+        hn::Min(hn::Add(load(sources.log_newtons), load(sources.log_gain)), hn::Set(d, kLargestLog));
+    const auto is_loaded = hn::Gt(load(sources.excess.siemens), hn::Zero(d));
+    hn::StoreU(hn::IfThenElseZero(is_loaded, hn::Exp(d, log_newtons)), d, newtons + first);
+
+    // Where the standard deviation is taken: at e, or at one standard deviation of e where that is more.
+    const auto noise_share = hn::Div(load(sources.excess.sigma_siemens), reference);
+    const auto reached = hn::Max(share, noise_share);
+    const auto log_reached = hn::MulAdd(exponent, hn::Sub(hn::Log(d, reached), log_share), log_newtons);
+
+    const auto noise = hn::Div(hn::Mul(exponent, noise_share), reached);
+    const auto offset_drift = hn::Div(hn::Mul(exponent, load(sources.offset_per_celsius)), hn::Mul(reached, reference));
+    auto per_celsius = hn::Neg(offset_drift);  // q
+    if (sources.temperature_per_celsius > 0.0F) {
+      per_celsius = hn::MulAdd(load(sources.gradient, 2), hn::Set(d, sources.temperature_per_celsius), per_celsius);
+    }
+    const auto drift = hn::Mul(per_celsius, hn::Set(d, sources.temperature_sigma));
+    auto variance = material_variance(d, sources, log_reached, first);
+    variance = hn::MulAdd(noise, noise, variance);
+    variance = hn::MulAdd(drift, drift, variance);
+    const auto at_reached = hn::Exp(d, hn::Min(log_reached, hn::Set(d, kLargestLog)));
+    const auto least = hn::Set(d, std::numeric_limits<float>::min());
+    hn::StoreU(hn::Max(hn::Mul(at_reached, hn::Sqrt(variance)), least), d, sigma_newtons + first);
+  });
+}
+
+}  // namespace dermis::fusion::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace dermis::fusion {
+
+HWY_EXPORT(compute_inputs);
+HWY_EXPORT(compute_forces);
+
+void conductance_inputs(const ExcessConductance& excess, std::span<float> inputs) noexcept {
+  HWY_DYNAMIC_DISPATCH(compute_inputs)(excess, inputs.data());
+}
+
+void forces(const ForceSources& sources, std::span<float> newtons, std::span<float> sigma_newtons) noexcept {
+  HWY_DYNAMIC_DISPATCH(compute_forces)(sources, newtons.data(), sigma_newtons.data());
+}
+
+}  // namespace dermis::fusion
+#endif

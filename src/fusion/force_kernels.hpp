@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <span>
+
+// The arithmetic of ForceFusion with the taxels in SIMD lanes (single precision, Highway). Taxels without a force are
+// computed like all others; what comes out is never used.
+namespace dermis::fusion {
+
+/// Conductance above the unloaded one, each [taxels] [S].
+struct ExcessConductance {
+  std::span<const float> reference_siemens;
+  std::span<const float> heaviest_siemens;
+  std::span<const float> siemens;
+  std::span<const float> sigma_siemens;
+};
+
+/// ln(e / reference) and e / reference - 1 in `inputs` [2, taxels], e clamped to the heaviest load. An unloaded taxel
+/// has no force but a detection limit: the network is asked for the force of one standard deviation.
+void conductance_inputs(const ExcessConductance& excess, std::span<float> inputs) noexcept;
+
+/// What forces and their standard deviations are made of; each vector [taxels] where nothing else is said.
+struct ForceSources {
+  ExcessConductance excess;
+  std::span<const float> log_gain;
+  std::span<const float> inputs;              ///< Of the networks [inputs, taxels].
+  std::span<const float> log_newtons;         ///< Their outputs.
+  std::span<const float> gradient;            ///< d output / d input [inputs, taxels].
+  std::span<const float> offset_per_celsius;  ///< [S/C]
+  std::span<const float> relative_variance;   ///< relative_sigma^2 [kSigmaKnots, taxels]
+  float temperature_sigma = 0.0F;             ///< [C]
+  float temperature_per_celsius = 0.0F;       ///< Rise of the third input [1/C]; 0 where there is none.
+  float log_first_knot = 0.0F;                ///< ln of the first knot of relative_sigma.
+  float knots_per_log = 0.0F;                 ///< Knots for a rise of ln(newtons) by one.
+};
+
+/// newtons and sigma_newtons [taxels] by the formulas of ForceNetworks and ForceFusion.
+void forces(const ForceSources& sources, std::span<float> newtons, std::span<float> sigma_newtons) noexcept;
+
+}  // namespace dermis::fusion

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "dermis/report/plot.hpp"
+#include "report/figures.hpp"
+#include "report/wording.hpp"
+
+namespace dermis::report {
+namespace {
+
+using calibration::Evaluation;
+using calibration::JudgedTaxel;
+
+constexpr double kLargestSigma = 3.0;
+constexpr int kSteps = 60;
+constexpr double kWidth = 440.0;
+constexpr double kHeight = 400.0;
+constexpr std::size_t kMarks = 7;
+
+/// Probability [%] that a normal error is within so many standard deviations.
+double nominal_percent(double sigmas) {
+  return 100.0 * std::erf(sigmas / std::numbers::sqrt2);
+}
+
+std::vector<Point> reliability(const std::vector<JudgedTaxel>& taxels) {
+  std::vector<double> sigmas;
+  for (int step = 0; step <= kSteps; ++step) sigmas.push_back(kLargestSigma * step / kSteps);
+  const std::vector<double> shares = calibration::covered_shares(taxels, sigmas);
+  std::vector<Point> points;
+  for (std::size_t k = 0; k < shares.size(); ++k) points.push_back({nominal_percent(sigmas[k]), 100.0 * shares[k]});
+  return points;
+}
+
+Axis percent_axis(std::string label) {
+  return {std::move(label), Scale::linear, 0.0, 100.0, {0, 20, 40, 60, 80, 100}};
+}
+
+}  // namespace
+
+Figure coverage_figure(const Evaluation& evaluation) {
+  Figure figure{"coverage.svg", "How sure dermis is, and how often it is right", "", {}};
+  if (evaluation.coverage.count == 0) {
+    figure.caption = "No taxel with a known force of at least 1 N has a standard deviation.";
+    return figure;
+  }
+  Plot plot("", percent_axis("interval that dermis gives [%]"), percent_axis("true forces within it [%]"), kWidth,
+            kHeight);
+  plot.reference("right", {{0.0, 0.0}, {100.0, 100.0}});
+  plot.line("dermis", 0, reliability(evaluation.taxels), kMarks);
+  figure.panels.push_back(plot.drawing());
+  figure.caption = fmt::format(
+      "The true force of {} taxels is within the 68 % interval of dermis in {:.1f} % and within the 95 % interval in "
+      "{:.1f} %. Below the straight line dermis is too sure, above it too modest. Taxels of which only a lower bound "
+      "is "
+      "known (saturated, above the calibrated range) are not counted.",
+      grouped(evaluation.coverage.count), 100.0 * *evaluation.coverage.share_68, 100.0 * *evaluation.coverage.share_95);
+  if (evaluation.bound.frames == 0) return figure;
+  figure.caption += fmt::format(
+      " Under the noise of the ADC alone no unbiased estimator scatters less than the Cramer-Rao bound: {:.2f} % of "
+      "the "
+      "force (median of {} taxels of {}); dermis scatters by {:.2f} %, and the root mean square of its error over the "
+      "bound is {:.2f}.",
+      100.0 * evaluation.bound.median_bound, grouped(evaluation.bound.taxels),
+      counted(evaluation.bound.frames, "frame"), 100.0 * evaluation.bound.median_deviation, evaluation.bound.rms_ratio);
+  return figure;
+}
+
+}  // namespace dermis::report

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/uncertainty.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/simulated.hpp"
+#include "dermis/calibration/calibrate.hpp"
+#include "dermis/calibration/evaluation.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+/// Unloaded samples of an array whose readings are taken as they are, `level` counts of 1023 with normal noise.
+SampleDatabase unloaded_database(std::size_t samples, double level, double noise_counts, bool rounded,
+                                 std::uint64_t seed) {
+  Random random(seed);
+  SampleDatabase database;
+  database.array.rows = 6;
+  database.array.cols = 6;
+  database.array.readout.circuit = Circuit::none;
+  database.array.readout.adc_bits = 10;
+  for (std::size_t k = 0; k < samples; ++k) {
+    Sample& sample = database.samples.emplace_back();
+    const double supply = random.uniform(0.8, 1.2);  // of the reference: what a count is worth
+    sample.unloaded = true;
+    sample.sigma_ratio = database.array.readout.adc_noise_counts / (1023.0 * supply);
+    sample.known_newtons.assign(36, 0.0F);
+    for (std::size_t taxel = 0; taxel < 36; ++taxel) {
+      const double drift = 0.01 * static_cast<double>(k);
+      double counts = level * supply + drift + noise_counts * random.normal();
+      if (rounded) counts = std::clamp(std::round(counts), 0.0, 1023.0);
+      sample.reading.push_back(counts / 1023.0);
+      sample.ratio.push_back(counts / 1023.0 / supply);
+    }
+  }
+  return database;
+}
+
+TEST(Uncertainty, adc_noise_is_the_one_simulated_whatever_supply_and_drift_do) {
+  for (const double noise : {0.5, 1.0, 3.0}) {
+    const auto measured = measure_adc_noise(unloaded_database(60, 40.0, noise, true, 7));
+    ASSERT_TRUE(measured);
+    EXPECT_NEAR(*measured / std::sqrt(noise * noise + 1.0 / 12.0), 1.0, 0.05) << noise;
+  }
+  const auto averaged = measure_adc_noise(unloaded_database(60, 40.0, 0.6, false, 8));  // a source that averages
+  ASSERT_TRUE(averaged);
+  EXPECT_NEAR(*averaged, 0.6, 0.03);
+}
+
+TEST(Uncertainty, adc_noise_is_at_least_that_of_rounding) {
+  const auto measured = measure_adc_noise(unloaded_database(60, 40.0, 0.0, false, 9));
+  ASSERT_TRUE(measured);
+  EXPECT_DOUBLE_EQ(*measured, 1.0 / std::sqrt(12.0));
+}
+
+TEST(Uncertainty, adc_noise_is_not_made_up_where_the_end_of_the_adc_hides_it) {
+  EXPECT_FALSE(measure_adc_noise(unloaded_database(60, 0.5, 1.0, true, 10)));
+  EXPECT_FALSE(measure_adc_noise(unloaded_database(4, 40.0, 1.0, true, 11)));  // too few
+}
+
+TEST(Uncertainty, adc_noise_is_not_raised_by_a_touch_or_a_flickering_taxel) {
+  SampleDatabase database = unloaded_database(60, 40.0, 1.0, true, 12);
+  for (double& ratio : database.samples[20].ratio) ratio *= 3.0;
+  Random random(1);
+  for (Sample& sample : database.samples) sample.ratio[5] += 0.1 * random.normal();
+  const auto measured = measure_adc_noise(database);
+  ASSERT_TRUE(measured);
+  EXPECT_NEAR(*measured / std::sqrt(13.0 / 12.0), 1.0, 0.06);
+}
+
+SampleDatabase temperatures(std::size_t count, double noise, double step) {
+  Random random(3);
+  SampleDatabase database;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double celsius = 20.0 + 0.01 * static_cast<double>(k) + (k > count / 2 ? step : 0.0);
+    database.samples.emplace_back().temperature_celsius = celsius + noise * random.normal();
+  }
+  return database;
+}
+
+TEST(Uncertainty, temperature_noise_is_that_of_the_sensor_not_of_the_room) {
+  EXPECT_NEAR(measure_temperature_noise(temperatures(500, 0.3, 20.0)), 0.3, 0.04);
+  EXPECT_EQ(measure_temperature_noise(temperatures(500, 12.0, 0.0)), 0.0);  // a new temperature every time
+  EXPECT_EQ(measure_temperature_noise(temperatures(10, 0.3, 0.0)), 0.0);
+}
+
+/// Share of taxels within the 68 % and 95 % intervals in a multitouch scene after single presses.
+Coverage coverage_of(const ArrayDescription& array, const simulation::SimulationOptions& physics,
+                     UncertaintyReport* report = nullptr) {
+  const Recording presses = record(array, "calibration", 1, physics);
+  const auto calibration = calibrate(array, presses.frames, presses.loads);
+  EXPECT_TRUE(calibration);
+  if (report != nullptr) *report = calibration->report.uncertainty;
+  const Recording touches = record(array, "multitouch", 2, physics, 300);
+  const auto evaluation = evaluate(calibration->model, touches.frames, touches.loads);
+  EXPECT_TRUE(evaluation);
+  return evaluation->coverage;
+}
+
+void expect_calibrated(const Coverage& coverage) {
+  EXPECT_GT(coverage.count, 2000U);
+  EXPECT_GE(*coverage.share_68, 0.63);
+  EXPECT_LE(*coverage.share_68, 0.73);
+  EXPECT_GE(*coverage.share_95, 0.92);
+  EXPECT_LE(*coverage.share_95, 0.98);
+}
+
+TEST(Uncertainty, intervals_cover_what_they_promise_with_a_divider) {
+  UncertaintyReport report;
+  expect_calibrated(coverage_of(reference_array(8, 8), {}, &report));
+  EXPECT_NEAR(report.adc_noise_counts.value_or(0.0), std::sqrt(13.0 / 12.0), 0.06);
+  EXPECT_NEAR(report.temperature_sigma_celsius, 0.3, 0.03);
+  EXPECT_NEAR(report.supply_noise, 0.001, 0.0006);
+}
+
+TEST(Uncertainty, intervals_cover_what_they_promise_where_the_material_is_noisy) {
+  simulation::SimulationOptions physics;
+  physics.rubber.pink_noise = 1e-6;
+  physics.environment.adc_noise_lsb = 2.0;
+  expect_calibrated(coverage_of(reference_array(8, 8), physics));
+}
+
+TEST(Uncertainty, intervals_cover_what_they_promise_at_virtual_ground) {
+  ArrayDescription array = reference_array(8, 8);
+  array.readout.circuit = Circuit::transimpedance;
+  array.readout.drive_ohm.assign(8, 25.0);
+  array.readout.load_ohm.assign(8, 150.0);
+  expect_calibrated(coverage_of(array, {}));
+}
+
+}  // namespace
+}  // namespace dermis::calibration
