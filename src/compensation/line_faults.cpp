@@ -53,6 +53,13 @@ constexpr double kDoubtOfEstimate = 0.5;  // relative, of a conductance between 
 constexpr double kGroundEvidence = 10.0;
 constexpr double kMostGround = 3.0;  // evidence of one taxel in one frame
 
+// Why a taxel's reading is not its own.
+constexpr std::uint8_t kRowCause = 1;
+constexpr std::uint8_t kColumnCause = 2;
+constexpr std::uint8_t kStuckCause = 4;
+constexpr std::uint8_t kDeadCause = 8;
+constexpr std::uint8_t kPairCause = 16;
+
 /// Page's cumulative sum: evidence for a change, back to 0 whenever there is more against it.
 struct PageTest {
   double evidence = 0.0;
@@ -173,6 +180,11 @@ class LineFaultMonitor::Implementation {
   void judge_silent_lines(const Inputs& in, bool row);
   void judge_dead_taxels(const Inputs& in);
   void judge_stuck_taxels(const Inputs& in);
+  struct Comparison {
+    int equal = 0;
+    int different = 0;
+  };
+  Comparison compare_with_next(const Inputs& in, bool row, std::size_t line);
   void judge_shorted_lines(const Inputs& in, bool row);
   void judge_supplied_columns(const Inputs& in);
   void judge_supplied_rows(const Inputs& in);
@@ -196,8 +208,7 @@ class LineFaultMonitor::Implementation {
   std::size_t frame_ = 0;
   double last_sigma_ = 0.0;
 
-  // Why a taxel's reading is not its own: bits of kRowCause ...
-  std::vector<std::uint8_t> causes_;
+  std::vector<std::uint8_t> causes_;     // bits of kRowCause ... [taxels]
   std::vector<std::uint8_t> untouched_;  // [taxels]
   double common_share_ = 0.0;
 
@@ -218,16 +229,6 @@ class LineFaultMonitor::Implementation {
   std::vector<double> supplied_last_;
   std::vector<DriftFit> drift_;
 };
-
-namespace {
-
-constexpr std::uint8_t kRowCause = 1;
-constexpr std::uint8_t kColumnCause = 2;
-constexpr std::uint8_t kStuckCause = 4;
-constexpr std::uint8_t kDeadCause = 8;
-constexpr std::uint8_t kPairCause = 16;
-
-}  // namespace
 
 LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
                                                  std::span<const double> unloaded_siemens)
@@ -493,46 +494,58 @@ void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
   }
 }
 
-void LineFaultMonitor::Implementation::judge_shorted_lines(const Inputs& in, bool row) {
-  const LineFaultKind kind = row ? LineFaultKind::shorted_rows : LineFaultKind::shorted_columns;
-  // A line at the supply makes the readings of others alike.
-  if (has_kind(LineFaultKind::supplied_row) || has_kind(LineFaultKind::supplied_column)) return;
+/// Presses on a line and the next one: new ones in which both read the same and the lines beside them do not, and those
+/// in which they differ.
+LineFaultMonitor::Implementation::Comparison LineFaultMonitor::Implementation::compare_with_next(const Inputs& in,
+                                                                                                 bool row,
+                                                                                                 std::size_t line) {
   const std::span<const double> ratio = in.conditioned.ratio;
   const double sigma = in.conditioned.sigma_ratio;
-  const std::uint8_t line_causes = row ? kRowCause : kColumnCause;
+  const double pair = ratio_of_shorted_lines(array_, row, line);
+  const int spoilt = (row ? kRowCause : kColumnCause) | kStuckCause | kDeadCause;
+  Comparison found;
+  for (std::size_t k = 0; k < across(row); ++k) {
+    const std::size_t first = at(row, line, k);
+    const std::size_t second = at(row, line + 1, k);
+    if (((causes_[first] | causes_[second]) & spoilt) != 0) continue;
+    if (in.conditioned.taxels[first] != TaxelStatus::ok || in.conditioned.taxels[second] != TaxelStatus::ok) continue;
+    const double largest = std::max(ratio[first], ratio[second]);
+    if (largest < kPressedSigmas * sigma) continue;
+    const double deviation = std::hypot(sigma, pair * sigma, kEqualShare * largest);
+    const double difference = std::abs(ratio[first] - pair * ratio[second]);
+    if (difference > kDifferentSigmas * deviation) ++found.different;
+    if (difference > kEqualSigmas * deviation) continue;
+    const auto reads_alike = [&](std::size_t other) {
+      return std::abs(ratio[other] - ratio[first]) <= kDifferentSigmas * deviation;
+    };
+    if (line > 0 && reads_alike(at(row, line - 1, k))) continue;
+    if (line + 2 < lines(row) && reads_alike(at(row, line + 2, k))) continue;
+    double& last = shorted_last_[row][first];
+    if (std::abs(ratio[first] - last) < kNewPress * largest) continue;
+    last = ratio[first];
+    ++found.equal;
+  }
+  return found;
+}
+
+void LineFaultMonitor::Implementation::judge_shorted_lines(const Inputs& in, bool row) {
+  // A line at the supply makes the readings of others alike.
+  if (has_kind(LineFaultKind::supplied_row) || has_kind(LineFaultKind::supplied_column)) return;
+  const LineFaultKind kind = row ? LineFaultKind::shorted_rows : LineFaultKind::shorted_columns;
   for (std::size_t line = 0; line + 1 < lines(row); ++line) {
-    const double pair = ratio_of_shorted_lines(array_, row, line);
-    int equal = 0;
-    int different = 0;
-    for (std::size_t k = 0; k < across(row); ++k) {
-      const std::size_t first = at(row, line, k);
-      const std::size_t second = at(row, line + 1, k);
-      if (((causes_[first] | causes_[second]) & (line_causes | kStuckCause | kDeadCause)) != 0) continue;
-      if (in.conditioned.taxels[first] != TaxelStatus::ok || in.conditioned.taxels[second] != TaxelStatus::ok) continue;
-      const double largest = std::max(ratio[first], ratio[second]);
-      if (largest < kPressedSigmas * sigma) continue;
-      const double deviation = std::hypot(sigma, pair * sigma, kEqualShare * largest);
-      const double difference = std::abs(ratio[first] - pair * ratio[second]);
-      if (difference > kDifferentSigmas * deviation) ++different;
-      if (difference > kEqualSigmas * deviation) continue;
-      const auto differs = [&](bool exists, std::size_t other) {
-        return !exists || std::abs(ratio[other] - ratio[first]) > kDifferentSigmas * deviation;
-      };
-      const bool before = differs(line > 0, line > 0 ? at(row, line - 1, k) : first);
-      const bool after = differs(line + 2 < lines(row), line + 2 < lines(row) ? at(row, line + 2, k) : first);
-      double& last = shorted_last_[row][first];
-      if (!before || !after || std::abs(ratio[first] - last) < kNewPress * largest) continue;
-      last = ratio[first];
-      ++equal;
-    }
+    const Comparison seen = compare_with_next(in, row, line);
     PressCount& count = shorted_[row][line];
-    count.against = different > 0 ? count.against + 1 : (equal > 0 ? 0 : count.against);
+    if (seen.different > 0) {
+      ++count.against;
+    } else if (seen.equal > 0) {
+      count.against = 0;
+    }
     const bool is_known = is_found(kind, line);
-    if (different > 0 && (!is_known || count.against >= kLineFrames)) {
+    if (seen.different > 0 && (!is_known || count.against >= kLineFrames)) {
       if (is_known) healed(kind, line);
       count.presses = 0;
     } else if (!is_known) {
-      count.add(equal, in.frame, in.conditioned.time);
+      count.add(seen.equal, in.frame, in.conditioned.time);
       if (count.presses < kEqualPresses) continue;
       found(kind, line, count.first_frame, count.first_time);
       count.against = 0;

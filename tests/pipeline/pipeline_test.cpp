@@ -17,7 +17,9 @@
 
 #include "dermis/core/random.hpp"
 #include "dermis/simulation/adc.hpp"
+#include "dermis/simulation/line_faults.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
+#include "dermis/simulation/scene.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/hand_made_model.hpp"
 #include "support/random_networks.hpp"
@@ -338,6 +340,74 @@ TEST(Pipeline, allocates_nothing_after_the_first_frame) {
       EXPECT_TRUE(has(seen, FrameStatus::rejected));
     }
   }
+}
+
+double quantile(std::vector<double>& values, double share) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+/// Several contacts on the reference circuit with 12 bit and 1 count of noise; row 5 breaks in frame 20.
+TEST(Pipeline, open_row_is_found_and_masked_and_the_rest_stays_right) {
+  constexpr std::size_t kFrames = 300;
+  constexpr std::size_t kFrom = 20;
+  constexpr std::size_t kRow = 5;
+  Model model = hand_made_model(16, 16);
+  model.array.readout.adc_bits = 12;
+  simulation::LineFaults faults;
+  faults.open_rows = {kRow};
+  faults.from_frame = kFrom;
+  const auto circuit = simulation::FaultyCircuit::create(model.array, faults).value();
+  const auto scene = simulation::Scene::create("multitouch", model.array, {}, 8, kFrames).value();
+  const simulation::Adc adc(model.array.readout, 1.0);
+  const auto broken = make_pipeline(model);
+  const auto whole = make_pipeline(model);
+  std::vector<double> siemens(model.array.taxel_count());
+  std::vector<double> ratio(siemens.size());
+  std::vector<double> broken_errors;
+  std::vector<double> whole_errors;
+  simulation::SceneFrame truth;
+  RawFrame raw;
+  raw.counts.resize(siemens.size());
+  ForceFrame broken_force;
+  ForceFrame whole_force;
+  std::size_t found_at = 0;
+  const auto measure = [&](std::size_t fault_frame, std::uint64_t seed) {
+    circuit.ratios(siemens, fault_frame, ratio);
+    Random random(seed);
+    adc.convert(ratio, 5.0, random, raw.counts);
+  };
+  for (std::size_t frame = 0; frame < kFrames; ++frame) {
+    scene.frame(frame, truth);
+    raw.time = std::chrono::seconds(frame);
+    raw.temperature_celsius = 25.0;
+    for (std::size_t k = 0; k < siemens.size(); ++k)
+      siemens[k] = support::siemens_under(model, k, truth.force_n[k], 25.0);
+    measure(0, frame);
+    whole->process(raw, whole_force);
+    measure(frame, frame);
+    broken->process(raw, broken_force);
+    ASSERT_FALSE(has(whole_force.status, FrameStatus::line_fault));
+    if (!has(broken_force.status, FrameStatus::line_fault)) continue;
+    if (found_at == 0) found_at = frame;
+    for (std::size_t k = 0; k < siemens.size(); ++k) {
+      if (k / 16 == kRow) {
+        EXPECT_TRUE(std::isnan(broken_force.newtons[k]));
+        EXPECT_EQ(broken_force.taxels[k], TaxelStatus::line_fault);
+      } else if (truth.force_n[k] >= 1.0) {
+        broken_errors.push_back(std::abs(static_cast<double>(broken_force.newtons[k]) / truth.force_n[k] - 1.0));
+        whole_errors.push_back(std::abs(static_cast<double>(whole_force.newtons[k]) / truth.force_n[k] - 1.0));
+      }
+    }
+  }
+  EXPECT_GE(found_at, kFrom);
+  EXPECT_LE(found_at, kFrom + 10);
+  EXPECT_GT(broken_errors.size(), 5000U);
+  EXPECT_LE(quantile(broken_errors, 0.5), 1.2 * quantile(whole_errors, 0.5));
+  EXPECT_LE(quantile(broken_errors, 0.95), 1.2 * quantile(whole_errors, 0.95));
+  ASSERT_EQ(broken->line_faults().faults().size(), 1U);
+  EXPECT_EQ(broken->line_faults().faults()[0].frame, kFrom);
 }
 
 }  // namespace

@@ -57,9 +57,10 @@ struct LineFault {
 /// supplied lines              a column at full scale in all rows, 3 frames; a row whose presses show in all rows, 6
 /// drifting drivers            unloaded taxels that read less the more current their line carries
 ///
-/// What it cannot see: a line whose unloaded taxels read below about 2.3 standard deviations each, 16 of them (sees_silent_*); a
-/// short between lines that nothing presses; a taxel that stands at an end of the ADC. With `circuit = "none"` silent
-/// lines and taxels are judged where nothing is pressed, drivers not at all. Not thread-safe: one per stream.
+/// What it cannot see: a line whose unloaded taxels read below about 2.3 standard deviations each, 16 of them
+/// (sees_silent_*); a short between lines that nothing presses; a taxel that stands at an end of the ADC. With `circuit
+/// = "none"` silent lines and taxels are judged where nothing is pressed, drivers not at all. Not thread-safe: one per
+/// stream.
 class LineFaultMonitor {
  public:
   /// `unloaded_siemens` [rows, cols]: conductance of the unloaded taxels [S]; 0 or less where it is not known or the
