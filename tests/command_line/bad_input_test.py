@@ -226,10 +226,6 @@ class Calibration(SmallArray):
     def test_all_frames_settle(self):
         self.refuse([*self.calibrate_arguments(self.work / "m"), "--settle", "1e6"], ["settling"])
 
-    def test_a_circuit_that_cannot_be_inverted(self):
-        array = self.written("array.toml", ARRAY + 'idle_rows = "floating"\n')
-        self.refuse(self.calibrate_arguments(self.work / "m", array=array), ["idle_rows"])
-
     def test_a_reference_in_volts_without_any_supply(self):
         """Readings cannot be put over a supply that nobody knows."""
         array = self.written("array.toml", ARRAY.replace("supply_v = 5.0\n", ""))

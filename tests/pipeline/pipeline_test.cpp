@@ -233,9 +233,9 @@ TEST(Pipeline, frame_without_a_solution_is_flagged_and_has_no_force) {
   for (const float newtons : force.newtons) EXPECT_TRUE(std::isnan(newtons));
 }
 
-TEST(Pipeline, circuit_that_cannot_be_inverted_is_refused) {
+TEST(Pipeline, circuit_that_is_still_to_be_fitted_is_refused) {
   Model model = hand_made_model(2, 2);
-  model.array.readout.idle_rows = IdleRows::floating;
+  model.array.readout.drive_ohm[1] = kFitOhm;
   const auto pipeline = Pipeline::create(model);
   ASSERT_FALSE(pipeline);
   EXPECT_EQ(pipeline.error().kind, ErrorKind::bad_input);
