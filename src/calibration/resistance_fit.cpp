@@ -757,8 +757,7 @@ class ResistanceFitter {
     VectorXd pressed_step(solution.size() + 1);
     pressed_step << solution, 1.0;
     const double pressed_freedom = pressed.readings - static_cast<double>(kFreeTerms + 1) * pressed.taxels;
-    // Too few presses a taxel tell nothing of their scatter: a first guess then stays.
-    if (pressed_freedom > 0.5 * pressed.readings) {
+    if (pressed_freedom > 0.0) {
       learn_rubber(readings, pressed.readings / pressed_freedom);
       learn_shapes(pressed, pressed_step);
     }
