@@ -135,7 +135,7 @@ template <typename Real>
 void find_ratios(const double* drive_ohm, const double* load_ohm, const Real* siemens, std::size_t rows,
                  std::size_t cols, Real* ratio) {
   const hn::CappedTag<Real, kMostLanes> d;
-  Workspace<Real> work;
+  Workspace<Real> work;  // NOLINT(cppcoreguidelines-pro-type-member-init): each part is written before it is read
   work.rows = rows;
   work.cols = cols;
   work.stride = (cols + hn::Lanes(d) - 1) / hn::Lanes(d) * hn::Lanes(d);
