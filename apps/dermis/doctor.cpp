@@ -28,7 +28,8 @@ constexpr double kMuchOffsetDrift = 0.3;    // of the unloaded conductance, comm
 constexpr double kMuchSaturation = 0.01;    // of all readings
 constexpr double kTemperatureMargin = 1.0;  // sensor noise [C]
 constexpr std::size_t kLeastUnloadedFrames = 10;
-constexpr std::size_t kReach = 3;  // taxels around a touched one that may be touched a little
+constexpr double kSurelyTouchedSigmas = 20.0;  // of calibrated noise: noise that has grown is no touch
+constexpr std::size_t kReach = 3;              // taxels around a touched one that may be touched a little
 
 struct DoctorOptions {
   std::string model;
@@ -42,33 +43,32 @@ struct FaultHistory {
   std::optional<std::size_t> until{};  ///< First frame without it; empty while it stands.
 };
 
-/// Standard deviation of a reading, from how much the readings differ from one frame to the next where least moves: in
-/// the quietest tenth of the recording, without the readings that move most.
+/// Noise against what the model says, from how much the taxels that nothing touches differ from one frame to the next,
+/// each in its own standard deviations: in the median of the frames, without the taxels that differ most.
 class NoiseMeter {
  public:
-  void add(const RawFrame& raw, double full_scale) {
+  /// Deviations of the taxels from their unloaded conductance in standard deviations; NaN: touched, or held at 0 S.
+  void add(const std::vector<double>& deviations) {
     differences_.clear();
-    for (std::size_t taxel = 0; taxel < raw.counts.size() && last_.size() == raw.counts.size(); ++taxel) {
-      const auto before = static_cast<double>(last_[taxel]);
-      const auto now = static_cast<double>(raw.counts[taxel]);
-      const bool is_cut_off = std::min(before, now) < 0.5 || std::max(before, now) > full_scale - 0.5;
-      if (!is_cut_off) differences_.push_back(std::abs(now - before));
+    for (std::size_t taxel = 0; taxel < last_.size(); ++taxel) {
+      const double difference = std::abs(deviations[taxel] - last_[taxel]);
+      if (!std::isnan(difference)) differences_.push_back(difference);
     }
-    last_ = raw.counts;
-    if (differences_.size() >= kLeastReadings) deviations_.push_back(deviation());
+    last_ = deviations;
+    if (differences_.size() >= kLeastTaxels) ratios_.push_back(rms_without_outliers() / std::sqrt(2.0));
   }
 
-  /// Empty where too few readings stand inside the ADC's range.
-  [[nodiscard]] std::optional<double> counts() const {
-    if (deviations_.empty()) return std::nullopt;
-    std::vector<double> sorted = deviations_;
-    const auto quietest = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 10);
-    std::nth_element(sorted.begin(), quietest, sorted.end());
-    return *quietest;
+  /// Standard deviation over that of the model; empty where something touches too much of the array all the time.
+  [[nodiscard]] std::optional<double> ratio() const {
+    if (ratios_.empty()) return std::nullopt;
+    std::vector<double> sorted = ratios_;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    return *middle;
   }
 
  private:
-  [[nodiscard]] double deviation() const {
+  [[nodiscard]] double rms_without_outliers() const {
     double limit = std::numeric_limits<double>::infinity();
     double rms = 0.0;
     for (int round = 0; round < kRounds; ++round) {
@@ -82,21 +82,25 @@ class NoiseMeter {
       rms = std::sqrt(square / std::max(count, 1.0));
       limit = std::max(3.0 * rms, 1.0);
     }
-    return rms / std::sqrt(2.0);
+    return rms;
   }
 
-  static constexpr std::size_t kLeastReadings = 8;
+  static constexpr std::size_t kLeastTaxels = 8;
   static constexpr int kRounds = 10;
-  std::vector<float> last_;
+  std::vector<double> last_;
   std::vector<double> differences_;
-  std::vector<double> deviations_;
+  std::vector<double> ratios_;
 };
 
 /// What the frames of a recording say about an array.
 class Examination {
  public:
   explicit Examination(const pipeline::Model& model)
-      : model_(model), unloaded_share_(model.array.taxel_count()), unloaded_frames_(model.array.taxel_count()) {}
+      : model_(model),
+        expected_(model.array.taxel_count()),
+        deviation_(model.array.taxel_count()),
+        unloaded_share_(model.array.taxel_count()),
+        unloaded_frames_(model.array.taxel_count()) {}
 
   void add(const RawFrame& raw, const pipeline::Pipeline& pipeline) {
     const std::size_t frame = frames_++;
@@ -108,7 +112,6 @@ class Examination {
     if (!first_time_) first_time_ = raw.time;
     last_time_ = raw.time;
     ++accepted_;
-    noise_.add(raw, model_.array.readout.full_scale_counts());
     follow_temperature(raw);
     follow_faults(pipeline.line_faults().faults(), frame);
     const auto saturated = [](TaxelStatus status) { return status == TaxelStatus::saturated; };
@@ -119,6 +122,8 @@ class Examination {
       return;
     }
     worst_certificate_ = std::max(worst_certificate_, conductance.residual_sigma);
+    expect_unloaded(conductance);
+    follow_noise(conductance);
     follow_offsets(conductance);
   }
 
@@ -151,31 +156,56 @@ class Examination {
     return a.kind == b.kind && a.place == b.place && a.frame == b.frame;
   }
 
-  /// Frames in which neither the taxel nor one of its neighbours is touched tell what it conducts unloaded.
-  void follow_offsets(const ConductanceFrame& conductance) {
-    const ArrayDescription& array = model_.array;
+  void expect_unloaded(const ConductanceFrame& conductance) {
     const auto& networks = model_.networks;
     const double offset_celsius = conductance.temperature_celsius.value_or(networks.temperature_centre_celsius) -
                                   networks.temperature_centre_celsius;
-    const auto expected = [&](std::size_t taxel) {
-      return networks.offset_siemens[taxel] + networks.offset_per_celsius[taxel] * offset_celsius;
-    };
-    const auto is_touched = [&](std::size_t taxel) {
-      const double most = 3.0 * std::max(expected(taxel), 0.0) + 3.0 * conductance.sigma_siemens[taxel];
-      return conductance.siemens[taxel] > most;
-    };
-    for (std::size_t taxel = 0; taxel < unloaded_share_.size(); ++taxel) {
-      if (conductance.taxels[taxel] != TaxelStatus::ok || !(expected(taxel) > 0.0)) continue;
-      const std::size_t row = taxel / array.cols;
-      const std::size_t col = taxel % array.cols;
-      bool near_touch = false;
-      for (std::size_t i = row - std::min(row, kReach); i <= std::min(row + kReach, array.rows - 1); ++i) {
-        for (std::size_t j = col - std::min(col, kReach); j <= std::min(col + kReach, array.cols - 1); ++j) {
-          near_touch = near_touch || is_touched(array.index(i, j));
-        }
+    for (std::size_t taxel = 0; taxel < expected_.size(); ++taxel) {
+      expected_[taxel] = networks.offset_siemens[taxel] + networks.offset_per_celsius[taxel] * offset_celsius;
+    }
+  }
+
+  /// The taxel conducts three times what it does unloaded, and so many standard deviations more.
+  [[nodiscard]] bool is_touched(const ConductanceFrame& conductance, std::size_t taxel, double sigmas) const {
+    const double least = 3.0 * std::max(expected_[taxel], 0.0) + sigmas * conductance.sigma_siemens[taxel];
+    return conductance.siemens[taxel] > least;
+  }
+
+  [[nodiscard]] bool is_near_touch(const ConductanceFrame& conductance, std::size_t taxel, double sigmas) const {
+    const ArrayDescription& array = model_.array;
+    const std::size_t row = taxel / array.cols;
+    const std::size_t col = taxel % array.cols;
+    for (std::size_t i = row - std::min(row, kReach); i <= std::min(row + kReach, array.rows - 1); ++i) {
+      for (std::size_t j = col - std::min(col, kReach); j <= std::min(col + kReach, array.cols - 1); ++j) {
+        if (is_touched(conductance, array.index(i, j), sigmas)) return true;
       }
-      if (near_touch) continue;
-      unloaded_share_[taxel] += conductance.siemens[taxel] / expected(taxel);
+    }
+    return false;
+  }
+
+  void follow_noise(const ConductanceFrame& conductance) {
+    for (std::size_t taxel = 0; taxel < deviation_.size(); ++taxel) {
+      const bool tells = conductance.taxels[taxel] == TaxelStatus::ok && conductance.siemens[taxel] > 0.0 &&
+                         !is_near_touch(conductance, taxel, kSurelyTouchedSigmas);
+      deviation_[taxel] = tells ? (conductance.siemens[taxel] - expected_[taxel]) / conductance.sigma_siemens[taxel]
+                                : std::numeric_limits<double>::quiet_NaN();
+    }
+    noise_.add(deviation_);
+  }
+
+  [[nodiscard]] std::optional<double> noise_counts() const {
+    const std::optional<double> ratio = noise_.ratio();
+    if (!ratio) return std::nullopt;
+    return *ratio * model_.array.readout.adc_noise_counts;
+  }
+
+  /// Frames in which neither the taxel nor one of its neighbours is touched tell what it conducts unloaded.
+  void follow_offsets(const ConductanceFrame& conductance) {
+    constexpr double kTouchedSigmas = 3.0;
+    for (std::size_t taxel = 0; taxel < unloaded_share_.size(); ++taxel) {
+      if (conductance.taxels[taxel] != TaxelStatus::ok || !(expected_[taxel] > 0.0)) continue;
+      if (is_near_touch(conductance, taxel, kTouchedSigmas)) continue;
+      unloaded_share_[taxel] += conductance.siemens[taxel] / expected_[taxel];
       ++unloaded_frames_[taxel];
     }
   }
@@ -210,6 +240,8 @@ class Examination {
   std::optional<Nanos> first_time_;
   Nanos last_time_{};
   NoiseMeter noise_;
+  std::vector<double> expected_;   // unloaded conductance at the frame's temperature [taxels]
+  std::vector<double> deviation_;  // from it, in standard deviations [taxels]
   std::size_t saturated_ = 0;
   std::size_t unsolved_ = 0;
   double worst_certificate_ = 0.0;
@@ -282,7 +314,7 @@ std::vector<std::string> Examination::problems() const {
         fmt::format("{} frames do not fit the circuit of the array: check readout in array.toml", unsolved_));
   }
   for (const auto& [reason, count] : rejected_) found.push_back(fmt::format("{} frames rejected: {}", count, reason));
-  const std::optional<double> noise = noise_.counts();
+  const std::optional<double> noise = noise_counts();
   if (noise && *noise > kMuchNoise * model_.array.readout.adc_noise_counts) {
     found.push_back(
         fmt::format("the readings have {:.1f} counts of noise, {:.1f} were calibrated: check grounding and supply",
@@ -325,8 +357,9 @@ void Examination::print(const compensation::LineFaultMonitor& monitor) const {
   fmt::print("array        {}, {} x {}, {}\n", array.name, array.rows, array.cols, to_string(array.readout.circuit));
   fmt::print("frames       {}, {} rejected, {:.1f} s", frames_, frames_ - accepted_, duration);
   if (duration > 0.0) fmt::print(", {:.1f} frames/s", static_cast<double>(accepted_ - 1) / duration);
-  const std::optional<double> noise = noise_.counts();
-  fmt::print("\nnoise        {}, calibrated {:.2f} counts\n", noise ? fmt::format("{:.2f} counts", *noise) : "unknown",
+  const std::optional<double> noise = noise_counts();
+  fmt::print("\nnoise        {}, calibrated {:.2f} counts\n",
+             noise ? fmt::format("{:.2f} counts", *noise) : "unknown (touched all the time)",
              array.readout.adc_noise_counts);
   fmt::print("saturated    {:.2f} % of all readings\n", 100.0 * saturated_share());
   const std::optional<double> drift = offset_drift();
@@ -357,7 +390,7 @@ nlohmann::ordered_json Examination::to_json(const compensation::LineFaultMonitor
   json["frames"] = frames_;
   json["frames_rejected"] = frames_ - accepted_;
   json["seconds"] = seconds();
-  json["noise_counts"] = noise_.counts() ? nlohmann::ordered_json(*noise_.counts()) : nlohmann::ordered_json();
+  json["noise_counts"] = noise_counts() ? nlohmann::ordered_json(*noise_counts()) : nlohmann::ordered_json();
   json["calibrated_noise_counts"] = model_.array.readout.adc_noise_counts;
   json["saturated_share"] = saturated_share();
   json["offset_drift"] = offset_drift() ? nlohmann::ordered_json(*offset_drift()) : nlohmann::ordered_json();

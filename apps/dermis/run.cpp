@@ -27,6 +27,7 @@ struct RunOptions {
 Status run(const RunOptions& options) {
   const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
   if (!settle) return settle.error();
+  if (options.sigma == options.out) return bad_input("--sigma: is the file of --out; name another");
   const Result<pipeline::Model> model = pipeline::read_model(options.model);
   if (!model) return model.error();
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*model);

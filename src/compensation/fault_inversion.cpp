@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace dermis::compensation {
 namespace {
@@ -153,12 +154,14 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
 /// Anderson's of depth 1: along the last change of T' as far as makes the difference smallest, were it linear.
 double FaultInversion::correct(bool first) noexcept {
   double change = 0.0;
+  double sum = 0.0;  // not a number where any difference is none; max() would drop it
   double along = 0.0;
   double square = 0.0;
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     const double known = unknown_[taxel] != 0 ? 0.0 : measured_[taxel] - faulty_ratio_[taxel];
     const double difference = healthy_ratio_[taxel] + known - equivalent_[taxel];
     change = std::max(change, std::abs(difference));
+    sum += difference;
     const double turn = difference - last_difference_[taxel];
     along += difference * turn;
     square += turn * turn;
@@ -171,7 +174,7 @@ double FaultInversion::correct(bool first) noexcept {
     last_corrected_[taxel] = corrected;
     last_difference_[taxel] = difference_[taxel];
   }
-  return change;
+  return std::isfinite(sum) ? change : std::numeric_limits<double>::infinity();
 }
 
 /// Two lines that are one node give the same reading twice, in a known ratio; what differs is noise.

@@ -88,6 +88,10 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   for (std::size_t row = 0; row < state_.rows; ++row) {
     std::copy_n(&state_.siemens[row * state_.stride], state_.cols, &siemens[row * state_.cols]);
   }
+  if (!solved) {
+    std::replace_if(
+        siemens.begin(), siemens.end(), [](double value) { return !std::isfinite(value); }, 0.0);
+  }
   return {solved, certificate};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "dermis/compensation/crosstalk.hpp"
 
@@ -12,8 +13,12 @@ namespace dermis::compensation {
 class Proportional final : public CrosstalkInversion {
  public:
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override {
-    for (std::size_t k = 0; k < ratio.size(); ++k) siemens[k] = std::max(ratio[k], 0.0);
-    return {true, 0.0};
+    bool finite = true;
+    for (std::size_t k = 0; k < ratio.size(); ++k) {
+      finite = finite && std::isfinite(ratio[k]);
+      siemens[k] = std::isfinite(ratio[k]) ? std::max(ratio[k], 0.0) : 0.0;
+    }
+    return {finite, 0.0};
   }
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override {
     std::fill(sigma_siemens.begin(), sigma_siemens.end(), sigma_ratio);

@@ -24,8 +24,9 @@ InversionResult VirtualGround::invert(std::span<const double> ratio, std::span<d
       row_siemens += conductances[col];
     }
     const double line_ratio = 1.0 - drive_ohm_[row] * row_siemens;  // row voltage / supply
-    if (line_ratio <= 0.0) {
+    if (!(line_ratio > 0.0)) {                                      // or a reading is not a number
       solvable = false;
+      if (!std::isfinite(row_siemens)) std::fill(conductances.begin(), conductances.end(), 0.0);
       continue;
     }
     line_gain_[row] = 1.0 / line_ratio;

@@ -135,7 +135,7 @@ template <typename Real>
 void find_ratios(const double* drive_ohm, const double* load_ohm, const Real* siemens, std::size_t rows,
                  std::size_t cols, Real* ratio) {
   const hn::CappedTag<Real, kMostLanes> d;
-  Workspace<Real> work;
+  Workspace<Real> work;  // NOLINT(cppcoreguidelines-pro-type-member-init): each part is written before it is read
   work.rows = rows;
   work.cols = cols;
   work.stride = (cols + hn::Lanes(d) - 1) / hn::Lanes(d) * hn::Lanes(d);
@@ -145,7 +145,7 @@ void find_ratios(const double* drive_ohm, const double* load_ohm, const Real* si
   multiply(d, work.siemens, work.stride, 1, work.inverse, rows, cols, work.stride, work.weighted);
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t col = 0; col < cols; ++col) {
-      ratio[row * cols + col] = -work.line_ratio[row] * work.weighted[row * work.stride + col];
+      ratio[row * cols + col] = 0 - work.line_ratio[row] * work.weighted[row * work.stride + col];  // 0, not -0
     }
   }
 }

@@ -29,6 +29,9 @@ class Usage(SmallArray):
         self.refuse([*self.run_arguments(self.work / "f.csv"), "--settle", "-1"], ["--settle"])
         self.refuse([*self.run_arguments(self.work / "f.csv"), "--settle", "nan"], ["--settle"])
 
+    def test_two_outputs_in_one_file(self):
+        self.refuse([*self.run_arguments(self.work / "f.csv"), "--sigma", self.work / "f.csv"], ["--sigma", "--out"])
+
     def test_a_count_below_zero(self):
         for option in ("--frames", "--seed"):
             with self.subTest(option):

@@ -88,6 +88,11 @@ class ForwardAndBack(Circuit):
         for reading, ohm in zip(numbers(self.readings), (1000.0, 2000.0), strict=True):
             self.assertAlmostEqual(reading, 200.0 / (20.0 + ohm + 200.0), places=15)
 
+    def test_open_taxels_read_zero_without_a_sign(self):
+        self.written("siemens.csv", table([[[0.0] * COLS] * ROWS]))
+        self.succeed(*self.forward_arguments())
+        self.assertEqual(self.readings.read_text(), ("0," * (COLS - 1) + "0\n") * ROWS)
+
     def test_frames_keep_their_place(self):
         self.succeed(*self.forward_arguments())
         blocks = self.readings.read_text().split("\n\n")
@@ -220,6 +225,10 @@ class BadInput(Circuit):
         for noise in ("0", "-1", "nan", "much"):
             with self.subTest(noise):
                 self.refuse([*self.invert_arguments(), "--noise", noise], ["--noise"])
+
+    def test_two_outputs_in_one_file(self):
+        arguments = self.invert_arguments()
+        self.refuse([*arguments, "--sigma", arguments[arguments.index("--out") + 1]], ["--sigma", "--out"])
 
     def test_the_noise_of_an_adc_in_volts_needs_the_supply(self):
         self.readings.write_text(table([[[0.1] * COLS] * ROWS]))

@@ -37,6 +37,16 @@ class Doctor(SmallArray):
         self.assertAlmostEqual(report["noise_counts"], 1.04, delta=0.2)
         self.assertAlmostEqual(report["offset_drift"], 0.0, delta=0.05)
 
+    def test_contacts_are_no_noise_and_noise_is_no_contact(self):
+        contacts = self.recording("open_rows = []\n")
+        report = json.loads(self.examine(contacts, "--json").stdout)
+        self.assertEqual(report["problems"], [])
+        physics = self.written("physics.toml", "[environment]\nadc_noise_lsb = 4\n")
+        self.succeed("simulate", "--array", self.array, "--scene", "idle", "--frames", 100, "--physics", physics, "--out",
+                     self.work / "noisy")
+        report = self.unhealthy(self.work / "noisy" / "frames.csv")
+        self.assertIn("counts of noise", report["problems"][0])
+
     def test_an_open_row_in_plain_words(self):
         frames = self.recording("open_rows = [2]\nfrom_frame = 120\n")
         result = self.examine(frames)

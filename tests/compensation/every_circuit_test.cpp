@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -146,7 +147,7 @@ std::vector<double> touched(const ArrayDescription& array, Random& random, doubl
 
 TEST_P(EveryInversion, agrees_with_the_simulator) {
   Random random(1);
-  for (const std::size_t size : {2, 5, 8}) {
+  for (const std::size_t size : {2U, 5U, 8U}) {
     SCOPED_TRACE(testing::Message() << size << 'x' << size);
     const auto array = random_array(GetParam(), size, size, random);
     const auto siemens = touched(array, random, 1e-6);
@@ -215,6 +216,24 @@ TEST_P(EveryInversion, impossible_readings_give_finite_taxels_and_the_right_stat
         EXPECT_LE(misfit(array, ratio, inverted), result.residual_ratio + 1e-12);
       }
     }
+  }
+}
+
+TEST_P(EveryInversion, a_reading_that_is_not_a_number_is_never_solved_and_leaves_no_trace) {
+  Random random(2);
+  const auto array = random_array(GetParam(), 4, 5, random);
+  const std::vector<double> good = model_ratios(array, random_siemens(array, random, 1e3, 1e6));
+  const auto inversion = inversion_for(array);
+  std::vector<double> expected(good.size());
+  ASSERT_TRUE(inversion->invert(good, expected).solved);
+  for (const double wrong : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    std::vector<double> ratio = good;
+    ratio[7] = wrong;
+    std::vector<double> inverted(ratio.size());
+    EXPECT_FALSE(inversion->invert(ratio, inverted).solved);
+    expect_possible(inverted);
+    EXPECT_TRUE(inversion->invert(good, inverted).solved);
+    EXPECT_LT(distance(inverted, expected), 1e-3);
   }
 }
 
@@ -307,7 +326,7 @@ TEST(LargeInversion, floating_rows_and_resistive_lines_come_back) {
 }
 
 TEST_P(EveryInversion, DISABLED_campaign) {
-  for (const std::size_t size : {2, 4, 8, 12, 16}) {
+  for (const std::size_t size : {2U, 4U, 8U, 12U, 16U}) {
     print(GetParam(), size, size, campaign_of(GetParam(), size, size, 100));
   }
   print(GetParam(), 32, 32, campaign_of(GetParam(), 32, 32, 5));

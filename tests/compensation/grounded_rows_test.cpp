@@ -84,7 +84,7 @@ TEST_P(FixedPoint, every_taxel_of_a_hundred_random_arrays_comes_back) {
 }
 
 TEST_P(FixedPoint, large_arrays_come_back) {
-  for (const std::size_t size : {32, 64}) {
+  for (const std::size_t size : {32U, 64U}) {
     SCOPED_TRACE(testing::Message() << "size " << size);
     Random random(size);
     auto array = random_array(GetParam(), size, size - 3, random);

@@ -111,6 +111,7 @@ Status circuit_forward(const ForwardOptions& options) {
 }
 
 Status circuit_invert(const InvertOptions& options) {
+  if (options.sigma == options.out) return bad_input("--sigma: is the file of --out; name another");
   const Result<ArrayDescription> array = read_known_circuit(options.array);
   if (!array) return array.error();
   const Result<double> noise = noise_ratio(options, *array);

@@ -38,7 +38,8 @@ class CrosstalkInversion {
 
   /// ratio [rows, cols] (reading / supply) -> siemens [rows, cols], finite and >= 0. Starts from the last frame's
   /// solution where there is one. A reading below what the neighbours alone explain gives 0 S. Where the readings have
-  /// no solution in this circuit `solved` is false and `siemens` holds the best attempt. Allocates nothing.
+  /// no solution in this circuit, or are not numbers, `solved` is false and `siemens` holds the best attempt. Allocates
+  /// nothing.
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
   /// Forgets the last frame: the next one does not depend on it, not in the last bit.
