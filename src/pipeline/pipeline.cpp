@@ -12,7 +12,8 @@ namespace dermis::pipeline {
 
 namespace {
 
-/// Conductance of every taxel under a force that is typical for the array [S], or 1 where the networks do not tell.
+/// Conductance of every taxel under a force that is typical for the array [S], > 0; of a dead taxel the median of the
+/// others, and 1 where the networks tell nothing.
 std::vector<double> typical_siemens(const fusion::ForceNetworks& networks) {
   const std::size_t taxels = networks.taxel_count();
   fusion::ForceFusion fusion(networks);
@@ -47,7 +48,19 @@ std::vector<double> typical_siemens(const fusion::ForceNetworks& networks) {
     }
   }
   press(share);
-  return conductance.siemens;
+  std::vector<double>& siemens = conductance.siemens;
+  const auto tells = [&](std::size_t taxel) { return std::isfinite(force.newtons[taxel]) && siemens[taxel] > 0.0; };
+  std::vector<double> told;
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    if (tells(taxel)) told.push_back(siemens[taxel]);
+  }
+  if (told.empty()) return std::vector<double>(taxels, 1.0);
+  const auto median = told.begin() + static_cast<std::ptrdiff_t>(told.size() / 2);
+  std::nth_element(told.begin(), median, told.end());
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    if (!tells(taxel)) siemens[taxel] = *median;
+  }
+  return siemens;
 }
 
 }  // namespace

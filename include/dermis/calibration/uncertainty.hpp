@@ -15,8 +15,8 @@ namespace dermis::calibration {
 /// Noise of one reading [counts], rounding included: from the differences of successive unloaded samples, each against
 /// the resolution of its own supply, so that neither the level of a taxel nor its drift counts. Samples that something
 /// touched and taxels that flicker are left out. At least 1 / sqrt(12), what rounding alone does. Empty where there are
-/// fewer than 5 unloaded samples, or where an end of the ADC hides the noise: more than half of the taxels stand at it in
-/// more than a tenth of the samples. Thread-safe.
+/// fewer than 5 unloaded samples, or where an end of the ADC hides the noise: more than half of the taxels stand at it
+/// in more than a tenth of the samples. Thread-safe.
 [[nodiscard]] std::optional<double> measure_adc_noise(const SampleDatabase& database);
 
 /// Noise of the temperature sensor [C], from second differences of successive samples. 0 where samples carry no
