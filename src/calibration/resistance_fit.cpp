@@ -28,8 +28,6 @@ constexpr std::size_t kFirstFrames = 1500;  // the way to the solution is found 
 constexpr double kMostWork = 2e8;           // frames x taxels x inversions of one pass
 constexpr double kNewtonSlowness = 100.0;   // of an inversion by Newton's method, against the fixed point
 constexpr std::uint64_t kSelectionSeed = 1;
-constexpr int kVarianceRounds = 10;        // of the variances at one linearisation
-constexpr double kSameVariance = 0.02;     // relative change that ends them
 constexpr double kEnoughAtFirst = 0.1;     // a step this small against the standard errors ends the fit
 constexpr double kEnough = 0.25;           // the same, with all frames
 constexpr double kSlopeStep = 1e-3;        // of a parameter, for the derivatives of the inversion
@@ -425,20 +423,8 @@ class ResistanceFitter {
     unsolved_ = pass->unsolved;
     const Elimination idle = eliminate_laws(pass->idle, unloaded_prior());
     set_unloaded_laws(idle);
-    idle_readings_ = idle.readings;
-    VectorXd solution;
-    for (int k = 0; k < kVarianceRounds; ++k) {
-      const double scatter = rubber_variance_;
-      solution = solve_linearised(idle, pass->pressed);
-      if (std::abs(rubber_variance_ - scatter) < kSameVariance * scatter) break;
-    }
-    learn_noise(idle, solution);
-    return take_step(solution.head(lines_.count()));
-  }
+    const Elimination pressed = eliminate_laws(pressed_equations(pass->pressed, idle), pressed_prior());
 
-  /// The step, the pressed laws after it, and what the readings would then scatter about them.
-  VectorXd solve_linearised(const Elimination& idle, const std::vector<Pressed>& readings) {
-    const Elimination pressed = eliminate_laws(pressed_equations(readings, idle), pressed_prior());
     const Index lines = lines_.count();
     const Index unknowns = lines + kSheetTerms;
     MatrixXd normal = pressed.normal;
@@ -448,15 +434,16 @@ class ResistanceFitter {
     add_line_priors(normal);
     pin_scale(normal);
     const Eigen::LDLT<MatrixXd> factors(normal.topLeftCorner(unknowns, unknowns));
-    VectorXd solution = -factors.solve(normal.col(unknowns).head(unknowns));
+    const VectorXd solution = -factors.solve(normal.col(unknowns).head(unknowns));
     covariance_ = factors.solve(MatrixXd::Identity(unknowns, unknowns));
+
+    idle_readings_ = idle.readings;
     pressed_readings_ = pressed.readings;
+    const double share = take_step(solution.head(lines));
     sheet_mean_ = solution.tail(kSheetTerms);
     set_pressed_laws(pressed, solution);
-    learn_rubber(readings, idle, pressed, solution.head(lines));
-    learn_shapes(pressed, solution);
-    learn_spreads(solution.head(lines));
-    return solution;
+    learn_variances(idle, pressed, solution, pass->pressed);
+    return share;
   }
 
   /// Moves the parameters, and tells the largest step in standard errors.
@@ -613,16 +600,6 @@ class ResistanceFitter {
     return point;
   }
 
-  /// d excess / d parameter.
-  [[nodiscard]] VectorXd excess_slope(const Pressed& reading, const Elimination& idle) const {
-    VectorXd slope = reading.slope / reference_siemens();
-    const MatrixXd& law = idle.laws[reading.taxel];
-    if (law.size() > 0) {
-      slope -= law.leftCols(slope.size()).transpose() * unloaded_basis(reading.temperature, frames_.has_temperature);
-    }
-    return slope;
-  }
-
   /// Columns: parameters, what the taxels' laws have in common, ln(g - u).
   [[nodiscard]] NormalEquations pressed_equations(const std::vector<Pressed>& readings, const Elimination& idle) const {
     const Index slopes = readings.empty() ? 0 : readings.front().slope.size();
@@ -631,7 +608,12 @@ class ResistanceFitter {
     for (const Pressed& reading : readings) {
       const PressedPoint point = pressed_point(reading);
       if (!point.usable) continue;
-      row << excess_slope(reading, idle) / point.excess, -point.basis.tail(kShapeTerms), -point.common, point.logarithm;
+      VectorXd slope = reading.slope / reference_siemens();
+      const MatrixXd& idle_law = idle.laws[reading.taxel];
+      if (idle_law.size() > 0) {
+        slope -= idle_law.leftCols(slopes).transpose() * unloaded_basis(reading.temperature, frames_.has_temperature);
+      }
+      row << slope / point.excess, -point.basis.tail(kShapeTerms), -point.common, point.logarithm;
       const double weight = 1.0 / (point.relative_variance + rubber_variance_);
       equations.add_local(reading.taxel, point.basis, row, weight);
       equations.global.selfadjointView<Eigen::Lower>().rankUpdate(row, weight);
@@ -766,27 +748,32 @@ class ResistanceFitter {
     add_equation(row, parameters_.tail(loads).mean(), kPinSigma, normal);
   }
 
-  void learn_noise(const Elimination& idle, const VectorXd& solution) {
-    VectorXd step(lines_.count() + 1);
-    step << solution.head(lines_.count()), 1.0;
-    const double freedom = idle.readings - static_cast<double>(unloaded_terms_) * idle.taxels;
-    if (freedom > 0.0) noise_variance_ *= step.dot(idle.normal * step) / freedom;
+  void learn_variances(const Elimination& idle, const Elimination& pressed, const VectorXd& solution,
+                       const std::vector<Pressed>& readings) {
+    VectorXd idle_step(lines_.count() + 1);
+    idle_step << solution.head(lines_.count()), 1.0;
+    const double idle_freedom = idle.readings - static_cast<double>(unloaded_terms_) * idle.taxels;
+    if (idle_freedom > 0.0) noise_variance_ *= idle_step.dot(idle.normal * idle_step) / idle_freedom;
+    VectorXd pressed_step(solution.size() + 1);
+    pressed_step << solution, 1.0;
+    const double pressed_freedom = pressed.readings - static_cast<double>(kFreeTerms + 1) * pressed.taxels;
+    if (pressed_freedom > 0.0) {
+      learn_rubber(readings, pressed.readings / pressed_freedom);
+      learn_shapes(pressed, pressed_step);
+    }
+    learn_spreads();
   }
 
-  /// What the readings scatter about their laws more than their noise explains: a step towards the most likely value,
-  /// the freedom that the laws take away allowed for (restricted likelihood, Patterson and Thompson 1971).
-  void learn_rubber(const std::vector<Pressed>& readings, const Elimination& idle, const Elimination& pressed,
-                    const VectorXd& step) {
+  /// What the readings scatter about their laws more than their noise explains: a Newton step of its likelihood.
+  void learn_rubber(const std::vector<Pressed>& readings, double freedom_lost) {
     double excess_variance = 0.0;
     double weight = 0.0;
     for (const Pressed& reading : readings) {
       const PressedPoint point = pressed_point(reading);
-      if (!point.usable || pressed.covariance[reading.taxel].size() == 0) continue;
-      const double residual = point.residual + excess_slope(reading, idle).dot(step) / point.excess;
+      if (!point.usable) continue;
       const double total = point.relative_variance + rubber_variance_;
-      const double taken = point.basis.dot(pressed.covariance[reading.taxel] * point.basis);
-      excess_variance += (residual * residual - total + taken) / (total * total);
-      weight += std::max(0.0, total - taken) / (total * total * total);
+      excess_variance += (freedom_lost * point.residual * point.residual - total) / (total * total);
+      weight += 1.0 / (total * total);
     }
     if (weight == 0.0) return;
     rubber_variance_ = std::clamp(rubber_variance_ + excess_variance / weight,
@@ -794,9 +781,7 @@ class ResistanceFitter {
   }
 
   /// Scatter of the shapes over the taxels: MacKay's fixed point (Neural Computation 4, 1992).
-  void learn_shapes(const Elimination& pressed, const VectorXd& solution) {
-    VectorXd step(solution.size() + 1);
-    step << solution, 1.0;
+  void learn_shapes(const Elimination& pressed, const VectorXd& step) {
     VectorXd squares = VectorXd::Zero(kShapeTerms);
     VectorXd freedom = VectorXd::Zero(kShapeTerms);
     for (std::size_t taxel = 0; taxel < taxels_; ++taxel) {
@@ -810,13 +795,10 @@ class ResistanceFitter {
                           .cwiseMin(1.0);
   }
 
-  void learn_spreads(const VectorXd& step) {
+  void learn_spreads() {
     for (const bool of_drives : {true, false}) {
-      Group lines = group(of_drives);
+      const Group lines = group(of_drives);
       if (lines.values.size() == 0) continue;
-      for (std::size_t k = 0; k < lines.parameters.size(); ++k) {
-        if (lines.parameters[k] >= 0) lines.values[static_cast<Index>(k)] += step[lines.parameters[k]];
-      }
       double square = kLineSpread * kLineSpread;
       for (std::size_t k = 0; k < lines.parameters.size(); ++k) {
         square += std::pow((lines.values[static_cast<Index>(k)] - lines.values.mean()) / lines.unit, 2);
