@@ -51,9 +51,10 @@ constexpr double kLeastDriftShare = 0.25;  // of the driver's resistance
 constexpr double kPressedShare = 3.0;      // of the unloaded conductance
 constexpr std::size_t kContactReach = 3;   // taxels beside a pressed one that may be touched too
 constexpr double kDriftPairs = 20.0;
-constexpr double kDriftMemory = 0.998;    // per pair of frames
-constexpr double kDoubtOfUnloaded = 0.1;  // relative, from one frame to the next: temperature, memory
-constexpr double kDoubtOfEstimate = 0.5;  // relative, of a conductance between neighbours
+constexpr std::size_t kDriftLinesPerFrame = 3;  // no divisor of usual numbers of lines: recurring loads meet all
+constexpr double kDriftMemory = 0.998;          // per pair of frames
+constexpr double kDoubtOfUnloaded = 0.1;        // relative, from one frame to the next: temperature, memory
+constexpr double kDoubtOfEstimate = 0.5;        // relative, of a conductance between neighbours
 constexpr double kGroundEvidence = 10.0;
 constexpr double kMostGround = 3.0;  // evidence of one taxel in one frame
 
@@ -269,6 +270,7 @@ class LineFaultMonitor::Implementation {
   std::vector<std::uint8_t> is_pressed_[2];  // lines; [0] columns, [1] rows
   std::vector<PageTest> silent_[2];          // [0] columns, [1] rows
   std::vector<PageTest> alive_[2];
+  std::vector<float> dead_evidence_;       // of this frame [taxels]
   std::vector<float> dead_;                // Page's sum [taxels]
   std::vector<std::uint32_t> dead_since_;  // frame before its evidence [taxels]
   std::vector<PageTest> undead_;
@@ -305,6 +307,7 @@ LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
       left_(array.sensed_lines()),
       causes_(taxels()),
       untouched_(taxels()),
+      dead_evidence_(taxels()),
       dead_(taxels()),
       dead_since_(taxels()),
       undead_(taxels()),
@@ -547,13 +550,24 @@ void LineFaultMonitor::Implementation::judge_silent_lines(const Inputs& in, bool
   }
 }
 
+/// As weigh_silence(), of conductances: what crosses over from pressed taxels is solved there.
 void LineFaultMonitor::Implementation::judge_dead_taxels(const Inputs& in) {
   if (!in.solved) return;
+  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
+    const double per_sigma = 1.0 / in.conductance.sigma_siemens[taxel];
+    const auto conductance = static_cast<float>(in.conductance.siemens[taxel] * per_sigma);
+    const auto unloaded = static_cast<float>(kUnloadedShare * unloaded_siemens_[taxel] * per_sigma);
+    const float mean = expected_[taxel] > 0.0F ? (unloaded < kMostMean ? unloaded : kMostMean) : 0.0F;
+    const float above = mean * (0.5F * mean - conductance);
+    const float at_floor = mean * (floor_slope_ + floor_curvature_ * mean);
+    const float ratio = conductance > 0.0F ? above : at_floor;
+    const float limited = ratio < kMostForTaxel ? ratio : kMostForTaxel;
+    dead_evidence_[taxel] = limited > kMostAgainst ? limited : kMostAgainst;
+  }
   const auto frame = static_cast<std::uint32_t>(in.frame);
   float most = 0.0F;
   for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
-    const float evidence = evidence_[taxel] < kMostForTaxel ? evidence_[taxel] : kMostForTaxel;
-    const float sum = dead_[taxel] + evidence;
+    const float sum = dead_[taxel] + dead_evidence_[taxel];
     dead_since_[taxel] = sum > 0.0F ? dead_since_[taxel] : frame + 1;
     dead_[taxel] = sum > 0.0F ? sum : 0.0F;
     most = dead_[taxel] > most ? dead_[taxel] : most;
@@ -567,7 +581,7 @@ void LineFaultMonitor::Implementation::judge_dead_taxel(const Inputs& in, std::s
     dead_[taxel] = 0.0F;
     dead_since_[taxel] = static_cast<std::uint32_t>(in.frame) + 1;
   } else if ((causes_[taxel] & kDeadCause) != 0) {
-    undead_[taxel].add(static_cast<double>(-evidence_[taxel]), in.frame, in.conditioned.time);
+    undead_[taxel].add(static_cast<double>(-dead_evidence_[taxel]), in.frame, in.conditioned.time);
     if (!undead_[taxel].decides(kHealFrames)) return;
     healed(LineFaultKind::dead_taxel, taxel);
     dead_[taxel] = 0.0F;
@@ -889,8 +903,10 @@ void LineFaultMonitor::Implementation::judge_drivers(const Inputs& in) {
     }
     return;
   }
-  const std::size_t line = in.frame % array_.driven_lines();
-  if (has_last) compare_with_last(in, line);
+  const std::size_t driven = array_.driven_lines();
+  for (std::size_t turn = 0; turn < kDriftLinesPerFrame && has_last; ++turn) {
+    compare_with_last(in, (kDriftLinesPerFrame * in.frame + turn) % driven);
+  }
   std::copy(in.conductance.siemens.begin(), in.conductance.siemens.end(), last_siemens_.begin());
   std::copy(line_siemens_.begin(), line_siemens_.end(), last_line_siemens_.begin());
 }
