@@ -300,7 +300,7 @@ std::string Examination::sentence(const FaultHistory& history) const {
   text += history.until ? fmt::format(" from frame {} to {}: {}", fault.frame, *history.until - 1, mend)
                         : fmt::format(" since frame {}: {}", fault.frame, mend);
   if (history.until) return text + "; it comes and goes, as a loose contact does";
-  if (masked == 0) return text + "; the forces are corrected for it";
+  if (masked == 0) return text + ", or calibrate again; until then heavy loads on the line read too little";
   return text + fmt::format("; {} masked, the rest is still good",
                             masked == 1 ? "the taxel is" : fmt::format("its {} taxels are", masked));
 }

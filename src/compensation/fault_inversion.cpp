@@ -70,7 +70,8 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
 }
 
 void FaultInversion::set_faults(std::span<const LineFault> faults) {
-  any_ = !faults.empty();
+  any_ = std::any_of(faults.begin(), faults.end(),
+                     [](const LineFault& fault) { return fault.kind != LineFaultKind::drifting_driver; });
   std::fill(masked_.begin(), masked_.end(), std::uint8_t{0});
   std::fill(unknown_.begin(), unknown_.end(), std::uint8_t{0});
   supplied_rows_.clear();
@@ -115,9 +116,7 @@ void FaultInversion::add(const LineFault& fault) {
       break;
     case LineFaultKind::stuck_taxel: mask(fault.place, true); break;
     case LineFaultKind::dead_taxel: mask(fault.place, false); break;
-    case LineFaultKind::drifting_driver:
-      if (circuit != nullptr) circuit->set_drive_ohm(fault.place, fault.drive_ohm);
-      break;
+    case LineFaultKind::drifting_driver: break;  // reported alone: nothing is to be spoilt by a wrong suspicion
   }
 }
 

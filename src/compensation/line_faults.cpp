@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <string>
+#include <utility>
 
 #include "compensation/lumped_circuit.hpp"
 
@@ -21,11 +23,11 @@ constexpr int kLineFrames = 3;
 constexpr int kTaxelFrames = 12;
 constexpr int kHealFrames = 10;
 
-constexpr double kUnloadedShare = 0.5;  // of the unloaded conductance: temperature and age leave at least this
-constexpr double kFloorMean = 0.4;      // mean of noise that the ADC cuts off at 0 [standard deviations]
-constexpr double kMostMean = 8.0;       // beyond, silence is told by less than half of this many deviations
-constexpr double kMostFor = 8.0;        // evidence of one taxel in one frame
-constexpr double kMostAgainst = -20.0;
+constexpr double kUnloadedShare = 0.3;  // of the unloaded conductance: temperature, memory and age leave at least this
+constexpr float kMostMean = 8.0F;       // beyond, silence is told by less than half of this many deviations
+constexpr float kMostFor = 8.0F;        // evidence of one taxel in one frame
+constexpr float kMostAgainst = -20.0F;
+constexpr float kMostForTaxel = static_cast<float>(kEvidence / kTaxelFrames);
 constexpr double kFoundWithinFrames = 10.0;
 
 constexpr double kPressedSigmas = 20.0;  // readings worth comparing
@@ -42,14 +44,17 @@ constexpr double kSameCount = 1e-3;
 constexpr double kLeastOthers = 4.0;  // interior readings that tell how often a reading repeats
 constexpr int kStuckHealChanges = 5;
 
-constexpr double kDriftMemory = 0.9998;  // per frame
-constexpr double kDriftSigmas = 6.0;
+constexpr double kDriftSigmas = 5.0;       // when the current rises and when it falls
+constexpr double kMostOutlier = 3.0;       // standard deviations
 constexpr double kLeastDriftSag = 0.03;    // of the typical loaded line
 constexpr double kLeastDriftShare = 0.25;  // of the driver's resistance
 constexpr double kPressedShare = 3.0;      // of the unloaded conductance
 constexpr std::size_t kContactReach = 3;   // taxels beside a pressed one that may be touched too
-constexpr int kDriftFrames = 30;
-constexpr double kDoubtOfEstimate = 0.5;  // relative, of a conductance between neighbours
+constexpr double kDriftPairs = 20.0;
+constexpr std::size_t kDriftLinesPerFrame = 3;  // no divisor of usual numbers of lines: recurring loads meet all
+constexpr double kDriftMemory = 0.998;          // per pair of frames
+constexpr double kDoubtOfUnloaded = 0.1;        // relative, from one frame to the next: temperature, memory
+constexpr double kDoubtOfEstimate = 0.5;        // relative, of a conductance between neighbours
 constexpr double kGroundEvidence = 10.0;
 constexpr double kMostGround = 3.0;  // evidence of one taxel in one frame
 
@@ -94,15 +99,40 @@ struct PressCount {
   }
 };
 
-/// Weighted least squares of one unknown with forgetting.
+/// Weighted least squares of one unknown, with forgetting.
 struct DriftFit {
   double normal = 0.0;
   double moment = 0.0;
-  double loads = 0.0;  // sum of the squared conductances of the line
-  int frames = 0;
-  std::size_t first_frame = 0;
-  Nanos first_time{};
+  double square = 0.0;
+  double loads = 0.0;  // sum of the squared changes of the conductance of the line
+  double pairs = 0.0;
+
+  void add(double slope, double value, double variance, double load) {
+    normal = kDriftMemory * normal + slope * slope / variance;
+    moment = kDriftMemory * moment + slope * value / variance;
+    square = kDriftMemory * square + value * value / variance;
+    loads = kDriftMemory * loads + slope * slope / variance * load * load;
+    pairs = kDriftMemory * pairs + 1.0;
+  }
+  [[nodiscard]] double estimate() const { return moment / normal; }
+  /// From the scatter of what was fitted, which memory of the material makes wider than noise alone.
+  [[nodiscard]] double deviation() const {
+    const double scatter = (square - moment * moment / normal) / pairs;
+    return std::sqrt(std::max(scatter, 1.0) / normal);
+  }
+  [[nodiscard]] double typical_load() const { return std::sqrt(loads / normal); }
 };
+
+/// Sum in four parts, which do not wait for each other.
+double sum_of(std::span<const double> values) {
+  double parts[4] = {};
+  std::size_t k = 0;
+  for (; k + 4 <= values.size(); k += 4) {
+    for (std::size_t part = 0; part < 4; ++part) parts[part] += values[k + part];
+  }
+  for (; k < values.size(); ++k) parts[0] += values[k];
+  return (parts[0] + parts[1]) + (parts[2] + parts[3]);
+}
 
 }  // namespace
 
@@ -160,6 +190,18 @@ class LineFaultMonitor::Implementation {
     double variance = 0.0;
   };
 
+  /// How often a reading repeats by chance.
+  struct Repetition {
+    double interior = 0.0;
+    double repeated = 0.0;
+  };
+
+  struct CountScale {
+    double zero;
+    double per_ratio;
+  };
+  [[nodiscard]] CountScale count_scale(const Inputs& in) const;
+
   [[nodiscard]] std::size_t taxels() const { return array_.taxel_count(); }
   [[nodiscard]] std::size_t lines(bool row) const { return row ? array_.rows : array_.cols; }
   [[nodiscard]] std::size_t across(bool row) const { return row ? array_.cols : array_.rows; }
@@ -175,10 +217,13 @@ class LineFaultMonitor::Implementation {
   void mark_faulty_taxels();
   void mark_line(bool row, std::size_t line, std::uint8_t cause);
 
+  void sum_lines(const Inputs& in);
   void expect_unloaded(const Inputs& in);
   void expect_unloaded_beside_no_press(const Inputs& in);
+  void weigh_silence(const Inputs& in);
   void judge_silent_lines(const Inputs& in, bool row);
   void judge_dead_taxels(const Inputs& in);
+  void judge_dead_taxel(const Inputs& in, std::size_t taxel);
   void judge_stuck_taxels(const Inputs& in);
   struct Comparison {
     int equal = 0;
@@ -186,48 +231,69 @@ class LineFaultMonitor::Implementation {
   };
   Comparison compare_with_next(const Inputs& in, bool row, std::size_t line);
   void judge_shorted_lines(const Inputs& in, bool row);
+  void judge_shorted_pair(const Inputs& in, bool row, std::size_t line);
   void judge_supplied_columns(const Inputs& in);
   void judge_supplied_rows(const Inputs& in);
-  void judge_supplied_row(const Inputs& in, std::size_t row, bool is_known, bool is_least);
-  [[nodiscard]] bool reads_doubled(const Inputs& in, std::size_t row) const;
+  void judge_supplied_row(const Inputs& in, std::size_t row, bool is_known);
   void judge_drivers(const Inputs& in);
-  void judge_driver(const Inputs& in, std::size_t line);
+  void compare_with_last(const Inputs& in, std::size_t line);
+  void judge_driver(std::size_t line);
+  void remember(const Inputs& in);
+  [[nodiscard]] bool is_touched(const Inputs& in, std::size_t taxel) const;
+  void find_touched(const Inputs& in, std::size_t line);
   void judge_ground(const Inputs& in, LineFault& fault);
   void find_untouched(const Inputs& in);
   [[nodiscard]] Untouched untouched_on(const Inputs& in, bool row, std::size_t line) const;
-  [[nodiscard]] double silence_evidence(double reading, double expected, double sigma) const;
-  [[nodiscard]] double counts(const Inputs& in, std::size_t taxel) const;
 
   ArrayDescription array_;
   std::vector<double> unloaded_siemens_;  // [taxels]
   std::vector<double> unloaded_ratio_;    // readings of the unloaded array [taxels]
-  std::vector<double> expected_;          // least reading of an unloaded taxel among today's loads [taxels]
+  std::vector<float> expected_;           // least reading of an unloaded taxel among today's loads [sigma; taxels]
+  std::vector<float> evidence_;           // that the taxel is silent: log-likelihood ratio of this frame [taxels]
   std::vector<double> line_siemens_;      // [driven lines]
+  std::vector<double> ratio_sum_[2];      // [0] columns, [1] rows
+  std::vector<double> left_;              // share of the supply that is left on a sensed line
+  float floor_sigmas_ = 0.0F;             // readings below half a count are the floor of the ADC
+  float floor_slope_ = 0.0F;              // log-likelihood ratio of a reading at the floor, to second order
+  float floor_curvature_ = 0.0F;          // of the expected reading: the least that it can be
+  double information_ = 0.0;              // mean evidence of a silent taxel over the squared expected reading
   std::vector<LineFault> faults_;
   bool changed_ = false;
   std::size_t frame_ = 0;
   double last_sigma_ = 0.0;
 
   std::vector<std::uint8_t> causes_;     // bits of kRowCause ... [taxels]
+  std::vector<float> judges_[2];         // 1 where the taxel is evidence on its column, its row; else 0 [taxels]
   std::vector<std::uint8_t> untouched_;  // [taxels]
   double common_share_ = 0.0;
 
   std::vector<std::uint8_t> is_pressed_[2];  // lines; [0] columns, [1] rows
   std::vector<PageTest> silent_[2];          // [0] columns, [1] rows
   std::vector<PageTest> alive_[2];
-  std::vector<PageTest> dead_;
+  std::vector<float> dead_evidence_;       // of this frame [taxels]
+  std::vector<float> dead_;                // Page's sum [taxels]
+  std::vector<std::uint32_t> dead_since_;  // frame before its evidence [taxels]
   std::vector<PageTest> undead_;
-  std::vector<PageTest> stuck_;
+  std::vector<double> stuck_;         // Page's sum [taxels]
+  std::vector<double> stuck_frames_;  // [taxels]
   std::vector<int> changes_;
   std::vector<double> last_counts_;
+  double repeats_by_noise_ = 1.0;
+  double chance_ = 0.0;  // minus logarithm of the probability that a reading repeats
   std::vector<PressCount> shorted_[2];
   std::vector<double> shorted_last_[2];
+  std::size_t turn_[2] = {};
   std::vector<PageTest> pinned_;
   std::vector<PageTest> unpinned_;
-  std::vector<PressCount> supplied_;
-  std::vector<PageTest> doubled_;
+  PressCount supplied_;
+  std::size_t supplied_candidate_ = 0;
   std::vector<double> supplied_last_;
-  std::vector<DriftFit> drift_;
+  std::vector<DriftFit> drift_[2];  // where the current of the line has [0] fallen, [1] risen
+  std::vector<std::pair<std::size_t, Nanos>> drift_since_;
+  std::vector<double> last_siemens_;       // [taxels]
+  std::vector<std::uint8_t> touched_;      // [sensed lines]
+  std::vector<double> last_line_siemens_;  // [driven lines]
+  bool has_last_ = false;
 };
 
 LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
@@ -236,23 +302,32 @@ LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
       unloaded_siemens_(unloaded_siemens.begin(), unloaded_siemens.end()),
       unloaded_ratio_(taxels()),
       expected_(taxels()),
+      evidence_(taxels()),
       line_siemens_(array.driven_lines()),
+      left_(array.sensed_lines()),
       causes_(taxels()),
       untouched_(taxels()),
+      dead_evidence_(taxels()),
       dead_(taxels()),
+      dead_since_(taxels()),
       undead_(taxels()),
       stuck_(taxels()),
+      stuck_frames_(taxels()),
       changes_(taxels()),
       last_counts_(taxels(), -1.0),
       pinned_(array.cols),
       unpinned_(array.cols),
-      supplied_(array.rows),
-      doubled_(array.rows),
       supplied_last_(taxels()),
-      drift_(array.driven_lines()) {
+      drift_since_(array.driven_lines()),
+      last_siemens_(taxels()),
+      touched_(array.sensed_lines()),
+      last_line_siemens_(array.driven_lines()) {
   assert(unloaded_siemens.size() == taxels());
   for (const bool row : {false, true}) {
     is_pressed_[row].resize(lines(row));
+    ratio_sum_[row].resize(lines(row));
+    judges_[row].assign(taxels(), 1.0F);
+    drift_[row].resize(array.driven_lines());
     silent_[row].resize(lines(row));
     alive_[row].resize(lines(row));
     shorted_[row].resize(lines(row));
@@ -265,6 +340,17 @@ LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
   } else {
     LumpedCircuit(array).solve(unloaded_siemens_, unloaded_ratio_);
   }
+  const double before_rounding =
+      std::sqrt(std::max(array.readout.adc_noise_counts * array.readout.adc_noise_counts - 1.0 / 12, 0.0));
+  if (before_rounding > 0.0) repeats_by_noise_ = std::erf(0.5 / (before_rounding * std::numbers::sqrt2));
+  const double floor = 0.5 / array.readout.adc_noise_counts;
+  const double density = std::exp(-0.5 * floor * floor) / std::sqrt(2.0 * std::numbers::pi);
+  const double below = 0.5 * std::erfc(-floor / std::numbers::sqrt2);
+  const double slope = density / below;
+  floor_sigmas_ = static_cast<float>(floor);
+  floor_slope_ = static_cast<float>(slope);
+  floor_curvature_ = static_cast<float>(0.5 * slope * (slope + floor));
+  information_ = 0.5 * (density * (slope + floor) + 1.0 - below);
 }
 
 bool LineFaultMonitor::Implementation::observe(const ConditionedFrame& conditioned,
@@ -273,7 +359,9 @@ bool LineFaultMonitor::Implementation::observe(const ConditionedFrame& condition
   const Inputs in{conditioned, conductance, frame_++, !has(conductance.status, FrameStatus::not_converged)};
   if (has(conditioned.status, FrameStatus::rejected)) return false;
   last_sigma_ = conditioned.sigma_ratio;
+  sum_lines(in);
   expect_unloaded(in);
+  weigh_silence(in);
   judge_silent_lines(in, true);
   judge_silent_lines(in, false);
   judge_supplied_columns(in);
@@ -290,7 +378,7 @@ bool LineFaultMonitor::Implementation::sees(bool row, std::size_t line) const no
   double per_frame = 0.0;
   for (std::size_t k = 0; k < across(row); ++k) {
     const double mean = kUnloadedShare * unloaded_ratio_[at(row, line, k)] / last_sigma_;
-    per_frame += std::clamp(std::min(mean, kMostMean) * (0.5 * std::min(mean, kMostMean) - kFloorMean), 0.0, kMostFor);
+    per_frame += std::min(information_ * mean * mean, static_cast<double>(kMostFor));
   }
   return last_sigma_ > 0.0 && per_frame >= kEvidence / kFoundWithinFrames;
 }
@@ -339,33 +427,67 @@ void LineFaultMonitor::Implementation::mark_faulty_taxels() {
       case LineFaultKind::drifting_driver: break;
     }
   }
+  for (std::size_t taxel = 0; taxel < taxels(); ++taxel) {
+    judges_[true][taxel] = (causes_[taxel] & ~(kRowCause | kDeadCause)) == 0 ? 1.0F : 0.0F;
+    judges_[false][taxel] = (causes_[taxel] & ~(kColumnCause | kDeadCause)) == 0 ? 1.0F : 0.0F;
+  }
 }
 
 void LineFaultMonitor::Implementation::mark_line(bool row, std::size_t line, std::uint8_t cause) {
   for (std::size_t k = 0; k < across(row); ++k) causes_[at(row, line, k)] |= cause;
 }
 
+void LineFaultMonitor::Implementation::sum_lines(const Inputs& in) {
+  const std::size_t cols = array_.cols;
+  std::vector<double>& columns = ratio_sum_[false];
+  std::fill(columns.begin(), columns.end(), 0.0);
+  const std::span<const double> ratio = in.conditioned.ratio;
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    const std::span<const double> readings = ratio.subspan(row * cols, cols);
+    ratio_sum_[true][row] = sum_of(readings);
+    for (std::size_t col = 0; col < cols; ++col) columns[col] += readings[col];
+  }
+  std::fill(line_siemens_.begin(), line_siemens_.end(), 0.0);
+  if (!in.solved) return;
+  const std::span<const double> siemens = in.conductance.siemens;
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    const std::span<const double> conductances = siemens.subspan(row * cols, cols);
+    if (driven_is_row()) {
+      line_siemens_[row] = sum_of(conductances);
+    } else {
+      for (std::size_t col = 0; col < cols; ++col) line_siemens_[col] += conductances[col];
+    }
+  }
+}
+
 /// What a taxel reads that nothing presses, while others are pressed: those on its sensed line take the share of the
 /// supply that they read themselves, those on its driven line pull the line down.
 void LineFaultMonitor::Implementation::expect_unloaded(const Inputs& in) {
-  const bool by_row = driven_is_row();
   const Readout& readout = array_.readout;
   if (readout.circuit == Circuit::none) return expect_unloaded_beside_no_press(in);
-  std::fill(line_siemens_.begin(), line_siemens_.end(), 0.0);
-  for (std::size_t taxel = 0; taxel < taxels() && in.solved; ++taxel) {
-    line_siemens_[by_row ? taxel / array_.cols : taxel % array_.cols] += in.conductance.siemens[taxel];
-  }
+  const bool by_row = driven_is_row();
   const bool shares = readout.circuit == Circuit::divider || readout.circuit == Circuit::flexitac;
+  const std::vector<double>& taken = ratio_sum_[!by_row];
   for (std::size_t sensed = 0; sensed < array_.sensed_lines(); ++sensed) {
-    double taken = 0.0;
-    for (std::size_t driven = 0; driven < array_.driven_lines() && shares; ++driven) {
-      taken += in.conditioned.ratio[at(by_row, driven, sensed)];
-    }
-    const double left = std::clamp(1.0 - taken, 0.0, 1.0);
-    for (std::size_t driven = 0; driven < array_.driven_lines(); ++driven) {
-      const double sag = in.solved ? 1.0 / (1.0 + readout.drive_ohm[driven] * line_siemens_[driven]) : kUnloadedShare;
-      const std::size_t taxel = at(by_row, driven, sensed);
-      expected_[taxel] = kUnloadedShare * unloaded_ratio_[taxel] * left * sag;
+    left_[sensed] = shares ? std::clamp(1.0 - taken[sensed], 0.0, 1.0) : 1.0;
+  }
+  const double scale = kUnloadedShare / in.conditioned.sigma_ratio;
+  const auto sag = [&](std::size_t driven) {
+    return in.solved ? 1.0 / (1.0 + readout.drive_ohm[driven] * line_siemens_[driven]) : kUnloadedShare;
+  };
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    const double* const unloaded = &unloaded_ratio_[row * array_.cols];
+    float* const expected = &expected_[row * array_.cols];
+    if (by_row) {
+      const double factor = scale * sag(row);
+      for (std::size_t col = 0; col < array_.cols; ++col) {
+        expected[col] = static_cast<float>(factor * unloaded[col] * left_[col]);
+      }
+    } else {
+      const double factor = scale * left_[row];
+      for (std::size_t col = 0; col < array_.cols; ++col) {
+        expected[col] = static_cast<float>(factor * unloaded[col] * sag(col));
+      }
     }
   }
 }
@@ -381,38 +503,46 @@ void LineFaultMonitor::Implementation::expect_unloaded_beside_no_press(const Inp
   }
   for (std::size_t taxel = 0; taxel < taxels(); ++taxel) {
     const bool beside = is_pressed_[true][taxel / array_.cols] != 0 || is_pressed_[false][taxel % array_.cols] != 0;
-    expected_[taxel] = beside ? 0.0 : kUnloadedShare * unloaded_ratio_[taxel];
+    const double expected = beside ? 0.0 : kUnloadedShare * unloaded_ratio_[taxel];
+    expected_[taxel] = static_cast<float>(expected / in.conditioned.sigma_ratio);
   }
 }
 
-/// Log-likelihood ratio of a silent taxel against one that reads `expected`, or more: Gaussian noise of `sigma`.
-double LineFaultMonitor::Implementation::silence_evidence(double reading, double expected, double sigma) const {
-  const double mean = std::min(expected / sigma, kMostMean);
-  return std::clamp(mean * (0.5 * mean - reading / sigma), kMostAgainst, kMostFor);
+/// Log-likelihood ratio of a silent taxel against one that reads as expected, or more: Gaussian noise, cut off at the
+/// floor of the ADC. log P(floor | silent) / P(floor | mean) is not less than its second-order series.
+void LineFaultMonitor::Implementation::weigh_silence(const Inputs& in) {
+  const auto per_sigma = 1.0 / in.conditioned.sigma_ratio;
+  for (std::size_t taxel = 0; taxel < evidence_.size(); ++taxel) {
+    const auto reading = static_cast<float>(in.conditioned.ratio[taxel] * per_sigma);
+    const float mean = expected_[taxel] < kMostMean ? expected_[taxel] : kMostMean;
+    const float above = mean * (0.5F * mean - reading);
+    const float at_floor = mean * (floor_slope_ + floor_curvature_ * mean);
+    const float ratio = reading < floor_sigmas_ ? at_floor : above;
+    const float limited = ratio < kMostFor ? ratio : kMostFor;
+    evidence_[taxel] = limited > kMostAgainst ? limited : kMostAgainst;
+  }
 }
 
 void LineFaultMonitor::Implementation::judge_silent_lines(const Inputs& in, bool row) {
   const LineFaultKind kind = row ? LineFaultKind::silent_row : LineFaultKind::silent_column;
-  const std::uint8_t own_cause = row ? kRowCause : kColumnCause;
   for (std::size_t line = 0; line < lines(row); ++line) {
     const LineFaultKind at_supply = row ? LineFaultKind::supplied_row : LineFaultKind::supplied_column;
     if (is_found(at_supply, line)) continue;
-    double evidence = 0.0;
+    float evidence = 0.0F;
     for (std::size_t k = 0; k < across(row); ++k) {
       const std::size_t taxel = at(row, line, k);
-      if ((causes_[taxel] & ~own_cause & ~kDeadCause) != 0) continue;
-      evidence += silence_evidence(in.conditioned.ratio[taxel], expected_[taxel], in.conditioned.sigma_ratio);
+      evidence += judges_[row][taxel] * evidence_[taxel];
     }
     const Nanos time = in.conditioned.time;
     if (!is_found(kind, line)) {
       PageTest& test = silent_[row][line];
-      test.add(evidence, in.frame, time);
+      test.add(static_cast<double>(evidence), in.frame, time);
       if (!test.decides(kLineFrames)) continue;
       found(kind, line, test.first_frame, test.first_time);
       alive_[row][line].restart();
     } else {
       PageTest& test = alive_[row][line];
-      test.add(-evidence, in.frame, time);
+      test.add(static_cast<double>(-evidence), in.frame, time);
       if (!test.decides(kHealFrames)) continue;
       healed(kind, line);
       silent_[row][line].restart();
@@ -420,78 +550,96 @@ void LineFaultMonitor::Implementation::judge_silent_lines(const Inputs& in, bool
   }
 }
 
+/// As weigh_silence(), of conductances: what crosses over from pressed taxels is solved there.
 void LineFaultMonitor::Implementation::judge_dead_taxels(const Inputs& in) {
   if (!in.solved) return;
-  for (std::size_t taxel = 0; taxel < taxels(); ++taxel) {
-    if ((causes_[taxel] & ~kDeadCause) != 0) {
-      dead_[taxel].restart();
-      continue;
-    }
-    const double expected = expected_[taxel] > 0.0 ? kUnloadedShare * unloaded_siemens_[taxel] : 0.0;
-    const double siemens = in.conductance.siemens[taxel];
-    const double evidence = silence_evidence(siemens, expected, in.conductance.sigma_siemens[taxel]);
-    const bool is_known = (causes_[taxel] & kDeadCause) != 0;
-    PageTest& test = is_known ? undead_[taxel] : dead_[taxel];
-    test.add(is_known ? -evidence : evidence, in.frame, in.conditioned.time);
-    if (!is_known && test.decides(kTaxelFrames)) {
-      found(LineFaultKind::dead_taxel, taxel, test.first_frame, test.first_time);
-      undead_[taxel].restart();
-    } else if (is_known && test.decides(kHealFrames)) {
-      healed(LineFaultKind::dead_taxel, taxel);
-      dead_[taxel].restart();
-    }
+  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
+    const double per_sigma = 1.0 / in.conductance.sigma_siemens[taxel];
+    const auto conductance = static_cast<float>(in.conductance.siemens[taxel] * per_sigma);
+    const auto unloaded = static_cast<float>(kUnloadedShare * unloaded_siemens_[taxel] * per_sigma);
+    const float mean = expected_[taxel] > 0.0F ? (unloaded < kMostMean ? unloaded : kMostMean) : 0.0F;
+    const float above = mean * (0.5F * mean - conductance);
+    const float at_floor = mean * (floor_slope_ + floor_curvature_ * mean);
+    const float ratio = conductance > 0.0F ? above : at_floor;
+    const float limited = ratio < kMostForTaxel ? ratio : kMostForTaxel;
+    dead_evidence_[taxel] = limited > kMostAgainst ? limited : kMostAgainst;
+  }
+  const auto frame = static_cast<std::uint32_t>(in.frame);
+  float most = 0.0F;
+  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
+    const float sum = dead_[taxel] + dead_evidence_[taxel];
+    dead_since_[taxel] = sum > 0.0F ? dead_since_[taxel] : frame + 1;
+    dead_[taxel] = sum > 0.0F ? sum : 0.0F;
+    most = dead_[taxel] > most ? dead_[taxel] : most;
+  }
+  if (most < static_cast<float>(kEvidence) && !has_kind(LineFaultKind::dead_taxel)) return;
+  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) judge_dead_taxel(in, taxel);
+}
+
+void LineFaultMonitor::Implementation::judge_dead_taxel(const Inputs& in, std::size_t taxel) {
+  if ((causes_[taxel] & ~kDeadCause) != 0) {
+    dead_[taxel] = 0.0F;
+    dead_since_[taxel] = static_cast<std::uint32_t>(in.frame) + 1;
+  } else if ((causes_[taxel] & kDeadCause) != 0) {
+    undead_[taxel].add(static_cast<double>(-dead_evidence_[taxel]), in.frame, in.conditioned.time);
+    if (!undead_[taxel].decides(kHealFrames)) return;
+    healed(LineFaultKind::dead_taxel, taxel);
+    dead_[taxel] = 0.0F;
+  } else if (dead_[taxel] >= static_cast<float>(kEvidence)) {
+    found(LineFaultKind::dead_taxel, taxel, dead_since_[taxel], in.conditioned.time);
+    undead_[taxel].restart();
   }
 }
 
-/// The count that the ADC gave.
-double LineFaultMonitor::Implementation::counts(const Inputs& in, std::size_t taxel) const {
-  const Readout& readout = array_.readout;
-  const double rising = in.conditioned.ratio[taxel] / in.conditioned.sigma_ratio * readout.adc_noise_counts;
-  const double supply = readout.adc_noise_counts / in.conditioned.sigma_ratio;
-  return readout.pressure_raises_reading ? rising : supply - rising;
-}
-
-/// Noise moves a reading to another count with a probability that is known, and that the other taxels show: a reading
-/// that repeats while it should not is as unlikely as the repetitions multiplied.
+/// Noise moves a reading to another count with a probability that is known, and that taxels which nothing presses show:
+/// a reading that repeats while it should not is as unlikely as the repetitions multiplied. Readings like those of
+/// unloaded taxels are not judged: they are weak, and may be quiet.
 void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
   const Readout& readout = array_.readout;
-  const double before_rounding =
-      std::sqrt(std::max(readout.adc_noise_counts * readout.adc_noise_counts - 1.0 / 12, 0.0));
-  const double repeats_by_noise = before_rounding > 0.0 ? std::erf(0.5 / (before_rounding * std::sqrt(2.0))) : 1.0;
-  double interior = 0.0;
-  double repeated = 0.0;
-  const auto is_interior = [&](double count) { return count > 0.5 && count < readout.full_scale_counts() - 0.5; };
-  for (std::size_t taxel = 0; taxel < taxels(); ++taxel) {
-    const double count = counts(in, taxel);
-    if (!is_interior(count)) continue;
-    interior += 1.0;
-    if (std::abs(count - last_counts_[taxel]) < kSameCount) repeated += 1.0;
+  const CountScale scale = count_scale(in);
+  for (std::size_t k = faults_.size(); k-- > 0;) {  // healed() removes the fault
+    const LineFault& fault = faults_[k];
+    if (fault.kind != LineFaultKind::stuck_taxel) continue;
+    const std::size_t taxel = fault.place;
+    const double last = last_counts_[taxel];
+    const double change = scale.zero + scale.per_ratio * in.conditioned.ratio[taxel] - last;
+    if (std::abs(change) < kSameCount || ++changes_[taxel] < kStuckHealChanges) continue;
+    healed(LineFaultKind::stuck_taxel, taxel);
+    stuck_[taxel] = 0.0;
   }
-  for (std::size_t taxel = 0; taxel < taxels(); ++taxel) {
-    const double count = counts(in, taxel);
-    const bool repeats = std::abs(count - last_counts_[taxel]) < kSameCount;
+  const double most = readout.full_scale_counts() - 0.5;
+  const double least_pressed = kPressedSigmas * in.conditioned.sigma_ratio;
+  Repetition idle;
+  double most_evidence = 0.0;
+  for (std::size_t taxel = 0; taxel < stuck_.size(); ++taxel) {
+    const double ratio = in.conditioned.ratio[taxel];
+    const double count = scale.zero + scale.per_ratio * ratio;
+    const double interior = (count > 0.5 ? 1.0 : 0.0) * (count < most ? 1.0 : 0.0);
+    const double repeated = std::abs(count - last_counts_[taxel]) < kSameCount ? interior : 0.0;
+    const double pressed = ratio > kPressedShare * unloaded_ratio_[taxel] + least_pressed ? 1.0 : 0.0;
     last_counts_[taxel] = count;
-    const bool is_known = (causes_[taxel] & kStuckCause) != 0;
-    if (is_known) {
-      if (!repeats && ++changes_[taxel] >= kStuckHealChanges) {
-        healed(LineFaultKind::stuck_taxel, taxel);
-        stuck_[taxel].restart();
-      }
-      continue;
-    }
-    if (!repeats || !is_interior(count)) {
-      stuck_[taxel].restart();
-      continue;
-    }
-    if (interior < kLeastOthers + 1.0) continue;
-    const double others_repeat = (repeated - 1.0) / (interior - 1.0);
-    const double probability = std::max(repeats_by_noise, others_repeat);
-    if (probability >= 1.0) continue;
-    stuck_[taxel].add(-std::log(probability), in.frame, in.conditioned.time);
-    if (!stuck_[taxel].decides(kTaxelFrames)) continue;
-    found(LineFaultKind::stuck_taxel, taxel, stuck_[taxel].first_frame, stuck_[taxel].first_time);
+    idle.interior += interior * (1.0 - pressed);
+    idle.repeated += repeated * (1.0 - pressed);
+    stuck_[taxel] = repeated * pressed * (stuck_[taxel] + chance_);
+    stuck_frames_[taxel] = repeated * pressed * (stuck_frames_[taxel] + 1.0);
+    most_evidence = stuck_[taxel] > most_evidence ? stuck_[taxel] : most_evidence;
+  }
+  chance_ = idle.interior < kLeastOthers ? 0.0 : -std::log(std::max(repeats_by_noise_, idle.repeated / idle.interior));
+  chance_ = std::min(chance_, static_cast<double>(kMostForTaxel));
+  if (most_evidence < kEvidence) return;
+  for (std::size_t taxel = 0; taxel < stuck_.size(); ++taxel) {
+    if (stuck_[taxel] < kEvidence || (causes_[taxel] & kStuckCause) != 0) continue;
+    const auto frames = static_cast<std::size_t>(stuck_frames_[taxel]);
+    found(LineFaultKind::stuck_taxel, taxel, in.frame - std::min(in.frame, frames), in.conditioned.time);
     changes_[taxel] = 0;
   }
+}
+
+/// The counts that the ADC gave, as a line over the readings.
+LineFaultMonitor::Implementation::CountScale LineFaultMonitor::Implementation::count_scale(const Inputs& in) const {
+  const Readout& readout = array_.readout;
+  const double supply = readout.adc_noise_counts / in.conditioned.sigma_ratio;
+  return readout.pressure_raises_reading ? CountScale{0.0, supply} : CountScale{supply, -supply};
 }
 
 /// Presses on a line and the next one: new ones in which both read the same and the lines beside them do not, and those
@@ -532,24 +680,34 @@ void LineFaultMonitor::Implementation::judge_shorted_lines(const Inputs& in, boo
   // A line at the supply makes the readings of others alike.
   if (has_kind(LineFaultKind::supplied_row) || has_kind(LineFaultKind::supplied_column)) return;
   const LineFaultKind kind = row ? LineFaultKind::shorted_rows : LineFaultKind::shorted_columns;
-  for (std::size_t line = 0; line + 1 < lines(row); ++line) {
-    const Comparison seen = compare_with_next(in, row, line);
-    PressCount& count = shorted_[row][line];
-    if (seen.different > 0) {
-      ++count.against;
-    } else if (seen.equal > 0) {
-      count.against = 0;
-    }
-    const bool is_known = is_found(kind, line);
-    if (seen.different > 0 && (!is_known || count.against >= kLineFrames)) {
-      if (is_known) healed(kind, line);
-      count.presses = 0;
-    } else if (!is_known) {
-      count.add(seen.equal, in.frame, in.conditioned.time);
-      if (count.presses < kEqualPresses) continue;
-      found(kind, line, count.first_frame, count.first_time);
-      count.against = 0;
-    }
+  const bool any_known = has_kind(kind);
+  const std::size_t pairs = lines(row) - 1;
+  if (pairs == 0) return;
+  turn_[row] = (turn_[row] + 1) % pairs;
+  for (std::size_t line = 0; line < pairs; ++line) {
+    const bool is_suspect = shorted_[row][line].presses > 0 || (any_known && is_found(kind, line));
+    if (is_suspect || line == turn_[row]) judge_shorted_pair(in, row, line);
+  }
+}
+
+void LineFaultMonitor::Implementation::judge_shorted_pair(const Inputs& in, bool row, std::size_t line) {
+  const LineFaultKind kind = row ? LineFaultKind::shorted_rows : LineFaultKind::shorted_columns;
+  const Comparison seen = compare_with_next(in, row, line);
+  PressCount& count = shorted_[row][line];
+  if (seen.different > 0) {
+    ++count.against;
+  } else if (seen.equal > 0) {
+    count.against = 0;
+  }
+  const bool is_known = is_found(kind, line);
+  if (seen.different > 0 && (!is_known || count.against >= kLineFrames)) {
+    if (is_known) healed(kind, line);
+    count.presses = 0;
+  } else if (!is_known) {
+    count.add(seen.equal, in.frame, in.conditioned.time);
+    if (count.presses < kEqualPresses) return;
+    found(kind, line, count.first_frame, count.first_time);
+    count.against = 0;
   }
 }
 
@@ -585,30 +743,25 @@ void LineFaultMonitor::Implementation::judge_supplied_columns(const Inputs& in) 
 }
 
 /// A row at the supply reads the least in every column, as the others hold its reading too. What speaks for it is a
-/// press on it that shows alike in most other rows; or an unloaded array that reads twice what it should, but for this
-/// row.
+/// press on it that shows alike in most other rows.
 void LineFaultMonitor::Implementation::judge_supplied_rows(const Inputs& in) {
   if (array_.readout.circuit == Circuit::flexitac || array_.rows < 3 || has_kind(LineFaultKind::supplied_column))
     return;
-  std::size_t least_row = 0;
-  double least_sum = std::numeric_limits<double>::infinity();
+  const std::vector<double>& sum = ratio_sum_[true];
+  std::size_t least = 0;
   for (std::size_t row = 0; row < array_.rows; ++row) {
-    if (is_found(LineFaultKind::silent_row, row)) continue;
-    double sum = 0.0;
-    for (std::size_t col = 0; col < array_.cols; ++col) sum += in.conditioned.ratio[array_.index(row, col)];
-    if (sum >= least_sum) continue;
-    least_row = row;
-    least_sum = sum;
+    if (is_found(LineFaultKind::supplied_row, row)) return judge_supplied_row(in, row, true);
+    if (!is_found(LineFaultKind::silent_row, row) && sum[row] < sum[least]) least = row;
   }
-  const bool any_known = has_kind(LineFaultKind::supplied_row);
-  for (std::size_t row = 0; row < array_.rows; ++row) {
-    const bool is_known = is_found(LineFaultKind::supplied_row, row);
-    if (is_known || !any_known) judge_supplied_row(in, row, is_known, row == least_row);
+  const double noise = in.conditioned.sigma_ratio * std::sqrt(static_cast<double>(array_.cols));
+  if (sum[supplied_candidate_] > sum[least] + kDifferentSigmas * noise) {
+    supplied_candidate_ = least;
+    supplied_ = PressCount();
   }
+  judge_supplied_row(in, supplied_candidate_, false);
 }
 
-void LineFaultMonitor::Implementation::judge_supplied_row(const Inputs& in, std::size_t row, bool is_known,
-                                                          bool is_least) {
+void LineFaultMonitor::Implementation::judge_supplied_row(const Inputs& in, std::size_t row, bool is_known) {
   const std::span<const double> ratio = in.conditioned.ratio;
   const double sigma = in.conditioned.sigma_ratio;
   int shows = 0;
@@ -637,59 +790,18 @@ void LineFaultMonitor::Implementation::judge_supplied_row(const Inputs& in, std:
     supplied_last_[own] = ratio[own];
     ++shows;
   }
-  PressCount& count = supplied_[row];
-  const Nanos time = in.conditioned.time;
-  count.against = fails > 0 ? count.against + 1 : (any ? 0 : count.against);
+  supplied_.against = fails > 0 ? supplied_.against + 1 : (any ? 0 : supplied_.against);
   if (is_known) {
-    if (count.against < kLineFrames) return;
+    if (supplied_.against < kLineFrames) return;
     healed(LineFaultKind::supplied_row, row);
-    count = PressCount();
+    supplied_ = PressCount();
     return;
   }
-  if (fails > 0) count.presses = 0;
-  if (is_least) count.add(shows, in.frame, time);
-  doubled_[row].add(is_least && fails == 0 && reads_doubled(in, row) ? kEvidence : kMostAgainst * kEvidence, in.frame,
-                    time);
-  if (count.presses >= kSupplyPresses) {
-    found(LineFaultKind::supplied_row, row, count.first_frame, count.first_time);
-  } else if (doubled_[row].decides(kHealFrames)) {
-    found(LineFaultKind::supplied_row, row, doubled_[row].first_frame, doubled_[row].first_time);
-  } else {
-    return;
-  }
-  count.against = 0;
-  doubled_[row].restart();
-}
-
-/// The others read their unloaded value and this row's on top; temperature alone cannot do that.
-bool LineFaultMonitor::Implementation::reads_doubled(const Inputs& in, std::size_t row) const {
-  constexpr double kLeastOthersShare = 1.5;
-  constexpr double kMostOthersShare = 2.8;
-  double own = 0.0;
-  double own_unloaded = 0.0;
-  double least_share = kMostOthersShare;
-  double most_share = 0.0;
-  for (std::size_t other = 0; other < array_.rows; ++other) {
-    double sum = 0.0;
-    double unloaded = 0.0;
-    for (std::size_t col = 0; col < array_.cols; ++col) {
-      const std::size_t taxel = array_.index(other, col);
-      if (causes_[taxel] != 0) continue;
-      sum += in.conditioned.ratio[taxel];
-      unloaded += unloaded_ratio_[taxel];
-    }
-    if (!(unloaded > kPressedSigmas * in.conditioned.sigma_ratio)) continue;
-    if (other == row) {
-      own = sum;
-      own_unloaded = unloaded;
-      continue;
-    }
-    least_share = std::min(least_share, sum / unloaded);
-    most_share = std::max(most_share, sum / unloaded);
-  }
-  const double own_share = own_unloaded > 0.0 ? own / own_unloaded : 0.0;
-  return own_share > kUnloadedShare && most_share < kMostOthersShare && least_share > kLeastOthersShare &&
-         least_share > kLeastOthersShare * own_share;
+  if (fails > 0) supplied_.presses = 0;
+  supplied_.add(shows, in.frame, in.conditioned.time);
+  if (supplied_.presses < kSupplyPresses) return;
+  found(LineFaultKind::supplied_row, row, supplied_.first_frame, supplied_.first_time);
+  supplied_.against = 0;
 }
 
 /// Taxels that nothing touches, for comparison: none nearby reads more than an unloaded one. Their conductance over the
@@ -771,60 +883,102 @@ void LineFaultMonitor::Implementation::judge_ground(const Inputs& in, LineFault&
 }
 
 /// A driver whose resistance is higher by d than the inversion takes it to be makes all conductances of its line come
-/// out too small by the factor 1 - d Y, Y the sum of the line as it comes out. Seen on untouched taxels against those
-/// of the other lines, while there is no other fault.
+/// out too small by the factor 1 - d Y, Y the sum of the line as it comes out: untouched taxels fall at once when Y
+/// rises, and rise when it falls. Memory of the material does not: what a press leaves behind only fades. Two frames
+/// of one line at a time, while there is no other fault.
 void LineFaultMonitor::Implementation::judge_drivers(const Inputs& in) {
   const Readout& readout = array_.readout;
   const bool is_modelled = readout.circuit == Circuit::transimpedance || readout.circuit == Circuit::flexitac ||
                            (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded);
+  const bool is_faulty = std::any_of(faults_.begin(), faults_.end(), [](const LineFault& fault) {
+    return fault.kind != LineFaultKind::drifting_driver;
+  });
+  const bool has_last = std::exchange(has_last_, in.solved && is_modelled && !is_faulty);
   if (!in.solved || !is_modelled) return;
-  const bool is_faulty = std::any_of(causes_.begin(), causes_.end(), [](std::uint8_t cause) { return cause != 0; });
-  find_untouched(in);
-  for (LineFault& fault : faults_) {
-    if (fault.kind == LineFaultKind::silent_row || fault.kind == LineFaultKind::silent_column) judge_ground(in, fault);
+  if (is_faulty) {
+    find_untouched(in);
+    for (LineFault& fault : faults_) {
+      if (fault.kind == LineFaultKind::silent_row || fault.kind == LineFaultKind::silent_column)
+        judge_ground(in, fault);
+    }
+    return;
   }
-  for (std::size_t line = 0; line < array_.driven_lines() && !is_faulty; ++line) judge_driver(in, line);
+  const std::size_t driven = array_.driven_lines();
+  for (std::size_t turn = 0; turn < kDriftLinesPerFrame && has_last; ++turn) {
+    compare_with_last(in, (kDriftLinesPerFrame * in.frame + turn) % driven);
+  }
+  std::copy(in.conductance.siemens.begin(), in.conductance.siemens.end(), last_siemens_.begin());
+  std::copy(line_siemens_.begin(), line_siemens_.end(), last_line_siemens_.begin());
 }
 
-void LineFaultMonitor::Implementation::judge_driver(const Inputs& in, std::size_t line) {
-  const bool by_row = driven_is_row();
-  double unloaded = 0.0;
-  for (std::size_t k = 0; k < array_.sensed_lines(); ++k) unloaded += unloaded_siemens_[at(by_row, line, k)];
-  if (line_siemens_[line] < kPressedShare * unloaded) return;
-  const Untouched seen = untouched_on(in, by_row, line);
-  if (!(seen.variance > 0.0)) return;
-  DriftFit& fit = drift_[line];
-  const double slope = seen.expected * line_siemens_[line];
-  if (fit.frames == 0) {
-    fit.first_frame = in.frame;
-    fit.first_time = in.conditioned.time;
-  }
-  ++fit.frames;
-  fit.normal = kDriftMemory * fit.normal + slope * slope / seen.variance;
-  fit.moment = kDriftMemory * fit.moment + slope * (seen.expected - seen.siemens) / seen.variance;
-  fit.loads = kDriftMemory * fit.loads + slope * slope / seen.variance * line_siemens_[line] * line_siemens_[line];
-  if (fit.frames < kDriftFrames || !(fit.normal > 0.0)) return;
+/// Reads more than an unloaded taxel, in this frame or in the last one.
+bool LineFaultMonitor::Implementation::is_touched(const Inputs& in, std::size_t taxel) const {
+  const double most = kPressedShare * unloaded_siemens_[taxel] + kDifferentSigmas * in.conductance.sigma_siemens[taxel];
+  return in.conductance.siemens[taxel] > most || last_siemens_[taxel] > most;
+}
 
-  const double rise_ohm = fit.moment / fit.normal;
-  const double deviation_ohm = 1.0 / std::sqrt(fit.normal);
-  const double typical_siemens = std::sqrt(fit.loads / fit.normal);
+/// Places of a line where the line or one beside it is touched.
+void LineFaultMonitor::Implementation::find_touched(const Inputs& in, std::size_t line) {
+  const bool by_row = driven_is_row();
+  const std::size_t from = line - std::min<std::size_t>(line, 1);
+  const std::size_t to = std::min(line + 1, array_.driven_lines() - 1);
+  for (std::size_t place = 0; place < touched_.size(); ++place) {
+    bool touched = false;
+    for (std::size_t near = from; near <= to; ++near) touched = touched || is_touched(in, at(by_row, near, place));
+    touched_[place] = touched ? 1 : 0;
+  }
+}
+
+void LineFaultMonitor::Implementation::compare_with_last(const Inputs& in, std::size_t line) {
+  const bool by_row = driven_is_row();
+  const double rise = line_siemens_[line] - last_line_siemens_[line];
+  find_touched(in, line);
+  double now = 0.0;
+  double last = 0.0;
+  double variance = 0.0;
+  double unloaded = 0.0;
+  for (std::size_t place = 0; place < touched_.size(); ++place) {
+    const std::size_t taxel = at(by_row, line, place);
+    unloaded += unloaded_siemens_[taxel];
+    const auto from = touched_.begin() + static_cast<std::ptrdiff_t>(place - std::min(place, kContactReach));
+    const auto to =
+        touched_.begin() + static_cast<std::ptrdiff_t>(std::min(place + kContactReach + 1, touched_.size()));
+    if (!(unloaded_siemens_[taxel] > 0.0) || std::find(from, to, 1) != to) continue;
+    now += in.conductance.siemens[taxel];
+    last += last_siemens_[taxel];
+    variance += 2.0 * in.conductance.sigma_siemens[taxel] * in.conductance.sigma_siemens[taxel];
+  }
+  if (std::abs(rise) < kPressedShare * unloaded || !(variance > 0.0)) return;
+  if (drift_[0][line].pairs + drift_[1][line].pairs == 0.0) drift_since_[line] = {in.frame, in.conditioned.time};
+  const double mean = 0.5 * (now + last);
+  variance += std::pow(kDoubtOfUnloaded * mean, 2);
+  const double most = kMostOutlier * std::sqrt(variance);
+  drift_[rise > 0.0 ? 1 : 0][line].add(mean * rise, std::clamp(last - now, -most, most), variance, rise);
+  judge_driver(line);
+}
+
+void LineFaultMonitor::Implementation::judge_driver(std::size_t line) {
+  const DriftFit& fallen = drift_[0][line];
+  const DriftFit& risen = drift_[1][line];
+  if (std::min(fallen.pairs, risen.pairs) < kDriftPairs) return;
+  const double nominal_ohm = array_.readout.drive_ohm[line];
+  const double least_sag_ohm = kLeastDriftSag / std::max(fallen.typical_load(), risen.typical_load());
+  const double least_ohm = std::max(kLeastDriftShare * nominal_ohm, least_sag_ohm);
+  const auto has_risen = [&](const DriftFit& fit) {
+    return fit.estimate() > std::max(kDriftSigmas * fit.deviation(), least_ohm);
+  };
+  const auto is_nominal = [&](const DriftFit& fit) { return fit.estimate() + fit.deviation() < least_ohm; };
   const auto known = std::find_if(faults_.begin(), faults_.end(), [line](const LineFault& fault) {
     return fault.kind == LineFaultKind::drifting_driver && fault.place == line;
   });
-  const double nominal_ohm = array_.readout.drive_ohm[line];
-  const double now_ohm = known == faults_.end() ? nominal_ohm : known->drive_ohm;
-  const double least_ohm = std::max(kLeastDriftShare * now_ohm, kLeastDriftSag / typical_siemens);
-  if (std::abs(rise_ohm) < std::max(kDriftSigmas * deviation_ohm, least_ohm)) return;
-  const double ohm = now_ohm + rise_ohm;
-  if (known == faults_.end()) {
-    if (rise_ohm > 0.0) found(LineFaultKind::drifting_driver, line, fit.first_frame, fit.first_time, ohm);
-  } else if (ohm < nominal_ohm + std::max(kLeastDriftShare * nominal_ohm, kLeastDriftSag / typical_siemens)) {
-    healed(LineFaultKind::drifting_driver, line);
-  } else {
+  const double ohm = nominal_ohm + (fallen.moment + risen.moment) / (fallen.normal + risen.normal);
+  if (known != faults_.end()) {
     known->drive_ohm = ohm;
-    changed_ = true;
+    if (is_nominal(fallen) && is_nominal(risen)) healed(LineFaultKind::drifting_driver, line);
+  } else if (has_risen(fallen) && has_risen(risen)) {
+    const auto [first_frame, first_time] = drift_since_[line];
+    found(LineFaultKind::drifting_driver, line, first_frame, first_time, ohm);
   }
-  fit = DriftFit();
 }
 
 LineFaultMonitor::LineFaultMonitor(const ArrayDescription& array, std::span<const double> unloaded_siemens)

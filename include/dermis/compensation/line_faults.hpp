@@ -48,19 +48,21 @@ struct LineFault {
 /// Finds line faults in a stream of frames, and sees when they are gone. What it knows is the conductance of the
 /// unloaded taxels and the noise of a reading:
 ///
-/// silent lines, dead taxels   an unloaded taxel that works reads at least half of its unloaded value, less what the
-///                             other taxels of its lines take; log-likelihood ratio against reading nothing, summed
-///                             over the line and the frames (Page's test), 3 frames at least; a dead taxel 12
-/// stuck taxels                equal readings beside a noise that makes others change, about 30 frames in a row
+/// silent lines, dead taxels   an unloaded taxel that works reads at least 0.3 of its unloaded value, less what the
+///                             other taxels of its lines take; log-likelihood ratio against the floor of the ADC,
+///                             summed over the line and the frames (Page's test), 3 frames at least; a dead taxel 12
+/// stuck taxels                equal readings of a pressed taxel beside a noise that makes unpressed ones change, about
+///                             30 frames in a row
 /// shorted lines               equal readings of both lines and of no other line, in 10 different presses, and no
 ///                             press in which they differ
 /// supplied lines              a column at full scale in all rows, 3 frames; a row whose presses show in all rows, 6
-/// drifting drivers            unloaded taxels that read less the more current their line carries
+/// drifting drivers            unloaded taxels that fall from one frame to the next when the current of their line
+///                             rises, and rise when it falls; reported, but neither masked nor corrected
 ///
-/// What it cannot see: a line whose unloaded taxels read below about 2.3 standard deviations each, 16 of them
-/// (sees_silent_*); a short between lines that nothing presses; a taxel that stands at an end of the ADC. With `circuit
-/// = "none"` silent lines and taxels are judged where nothing is pressed, drivers not at all. Not thread-safe: one per
-/// stream.
+/// What it cannot see: a line whose unloaded taxels read below about 2.5 standard deviations each, 16 of them
+/// (sees_silent_*); a short between lines that nothing presses; a taxel that stands at an end of the ADC, or is stuck
+/// at what unloaded ones read. With `circuit = "none"` silent lines and taxels are judged where nothing is pressed,
+/// drivers not at all. Not thread-safe: one per stream.
 class LineFaultMonitor {
  public:
   /// `unloaded_siemens` [rows, cols]: conductance of the unloaded taxels [S]; 0 or less where it is not known or the
