@@ -72,7 +72,8 @@ std::vector<std::vector<double>> touch_sequence(const ArrayDescription& array, s
     }
     std::vector<double> siemens = idle;
     for (std::size_t k = 0; k < siemens.size(); ++k) {
-      const auto row = static_cast<double>(k / array.cols);
+      const std::size_t line = k / array.cols;
+      const auto row = static_cast<double>(line);
       const auto col = static_cast<double>(k % array.cols);
       for (const Contact& contact : contacts) siemens[k] += contact.at(time, row, col);
     }
