@@ -674,16 +674,27 @@ class ResistanceFitter {
     const Index lines = lines_.count();
     VectorXd sensed = VectorXd::Zero(static_cast<Index>(array_.sensed_lines()));
     VectorXd driven = VectorXd::Zero(static_cast<Index>(array_.driven_lines()));
+    VectorXd sensed_count = sensed;
+    VectorXd driven_count = driven;
     MatrixXd slopes = MatrixXd::Zero(sensed.size(), lines);
     for (std::size_t taxel = 0; taxel < taxels_; ++taxel) {
       const MatrixXd& law = idle.laws[taxel];
-      if (law.size() == 0 || law(0, lines) <= 0.0) return;
-      const auto line = static_cast<Index>(sensed_line(taxel));
+      if (law.size() == 0 || law(0, lines) <= 0.0) continue;
+      const auto sensed_index = static_cast<Index>(sensed_line(taxel));
+      const auto driven_index = static_cast<Index>(driven_line(taxel));
       const double level = std::log(law(0, lines));
-      sensed[line] += level / static_cast<double>(driven.size());
-      driven[static_cast<Index>(driven_line(taxel))] += level / static_cast<double>(sensed.size());
-      slopes.row(line) += law.row(0).head(lines) / law(0, lines) / static_cast<double>(driven.size());
+      sensed[sensed_index] += level;
+      driven[driven_index] += level;
+      sensed_count[sensed_index] += 1.0;
+      driven_count[driven_index] += 1.0;
+      slopes.row(sensed_index) += law.row(0).head(lines) / law(0, lines);
     }
+    // Means of lines compare only where most of their taxels are known.
+    if (2.0 * sensed_count.minCoeff() < static_cast<double>(driven.size())) return;
+    if (2.0 * driven_count.minCoeff() < static_cast<double>(sensed.size())) return;
+    sensed.array() /= sensed_count.array();
+    driven.array() /= driven_count.array();
+    slopes.array().colwise() /= sensed_count.array();
     driven.array() -= driven.mean();
     sheet_scatter_ =
         std::sqrt((driven.squaredNorm() + kSheetSpread * kSheetSpread) / static_cast<double>(driven.size()));
