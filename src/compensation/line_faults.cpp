@@ -123,6 +123,23 @@ struct DriftFit {
   [[nodiscard]] double typical_load() const { return std::sqrt(loads / normal); }
 };
 
+/// Evidence of a reading at the floor of the ADC.
+struct FloorEvidence {
+  float sigmas = 0.0F;     // readings below half a count are the floor
+  float slope = 0.0F;      // log P(floor | silent) / P(floor | mean), to second order in the mean:
+  float curvature = 0.0F;  // the least that it can be
+};
+
+/// Log-likelihood ratio of a silent taxel against one that reads `expected`, or more [standard deviations].
+inline float silence_evidence(float reading, float expected, float floor_end, const FloorEvidence& floor, float most) {
+  const float mean = expected < kMostMean ? expected : kMostMean;
+  const float above = mean * (0.5F * mean - reading);
+  const float at_floor = mean * (floor.slope + floor.curvature * mean);
+  const float ratio = reading < floor_end ? at_floor : above;
+  const float limited = ratio < most ? ratio : most;
+  return limited > kMostAgainst ? limited : kMostAgainst;
+}
+
 /// Sum in four parts, which do not wait for each other.
 double sum_of(std::span<const double> values) {
   double parts[4] = {};
@@ -253,10 +270,8 @@ class LineFaultMonitor::Implementation {
   std::vector<double> line_siemens_;      // [driven lines]
   std::vector<double> ratio_sum_[2];      // [0] columns, [1] rows
   std::vector<double> left_;              // share of the supply that is left on a sensed line
-  float floor_sigmas_ = 0.0F;             // readings below half a count are the floor of the ADC
-  float floor_slope_ = 0.0F;              // log-likelihood ratio of a reading at the floor, to second order
-  float floor_curvature_ = 0.0F;          // of the expected reading: the least that it can be
-  double information_ = 0.0;              // mean evidence of a silent taxel over the squared expected reading
+  FloorEvidence floor_;
+  double information_ = 0.0;  // mean evidence of a silent taxel over the squared expected reading
   std::vector<LineFault> faults_;
   bool changed_ = false;
   std::size_t frame_ = 0;
@@ -270,9 +285,9 @@ class LineFaultMonitor::Implementation {
   std::vector<std::uint8_t> is_pressed_[2];  // lines; [0] columns, [1] rows
   std::vector<PageTest> silent_[2];          // [0] columns, [1] rows
   std::vector<PageTest> alive_[2];
-  std::vector<float> dead_evidence_;       // of this frame [taxels]
-  std::vector<float> dead_;                // Page's sum [taxels]
-  std::vector<std::uint32_t> dead_since_;  // frame before its evidence [taxels]
+  std::vector<float> dead_evidence_;      // of this frame [taxels]
+  std::vector<float> dead_;               // Page's sum [taxels]
+  std::vector<std::int32_t> dead_since_;  // frame before its evidence [taxels]
   std::vector<PageTest> undead_;
   std::vector<double> stuck_;         // Page's sum [taxels]
   std::vector<double> stuck_frames_;  // [taxels]
@@ -347,9 +362,7 @@ LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
   const double density = std::exp(-0.5 * floor * floor) / std::sqrt(2.0 * std::numbers::pi);
   const double below = 0.5 * std::erfc(-floor / std::numbers::sqrt2);
   const double slope = density / below;
-  floor_sigmas_ = static_cast<float>(floor);
-  floor_slope_ = static_cast<float>(slope);
-  floor_curvature_ = static_cast<float>(0.5 * slope * (slope + floor));
+  floor_ = {static_cast<float>(floor), static_cast<float>(slope), static_cast<float>(0.5 * slope * (slope + floor))};
   information_ = 0.5 * (density * (slope + floor) + 1.0 - below);
 }
 
@@ -511,15 +524,15 @@ void LineFaultMonitor::Implementation::expect_unloaded_beside_no_press(const Inp
 /// Log-likelihood ratio of a silent taxel against one that reads as expected, or more: Gaussian noise, cut off at the
 /// floor of the ADC. log P(floor | silent) / P(floor | mean) is not less than its second-order series.
 void LineFaultMonitor::Implementation::weigh_silence(const Inputs& in) {
-  const auto per_sigma = 1.0 / in.conditioned.sigma_ratio;
-  for (std::size_t taxel = 0; taxel < evidence_.size(); ++taxel) {
-    const auto reading = static_cast<float>(in.conditioned.ratio[taxel] * per_sigma);
-    const float mean = expected_[taxel] < kMostMean ? expected_[taxel] : kMostMean;
-    const float above = mean * (0.5F * mean - reading);
-    const float at_floor = mean * (floor_slope_ + floor_curvature_ * mean);
-    const float ratio = reading < floor_sigmas_ ? at_floor : above;
-    const float limited = ratio < kMostFor ? ratio : kMostFor;
-    evidence_[taxel] = limited > kMostAgainst ? limited : kMostAgainst;
+  const std::size_t taxels = evidence_.size();
+  const double per_sigma = 1.0 / in.conditioned.sigma_ratio;
+  const FloorEvidence floor = floor_;
+  const double* const ratios = in.conditioned.ratio.data();
+  const float* const expected = expected_.data();
+  float* const evidence = evidence_.data();
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    const auto reading = static_cast<float>(ratios[taxel] * per_sigma);
+    evidence[taxel] = silence_evidence(reading, expected[taxel], floor.sigmas, floor, kMostFor);
   }
 }
 
@@ -553,25 +566,31 @@ void LineFaultMonitor::Implementation::judge_silent_lines(const Inputs& in, bool
 /// As weigh_silence(), of conductances: what crosses over from pressed taxels is solved there.
 void LineFaultMonitor::Implementation::judge_dead_taxels(const Inputs& in) {
   if (!in.solved) return;
-  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
-    const double per_sigma = 1.0 / in.conductance.sigma_siemens[taxel];
-    const auto conductance = static_cast<float>(in.conductance.siemens[taxel] * per_sigma);
-    const auto unloaded = static_cast<float>(kUnloadedShare * unloaded_siemens_[taxel] * per_sigma);
-    const float mean = expected_[taxel] > 0.0F ? (unloaded < kMostMean ? unloaded : kMostMean) : 0.0F;
-    const float above = mean * (0.5F * mean - conductance);
-    const float at_floor = mean * (floor_slope_ + floor_curvature_ * mean);
-    const float ratio = conductance > 0.0F ? above : at_floor;
-    const float limited = ratio < kMostForTaxel ? ratio : kMostForTaxel;
-    dead_evidence_[taxel] = limited > kMostAgainst ? limited : kMostAgainst;
+  const std::size_t taxels = dead_.size();
+  const FloorEvidence floor = floor_;
+  const double* const siemens = in.conductance.siemens.data();
+  const double* const sigma = in.conductance.sigma_siemens.data();
+  const double* const unloaded = unloaded_siemens_.data();
+  const float* const expected = expected_.data();
+  float* const evidence = dead_evidence_.data();
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    const auto per_sigma = 1.0F / static_cast<float>(sigma[taxel]);
+    const float conductance = static_cast<float>(siemens[taxel]) * per_sigma;
+    const float least = static_cast<float>(kUnloadedShare * unloaded[taxel]) * per_sigma;
+    const float mean = expected[taxel] > 0.0F ? least : 0.0F;
+    evidence[taxel] = silence_evidence(conductance, mean, std::numeric_limits<float>::min(), floor, kMostForTaxel);
   }
-  const auto frame = static_cast<std::uint32_t>(in.frame);
+  const auto frame = static_cast<std::int32_t>(in.frame);
+  float* const dead = dead_.data();
+  std::int32_t* const since = dead_since_.data();
   float most = 0.0F;
-  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
-    const float sum = dead_[taxel] + dead_evidence_[taxel];
-    dead_since_[taxel] = sum > 0.0F ? dead_since_[taxel] : frame + 1;
-    dead_[taxel] = sum > 0.0F ? sum : 0.0F;
-    most = dead_[taxel] > most ? dead_[taxel] : most;
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    const float sum = dead[taxel] + evidence[taxel];
+    const std::int32_t began = since[taxel];
+    since[taxel] = sum > 0.0F ? began : frame + 1;
+    dead[taxel] = sum > 0.0F ? sum : 0.0F;
   }
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) most = dead[taxel] > most ? dead[taxel] : most;
   if (most < static_cast<float>(kEvidence) && !has_kind(LineFaultKind::dead_taxel)) return;
   for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) judge_dead_taxel(in, taxel);
 }
@@ -579,14 +598,14 @@ void LineFaultMonitor::Implementation::judge_dead_taxels(const Inputs& in) {
 void LineFaultMonitor::Implementation::judge_dead_taxel(const Inputs& in, std::size_t taxel) {
   if ((causes_[taxel] & ~kDeadCause) != 0) {
     dead_[taxel] = 0.0F;
-    dead_since_[taxel] = static_cast<std::uint32_t>(in.frame) + 1;
+    dead_since_[taxel] = static_cast<std::int32_t>(in.frame) + 1;
   } else if ((causes_[taxel] & kDeadCause) != 0) {
     undead_[taxel].add(static_cast<double>(-dead_evidence_[taxel]), in.frame, in.conditioned.time);
     if (!undead_[taxel].decides(kHealFrames)) return;
     healed(LineFaultKind::dead_taxel, taxel);
     dead_[taxel] = 0.0F;
   } else if (dead_[taxel] >= static_cast<float>(kEvidence)) {
-    found(LineFaultKind::dead_taxel, taxel, dead_since_[taxel], in.conditioned.time);
+    found(LineFaultKind::dead_taxel, taxel, static_cast<std::size_t>(dead_since_[taxel]), in.conditioned.time);
     undead_[taxel].restart();
   }
 }

@@ -153,7 +153,6 @@ std::vector<FaultCase> fault_cases(const ArrayDescription& array) {
 
 TEST(LineFaultMonitor, FindsAndLocatesEveryFaultAndSeesItHeal) {
   constexpr std::size_t kFrom = 15;
-  constexpr std::size_t kLasts = 900;
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
     for (const std::size_t size : {8UL, 16UL}) {
       const ArrayDescription array = make_array(size, size, circuit);
@@ -161,13 +160,14 @@ TEST(LineFaultMonitor, FindsAndLocatesEveryFaultAndSeesItHeal) {
       for (const FaultCase& kind : fault_cases(array)) {
         const std::size_t place = random.below(kind.by_taxel ? size * size : size - 1);
         SCOPED_TRACE(testing::Message() << to_string(circuit) << ' ' << size << ", " << kind.name << ' ' << place);
+        const std::size_t lasts = kind.within_frames + 90;
         LineFaults faults;
         faults.from_frame = kFrom;
-        faults.until_frame = kFrom + kLasts;
+        faults.until_frame = kFrom + lasts;
         kind.put(faults, place);
-        Rig rig(array, "multitouch", 100 + size, kFrom + kLasts + 150, faults);
+        Rig rig(array, "multitouch", 100 + size, kFrom + lasts + 150, faults);
         std::size_t found_at = 0;
-        while (rig.next() && rig.frames() <= kFrom + kLasts) {
+        while (rig.next() && rig.frames() <= kFrom + lasts) {
           const auto present = rig.monitor().faults();
           ASSERT_TRUE(present.empty() || rig.frames() > kFrom) << describe(present, array);
           if (!present.empty() && found_at == 0) found_at = rig.frames() - 1;
