@@ -40,6 +40,7 @@ constexpr int kSupplyPresses = 6;
 constexpr double kPinned = 0.97;  // of the supply
 constexpr int kPinnedFramesAmplifier = 20;
 
+constexpr std::size_t kBlockTaxels = 64;
 constexpr double kSameCount = 1e-3;
 constexpr double kLeastOthers = 4.0;  // interior readings that tell how often a reading repeats
 constexpr int kStuckHealChanges = 5;
@@ -212,6 +213,17 @@ class LineFaultMonitor::Implementation {
     double interior = 0.0;
     double repeated = 0.0;
   };
+
+  /// Single taxels are judged a block a frame, by turns.
+  struct Block {
+    std::size_t from;
+    std::size_t to;
+  };
+  [[nodiscard]] std::size_t blocks() const { return (taxels() + kBlockTaxels - 1) / kBlockTaxels; }
+  [[nodiscard]] Block block(const Inputs& in) const {
+    const std::size_t from = in.frame % blocks() * kBlockTaxels;
+    return {from, std::min(from + kBlockTaxels, taxels())};
+  }
 
   struct CountScale {
     double zero;
@@ -566,14 +578,14 @@ void LineFaultMonitor::Implementation::judge_silent_lines(const Inputs& in, bool
 /// As weigh_silence(), of conductances: what crosses over from pressed taxels is solved there.
 void LineFaultMonitor::Implementation::judge_dead_taxels(const Inputs& in) {
   if (!in.solved) return;
-  const std::size_t taxels = dead_.size();
+  const auto [from, to] = block(in);
   const FloorEvidence floor = floor_;
   const double* const siemens = in.conductance.siemens.data();
   const double* const sigma = in.conductance.sigma_siemens.data();
   const double* const unloaded = unloaded_siemens_.data();
   const float* const expected = expected_.data();
   float* const evidence = dead_evidence_.data();
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
     const auto per_sigma = 1.0F / static_cast<float>(sigma[taxel]);
     const float conductance = static_cast<float>(siemens[taxel]) * per_sigma;
     const float least = static_cast<float>(kUnloadedShare * unloaded[taxel]) * per_sigma;
@@ -584,15 +596,15 @@ void LineFaultMonitor::Implementation::judge_dead_taxels(const Inputs& in) {
   float* const dead = dead_.data();
   std::int32_t* const since = dead_since_.data();
   float most = 0.0F;
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
     const float sum = dead[taxel] + evidence[taxel];
     const std::int32_t began = since[taxel];
     since[taxel] = sum > 0.0F ? began : frame + 1;
     dead[taxel] = sum > 0.0F ? sum : 0.0F;
   }
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) most = dead[taxel] > most ? dead[taxel] : most;
+  for (std::size_t taxel = from; taxel < to; ++taxel) most = dead[taxel] > most ? dead[taxel] : most;
   if (most < static_cast<float>(kEvidence) && !has_kind(LineFaultKind::dead_taxel)) return;
-  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) judge_dead_taxel(in, taxel);
+  for (std::size_t taxel = from; taxel < to; ++taxel) judge_dead_taxel(in, taxel);
 }
 
 void LineFaultMonitor::Implementation::judge_dead_taxel(const Inputs& in, std::size_t taxel) {
@@ -615,11 +627,13 @@ void LineFaultMonitor::Implementation::judge_dead_taxel(const Inputs& in, std::s
 /// unloaded taxels are not judged: they are weak, and may be quiet.
 void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
   const Readout& readout = array_.readout;
+  const auto [from, to] = block(in);
   const CountScale scale = count_scale(in);
   for (std::size_t k = faults_.size(); k-- > 0;) {  // healed() removes the fault
     const LineFault& fault = faults_[k];
     if (fault.kind != LineFaultKind::stuck_taxel) continue;
     const std::size_t taxel = fault.place;
+    if (taxel < from || taxel >= to) continue;
     const double last = last_counts_[taxel];
     const double change = scale.zero + scale.per_ratio * in.conditioned.ratio[taxel] - last;
     if (std::abs(change) < kSameCount || ++changes_[taxel] < kStuckHealChanges) continue;
@@ -630,7 +644,7 @@ void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
   const double least_pressed = kPressedSigmas * in.conditioned.sigma_ratio;
   Repetition idle;
   double most_evidence = 0.0;
-  for (std::size_t taxel = 0; taxel < stuck_.size(); ++taxel) {
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
     const double ratio = in.conditioned.ratio[taxel];
     const double count = scale.zero + scale.per_ratio * ratio;
     const double interior = (count > 0.5 ? 1.0 : 0.0) * (count < most ? 1.0 : 0.0);
@@ -646,9 +660,9 @@ void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
   chance_ = idle.interior < kLeastOthers ? 0.0 : -std::log(std::max(repeats_by_noise_, idle.repeated / idle.interior));
   chance_ = std::min(chance_, static_cast<double>(kMostForTaxel));
   if (most_evidence < kEvidence) return;
-  for (std::size_t taxel = 0; taxel < stuck_.size(); ++taxel) {
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
     if (stuck_[taxel] < kEvidence || (causes_[taxel] & kStuckCause) != 0) continue;
-    const auto frames = static_cast<std::size_t>(stuck_frames_[taxel]);
+    const auto frames = static_cast<std::size_t>(stuck_frames_[taxel]) * blocks();
     found(LineFaultKind::stuck_taxel, taxel, in.frame - std::min(in.frame, frames), in.conditioned.time);
     changes_[taxel] = 0;
   }

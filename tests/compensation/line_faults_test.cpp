@@ -146,7 +146,7 @@ std::vector<FaultCase> fault_cases(const ArrayDescription& array) {
       {"shorted columns", Kind::shorted_columns, true, false, 200, [](auto& f, auto k) { f.shorted_columns = {k}; }},
       {"dead taxel", Kind::dead_taxel, false, true, 800,
        [array](auto& f, auto k) { f.dead_taxels = {array.taxel_name(k)}; }},
-      {"stuck taxel", Kind::stuck_taxel, false, true, 60,
+      {"stuck taxel", Kind::stuck_taxel, false, true, 240,
        [array](auto& f, auto k) { f.stuck_taxels = {array.taxel_name(k)}; }},
   };
 }
