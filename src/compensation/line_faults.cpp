@@ -250,6 +250,7 @@ class LineFaultMonitor::Implementation {
   void expect_unloaded(const Inputs& in);
   void expect_unloaded_beside_no_press(const Inputs& in);
   void weigh_silence(const Inputs& in);
+  void sum_evidence();
   void judge_silent_lines(const Inputs& in, bool row);
   void judge_dead_taxels(const Inputs& in);
   void judge_dead_taxel(const Inputs& in, std::size_t taxel);
@@ -279,6 +280,7 @@ class LineFaultMonitor::Implementation {
   std::vector<double> unloaded_ratio_;    // readings of the unloaded array [taxels]
   std::vector<float> expected_;           // least reading of an unloaded taxel among today's loads [sigma; taxels]
   std::vector<float> evidence_;           // that the taxel is silent: log-likelihood ratio of this frame [taxels]
+  std::vector<float> line_evidence_[2];   // sums of it; [0] columns, [1] rows
   std::vector<double> line_siemens_;      // [driven lines]
   std::vector<double> ratio_sum_[2];      // [0] columns, [1] rows
   std::vector<double> left_;              // share of the supply that is left on a sensed line
@@ -353,6 +355,7 @@ LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
   for (const bool row : {false, true}) {
     is_pressed_[row].resize(lines(row));
     ratio_sum_[row].resize(lines(row));
+    line_evidence_[row].resize(lines(row));
     judges_[row].assign(taxels(), 1.0F);
     drift_[row].resize(array.driven_lines());
     silent_[row].resize(lines(row));
@@ -387,6 +390,7 @@ bool LineFaultMonitor::Implementation::observe(const ConditionedFrame& condition
   sum_lines(in);
   expect_unloaded(in);
   weigh_silence(in);
+  sum_evidence();
   judge_silent_lines(in, true);
   judge_silent_lines(in, false);
   judge_supplied_columns(in);
@@ -548,16 +552,27 @@ void LineFaultMonitor::Implementation::weigh_silence(const Inputs& in) {
   }
 }
 
+void LineFaultMonitor::Implementation::sum_evidence() {
+  const std::size_t cols = array_.cols;
+  float* const columns = line_evidence_[false].data();
+  std::fill_n(columns, cols, 0.0F);
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    const float* const evidence = &evidence_[row * cols];
+    const float* const judges_column = &judges_[false][row * cols];
+    const float* const judges_row = &judges_[true][row * cols];
+    for (std::size_t col = 0; col < cols; ++col) columns[col] += judges_column[col] * evidence[col];
+    float parts[4] = {};
+    for (std::size_t col = 0; col < cols; ++col) parts[col % 4] += judges_row[col] * evidence[col];
+    line_evidence_[true][row] = (parts[0] + parts[1]) + (parts[2] + parts[3]);
+  }
+}
+
 void LineFaultMonitor::Implementation::judge_silent_lines(const Inputs& in, bool row) {
   const LineFaultKind kind = row ? LineFaultKind::silent_row : LineFaultKind::silent_column;
   for (std::size_t line = 0; line < lines(row); ++line) {
     const LineFaultKind at_supply = row ? LineFaultKind::supplied_row : LineFaultKind::supplied_column;
     if (is_found(at_supply, line)) continue;
-    float evidence = 0.0F;
-    for (std::size_t k = 0; k < across(row); ++k) {
-      const std::size_t taxel = at(row, line, k);
-      evidence += judges_[row][taxel] * evidence_[taxel];
-    }
+    const float evidence = line_evidence_[row][line];
     const Nanos time = in.conditioned.time;
     if (!is_found(kind, line)) {
       PageTest& test = silent_[row][line];

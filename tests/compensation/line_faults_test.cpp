@@ -371,7 +371,7 @@ std::pair<double, double> error_ratios(const ArrayDescription& array, const Line
   std::vector<double> error_faulty;
   std::vector<double> error_healthy;
   while (faulty.next() && healthy.next()) {
-    if (faulty.frames() < 80) continue;  // until it is found
+    if (faulty.frames() < 200) continue;  // until it is found
     for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
       const double truth = healthy.true_siemens()[taxel];
       if (faulty.conductance().taxels[taxel] == TaxelStatus::line_fault || truth < kPressedSiemens) continue;
