@@ -40,6 +40,7 @@ constexpr int kSupplyPresses = 6;
 constexpr double kPinned = 0.97;  // of the supply
 constexpr int kPinnedFramesAmplifier = 20;
 
+constexpr std::size_t kBlockTaxels = 64;
 constexpr double kSameCount = 1e-3;
 constexpr double kLeastOthers = 4.0;  // interior readings that tell how often a reading repeats
 constexpr int kStuckHealChanges = 5;
@@ -123,6 +124,23 @@ struct DriftFit {
   [[nodiscard]] double typical_load() const { return std::sqrt(loads / normal); }
 };
 
+/// Evidence of a reading at the floor of the ADC.
+struct FloorEvidence {
+  float sigmas = 0.0F;     // readings below half a count are the floor
+  float slope = 0.0F;      // log P(floor | silent) / P(floor | mean), to second order in the mean:
+  float curvature = 0.0F;  // the least that it can be
+};
+
+/// Log-likelihood ratio of a silent taxel against one that reads `expected`, or more [standard deviations].
+inline float silence_evidence(float reading, float expected, float floor_end, const FloorEvidence& floor, float most) {
+  const float mean = expected < kMostMean ? expected : kMostMean;
+  const float above = mean * (0.5F * mean - reading);
+  const float at_floor = mean * (floor.slope + floor.curvature * mean);
+  const float ratio = reading < floor_end ? at_floor : above;
+  const float limited = ratio < most ? ratio : most;
+  return limited > kMostAgainst ? limited : kMostAgainst;
+}
+
 /// Sum in four parts, which do not wait for each other.
 double sum_of(std::span<const double> values) {
   double parts[4] = {};
@@ -196,6 +214,17 @@ class LineFaultMonitor::Implementation {
     double repeated = 0.0;
   };
 
+  /// Single taxels are judged a block a frame, by turns.
+  struct Block {
+    std::size_t from;
+    std::size_t to;
+  };
+  [[nodiscard]] std::size_t blocks() const { return (taxels() + kBlockTaxels - 1) / kBlockTaxels; }
+  [[nodiscard]] Block block(const Inputs& in) const {
+    const std::size_t from = in.frame % blocks() * kBlockTaxels;
+    return {from, std::min(from + kBlockTaxels, taxels())};
+  }
+
   struct CountScale {
     double zero;
     double per_ratio;
@@ -221,6 +250,7 @@ class LineFaultMonitor::Implementation {
   void expect_unloaded(const Inputs& in);
   void expect_unloaded_beside_no_press(const Inputs& in);
   void weigh_silence(const Inputs& in);
+  void sum_evidence();
   void judge_silent_lines(const Inputs& in, bool row);
   void judge_dead_taxels(const Inputs& in);
   void judge_dead_taxel(const Inputs& in, std::size_t taxel);
@@ -250,13 +280,12 @@ class LineFaultMonitor::Implementation {
   std::vector<double> unloaded_ratio_;    // readings of the unloaded array [taxels]
   std::vector<float> expected_;           // least reading of an unloaded taxel among today's loads [sigma; taxels]
   std::vector<float> evidence_;           // that the taxel is silent: log-likelihood ratio of this frame [taxels]
+  std::vector<float> line_evidence_[2];   // sums of it; [0] columns, [1] rows
   std::vector<double> line_siemens_;      // [driven lines]
   std::vector<double> ratio_sum_[2];      // [0] columns, [1] rows
   std::vector<double> left_;              // share of the supply that is left on a sensed line
-  float floor_sigmas_ = 0.0F;             // readings below half a count are the floor of the ADC
-  float floor_slope_ = 0.0F;              // log-likelihood ratio of a reading at the floor, to second order
-  float floor_curvature_ = 0.0F;          // of the expected reading: the least that it can be
-  double information_ = 0.0;              // mean evidence of a silent taxel over the squared expected reading
+  FloorEvidence floor_;
+  double information_ = 0.0;  // mean evidence of a silent taxel over the squared expected reading
   std::vector<LineFault> faults_;
   bool changed_ = false;
   std::size_t frame_ = 0;
@@ -270,9 +299,9 @@ class LineFaultMonitor::Implementation {
   std::vector<std::uint8_t> is_pressed_[2];  // lines; [0] columns, [1] rows
   std::vector<PageTest> silent_[2];          // [0] columns, [1] rows
   std::vector<PageTest> alive_[2];
-  std::vector<float> dead_evidence_;       // of this frame [taxels]
-  std::vector<float> dead_;                // Page's sum [taxels]
-  std::vector<std::uint32_t> dead_since_;  // frame before its evidence [taxels]
+  std::vector<float> dead_evidence_;      // of this frame [taxels]
+  std::vector<float> dead_;               // Page's sum [taxels]
+  std::vector<std::int32_t> dead_since_;  // frame before its evidence [taxels]
   std::vector<PageTest> undead_;
   std::vector<double> stuck_;         // Page's sum [taxels]
   std::vector<double> stuck_frames_;  // [taxels]
@@ -326,6 +355,7 @@ LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
   for (const bool row : {false, true}) {
     is_pressed_[row].resize(lines(row));
     ratio_sum_[row].resize(lines(row));
+    line_evidence_[row].resize(lines(row));
     judges_[row].assign(taxels(), 1.0F);
     drift_[row].resize(array.driven_lines());
     silent_[row].resize(lines(row));
@@ -347,9 +377,7 @@ LineFaultMonitor::Implementation::Implementation(const ArrayDescription& array,
   const double density = std::exp(-0.5 * floor * floor) / std::sqrt(2.0 * std::numbers::pi);
   const double below = 0.5 * std::erfc(-floor / std::numbers::sqrt2);
   const double slope = density / below;
-  floor_sigmas_ = static_cast<float>(floor);
-  floor_slope_ = static_cast<float>(slope);
-  floor_curvature_ = static_cast<float>(0.5 * slope * (slope + floor));
+  floor_ = {static_cast<float>(floor), static_cast<float>(slope), static_cast<float>(0.5 * slope * (slope + floor))};
   information_ = 0.5 * (density * (slope + floor) + 1.0 - below);
 }
 
@@ -362,6 +390,7 @@ bool LineFaultMonitor::Implementation::observe(const ConditionedFrame& condition
   sum_lines(in);
   expect_unloaded(in);
   weigh_silence(in);
+  sum_evidence();
   judge_silent_lines(in, true);
   judge_silent_lines(in, false);
   judge_supplied_columns(in);
@@ -511,15 +540,30 @@ void LineFaultMonitor::Implementation::expect_unloaded_beside_no_press(const Inp
 /// Log-likelihood ratio of a silent taxel against one that reads as expected, or more: Gaussian noise, cut off at the
 /// floor of the ADC. log P(floor | silent) / P(floor | mean) is not less than its second-order series.
 void LineFaultMonitor::Implementation::weigh_silence(const Inputs& in) {
-  const auto per_sigma = 1.0 / in.conditioned.sigma_ratio;
-  for (std::size_t taxel = 0; taxel < evidence_.size(); ++taxel) {
-    const auto reading = static_cast<float>(in.conditioned.ratio[taxel] * per_sigma);
-    const float mean = expected_[taxel] < kMostMean ? expected_[taxel] : kMostMean;
-    const float above = mean * (0.5F * mean - reading);
-    const float at_floor = mean * (floor_slope_ + floor_curvature_ * mean);
-    const float ratio = reading < floor_sigmas_ ? at_floor : above;
-    const float limited = ratio < kMostFor ? ratio : kMostFor;
-    evidence_[taxel] = limited > kMostAgainst ? limited : kMostAgainst;
+  const std::size_t taxels = evidence_.size();
+  const double per_sigma = 1.0 / in.conditioned.sigma_ratio;
+  const FloorEvidence floor = floor_;
+  const double* const ratios = in.conditioned.ratio.data();
+  const float* const expected = expected_.data();
+  float* const evidence = evidence_.data();
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    const auto reading = static_cast<float>(ratios[taxel] * per_sigma);
+    evidence[taxel] = silence_evidence(reading, expected[taxel], floor.sigmas, floor, kMostFor);
+  }
+}
+
+void LineFaultMonitor::Implementation::sum_evidence() {
+  const std::size_t cols = array_.cols;
+  float* const columns = line_evidence_[false].data();
+  std::fill_n(columns, cols, 0.0F);
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    const float* const evidence = &evidence_[row * cols];
+    const float* const judges_column = &judges_[false][row * cols];
+    const float* const judges_row = &judges_[true][row * cols];
+    for (std::size_t col = 0; col < cols; ++col) columns[col] += judges_column[col] * evidence[col];
+    float parts[4] = {};
+    for (std::size_t col = 0; col < cols; ++col) parts[col % 4] += judges_row[col] * evidence[col];
+    line_evidence_[true][row] = (parts[0] + parts[1]) + (parts[2] + parts[3]);
   }
 }
 
@@ -528,11 +572,7 @@ void LineFaultMonitor::Implementation::judge_silent_lines(const Inputs& in, bool
   for (std::size_t line = 0; line < lines(row); ++line) {
     const LineFaultKind at_supply = row ? LineFaultKind::supplied_row : LineFaultKind::supplied_column;
     if (is_found(at_supply, line)) continue;
-    float evidence = 0.0F;
-    for (std::size_t k = 0; k < across(row); ++k) {
-      const std::size_t taxel = at(row, line, k);
-      evidence += judges_[row][taxel] * evidence_[taxel];
-    }
+    const float evidence = line_evidence_[row][line];
     const Nanos time = in.conditioned.time;
     if (!is_found(kind, line)) {
       PageTest& test = silent_[row][line];
@@ -553,40 +593,46 @@ void LineFaultMonitor::Implementation::judge_silent_lines(const Inputs& in, bool
 /// As weigh_silence(), of conductances: what crosses over from pressed taxels is solved there.
 void LineFaultMonitor::Implementation::judge_dead_taxels(const Inputs& in) {
   if (!in.solved) return;
-  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
-    const double per_sigma = 1.0 / in.conductance.sigma_siemens[taxel];
-    const auto conductance = static_cast<float>(in.conductance.siemens[taxel] * per_sigma);
-    const auto unloaded = static_cast<float>(kUnloadedShare * unloaded_siemens_[taxel] * per_sigma);
-    const float mean = expected_[taxel] > 0.0F ? (unloaded < kMostMean ? unloaded : kMostMean) : 0.0F;
-    const float above = mean * (0.5F * mean - conductance);
-    const float at_floor = mean * (floor_slope_ + floor_curvature_ * mean);
-    const float ratio = conductance > 0.0F ? above : at_floor;
-    const float limited = ratio < kMostForTaxel ? ratio : kMostForTaxel;
-    dead_evidence_[taxel] = limited > kMostAgainst ? limited : kMostAgainst;
+  const auto [from, to] = block(in);
+  const FloorEvidence floor = floor_;
+  const double* const siemens = in.conductance.siemens.data();
+  const double* const sigma = in.conductance.sigma_siemens.data();
+  const double* const unloaded = unloaded_siemens_.data();
+  const float* const expected = expected_.data();
+  float* const evidence = dead_evidence_.data();
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
+    const auto per_sigma = 1.0F / static_cast<float>(sigma[taxel]);
+    const float conductance = static_cast<float>(siemens[taxel]) * per_sigma;
+    const float least = static_cast<float>(kUnloadedShare * unloaded[taxel]) * per_sigma;
+    const float mean = expected[taxel] > 0.0F ? least : 0.0F;
+    evidence[taxel] = silence_evidence(conductance, mean, std::numeric_limits<float>::min(), floor, kMostForTaxel);
   }
-  const auto frame = static_cast<std::uint32_t>(in.frame);
+  const auto frame = static_cast<std::int32_t>(in.frame);
+  float* const dead = dead_.data();
+  std::int32_t* const since = dead_since_.data();
   float most = 0.0F;
-  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
-    const float sum = dead_[taxel] + dead_evidence_[taxel];
-    dead_since_[taxel] = sum > 0.0F ? dead_since_[taxel] : frame + 1;
-    dead_[taxel] = sum > 0.0F ? sum : 0.0F;
-    most = dead_[taxel] > most ? dead_[taxel] : most;
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
+    const float sum = dead[taxel] + evidence[taxel];
+    const std::int32_t began = since[taxel];
+    since[taxel] = sum > 0.0F ? began : frame + 1;
+    dead[taxel] = sum > 0.0F ? sum : 0.0F;
   }
+  for (std::size_t taxel = from; taxel < to; ++taxel) most = dead[taxel] > most ? dead[taxel] : most;
   if (most < static_cast<float>(kEvidence) && !has_kind(LineFaultKind::dead_taxel)) return;
-  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) judge_dead_taxel(in, taxel);
+  for (std::size_t taxel = from; taxel < to; ++taxel) judge_dead_taxel(in, taxel);
 }
 
 void LineFaultMonitor::Implementation::judge_dead_taxel(const Inputs& in, std::size_t taxel) {
   if ((causes_[taxel] & ~kDeadCause) != 0) {
     dead_[taxel] = 0.0F;
-    dead_since_[taxel] = static_cast<std::uint32_t>(in.frame) + 1;
+    dead_since_[taxel] = static_cast<std::int32_t>(in.frame) + 1;
   } else if ((causes_[taxel] & kDeadCause) != 0) {
     undead_[taxel].add(static_cast<double>(-dead_evidence_[taxel]), in.frame, in.conditioned.time);
     if (!undead_[taxel].decides(kHealFrames)) return;
     healed(LineFaultKind::dead_taxel, taxel);
     dead_[taxel] = 0.0F;
   } else if (dead_[taxel] >= static_cast<float>(kEvidence)) {
-    found(LineFaultKind::dead_taxel, taxel, dead_since_[taxel], in.conditioned.time);
+    found(LineFaultKind::dead_taxel, taxel, static_cast<std::size_t>(dead_since_[taxel]), in.conditioned.time);
     undead_[taxel].restart();
   }
 }
@@ -596,11 +642,13 @@ void LineFaultMonitor::Implementation::judge_dead_taxel(const Inputs& in, std::s
 /// unloaded taxels are not judged: they are weak, and may be quiet.
 void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
   const Readout& readout = array_.readout;
+  const auto [from, to] = block(in);
   const CountScale scale = count_scale(in);
   for (std::size_t k = faults_.size(); k-- > 0;) {  // healed() removes the fault
     const LineFault& fault = faults_[k];
     if (fault.kind != LineFaultKind::stuck_taxel) continue;
     const std::size_t taxel = fault.place;
+    if (taxel < from || taxel >= to) continue;
     const double last = last_counts_[taxel];
     const double change = scale.zero + scale.per_ratio * in.conditioned.ratio[taxel] - last;
     if (std::abs(change) < kSameCount || ++changes_[taxel] < kStuckHealChanges) continue;
@@ -611,7 +659,7 @@ void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
   const double least_pressed = kPressedSigmas * in.conditioned.sigma_ratio;
   Repetition idle;
   double most_evidence = 0.0;
-  for (std::size_t taxel = 0; taxel < stuck_.size(); ++taxel) {
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
     const double ratio = in.conditioned.ratio[taxel];
     const double count = scale.zero + scale.per_ratio * ratio;
     const double interior = (count > 0.5 ? 1.0 : 0.0) * (count < most ? 1.0 : 0.0);
@@ -627,9 +675,9 @@ void LineFaultMonitor::Implementation::judge_stuck_taxels(const Inputs& in) {
   chance_ = idle.interior < kLeastOthers ? 0.0 : -std::log(std::max(repeats_by_noise_, idle.repeated / idle.interior));
   chance_ = std::min(chance_, static_cast<double>(kMostForTaxel));
   if (most_evidence < kEvidence) return;
-  for (std::size_t taxel = 0; taxel < stuck_.size(); ++taxel) {
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
     if (stuck_[taxel] < kEvidence || (causes_[taxel] & kStuckCause) != 0) continue;
-    const auto frames = static_cast<std::size_t>(stuck_frames_[taxel]);
+    const auto frames = static_cast<std::size_t>(stuck_frames_[taxel]) * blocks();
     found(LineFaultKind::stuck_taxel, taxel, in.frame - std::min(in.frame, frames), in.conditioned.time);
     changes_[taxel] = 0;
   }

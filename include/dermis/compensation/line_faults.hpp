@@ -52,7 +52,7 @@ struct LineFault {
 ///                             other taxels of its lines take; log-likelihood ratio against the floor of the ADC,
 ///                             summed over the line and the frames (Page's test), 3 frames at least; a dead taxel 12
 /// stuck taxels                equal readings of a pressed taxel beside a noise that makes unpressed ones change, about
-///                             30 frames in a row
+///                             30 frames in a row; single taxels are judged 64 a frame, by turns
 /// shorted lines               equal readings of both lines and of no other line, in 10 different presses, and no
 ///                             press in which they differ
 /// supplied lines              a column at full scale in all rows, 3 frames; a row whose presses show in all rows, 6
