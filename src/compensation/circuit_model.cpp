@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "compensation/matrix_product.hpp"
+#include "compensation/readout_parts.hpp"
 #include "compensation/resistor_network.hpp"
 #include "compensation/sensed_line.hpp"
 
@@ -31,13 +32,9 @@ double of_line(const std::vector<double>& ohms, std::size_t line) {
   return ohms.empty() ? 0.0 : ohms[line];
 }
 
-bool has_resistance(const std::vector<double>& ohms) {
-  return std::any_of(ohms.begin(), ohms.end(), [](double ohm) { return ohm > 0.0; });
-}
-
 std::size_t potential_count(const ArrayDescription& array) {
   const Readout& readout = array.readout;
-  const bool resistive = has_resistance(readout.row_segment_ohm) || has_resistance(readout.column_segment_ohm);
+  const bool resistive = has_resistive_lines(readout);
   const std::size_t lines = array.rows + array.cols;
   const bool two_terminal = readout.idle_rows == IdleRows::floating && readout.idle_columns == IdleColumns::floating;
   if (two_terminal) return array.taxel_count() * (resistive ? 2 * array.taxel_count() : lines);

@@ -9,6 +9,7 @@
 #include "compensation/grounded_rows.hpp"
 #include "compensation/newton_inversion.hpp"
 #include "compensation/proportional.hpp"
+#include "compensation/readout_parts.hpp"
 #include "compensation/supply_error.hpp"
 #include "compensation/transposed.hpp"
 #include "compensation/virtual_ground.hpp"
@@ -35,16 +36,6 @@ Inversion flexitac(const ArrayDescription& array, double tolerance) {
   exchanged.readout.idle_columns = IdleColumns::floating;
   return std::unique_ptr<CrosstalkInversion>(
       std::make_unique<Transposed>(std::make_unique<GroundedRows>(exchanged, tolerance), array.rows, array.cols));
-}
-
-bool has_ideal_amplifiers(const Readout& readout) {
-  return readout.column_switch_ohm.empty() && readout.amplifier_offset_v.empty() && !readout.amplifier_gain;
-}
-
-bool has_resistive_lines(const Readout& readout) {
-  const auto is_resistance = [](double ohm) { return ohm > 0.0; };
-  return std::any_of(readout.row_segment_ohm.begin(), readout.row_segment_ohm.end(), is_resistance) ||
-         std::any_of(readout.column_segment_ohm.begin(), readout.column_segment_ohm.end(), is_resistance);
 }
 
 Inversion newton(const ArrayDescription& array, double tolerance) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "compensation/readout_parts.hpp"
+
 namespace dermis::compensation {
 namespace {
 
@@ -16,15 +18,10 @@ constexpr double kFloorShare = 1e-3;     // of the largest conductance: where lo
 constexpr double kMostRise = 1.0;        // of the logarithm above both neighbours
 constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
 
-bool is_zero(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double value) { return value == 0.0; });
-}
-
 bool is_modelled(const ArrayDescription& array) {
   const Readout& readout = array.readout;
-  return array.rows + array.cols <= kMostLines && readout.circuit != Circuit::none &&
-         is_zero(readout.row_segment_ohm) && is_zero(readout.column_segment_ohm) &&
-         is_zero(readout.column_switch_ohm) && is_zero(readout.amplifier_offset_v) && !readout.amplifier_gain;
+  return array.rows + array.cols <= kMostLines && readout.circuit != Circuit::none && !has_resistive_lines(readout) &&
+         has_ideal_amplifiers(readout);
 }
 
 /// The value between four of which some are known: on a parabola, as the logarithm of a Gaussian contact is. Beyond the

@@ -7,6 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "compensation/readout_parts.hpp"
+#include "compensation/sensed_line.hpp"
+
 namespace dermis::compensation {
 namespace {
 
@@ -47,23 +50,17 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
   const Readout& readout = array.readout;
   state_.drive_ohm = readout.drive_ohm;
   const double weakest_driver = *std::max_element(state_.drive_ohm.begin(), state_.drive_ohm.end());
-  const bool amplified = readout.circuit == Circuit::transimpedance;
-  const double inverse_gain = readout.amplifier_gain ? 1.0 / *readout.amplifier_gain : 0.0;
+  const bool one_loaded = readout.idle_columns == IdleColumns::floating;
   for (std::size_t col = 0; col < array.cols; ++col) {
-    const double load = readout.load_ohm[col];
-    reading_siemens_[col] = (amplified ? 1.0 + inverse_gain : 1.0) / load;
-    state_.column_ohm[col] = amplified ? load * inverse_gain / (1.0 + inverse_gain) : load;
-    if (!readout.column_switch_ohm.empty()) state_.column_ohm[col] += readout.column_switch_ohm[col];
-    const bool one_loaded = readout.idle_columns == IdleColumns::floating;
-    state_.certificate_ratio[col] = (one_loaded ? 1.0 + weakest_driver / load : 1.0) / reading_siemens_[col];
+    const SensedLine sensed = sensed_line(readout, col);
+    reading_siemens_[col] = 1.0 / sensed.gain;
+    offset_siemens_[col] = -sensed.offset / sensed.gain;
+    state_.column_ohm[col] = sensed.rho;
+    state_.certificate_ratio[col] = (one_loaded ? 1.0 + weakest_driver / sensed.rho : 1.0) * sensed.gain;
   }
-  if (readout.amplifier_offset_v.empty()) return;
+  if (is_absent(readout.amplifier_offset_v)) return;
   source_.resize(state_.stride);
-  for (std::size_t col = 0; col < array.cols; ++col) {
-    const double offset = readout.amplifier_offset_v[col] / readout.supply_v.value_or(1.0);
-    offset_siemens_[col] = offset / readout.load_ohm[col];
-    source_[col] = offset / (1.0 + inverse_gain);
-  }
+  for (std::size_t col = 0; col < array.cols; ++col) source_[col] = sensed_line(readout, col).emf;
 }
 
 double GroundedRows::siemens_per_ratio() const noexcept {
