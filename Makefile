@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo test lint sanitize bench docs clean
+.PHONY: build setup demo live test lint sanitize fuzz bench docs clean
 
 build: setup
 	cmake --preset release
@@ -12,6 +12,9 @@ setup:
 
 demo: build
 	scripts/demo
+
+live: build
+	scripts/live
 
 test: setup
 	scripts/setup test
@@ -29,6 +32,10 @@ lint: setup
 	scripts/setup lint
 	cmake --preset release
 	scripts/lint
+
+fuzz: setup
+	scripts/setup fuzz
+	scripts/fuzz
 
 bench: setup
 	scripts/setup test

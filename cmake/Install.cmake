@@ -3,7 +3,9 @@ include(CMakePackageConfigHelpers)
 
 get_property(modules GLOBAL PROPERTY DERMIS_MODULES)
 install(TARGETS dermis ${modules} EXPORT dermis-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS dermis_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(TARGET dermis_cli)
+  install(TARGETS dermis_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 install(DIRECTORY include/dermis ${PROJECT_BINARY_DIR}/include/dermis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT dermis-targets NAMESPACE dermis:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/dermis)
 

@@ -25,7 +25,8 @@ int main(int argc, char** argv) {
   if (!model) return fail(model.error());
   auto pipeline = dermis::pipeline::Pipeline::create(*model);
   if (!pipeline) return fail(pipeline.error());
-  const auto source = dermis::store::FramesCsvReader::open(argv[2], model->array.rows, model->array.cols);
+  const auto source =
+      dermis::store::FramesCsvReader::open(argv[2], dermis::FrameShape{model->array.rows, model->array.cols});
   if (!source) return fail(source.error());
 
   dermis::RawFrame raw;      // counts, with the temperature and the supply where they are known

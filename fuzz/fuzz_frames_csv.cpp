@@ -8,7 +8,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   auto bytes = std::make_unique<std::istringstream>(std::string(reinterpret_cast<const char*>(data), size));
-  const auto reader = dermis::store::FramesCsvReader::open(std::move(bytes), "fuzz", 2, 2);
+  const auto reader = dermis::store::FramesCsvReader::open(std::move(bytes), "fuzz");
   if (!reader) {
     dermis::fuzz::check_error(reader.error());
     return 0;
@@ -18,6 +18,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const dermis::Result<bool> got_frame = (*reader)->next(frame);
     if (!got_frame) dermis::fuzz::check_error(got_frame.error());
     if (!got_frame || !*got_frame) return 0;
-    if (frame.counts.size() != 4) std::abort();
+    if (frame.counts.size() != (*reader)->shape()->taxel_count()) std::abort();
   }
 }

@@ -33,7 +33,7 @@ def broken_links(path):
 def main():
     pages = sorted(ROOT.glob("*.md"))
     for folder in FOLDERS:
-        pages += sorted((ROOT / folder).rglob("*.md"))
+        pages += sorted(page for page in (ROOT / folder).rglob("*.md") if "node_modules" not in page.parts)
     broken = [line for page in pages for line in broken_links(page)]
     print("\n".join(broken) if broken else f"links of {len(pages)} pages hold")
     return 1 if broken else 0

@@ -18,7 +18,7 @@
 #include "dermis/store/array_toml.hpp"
 #include "dermis/store/atomic_file.hpp"
 #include "dermis/store/content_hash.hpp"
-#include "dermis/store/frames_csv.hpp"
+#include "dermis/store/frame_files.hpp"
 #include "dermis/store/loads_csv.hpp"
 #include "progress.hpp"
 #include "seconds.hpp"
@@ -185,7 +185,8 @@ Status calibrate(const CalibrateOptions& options) {
     if (Status writable = check_writable(options.bank); !writable) return writable;
   }
   auto start = Clock::now();
-  const Result<std::vector<RawFrame>> frames = store::read_frames(options.frames, array->rows, array->cols);
+  const Result<std::vector<RawFrame>> frames =
+      store::read_frames(options.frames, {.shape = FrameShape{array->rows, array->cols}});
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = store::read_loads(options.loads, *array, frames->size());
   if (!loads) return loads.error();

@@ -15,7 +15,8 @@
 #include "commands.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/pipeline/pipeline.hpp"
-#include "dermis/store/frames_csv.hpp"
+#include "open_source.hpp"
+#include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
@@ -415,27 +416,23 @@ nlohmann::ordered_json Examination::to_json(const compensation::LineFaultMonitor
 }
 
 Status examine(const DoctorOptions& options) {
-  const Result<pipeline::Model> model = pipeline::read_model(options.model);
-  if (!model) return model.error();
-  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*model);
-  if (!pipeline) return pipeline.error();
-  Result<std::unique_ptr<store::FramesCsvReader>> source =
-      store::FramesCsvReader::open(options.in, model->array.rows, model->array.cols);
-  if (!source) return source.error();
-  Examination examination(*model);
+  Result<std::unique_ptr<Operation>> opened = open_operation(options.model, options.in);
+  if (!opened) return opened.error();
+  auto& [model, pipeline, source] = **opened;
+  Examination examination(model);
   RawFrame raw;
   ForceFrame force;
-  for (;;) {
-    const Result<bool> more = (*source)->next(raw);
+  while (!stop_flag().load()) {
+    const Result<bool> more = source->next(raw);
     if (!more) return more.error();
     if (!*more) break;
-    pipeline->process(raw, force);
-    examination.add(raw, *pipeline);
+    pipeline.process(raw, force);
+    examination.add(raw, pipeline);
   }
   if (options.json) {
-    fmt::print("{}\n", examination.to_json(pipeline->line_faults()).dump(2));
+    fmt::print("{}\n", examination.to_json(pipeline.line_faults()).dump(2));
   } else {
-    examination.print(pipeline->line_faults());
+    examination.print(pipeline.line_faults());
   }
   const std::size_t problems = examination.problems().size();
   if (problems == 0) return Done{};
@@ -448,7 +445,7 @@ void add_doctor(CLI::App& app, Action& action) {
   auto options = std::make_shared<DoctorOptions>();
   CLI::App* command = app.add_subcommand("doctor", "Health of an array, in plain words: line faults, noise, drift");
   command->add_option("--model", options->model, "Model file of 'dermis calibrate'")->required();
-  command->add_option("--in", options->in, "frames.csv: raw counts")->required();
+  command->add_option("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device")->required();
   command->add_flag("--json", options->json, "Print the result as JSON");
   command->callback([&action, options] { action = [options] { return examine(*options); }; });
 }

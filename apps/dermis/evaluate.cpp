@@ -10,7 +10,7 @@
 #include "dermis/pipeline/model.hpp"
 #include "dermis/pipeline/paper_bank_file.hpp"
 #include "dermis/report/evaluation_report.hpp"
-#include "dermis/store/frames_csv.hpp"
+#include "dermis/store/frame_files.hpp"
 #include "dermis/store/loads_csv.hpp"
 
 namespace dermis::app {
@@ -65,7 +65,8 @@ void print_text(const Evaluation& evaluation) {
 Status evaluate(const EvaluateOptions& options) {
   const Result<pipeline::Model> model = pipeline::read_model(options.model);
   if (!model) return model.error();
-  const Result<std::vector<RawFrame>> frames = store::read_frames(options.frames, model->array.rows, model->array.cols);
+  const Result<std::vector<RawFrame>> frames =
+      store::read_frames(options.frames, {.shape = FrameShape{model->array.rows, model->array.cols}});
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = store::read_loads(options.loads, model->array, frames->size());
   if (!loads) return loads.error();

@@ -4,17 +4,21 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "commands.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/pipeline/pipeline.hpp"
 #include "dermis/preprocessing/phase.hpp"
 #include "dermis/store/forces_csv.hpp"
 #include "dermis/store/frames_csv.hpp"
+#include "live_line.hpp"
+#include "open_source.hpp"
 #include "seconds.hpp"
+#include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
+
+constexpr std::size_t kFramesPerLook = 32;  // at the statistics
 
 struct RunOptions {
   std::string model;
@@ -24,71 +28,122 @@ struct RunOptions {
   double settle_s = 0.0;
 };
 
+/// Line of a table, number of a frame of anything else.
+std::string place_of(const std::string& in, const FrameSource& source, std::size_t frame) {
+  const auto* table = dynamic_cast<const store::FramesCsvReader*>(&source);
+  return table != nullptr ? fmt::format("{}:{}", in, table->line()) : fmt::format("{}: frame {}", in, frame);
+}
+
+/// forces.csv and, where it is asked for, the table of their standard deviations.
+class ForceTables {
+ public:
+  static Result<ForceTables> create(const RunOptions& options, const ArrayDescription& array) {
+    Result<store::ForcesCsvWriter> forces = store::ForcesCsvWriter::create(options.out, array.rows, array.cols);
+    if (!forces) return forces.error();
+    ForceTables tables(std::move(*forces));
+    if (options.sigma.empty()) return tables;
+    Result<store::ForcesCsvWriter> sigmas =
+        store::ForcesCsvWriter::create(options.sigma, array.rows, array.cols, store::ForceColumn::sigma_newtons);
+    if (!sigmas) return sigmas.error();
+    tables.sigmas_.emplace(std::move(*sigmas));
+    return tables;
+  }
+
+  Status write(const ForceFrame& force) {
+    const Status written = forces_.write(force);
+    return written && sigmas_ ? sigmas_->write(force) : written;
+  }
+  Status commit() {
+    const Status committed = forces_.commit();
+    return committed && sigmas_ ? sigmas_->commit() : committed;
+  }
+
+ private:
+  explicit ForceTables(store::ForcesCsvWriter forces) : forces_(std::move(forces)) {}
+
+  store::ForcesCsvWriter forces_;
+  std::optional<store::ForcesCsvWriter> sigmas_;
+};
+
+/// Frames whose forces are not what a user expects.
+class Troubles {
+ public:
+  /// `place` tells where the frame is from.
+  template <typename Place>
+  void count(const ForceFrame& force, preprocessing::Rejection rejection, Place place) {
+    ++frames_;
+    if (has(force.status, FrameStatus::not_converged)) ++unsolved_;
+    if (has(force.status, FrameStatus::line_fault)) ++faulty_;
+    if (!has(force.status, FrameStatus::rejected)) return;
+    if (rejected_++ == 0) first_rejection_ = fmt::format("{}: {}", place(), preprocessing::to_string(rejection));
+  }
+
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+
+  void tell() const {
+    if (rejected_ > 0) {
+      say(fmt::format("{} of {} frames rejected, the first: {}", rejected_, frames_, first_rejection_));
+    }
+    if (unsolved_ > 0) {
+      say(fmt::format("{} of {} frames without forces: their readings do not fit the circuit of the array", unsolved_,
+                      frames_));
+    }
+    if (faulty_ > 0) {
+      say(fmt::format("{} of {} frames with faulty lines or taxels, which are masked: 'dermis doctor' tells which",
+                      faulty_, frames_));
+    }
+  }
+
+ private:
+  std::size_t frames_ = 0;
+  std::size_t rejected_ = 0;
+  std::size_t unsolved_ = 0;
+  std::size_t faulty_ = 0;
+  std::string first_rejection_;
+};
+
+/// An error of the source comes in `source_status`, one of the tables is returned.
+Status solve(const RunOptions& options, Operation& operation, preprocessing::PhaseSelector& phase, ForceTables& tables,
+             Troubles& troubles, Status& source_status) {
+  std::optional<LiveLine> line;
+  if (is_live(options.in)) line.emplace();
+  const bool source_stops = is_device(options.in);
+  RawFrame raw;
+  ForceFrame force;
+  for (std::size_t read = 1; source_stops || !stop_flag().load(); ++read) {
+    const Result<bool> more = operation.frames->next(raw);
+    if (!more) source_status = more.error();
+    if (!more || !*more) break;
+    if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) continue;
+    operation.pipeline.process(raw, force);
+    if (Status written = tables.write(force); !written) return written;
+    troubles.count(force, operation.pipeline.rejection(),
+                   [&] { return place_of(options.in, *operation.frames, read); });
+    if (line && troubles.frames() % kFramesPerLook == 0) {
+      line->show(summary(troubles.frames(), operation.frames->statistics()));
+    }
+  }
+  return Done{};
+}
+
 Status run(const RunOptions& options) {
   const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
   if (!settle) return settle.error();
   if (options.sigma == options.out) return bad_input("--sigma: is the file of --out; name another");
-  const Result<pipeline::Model> model = pipeline::read_model(options.model);
-  if (!model) return model.error();
-  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*model);
-  if (!pipeline) return pipeline.error();
-  Result<std::unique_ptr<store::FramesCsvReader>> source =
-      store::FramesCsvReader::open(options.in, model->array.rows, model->array.cols);
-  if (!source) return source.error();
-  Result<store::ForcesCsvWriter> forces =
-      store::ForcesCsvWriter::create(options.out, model->array.rows, model->array.cols);
-  if (!forces) return forces.error();
-  std::optional<store::ForcesCsvWriter> sigmas;
-  if (!options.sigma.empty()) {
-    Result<store::ForcesCsvWriter> created = store::ForcesCsvWriter::create(
-        options.sigma, model->array.rows, model->array.cols, store::ForceColumn::sigma_newtons);
-    if (!created) return created.error();
-    sigmas.emplace(std::move(*created));
-  }
+  Result<std::unique_ptr<Operation>> operation = open_operation(options.model, options.in);
+  if (!operation) return operation.error();
+  Result<ForceTables> tables = ForceTables::create(options, (*operation)->model.array);
+  if (!tables) return tables.error();
 
   preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
-  std::size_t frames = 0;
-  std::size_t rejected = 0;
-  std::size_t unsolved = 0;
-  std::size_t faulty = 0;
-  std::string first_rejection;
-  RawFrame raw;
-  ForceFrame force;
-  for (;;) {
-    const Result<bool> more = (*source)->next(raw);
-    if (!more) return more.error();
-    if (!*more) break;
-    if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) continue;
-    pipeline->process(raw, force);
-    if (Status written = forces->write(force); !written) return written;
-    if (sigmas) {
-      if (Status written = sigmas->write(force); !written) return written;
-    }
-    ++frames;
-    if (has(force.status, FrameStatus::not_converged)) ++unsolved;
-    if (has(force.status, FrameStatus::line_fault)) ++faulty;
-    if (!has(force.status, FrameStatus::rejected)) continue;
-    if (rejected++ == 0) {
-      first_rejection =
-          fmt::format("{}:{}: {}", options.in, (*source)->line(), preprocessing::to_string(pipeline->rejection()));
-    }
-  }
-  if (Status written = forces->commit(); !written) return written;
-  if (sigmas) {
-    if (Status written = sigmas->commit(); !written) return written;
-  }
-  if (rejected > 0) {
-    fmt::print(stderr, "{} of {} frames rejected, the first: {}\n", rejected, frames, first_rejection);
-  }
-  if (unsolved > 0) {
-    fmt::print(stderr, "{} of {} frames without forces: their readings do not fit the circuit of the array\n", unsolved,
-               frames);
-  }
-  if (faulty > 0) {
-    fmt::print(stderr, "{} of {} frames with faulty lines or taxels, which are masked: 'dermis doctor' tells which\n",
-               faulty, frames);
-  }
-  return Done{};
+  Troubles troubles;
+  Status status = Done{};
+  if (Status solved = solve(options, **operation, phase, *tables, troubles, status); !solved) return solved;
+  // What a device gave until it failed is worth having; a file that is wrong is to be mended.
+  if (!status && !is_live(options.in)) return status;
+  if (Status committed = tables->commit(); !committed) return committed;
+  troubles.tell();
+  return status;
 }
 
 }  // namespace
@@ -97,7 +152,7 @@ void add_run(CLI::App& app, Action& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Raw counts -> newtons per taxel");
   command->add_option("--model", options->model, "Model file of 'dermis calibrate'")->required();
-  command->add_option("--in", options->in, "frames.csv: raw counts")->required();
+  command->add_option("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device")->required();
   command->add_option("--out", options->out, "forces.csv to write")->required();
   command->add_option("--sigma", options->sigma, "Also write the standard deviation of every force [N] to this CSV");
   command->add_option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")

@@ -4,11 +4,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "commands.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "dermis/store/array_toml.hpp"
+#include "dermis/store/atomic_file.hpp"
 #include "dermis/store/frames_csv.hpp"
 #include "dermis/store/loads_csv.hpp"
 #include "progress.hpp"
@@ -36,6 +39,31 @@ Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOp
   return simulation::Simulator::create(array, physics, options.scene, options.seed, options.frames);
 }
 
+/// What the simulator tells of the truth besides the frames themselves.
+struct Truth {
+  std::vector<Load> loads;
+  std::string contacts = "frame,id,shape,x_mm,y_mm,diameter_mm,force_n,taxel_force_n\n";
+
+  void add(std::size_t frame, const simulation::Simulator& simulator) {
+    loads.insert(loads.end(), simulator.loads().begin(), simulator.loads().end());
+    for (const simulation::AppliedContact& contact : simulator.truth().contacts) {
+      contacts += fmt::format("{},{},{},{:.4f},{:.4f},{:.4f},{:.6g},{:.6g}\n", frame, contact.id,
+                              simulation::to_string(contact.shape), 1e3 * contact.x_m, 1e3 * contact.y_m,
+                              1e3 * contact.diameter_m, contact.force_n, contact.taxel_force_n);
+    }
+  }
+
+  [[nodiscard]] Status write(const std::filesystem::path& folder, const ArrayDescription& array,
+                             bool has_contacts) const {
+    if (Status written = store::write_loads((folder / "loads.csv").string(), array, loads); !written) return written;
+    if (!has_contacts) return Done{};
+    Result<store::AtomicFile> file = store::AtomicFile::create((folder / "contacts.csv").string());
+    if (!file) return file.error();
+    file->write(contacts);
+    return file->commit();
+  }
+};
+
 Status simulate(const SimulateOptions& options) {
   const Result<ArrayDescription> array = store::read_array(options.array);
   if (!array) return array.error();
@@ -50,47 +78,44 @@ Status simulate(const SimulateOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return failed(fmt::format("cannot create the folder '{}': {}", options.out, error.message()));
-  Result<store::FramesCsvWriter> frames =
-      store::FramesCsvWriter::create((folder / "frames.csv").string(), array->rows, array->cols);
+  const Result<std::unique_ptr<store::FramesCsvWriter>> frames =
+      store::FramesCsvWriter::create((folder / "frames.csv").string(), FrameShape{array->rows, array->cols});
   if (!frames) return frames.error();
 
   Progress progress;
-  std::vector<Load> loads;
+  Truth truth;
   RawFrame frame;
   const std::size_t count = (*simulator)->frame_count();
   for (std::size_t k = 0;; ++k) {
     const Result<bool> more = (*simulator)->next(frame);
     if (!more) return more.error();
     if (!*more) break;
-    if (Status written = frames->write(frame); !written) return written;
-    loads.insert(loads.end(), (*simulator)->loads().begin(), (*simulator)->loads().end());
+    if (Status written = (*frames)->write(frame); !written) return written;
+    truth.add(k, **simulator);
     progress.show(options.scene, static_cast<double>(k + 1) / static_cast<double>(count));
   }
-  if (Status written = frames->commit(); !written) return written;
-  Status written = store::write_loads((folder / "loads.csv").string(), *array, loads);
-  if (!written) std::filesystem::remove(folder / "frames.csv", error);  // worth nothing without its loads
+  if (Status written = (*frames)->commit(); !written) return written;
+  Status written = truth.write(folder, *array, options.scene == "contacts");
+  if (!written) std::filesystem::remove(folder / "frames.csv", error);  // worth nothing without its truth
   return written;
-}
-
-/// CLI11 would wrap a negative number round.
-std::string not_negative(const std::string& text) {
-  return text.starts_with('-') ? "must not be negative" : "";
 }
 
 }  // namespace
 
 void add_simulate(CLI::App& app, Action& action) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = app.add_subcommand("simulate", "Simulate an array: frames.csv and loads.csv (the truth)");
+  CLI::App* command = app.add_subcommand(
+      "simulate", "Simulate an array: frames.csv and loads.csv (the truth); contacts.csv of the scene contacts");
   command->add_option("--array", options->array, "array.toml: size, pitch and readout circuit")->required();
   std::string scenes;
   for (const std::string& name : simulation::scene_names()) scenes += (scenes.empty() ? "" : " | ") + name;
   command->add_option("--scene", options->scene, scenes)->required();
-  command->add_option("--out", options->out, "Folder for frames.csv and loads.csv")->required();
+  command->add_option("--out", options->out, "Folder for frames.csv, loads.csv and contacts.csv")->required();
   command->add_option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise")
       ->check(not_negative)
       ->capture_default_str();
-  command->add_option("--frames", options->frames, "Length of the scenes multitouch and idle")->check(not_negative);
+  command->add_option("--frames", options->frames, "Length of the scenes multitouch, contacts and idle")
+      ->check(not_negative);
   command->add_option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command->callback([&action, options] { action = [options] { return simulate(*options); }; });
 }

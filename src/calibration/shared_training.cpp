@@ -14,6 +14,8 @@ namespace dermis::calibration {
 namespace {
 
 constexpr std::size_t kMostHiddenUnits = 3;
+constexpr std::size_t kLevelsPerHiddenUnit = 7;
+constexpr double kLevelWidth = 1.05;
 constexpr std::size_t kStarts = 6;
 constexpr int kMaxIterations = 120;
 constexpr std::size_t kMostPresses = 12;             // of one taxel alone; more tell little about all
@@ -228,9 +230,28 @@ void train(const SharedProblem& problem, Candidate& candidate) {
   candidate.leave_one_out = network::leave_one_out_mean_square(function, loads, residuals, candidate.free);
 }
 
+/// Hidden units that loads of so few different forces allow. With a handful of weights, each on many taxels, a network
+/// that can bend learns a stair with the weights as its steps: it is right on every load that is left out, because the
+/// other taxels carried the same weight, and wrong between the weights.
+std::size_t most_hidden_units(const std::vector<RawLoad>& loads) {
+  std::vector<double> single;
+  for (const RawLoad& load : loads) {
+    if (load.excess.size() == 1) single.push_back(load.newtons);
+  }
+  std::sort(single.begin(), single.end());
+  std::size_t levels = loads.size() - single.size();
+  double level = 0.0;
+  for (const double newtons : single) {
+    if (newtons <= kLevelWidth * level) continue;
+    level = newtons;
+    ++levels;
+  }
+  return std::min(kMostHiddenUnits, levels / kLevelsPerHiddenUnit);
+}
+
 /// The best of several starts for every number of hidden units.
-std::vector<Candidate> best_starts(const SharedProblem& problem, bool uses_temperature) {
-  std::vector<Candidate> candidates((kMostHiddenUnits + 1) * kStarts);
+std::vector<Candidate> best_starts(const SharedProblem& problem, bool uses_temperature, std::size_t most_hidden) {
+  std::vector<Candidate> candidates((most_hidden + 1) * kStarts);
   parallel_for(candidates.size(), [&](std::size_t k) {
     candidates[k].shape = force_shape(uses_temperature, k / kStarts);
     candidates[k].free = problem.start(candidates[k].shape, kSeed + k % kStarts);
@@ -343,7 +364,7 @@ SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan
 
   SharedProblem problem(loads, unloaded);
   const SharedProblem thinned(collector.loads(kMostSharesForStart), unloaded);
-  std::vector<Candidate> candidates = best_starts(thinned, span.is_input);
+  std::vector<Candidate> candidates = best_starts(thinned, span.is_input, most_hidden_units(loads));
   Candidate chosen = choose_size(problem, candidates);
   double mean_square = chosen.leave_one_out;
   for (int round = 0; round < kGainRounds; ++round) {

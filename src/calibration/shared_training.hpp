@@ -21,10 +21,11 @@ struct SharedNetwork {
 };
 
 /// Trains through the sum: for every load, sum over its taxels of gain_i f(e_i, t) = newtons. The number of hidden
-/// units (0 ... 3) is chosen by the analytic leave-one-out error, each trained from the best of several random starts.
-/// Gains, with a prior about 1 as wide as taxels are known to differ, are fitted in turn with the network as long as
-/// they lower the error of loads that are held out. Large calibrations are thinned out evenly (12 presses of a taxel
-/// alone, 200,000 taxels of all loads together). Deterministic, whatever the number of threads.
+/// units (0 ... 3; one for every seven different forces) is chosen by the analytic leave-one-out error, each trained
+/// from the best of several random starts. Gains, with a prior about 1 as wide as taxels are known to differ, are
+/// fitted in turn with the network as long as they lower the error of loads that are held out. Large calibrations are
+/// thinned out evenly (12 presses of a taxel alone, 200,000 taxels of all loads together). Deterministic, whatever the
+/// number of threads.
 [[nodiscard]] SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan& span,
                                          const UnloadedFit& unloaded, const std::vector<bool>& dead);
 

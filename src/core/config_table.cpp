@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
-#include <numeric>
 #include <set>
 #include <utility>
+
+#include "dermis/core/nearest_name.hpp"
 
 namespace dermis {
 namespace {
@@ -60,37 +62,6 @@ Status check_depth(std::string_view text, const std::string& name) {
   return Done{};
 }
 
-/// Number of inserted, removed or replaced characters that lead from a to b (Levenshtein).
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
-}
-
-/// The known name nearest to `name`, or empty where none is near enough to be meant.
-std::string nearest_name(const std::string& name, const std::set<std::string>& known) {
-  constexpr std::size_t kMaxNameLength = 100;
-  if (name.size() > kMaxNameLength) return {};
-  std::string nearest;
-  std::size_t best = std::min<std::size_t>(3, 1 + name.size() / 4) + 1;
-  for (const std::string& candidate : known) {
-    const std::size_t distance = edit_distance(name, candidate);
-    if (distance < best) {
-      best = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest;
-}
-
 std::optional<double> finite_number(const toml::node& node) {
   std::optional<double> number;
   if (const toml::value<double>* real = node.as_floating_point()) number = real->get();
@@ -116,6 +87,21 @@ std::optional<std::vector<double>> finite_numbers(const toml::array& list, const
   return numbers;
 }
 
+/// The node of one part of a dotted path: "array", or "array[0]" for a table of a list of tables.
+const toml::node* part_of(const toml::table& table, std::string_view part) {
+  const std::size_t bracket = part.find('[');
+  const toml::node* node = table.get(part.substr(0, bracket));
+  if (bracket == std::string_view::npos || node == nullptr) return node;
+  const toml::array* list = node->as_array();
+  std::size_t place = 0;
+  std::from_chars(part.data() + bracket + 1, part.data() + part.size(), place);
+  return list != nullptr && place < list->size() ? list->get(place) : nullptr;
+}
+
+std::string place_in(const std::string& list, std::size_t place) {
+  return list + "[" + std::to_string(place) + "]";
+}
+
 std::string quoted_list(const std::vector<std::string>& names) {
   std::string list;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -138,6 +124,7 @@ struct ConfigFile::Parsed {
   toml::table root;
   std::set<std::string> known_keys;
   std::set<std::string> known_tables;
+  std::set<std::string> known_table_lists;
   std::optional<Error> first_error;
   bool first_error_is_missing_key = false;
 
@@ -145,7 +132,7 @@ struct ConfigFile::Parsed {
     const toml::table* table = &root;
     while (table != nullptr) {
       const std::size_t dot = key.find('.');
-      const toml::node* node = table->get(key.substr(0, dot));
+      const toml::node* node = part_of(*table, key.substr(0, dot));
       if (dot == std::string_view::npos || node == nullptr) return node;
       table = node->as_table();
       key.remove_prefix(dot + 1);
@@ -198,6 +185,10 @@ struct ConfigFile::Parsed {
     for (const auto& [key, node] : table) {
       const std::string path = prefix + std::string(key.str());
       if (known_keys.contains(path)) continue;
+      if (known_table_lists.contains(path) && node.is_array_of_tables()) {
+        find_unknown_in_list(*node.as_array(), path, first);
+        continue;
+      }
       const toml::table* inner = node.as_table();
       if (inner != nullptr && known_tables.contains(path)) {
         find_unknown(*inner, path + ".", first);
@@ -208,10 +199,17 @@ struct ConfigFile::Parsed {
     }
   }
 
+  void find_unknown_in_list(const toml::array& tables, const std::string& path, std::optional<Unknown>& first) const {
+    for (std::size_t place = 0; place < tables.size(); ++place) {
+      find_unknown(*tables[place].as_table(), place_in(path, place) + ".", first);
+    }
+  }
+
   Error describe(const Unknown& unknown) const {
     std::string text = name + ":" + std::to_string(unknown.line) + ": unknown " + (unknown.is_table ? "table" : "key") +
                        " '" + unknown.key + "'";
-    const std::string nearest = nearest_name(unknown.key, unknown.is_table ? known_tables : known_keys);
+    std::string nearest = nearest_name(unknown.key, unknown.is_table ? known_tables : known_keys);
+    if (nearest.empty()) nearest = nearest_name(unknown.key, known_table_lists);
     if (!nearest.empty()) text += "; did you mean '" + nearest + "'?";
     return bad_input(std::move(text));
   }
@@ -250,6 +248,11 @@ bool ConfigFile::contains(std::string_view key) const {
 bool ConfigFile::is_text(std::string_view key, std::string_view text) {
   const toml::node* node = parsed_->ask(key);
   return node != nullptr && node->is_string() && node->as_string()->get() == text;
+}
+
+bool ConfigFile::holds_text(std::string_view key) {
+  const toml::node* node = parsed_->ask(key);
+  return node != nullptr && node->is_string();
 }
 
 void ConfigFile::number(std::string_view key, double& value) {
@@ -314,6 +317,33 @@ void ConfigFile::numbers(std::string_view key, std::size_t size, std::vector<dou
   const toml::node* node = parsed_->ask(key);
   if (node == nullptr) return;
   parsed_->read_list(*node, key, size, std::nullopt, "must be a list of " + std::to_string(size) + " numbers", values);
+}
+
+void ConfigFile::number_rows(std::string_view key, std::size_t size, std::vector<std::vector<double>>& rows) {
+  const toml::node* node = parsed_->ask(key);
+  if (node == nullptr) return;
+  const std::string wanted = "must be a list of lists of " + std::to_string(size) + " numbers";
+  const toml::array* list = node->as_array();
+  if (list == nullptr) return parsed_->keep(node, key, wanted);
+  rows.clear();
+  for (const toml::node& element : *list) {
+    const toml::array* inner = element.as_array();
+    std::optional<std::vector<double>> numbers;
+    if (inner != nullptr) numbers = finite_numbers(*inner, std::nullopt);
+    if (!numbers || numbers->size() != size) return parsed_->keep(&element, key, wanted);
+    rows.push_back(*std::move(numbers));
+  }
+}
+
+std::size_t ConfigFile::table_count(std::string_view key) {
+  parsed_->known_table_lists.emplace(key);
+  const toml::node* node = parsed_->find(key);
+  if (node == nullptr) return 0;
+  if (!node->is_array_of_tables()) {
+    parsed_->keep(node, key, "must be a list of tables, each begun by [[" + std::string(key) + "]]");
+    return 0;
+  }
+  return node->as_array()->size();
 }
 
 void ConfigFile::counts(std::string_view key, std::vector<std::size_t>& values) {

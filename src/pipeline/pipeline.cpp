@@ -63,6 +63,14 @@ std::vector<double> typical_siemens(const fusion::ForceNetworks& networks) {
   return siemens;
 }
 
+compensation::UnloadedConductance unloaded(const fusion::ForceNetworks& networks) {
+  return {.offset_siemens = networks.offset_siemens,
+          .per_celsius = networks.offset_per_celsius,
+          .sigma_siemens = {networks.offset_sigma_siemens.begin(), networks.offset_sigma_siemens.end()},
+          .centre_celsius = networks.temperature_centre_celsius,
+          .half_span_celsius = networks.temperature_half_span_celsius};
+}
+
 }  // namespace
 
 Result<Pipeline> Pipeline::create(const Model& model) {
@@ -80,6 +88,7 @@ Pipeline::Pipeline(const Model& model, compensation::Compensator compensator)
     : conditioner_(model.array),
       compensator_(std::move(compensator)),
       monitor_(model.array, model.networks.offset_siemens),
+      drift_({model.array.rows, model.array.cols}, unloaded(model.networks)),
       fusion_(model.networks) {}
 
 void Pipeline::process(const RawFrame& raw, ForceFrame& force) noexcept {
@@ -89,6 +98,7 @@ void Pipeline::process(const RawFrame& raw, ForceFrame& force) noexcept {
     compensator_.set_faults(monitor_.faults());
     compensator_.process(conditioned_, conductance_);
   }
+  drift_.process(conductance_);          // zero kept at zero
   fusion_.process(conductance_, force);  // unit 4: material and temperature fused to newtons
 }
 

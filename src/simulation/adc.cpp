@@ -19,7 +19,7 @@ void Adc::convert(std::span<const double> ratio, double supply_v, Random& random
   const double counts_per_ratio = supply_v / reference_v_.value_or(supply_v) * full_scale_counts_;
   for (std::size_t i = 0; i < ratio.size(); ++i) {
     const double exact = std::round(ratio[i] * counts_per_ratio + noise_lsb_ * random.normal());
-    counts[i] = static_cast<float>(std::clamp(exact, 0.0, full_scale_counts_));
+    counts[i] = static_cast<float>(std::clamp(exact, 0.0, full_scale_counts_) + 0.0);  // no ADC says -0
   }
 }
 

@@ -10,14 +10,15 @@
 #include <numbers>
 #include <numeric>
 
+#include "simulation/contact_script.hpp"
 #include "simulation/option_range.hpp"
 
 namespace dermis::simulation {
 namespace {
 
 constexpr std::size_t kMostFrames = 200'000;
-constexpr std::array kNames = {"calibration", "uniform",    "paper_calibration",
-                               "paper",       "multitouch", "idle"};  // In the order of Scene::Kind.
+constexpr std::array kNames = {"calibration", "uniform", "paper_calibration", "paper", "multitouch",
+                               "contacts",    "idle"};  // In the order of Scene::Kind.
 
 constexpr double kDefaultSupplyV = 5.0;
 constexpr double kRestS = 1.0;
@@ -39,6 +40,12 @@ constexpr std::array kPaperForcesN = {10.0, 20.0, 50.0};
 constexpr std::size_t kPaperPoints = 16;
 constexpr double kPaperCelsius = 20.0;
 constexpr std::uint64_t kPaperStream = std::numeric_limits<std::uint64_t>::max();  // No frame has this index.
+
+constexpr std::uint64_t kClimateStream = std::numeric_limits<std::uint64_t>::max() - 4;
+constexpr std::size_t kDefaultContactFrames = 2000;
+constexpr double kColdestMeanCelsius = 5.0;
+constexpr double kHottestMeanCelsius = 45.0;
+constexpr double kSwingCelsius = 5.0;
 
 constexpr std::size_t kDefaultFrames = 1000;
 constexpr std::uint64_t kMaxContacts = 4;
@@ -65,6 +72,10 @@ std::string known_names() {
 
 }  // namespace
 
+const char* to_string(PatchShape shape) noexcept {
+  return shape == PatchShape::hertz ? "hertz" : "flat";
+}
+
 std::vector<std::string> scene_names() {
   return {kNames.begin(), kNames.end()};
 }
@@ -90,7 +101,7 @@ Result<Scene> Scene::create(std::string_view name, const ArrayDescription& array
   const Kind kind = static_cast<Kind>(found - kNames.begin());
   Scene scene(kind, array, environment, seed);
   if (Status suits = scene.check_array(); !suits) return suits.error();
-  if (frames && kind != Kind::multitouch && kind != Kind::idle) {
+  if (frames && kind != Kind::multitouch && kind != Kind::contacts && kind != Kind::idle) {
     return bad_input("scene \"" + std::string(name) + "\": has a fixed number of frames");
   }
   if (frames && (*frames == 0 || *frames > kMostFrames)) {
@@ -98,6 +109,7 @@ Result<Scene> Scene::create(std::string_view name, const ArrayDescription& array
   }
   scene.frame_count_ = frames.value_or(scene.default_frame_count());
   if (kind == Kind::paper) scene.choose_paper_taxels();
+  if (kind == Kind::contacts) scene.contacts_ = std::make_shared<ContactScript>(array, scene.frame_count_, seed);
   return scene;
 }
 
@@ -117,6 +129,7 @@ std::size_t Scene::default_frame_count() const {
     case Kind::uniform: return kTemperatures * (kUnloadedFrames + kLevels * kFramesPerPressure);
     case Kind::paper_calibration: return kUnloadedFrames + kLevels * array_.taxel_count();
     case Kind::paper: return kPaperForcesN.size() * kPaperPoints;
+    case Kind::contacts: return kDefaultContactFrames;
     case Kind::multitouch:
     case Kind::idle: break;
   }
@@ -140,6 +153,7 @@ void Scene::frame(std::size_t index, SceneFrame& out) const {
   Random random = Random::stream(seed_, index);
   out.force_n.assign(array_.taxel_count(), 0.0);
   out.loads.clear();
+  out.contacts.clear();
   out.rest_s = kRestS;
   out.hold_s = kHoldS;
   const double nominal_v = array_.readout.supply_v.value_or(kDefaultSupplyV);
@@ -150,6 +164,7 @@ void Scene::frame(std::size_t index, SceneFrame& out) const {
     case Kind::uniform: inflate_bladder(index, out); break;
     case Kind::paper: press_as_in_paper(index, out); break;
     case Kind::multitouch: touch(random, out); break;
+    case Kind::contacts: move_contacts(index, out); break;
     case Kind::idle: leave_alone(index, out); break;
   }
   if (out.loads.empty()) label_forces(index, out);
@@ -189,6 +204,16 @@ void Scene::touch(Random& random, SceneFrame& out) const {
   const std::uint64_t contacts = 1 + random.below(kMaxContacts);
   for (std::uint64_t contact = 0; contact < contacts; ++contact) add_contact(random, out.force_n);
   for (double& force_n : out.force_n) force_n = std::min(force_n, kHeaviestN);
+}
+
+void Scene::move_contacts(std::size_t index, SceneFrame& out) const {
+  out.rest_s = 0.0;
+  out.hold_s = ContactScript::kFrameS;
+  Random climate = Random::stream(seed_, kClimateStream);
+  const double mean_celsius = climate.uniform(kColdestMeanCelsius, kHottestMeanCelsius);
+  const double phase = climate.uniform() + static_cast<double>(index) / static_cast<double>(frame_count_);
+  out.temperature_celsius = mean_celsius + kSwingCelsius * std::sin(2.0 * std::numbers::pi * phase);
+  contacts_->frame(index, out.contacts, out.force_n);
 }
 
 void Scene::leave_alone(std::size_t index, SceneFrame& out) const {

@@ -68,9 +68,11 @@ Result<SimulationOptions> read_simulation_options(const std::string& path) {
   return options;
 }
 
-Simulator::Simulator(Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit, std::optional<FaultyCircuit> faulty,
-                     const Readout& readout, const EnvironmentOptions& environment, std::uint64_t seed)
-    : scene_(std::move(scene)),
+Simulator::Simulator(const FrameShape& shape, Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit,
+                     std::optional<FaultyCircuit> faulty, const Readout& readout, const EnvironmentOptions& environment,
+                     std::uint64_t seed)
+    : shape_(shape),
+      scene_(std::move(scene)),
       rubber_(std::move(rubber)),
       circuit_(std::move(circuit)),
       faulty_(std::move(faulty)),
@@ -97,14 +99,16 @@ Result<std::unique_ptr<Simulator>> Simulator::create(const ArrayDescription& arr
     if (!created) return created.error();
     faulty = *std::move(created);
   }
-  return std::unique_ptr<Simulator>(new Simulator(*std::move(script), *std::move(rubber), *std::move(circuit),
-                                                  std::move(faulty), array.readout, options.environment, seed));
+  return std::unique_ptr<Simulator>(new Simulator({array.rows, array.cols}, *std::move(script), *std::move(rubber),
+                                                  *std::move(circuit), std::move(faulty), array.readout,
+                                                  options.environment, seed));
 }
 
 Result<bool> Simulator::next(RawFrame& frame) {
   if (next_frame_ == scene_.frame_count()) return false;
   const std::size_t index = next_frame_++;
   const bool is_faulty = faulty_ && faulty_->present(index);
+  frame.acquisition = {};
   scene_.frame(index, truth_);
   if (truth_.rest_s > 0.0) rubber_.press(unloaded_n_, truth_.rest_s);
   rubber_.press(truth_.force_n, truth_.hold_s);

@@ -2,66 +2,29 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/store/atomic_file.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <utility>
 
+#include "store/output_place.hpp"
 #include "store/text.hpp"
 
 namespace dermis::store {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 20U;
-
-Error cannot_write(const std::string& path, int error_number) {
-  return failed("cannot write " + in_quotes(path) + ": " + std::strerror(error_number));
-}
-
-bool is_written_directly(const std::string& path) {
-  struct stat info {};
-  return path == "/dev/stdout" || (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode));
-}
-
-int open_directly(const std::string& path) {
-  return path == "/dev/stdout" ? ::dup(STDOUT_FILENO) : ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-}
-
-/// The file behind a symbolic link, so that a rename replaces the file and not the link.
-std::string resolve(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::path real = std::filesystem::canonical(path, error);
-  return error ? path : real.string();
-}
-
-std::string temporary_name(const std::string& target) {
-  static std::atomic<unsigned> counter{0};
-  return target + "." + std::to_string(::getpid()) + "." + std::to_string(counter++) + ".tmp";
-}
+constexpr std::chrono::milliseconds kReaderWaits{50};
 
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
-  if (is_written_directly(path)) {
-    const int descriptor = open_directly(path);
-    if (descriptor < 0) return cannot_write(path, errno);
-    return AtomicFile(path, "", descriptor);
-  }
-  const std::string target = resolve(path);
-  std::string temporary;
-  int descriptor = -1;
-  do {
-    temporary = temporary_name(target);
-    descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  } while (descriptor < 0 && errno == EEXIST);
-  if (descriptor < 0) return cannot_write(path, errno);
-  return AtomicFile(target, std::move(temporary), descriptor);
+  Result<OutputPlace> place = open_output(path);
+  if (!place) return place.error();
+  return AtomicFile(std::move(place->target), std::move(place->temporary), place->descriptor);
 }
 
 AtomicFile::AtomicFile(std::string target, std::string temporary, int descriptor)
@@ -88,6 +51,42 @@ void AtomicFile::write(std::string_view bytes) {
     bytes.remove_prefix(taken);
     if (buffer_.size() == kBufferBytes) flush();
   }
+  if (temporary_.empty()) flush_for_reader();
+}
+
+/// Who reads a pipe sees what was written while more is to come.
+void AtomicFile::flush_for_reader() {
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_flush_ < kReaderWaits) return;
+  flush();
+  last_flush_ = now;
+}
+
+void AtomicFile::write_at(std::uint64_t offset, std::string_view bytes) {
+  flush();
+  if (temporary_.empty() && !first_error_) {
+    first_error_ = bad_input("cannot write " + in_quotes(target_) + ": this format needs a regular file");
+  }
+  if (first_error_) return;
+  if (const int error_number = write_all(descriptor_, std::as_bytes(std::span(bytes)), offset); error_number != 0) {
+    keep_error(error_number);
+  }
+}
+
+void AtomicFile::read_at(std::uint64_t offset, std::span<char> bytes) {
+  flush();
+  ssize_t got = 1;
+  while (!bytes.empty() && got != 0) {
+    got = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      keep_error(errno);
+      break;
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(got));
+    offset += static_cast<std::uint64_t>(got);
+  }
+  std::fill(bytes.begin(), bytes.end(), '\0');
 }
 
 Status AtomicFile::status() const {
@@ -102,19 +101,15 @@ Status AtomicFile::commit() {
   if (first_error_) return *first_error_;
   if (temporary_.empty()) return Done{};
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) return cannot_write(target_, errno);
+  synchronise_folder_of(target_);
   temporary_.clear();
   return Done{};
 }
 
 void AtomicFile::flush() {
-  std::string_view rest = buffer_;
-  while (!rest.empty() && !first_error_) {
-    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
-    if (written >= 0) {
-      rest.remove_prefix(static_cast<std::size_t>(written));
-    } else if (errno != EINTR) {
-      keep_error(errno);
-    }
+  if (!first_error_) {
+    const int error_number = write_all(descriptor_, std::as_bytes(std::span(buffer_)));
+    if (error_number != 0) keep_error(error_number);
   }
   buffer_.clear();
 }

@@ -33,47 +33,63 @@ std::optional<Column> column_named(std::string_view name) {
   return static_cast<Column>(found - kColumnNames.begin());
 }
 
-std::string size_text(std::size_t rows, std::size_t cols) {
-  return std::to_string(rows) + "x" + std::to_string(cols);
-}
-
 using Cells = std::vector<std::string_view>;
 
-bool are_taxels_in_order(const Cells& cells, std::size_t first, std::size_t rows, std::size_t cols) {
-  if (cells.size() - first != rows * cols) return false;
-  for (std::size_t i = 0; i < rows * cols; ++i) {
-    if (cells[first + i] != taxel_name(i / cols, i % cols)) return false;
+/// What the taxels of a header are held against: the array's shape, or the one that its last column names.
+struct Expected {
+  FrameShape shape;
+  const char* authority;
+};
+
+bool are_taxels_in_order(const Cells& cells, std::size_t first, FrameShape shape) {
+  if (cells.size() - first != shape.taxel_count()) return false;
+  for (std::size_t i = 0; i < shape.taxel_count(); ++i) {
+    if (cells[first + i] != taxel_name(i / shape.cols, i % shape.cols)) return false;
   }
   return true;
 }
 
 /// Why the cells from `first` on are not the taxels of the array.
-std::string taxel_mistake(const Cells& cells, std::size_t first, std::size_t rows, std::size_t cols) {
+std::string taxel_mistake(const Cells& cells, std::size_t first, const Expected& expected) {
+  const FrameShape shape = expected.shape;
+  const std::string claim = std::string(expected.authority) + " " + size_text(shape);
   if (const std::optional<TaxelPlace> last = parse_taxel(cells.back())) {
-    const bool is_other_size = last->row + 1 != rows || last->col + 1 != cols;
     const bool is_grid = last->row < cells.size() && last->col < cells.size();
-    if (is_other_size && is_grid && are_taxels_in_order(cells, first, last->row + 1, last->col + 1)) {
-      return "has " + size_text(last->row + 1, last->col + 1) + " taxels, the array is " + size_text(rows, cols);
+    const FrameShape other{last->row + 1, last->col + 1};
+    if (is_grid && other != shape && are_taxels_in_order(cells, first, other)) {
+      return "has " + size_text(other) + " taxels, " + claim;
     }
   }
-  for (std::size_t i = 0; i < rows * cols; ++i) {
-    const std::string expected = taxel_name(i / cols, i % cols);
+  for (std::size_t i = 0; i < shape.taxel_count(); ++i) {
+    const std::string name = taxel_name(i / shape.cols, i % shape.cols);
     const std::string_view cell = first + i < cells.size() ? cells[first + i] : "";
-    if (cell == expected) continue;
+    if (cell == name) continue;
     if (!cell.empty() && !parse_taxel(cell) && !column_named(cell)) {
-      return "unknown column " + in_quotes(cell) + "; expected " + expected;
+      return "unknown column " + in_quotes(cell) + "; expected " + name;
     }
-    const bool is_absent = std::find(cells.begin(), cells.end(), expected) == cells.end();
-    if (is_absent) return "column " + expected + " is missing; the array is " + size_text(rows, cols);
-    return "column " + in_quotes(cell) + " stands where " + expected +
+    const bool is_absent = std::find(cells.begin(), cells.end(), name) == cells.end();
+    if (is_absent) return std::string("column ").append(name).append(" is missing; ").append(claim);
+    return "column " + in_quotes(cell) + " stands where " + name +
            " is expected; write the taxels row by row, after all other columns";
   }
-  return "unknown column " + in_quotes(cells[first + rows * cols]) + " after the last taxel of a " +
-         size_text(rows, cols) + " array; remove it";
+  return "unknown column " + in_quotes(cells[first + shape.taxel_count()]) + " after the last taxel of a " +
+         size_text(shape) + " array; remove it";
+}
+
+/// The shape of which the last column is the last taxel.
+Result<Expected> learn_shape(const Cells& cells) {
+  const std::optional<TaxelPlace> last = parse_taxel(cells.back());
+  if (!last) {
+    return bad_input("its last column is " + in_quotes(cells.back()) + ", not a taxel; the header ends with r0c0,...");
+  }
+  if (last->row >= kMaxLines || last->col >= kMaxLines) {
+    return bad_input("its last column is " + in_quotes(cells.back()) + "; at most 1024x1024 taxels can be read");
+  }
+  return Expected{{last->row + 1, last->col + 1}, "its last column says"};
 }
 
 /// The columns before the taxels, or what is wrong with the header.
-Result<std::vector<Column>> parse_header(const Cells& cells, std::size_t rows, std::size_t cols) {
+Result<std::vector<Column>> parse_columns(const Cells& cells) {
   std::vector<Column> columns;
   for (const std::string_view cell : cells) {
     const std::optional<Column> column = column_named(cell);
@@ -91,8 +107,23 @@ Result<std::vector<Column>> parse_header(const Cells& cells, std::size_t rows, s
     return bad_input("unknown column " + in_quotes(cells[first]) +
                      "; before r0c0 stand time_s, temperature_celsius and supply_v");
   }
-  if (!are_taxels_in_order(cells, first, rows, cols)) return bad_input(taxel_mistake(cells, first, rows, cols));
   return columns;
+}
+
+struct Header {
+  std::vector<Column> columns;  ///< Before the taxels.
+  FrameShape shape;
+};
+
+Result<Header> parse_header(const Cells& cells, std::optional<FrameShape> shape) {
+  Result<std::vector<Column>> columns = parse_columns(cells);
+  if (!columns) return columns.error();
+  const Result<Expected> expected = shape ? Expected{*shape, "the array is"} : learn_shape(cells);
+  if (!expected) return expected.error();
+  if (!are_taxels_in_order(cells, columns->size(), expected->shape)) {
+    return bad_input(taxel_mistake(cells, columns->size(), *expected));
+  }
+  return Header{*std::move(columns), expected->shape};
 }
 
 }  // namespace
@@ -100,17 +131,15 @@ Result<std::vector<Column>> parse_header(const Cells& cells, std::size_t rows, s
 struct FramesCsvReader::State {
   std::unique_ptr<std::istream> in;
   CsvReader csv;
-  std::size_t rows;
-  std::size_t cols;
-  std::vector<Column> columns;
+  Header header;
 
-  Status read_header();
+  Status read_header(std::optional<FrameShape> shape);
   std::optional<Error> read_value(Column column, std::string_view cell, RawFrame& frame) const;
   Status read_frame(std::string_view line, RawFrame& frame) const;
   Error count_error(std::size_t taxel, std::string_view cell) const;
 };
 
-Status FramesCsvReader::State::read_header() {
+Status FramesCsvReader::State::read_header(std::optional<FrameShape> shape) {
   std::string_view line;
   const Result<bool> got_line = csv.next_line(line);
   if (!got_line) return got_line.error();
@@ -121,9 +150,9 @@ Status FramesCsvReader::State::read_header() {
   if (count_cells(line) == 1 && line.find(';') != std::string_view::npos) {
     return csv.error("has semicolons between its values; write commas");
   }
-  Result<std::vector<Column>> parsed = parse_header(split_cells(line), rows, cols);
+  Result<Header> parsed = parse_header(split_cells(line), shape);
   if (!parsed) return csv.error(parsed.error().message);
-  columns = std::move(*parsed);
+  header = *std::move(parsed);
   return Done{};
 }
 
@@ -147,8 +176,8 @@ std::optional<Error> FramesCsvReader::State::read_value(Column column, std::stri
 }
 
 Status FramesCsvReader::State::read_frame(std::string_view line, RawFrame& frame) const {
-  const std::size_t taxel_count = rows * cols;
-  const std::size_t header_size = columns.size() + taxel_count;
+  const std::size_t taxel_count = header.shape.taxel_count();
+  const std::size_t header_size = header.columns.size() + taxel_count;
   if (const std::size_t size = count_cells(line); size != header_size) {
     return csv.error("has " + std::to_string(size) + " values, the header " + std::to_string(header_size));
   }
@@ -157,7 +186,7 @@ Status FramesCsvReader::State::read_frame(std::string_view line, RawFrame& frame
   frame.counts.resize(taxel_count);
   CsvCells cells(line);
   std::string_view cell;
-  for (const Column column : columns) {
+  for (const Column column : header.columns) {
     static_cast<void>(cells.next(cell));
     if (std::optional<Error> mistake = read_value(column, cell, frame)) return *std::move(mistake);
   }
@@ -169,7 +198,7 @@ Status FramesCsvReader::State::read_frame(std::string_view line, RawFrame& frame
 }
 
 Error FramesCsvReader::State::count_error(std::size_t taxel, std::string_view cell) const {
-  const std::string place = "column " + taxel_name(taxel / cols, taxel % cols);
+  const std::string place = "column " + taxel_name(taxel / header.shape.cols, taxel % header.shape.cols);
   const std::string what = cell.empty() ? " is empty" : ": " + in_quotes(cell) + " is not a number";
   return csv.error(place + what + "; write nan where a reading is missing");
 }
@@ -178,20 +207,20 @@ FramesCsvReader::FramesCsvReader(std::unique_ptr<State> state) : state_(std::mov
 
 FramesCsvReader::~FramesCsvReader() = default;
 
-Result<std::unique_ptr<FramesCsvReader>> FramesCsvReader::open(const std::string& path, std::size_t rows,
-                                                               std::size_t cols) {
+Result<std::unique_ptr<FramesCsvReader>> FramesCsvReader::open(const std::string& path,
+                                                               std::optional<FrameShape> shape) {
   Result<std::unique_ptr<std::istream>> in = open_input(path);
   if (!in) return in.error();
-  return open(*std::move(in), path, rows, cols);
+  return open(*std::move(in), path, shape);
 }
 
 Result<std::unique_ptr<FramesCsvReader>> FramesCsvReader::open(std::unique_ptr<std::istream> in,
-                                                               const std::string& name, std::size_t rows,
-                                                               std::size_t cols) {
-  assert(rows > 0 && cols > 0);
+                                                               const std::string& name,
+                                                               std::optional<FrameShape> shape) {
+  assert(!shape || shape->taxel_count() > 0);
   std::istream& stream = *in;
-  auto state = std::make_unique<State>(State{std::move(in), CsvReader(stream, name), rows, cols, {}});
-  if (const Status header = state->read_header(); !header) return header.error();
+  auto state = std::make_unique<State>(State{std::move(in), CsvReader(stream, name), {}});
+  if (const Status header = state->read_header(shape); !header) return header.error();
   return std::unique_ptr<FramesCsvReader>(new FramesCsvReader(std::move(state)));
 }
 
@@ -199,40 +228,32 @@ Result<bool> FramesCsvReader::next(RawFrame& frame) {
   std::string_view line;
   Result<bool> got_line = state_->csv.next_line(line);
   if (!got_line || !*got_line) return got_line;
+  frame.acquisition = {};
   if (const Status read = state_->read_frame(line, frame); !read) return read.error();
   return true;
+}
+
+std::optional<FrameShape> FramesCsvReader::shape() const {
+  return state_->header.shape;
 }
 
 std::size_t FramesCsvReader::line() const noexcept {
   return state_->csv.line_number();
 }
 
-Result<std::vector<RawFrame>> read_frames(const std::string& path, std::size_t rows, std::size_t cols) {
-  const Result<std::unique_ptr<FramesCsvReader>> reader = FramesCsvReader::open(path, rows, cols);
-  if (!reader) return reader.error();
-  std::vector<RawFrame> frames;
-  while (true) {
-    RawFrame frame;
-    const Result<bool> got_frame = (*reader)->next(frame);
-    if (!got_frame) return got_frame.error();
-    if (!*got_frame) return frames;
-    frames.push_back(std::move(frame));
-  }
-}
-
 FramesCsvWriter::FramesCsvWriter(AtomicFile file, std::size_t taxel_count, const FramesCsvColumns& columns)
     : file_(std::move(file)), taxel_count_(taxel_count), columns_(columns) {}
 
-Result<FramesCsvWriter> FramesCsvWriter::create(const std::string& path, std::size_t rows, std::size_t cols,
-                                                const FramesCsvColumns& columns) {
+Result<std::unique_ptr<FramesCsvWriter>> FramesCsvWriter::create(const std::string& path, FrameShape shape,
+                                                                 const FramesCsvColumns& columns) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
   std::string header = name_of(Column::time);
   if (columns.temperature_celsius) header.append(",").append(name_of(Column::temperature));
   if (columns.supply_v) header.append(",").append(name_of(Column::supply));
-  append_taxel_names(header, rows, cols);
+  append_taxel_names(header, shape.rows, shape.cols);
   file->write(header + "\n");
-  return FramesCsvWriter(*std::move(file), rows * cols, columns);
+  return std::unique_ptr<FramesCsvWriter>(new FramesCsvWriter(*std::move(file), shape.taxel_count(), columns));
 }
 
 Status FramesCsvWriter::write(const RawFrame& frame) {

@@ -17,6 +17,10 @@ std::optional<TaxelPlace> parse_taxel(std::string_view text) {
   return place;
 }
 
+std::string size_text(FrameShape shape) {
+  return std::to_string(shape.rows) + "x" + std::to_string(shape.cols);
+}
+
 void append_taxel_names(std::string& header, std::size_t rows, std::size_t cols) {
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t col = 0; col < cols; ++col) header.append(",").append(taxel_name(row, col));

@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "dermis/core/frame_source.hpp"
+
 namespace dermis::store {
 
 struct TaxelPlace {
@@ -16,6 +18,9 @@ struct TaxelPlace {
 
 /// Reads "r3c5".
 [[nodiscard]] std::optional<TaxelPlace> parse_taxel(std::string_view text);
+
+/// "12x32"
+[[nodiscard]] std::string size_text(FrameShape shape);
 
 /// Appends ",r0c0,r0c1,..." row by row.
 void append_taxel_names(std::string& header, std::size_t rows, std::size_t cols);

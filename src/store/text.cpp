@@ -91,9 +91,25 @@ bool parse_seconds(std::string_view text, Nanos& time) {
     return true;
   }
   double seconds = 0.0;
-  if (!parse_all(text, seconds) || !(std::abs(seconds) <= kMaxSeconds)) return false;
-  time = Nanos(std::llround(seconds * static_cast<double>(kNanosPerSecond)));
-  return true;
+  if (!parse_all(text, seconds)) return false;
+  const std::optional<Nanos> rounded = nanos_from_seconds(seconds);
+  time = rounded.value_or(time);
+  return rounded.has_value();
+}
+
+std::optional<Nanos> nanos_from_seconds(double seconds) {
+  if (!(std::abs(seconds) <= kMaxSeconds)) return std::nullopt;
+  // The product would be rounded to the doubles of its size: 256 ns apart since 1970.
+  const double whole = std::floor(seconds);
+  return Nanos(static_cast<std::int64_t>(whole) * kNanosPerSecond +
+               std::llround((seconds - whole) * static_cast<double>(kNanosPerSecond)));
+}
+
+double seconds_of(Nanos time) {
+  const auto micros = std::chrono::floor<std::chrono::microseconds>(time);
+  if (micros == time) return static_cast<double>(micros.count()) / 1e6;
+  const auto whole = std::chrono::floor<std::chrono::seconds>(time);
+  return static_cast<double>(whole.count()) + 1e-9 * static_cast<double>((time - whole).count());
 }
 
 void append_number(std::string& text, float value) {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,12 @@ namespace dermis::store {
 
 /// Seconds of at most 9e9 in size (285 years), rounded to nanoseconds; plain decimals are taken exactly.
 [[nodiscard]] bool parse_seconds(std::string_view text, Nanos& time);
+
+/// Rounded to nanoseconds; empty for what is no time: NaN, or more than 9e9 in size.
+[[nodiscard]] std::optional<Nanos> nanos_from_seconds(double seconds);
+
+/// The nearest double where it is a whole number of microseconds.
+[[nodiscard]] double seconds_of(Nanos time);
 
 /// The shortest digits that read back as the same number; "nan" for every NaN.
 void append_number(std::string& text, float value);

@@ -8,6 +8,9 @@
 #include <numeric>
 
 #include "calibration/simulated.hpp"
+#include "calibration/simulated_user.hpp"
+#include "dermis/calibration/calibrate.hpp"
+#include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -121,6 +124,45 @@ TEST(ForceTraining, shares_one_network_where_one_load_cell_weighs_the_whole_pad)
   ForceFrame force;
   fusion.process(conductance, force);
   for (const float newtons : force.newtons) EXPECT_NEAR(newtons, 10.0F, 1.5F);
+}
+
+/// Each weight on each taxel, one frame a press.
+Recording presses_of_weights(const ArrayDescription& array, const std::vector<double>& weights_n) {
+  HandledArray handled(array, {}, 1);
+  Recording recording;
+  std::vector<double> force_n(array.taxel_count());
+  const auto take = [&](const TaxelRegion& where, double newtons) {
+    recording.loads.push_back({recording.frames.size(), LoadKind::force, where, newtons});
+    recording.frames.push_back(handled.frame(force_n));
+  };
+  for (int frame = 0; frame < 20; ++frame) take(all_taxels(array), 0.0);
+  for (const double newtons : weights_n) {
+    for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+      force_n[taxel] = newtons;
+      take({taxel / array.cols, taxel % array.cols, taxel / array.cols, taxel % array.cols}, newtons);
+      force_n[taxel] = 0.0;
+    }
+  }
+  return recording;
+}
+
+TEST(ForceTraining, learns_no_stair_from_two_weights) {
+  const ArrayDescription array = reference_array(6, 6);
+  const auto calibration = calibrate(database_of(array, presses_of_weights(array, {2.0, 20.0})));
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  auto pipeline = pipeline::Pipeline::create(calibration->model);
+  ASSERT_TRUE(pipeline) << pipeline.error().message;
+  HandledArray handled(array, {}, 2);
+  std::vector<double> force_n(array.taxel_count());
+  ForceFrame force;
+  double sum = 0.0;
+  for (std::size_t taxel = 0; taxel < force_n.size(); ++taxel) {
+    force_n[taxel] = 6.0;
+    pipeline->process(handled.frame(force_n), force);
+    sum += std::abs(static_cast<double>(force.newtons[taxel]) / 6.0 - 1.0) / static_cast<double>(force_n.size());
+    force_n[taxel] = 0.0;
+  }
+  EXPECT_LT(sum, 0.08);  // exponents and gains scatter; a stair is wrong by a third and more
 }
 
 TEST(ForceTraining, is_content_with_an_air_bladder) {

@@ -3,11 +3,15 @@
 """Runs the binary named on the command line on a small simulated array."""
 import re
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+# A shell makes what it starts in the background ignore SIGINT; what is started from here is to heed it.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 BINARY = None
 PROGRESS = re.compile(r"\w+: \d+ %")  # "networks: 25 %"

@@ -265,5 +265,56 @@ TEST(ConfigFile, reads_a_file_and_names_one_that_cannot_be_opened) {
   EXPECT_FALSE(ConfigFile::read("/"));
 }
 
+TEST(ConfigFile, reads_a_list_of_tables_by_their_places) {
+  std::vector<std::string> names;
+  std::vector<double> sizes;
+  const auto read = [&](ConfigFile& file) {
+    for (std::size_t k = 0; k < file.table_count("part"); ++k) {
+      const std::string key = "part[" + std::to_string(k) + "]";
+      file.require(key + ".name");
+      file.text(key + ".name", names.emplace_back());
+      file.number(key + ".box.size", sizes.emplace_back());
+    }
+  };
+  EXPECT_EQ(
+      message_after("[[part]]\nname = \"a\"\nbox = {size = 2}\n[[part]]\nname = \"b\"\n[part.box]\nsize = 3\n", read),
+      "ok");
+  EXPECT_EQ(names, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(sizes, (std::vector<double>{2.0, 3.0}));
+  EXPECT_EQ(message_after("", read), "ok");
+  EXPECT_EQ(message_after("[[part]]\nname = \"a\"\n[[part]]\nname = \"b\"\nnam = 1\n", read),
+            "c.toml:5: unknown key 'part[1].nam'; did you mean 'part[1].name'?");
+  EXPECT_EQ(message_after("[[part]]\nname = \"a\"\n[[part]]\n", read),
+            "c.toml: part[1].name: is missing; it has no default");
+  EXPECT_EQ(message_after("[[part]]\nname = 5\n", read), "c.toml:2: part[0].name: must be a text in quotes");
+  EXPECT_EQ(message_after("[part]\nname = \"a\"\n", read),
+            "c.toml:1: part: must be a list of tables, each begun by [[part]]");
+  EXPECT_EQ(message_after("part = [1, 2]\n", read), "c.toml:1: part: must be a list of tables, each begun by [[part]]");
+  EXPECT_EQ(message_after("[[parts]]\nname = \"a\"\n", read), "c.toml:1: unknown key 'parts'; did you mean 'part'?");
+}
+
+TEST(ConfigFile, reads_lists_of_lists_of_numbers) {
+  std::vector<std::vector<double>> rows;
+  const auto read = [&](ConfigFile& file) { file.number_rows("a", 2, rows); };
+  EXPECT_EQ(message_after("a = [[1, 2.5], [3, 4]]\n", read), "ok");
+  EXPECT_EQ(rows, (std::vector<std::vector<double>>{{1.0, 2.5}, {3.0, 4.0}}));
+  constexpr const char* kWanted = "c.toml:1: a: must be a list of lists of 2 numbers";
+  EXPECT_EQ(message_after("a = [[1, 2], [3]]\n", read), kWanted);
+  EXPECT_EQ(message_after("a = [1, 2]\n", read), kWanted);
+  EXPECT_EQ(message_after("a = [[1, nan]]\n", read), kWanted);
+  EXPECT_EQ(message_after("a = 1\n", read), kWanted);
+}
+
+TEST(ConfigFile, tells_a_text_from_a_list) {
+  bool is_text = false;
+  const auto read = [&](ConfigFile& file) { is_text = file.holds_text("a"); };
+  EXPECT_EQ(message_after("a = \"x\"\n", read), "ok");
+  EXPECT_TRUE(is_text);
+  EXPECT_EQ(message_after("a = [1]\n", read), "ok");
+  EXPECT_FALSE(is_text);
+  EXPECT_EQ(message_after("", read), "ok");
+  EXPECT_FALSE(is_text);
+}
+
 }  // namespace
 }  // namespace dermis

@@ -16,6 +16,7 @@ class TwoFrames final : public FrameSource {
     frame.counts.assign(1, static_cast<float>(count_++));
     return true;
   }
+  std::optional<FrameShape> shape() const override { return FrameShape{1, 1}; }
 
  private:
   int count_ = 0;

@@ -342,6 +342,74 @@ TEST(Pipeline, allocates_nothing_after_the_first_frame) {
   }
 }
 
+/// Mean forces of `seconds` at 10 frames/s of an array under constant forces that warms up evenly.
+std::vector<double> live(Pipeline& pipeline, const Model& model, const std::vector<double>& newtons, double seconds,
+                         double from_celsius, double to_celsius) {
+  static std::int64_t now_ns = 0;
+  const int frames = static_cast<int>(10.0 * seconds);
+  std::vector<double> mean(newtons.size(), 0.0);
+  ForceFrame force;
+  for (int i = 0; i < frames; ++i) {
+    const double celsius = from_celsius + (to_celsius - from_celsius) * i / frames;
+    RawFrame raw = measure(model, newtons, celsius, 5.0);
+    now_ns += 100'000'000;
+    raw.time = Nanos(now_ns);
+    pipeline.process(raw, force);
+    for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += static_cast<double>(force.newtons[k]) / frames;
+  }
+  return mean;
+}
+
+TEST(Pipeline, a_press_of_ten_minutes_loses_less_than_a_hundredth_while_it_warms_up_by_ten_celsius) {
+  const Model model = hand_made_model(4, 5);
+  const auto pipeline = make_pipeline(model);
+  pipeline->drift().set_options({.track = true});
+  std::vector<double> newtons(20, 0.0);
+  live(*pipeline, model, newtons, 60.0, 20.0, 20.0);
+  newtons[6] = 5.0;
+  newtons[13] = 0.1;
+  live(*pipeline, model, newtons, 600.0, 20.0, 30.0);
+  const std::vector<double> after = live(*pipeline, model, newtons, 2.0, 30.0, 30.0);
+  EXPECT_NEAR(after[6], 5.0, 0.005 * 5.0);
+  EXPECT_NEAR(after[13], 0.1, 0.01 * 0.1);
+  newtons.assign(20, 0.0);
+  for (const double force_n : live(*pipeline, model, newtons, 2.0, 30.0, 30.0)) EXPECT_LT(force_n, 0.001);
+}
+
+TEST(Pipeline, tracking_takes_an_old_calibration_back_to_zero) {
+  const Model model = hand_made_model(4, 5);
+  Model aged = model;
+  for (double& offset : aged.networks.offset_siemens) offset *= 1.08;
+  const std::vector<double> unloaded(20, 0.0);
+  const auto ghost = [&](bool track) {
+    const auto pipeline = make_pipeline(model);
+    pipeline->drift().set_options({.track = track});
+    live(*pipeline, aged, unloaded, 90.0, 25.0, 25.0);
+    const auto forces = live(*pipeline, aged, unloaded, 2.0, 25.0, 25.0);
+    return *std::max_element(forces.begin(), forces.end());
+  };
+  EXPECT_LT(ghost(true), 0.2 * ghost(false));
+}
+
+TEST(Pipeline, a_tare_moves_zero_and_health_still_sees_the_array_as_it_is) {
+  const Model model = hand_made_model(4, 5);
+  const auto pipeline = make_pipeline(model);
+  std::vector<double> newtons(20, 0.5);
+  pipeline->drift().tare();
+  live(*pipeline, model, newtons, 2.0, 25.0, 25.0);
+  ASSERT_FALSE(pipeline->drift().taring());
+  for (const double force_n : live(*pipeline, model, newtons, 1.0, 25.0, 25.0)) EXPECT_NEAR(force_n, 0.0, 1e-3);
+  newtons[7] = 10.5;
+  EXPECT_NEAR(live(*pipeline, model, newtons, 1.0, 25.0, 25.0)[7], 10.0, 0.3) << "the material is not quite linear";
+  newtons.assign(20, 0.0);
+  live(*pipeline, model, newtons, 60.0, 25.0, 25.0);
+  EXPECT_EQ(pipeline->conductance().siemens, newtons) << "below zero is zero";
+  EXPECT_TRUE(pipeline->line_faults().faults().empty());
+  pipeline->drift().reset();
+  newtons[7] = 10.0;
+  EXPECT_NEAR(live(*pipeline, model, newtons, 1.0, 25.0, 25.0)[7], 10.0, 0.01);
+}
+
 double quantile(std::vector<double>& values, double share) {
   const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), place, values.end());

@@ -37,6 +37,7 @@ TEST(Adc, ClampsToItsRange) {
   Readout readout;
   readout.adc_bits = 10;
   EXPECT_EQ(convert(readout, 0.0, {-0.2, 1.3}, 5.0), (std::vector<float>{0, 1023}));
+  EXPECT_FALSE(std::signbit(convert(readout, 0.0, {-1e-6}, 5.0).front())) << "no ADC says -0";
 }
 
 TEST(Adc, NoiseHasTheAskedVarianceOnTopOfTheRounding) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <vector>
@@ -160,6 +161,130 @@ TEST(Scene, MultitouchStaysInTheCalibratedRange) {
   EXPECT_NEAR(static_cast<double>(on_one_taxel) / 1000.0, 0.1, 5.0 * std::sqrt(0.1 * 0.9 / 1000.0));
 }
 
+double pressure(const AppliedContact& contact, double away_m) {
+  const double radius_m = 0.5 * contact.diameter_m;
+  if (away_m >= radius_m) return 0.0;
+  const double mean = contact.force_n / (std::numbers::pi * radius_m * radius_m);
+  const double rho = away_m / radius_m;
+  return contact.shape == PatchShape::flat ? mean : 1.5 * mean * std::sqrt(1.0 - rho * rho);
+}
+
+/// Pressure summed over small squares of the disc of a taxel.
+double summed_force(const std::vector<AppliedContact>& contacts, double x_m, double y_m, double disc_radius_m) {
+  constexpr int kSquares = 80;
+  const double side_m = 2.0 * disc_radius_m / kSquares;
+  double sum_n = 0.0;
+  for (int i = 0; i < kSquares; ++i) {
+    for (int j = 0; j < kSquares; ++j) {
+      const double dx = (i + 0.5) * side_m - disc_radius_m;
+      const double dy = (j + 0.5) * side_m - disc_radius_m;
+      if (std::hypot(dx, dy) > disc_radius_m) continue;
+      for (const AppliedContact& contact : contacts) {
+        sum_n += side_m * side_m * pressure(contact, std::hypot(x_m + dx - contact.x_m, y_m + dy - contact.y_m));
+      }
+    }
+  }
+  return sum_n;
+}
+
+TEST(Scene, ContactsPressOnTaxelsWhatLiesOnTheirDiscs) {
+  ArrayDescription array = make_array(16, 16);
+  array.col_pitch_m = 0.008;
+  const double radius_m = std::sqrt(*array.taxel_area_m2 / std::numbers::pi);
+  const auto frames = play("contacts", array, 3);
+  for (std::size_t i = 60; i < frames.size(); i += 400) {
+    double on_taxels_n = 0.0;
+    for (const AppliedContact& contact : frames[i].contacts) on_taxels_n += contact.taxel_force_n;
+    EXPECT_NEAR(on_taxels_n, total(frames[i].force_n), 1e-9);
+    for (std::size_t row = 0; row < 16; ++row) {
+      for (std::size_t col = 0; col < 16; ++col) {
+        const double x_m = 0.008 * static_cast<double>(col);
+        const double y_m = 0.010 * static_cast<double>(row);
+        const double expected_n = summed_force(frames[i].contacts, x_m, y_m, radius_m);
+        EXPECT_NEAR(frames[i].force_n[array.index(row, col)], expected_n, 0.006 * expected_n + 0.02) << "frame " << i;
+      }
+    }
+  }
+}
+
+TEST(Scene, ADiscThatCoversAPatchCarriesItsWholeForce) {
+  ArrayDescription array = make_array(1, 1);
+  array.taxel_area_m2 = 0.01;
+  for (const SceneFrame& frame : play("contacts", array)) {
+    for (const AppliedContact& contact : frame.contacts) {
+      EXPECT_NEAR(contact.taxel_force_n, contact.force_n, 1e-12 * contact.force_n);
+    }
+  }
+}
+
+TEST(Scene, ContactsStayApartInsideTheArrayAndWithinTheirRanges) {
+  const ArrayDescription array = make_array(16, 16);
+  std::set<std::size_t> counts;
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
+    for (const SceneFrame& frame : play("contacts", array, seed)) {
+      counts.insert(frame.contacts.size());
+      EXPECT_EQ(frame.hold_s, 0.01);
+      EXPECT_GE(frame.temperature_celsius, 0.0);
+      EXPECT_LE(frame.temperature_celsius, 50.0);
+      for (const AppliedContact& contact : frame.contacts) {
+        EXPECT_GE(contact.diameter_m, 0.008);
+        EXPECT_LT(contact.diameter_m, 0.030);
+        EXPECT_GT(contact.force_n, 0.0);
+        EXPECT_LE(contact.force_n, 50.0);
+        EXPECT_LE(contact.taxel_force_n, contact.force_n);
+        for (const double along : {contact.x_m, contact.y_m}) EXPECT_LE(std::abs(along - 0.075), 0.080 + 1e-9);
+        for (const AppliedContact& other : frame.contacts) {
+          if (other.id == contact.id) continue;
+          const double apart_m = std::hypot(contact.x_m - other.x_m, contact.y_m - other.y_m);
+          EXPECT_GE(apart_m, std::max(0.025, 0.5 * (contact.diameter_m + other.diameter_m) + 0.010));
+        }
+      }
+    }
+  }
+  EXPECT_EQ(counts, (std::set<std::size_t>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(Scene, ContactsComeMoveSmoothlyAndGo) {
+  const ArrayDescription array = make_array(16, 16);
+  const auto frames = play("contacts", array, 7);
+  ASSERT_EQ(frames.size(), 2000U);
+  std::map<std::uint32_t, std::vector<std::pair<std::size_t, AppliedContact>>> lives;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (const AppliedContact& contact : frames[i].contacts) lives[contact.id].emplace_back(i, contact);
+  }
+  EXPECT_GE(lives.size(), 10U);
+  EXPECT_EQ(lives.begin()->first, 1U);
+  EXPECT_EQ(lives.rbegin()->first, lives.size());
+  double farthest_m = 0.0;
+  for (const auto& [id, life] : lives) {
+    EXPECT_GE(life.size(), 50U);
+    EXPECT_GE(life.front().first, 30U);
+    EXPECT_LE(life.back().first, 1969U);
+    for (std::size_t k = 1; k < life.size(); ++k) {
+      EXPECT_EQ(life[k].first, life[k - 1].first + 1) << "a contact has one life";
+      const double step_m =
+          std::hypot(life[k].second.x_m - life[k - 1].second.x_m, life[k].second.y_m - life[k - 1].second.y_m);
+      EXPECT_LT(step_m, 0.01 * 0.25) << "faster than 0.25 m/s";
+    }
+    const AppliedContact& first = life.front().second;
+    const AppliedContact& last = life.back().second;
+    farthest_m = std::max(farthest_m, std::hypot(first.x_m - last.x_m, first.y_m - last.y_m));
+    EXPECT_LT(first.force_n, 0.15 * life[life.size() / 2].second.force_n);
+    EXPECT_LT(last.force_n, 0.15 * life[life.size() / 2].second.force_n);
+  }
+  EXPECT_GT(farthest_m, 0.03);
+}
+
+TEST(Scene, ContactsFollowTheSeedAndTheLengthAsked) {
+  const ArrayDescription array = make_array(16, 16);
+  const auto frames = play("contacts", array, 5, 400);
+  ASSERT_EQ(frames.size(), 400U);
+  ASSERT_FALSE(frames[100].contacts.empty());
+  EXPECT_EQ(play("contacts", array, 5, 400)[100].contacts, frames[100].contacts);
+  EXPECT_NE(play("contacts", array, 6, 400)[100].contacts, frames[100].contacts);
+  EXPECT_EQ(play("multitouch", array, 5, 10)[3].contacts.size(), 0U);
+}
+
 TEST(Scene, IdleWarmsUpAndCoolsDownUnloaded) {
   const auto frames = play("idle", make_array(2, 2), 1, 100);
   ASSERT_EQ(frames.size(), 100U);
@@ -185,7 +310,8 @@ TEST(Scene, RefusesWhatItCannotPlay) {
   const auto message = [&](std::string_view name, std::optional<std::size_t> frames = {}) {
     return Scene::create(name, array, EnvironmentOptions{}, 1, frames).error().message;
   };
-  EXPECT_NE(message("nap").find("calibration, uniform, paper_calibration, paper, multitouch, idle"), std::string::npos);
+  EXPECT_NE(message("nap").find("calibration, uniform, paper_calibration, paper, multitouch, contacts, idle"),
+            std::string::npos);
   EXPECT_NE(message("paper").find("at least 16 taxels"), std::string::npos);
   EXPECT_NE(message("calibration", 10).find("fixed number"), std::string::npos);
   EXPECT_NE(message("idle", 0).find("needs 1 to 200000 frames"), std::string::npos);

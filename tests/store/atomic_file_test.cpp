@@ -2,17 +2,67 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/store/atomic_file.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
+#include <mutex>
+#include <utility>
+#include <vector>
 
+#include "store/disk_calls.hpp"
 #include "store/temporary_folder.hpp"
 
+namespace {
+
+std::mutex calls_mutex;
+std::vector<std::string> calls;
+
+void note(const char* call) {
+  const std::scoped_lock lock(calls_mutex);
+  calls.emplace_back(call);
+}
+
+const char* what_is_synchronised(int descriptor) {
+  struct stat info {};
+  return ::fstat(descriptor, &info) == 0 && S_ISDIR(info.st_mode) ? "names" : "bytes";
+}
+
+}  // namespace
+
+// Those of the C library, for this program.
+extern "C" {
+
+int fsync(int descriptor) {
+  note(what_is_synchronised(descriptor));
+  return static_cast<int>(::syscall(SYS_fsync, descriptor));
+}
+
+int fdatasync(int descriptor) {
+  note(what_is_synchronised(descriptor));
+  return static_cast<int>(::syscall(SYS_fdatasync, descriptor));
+}
+
+int rename(const char* from, const char* to) noexcept {
+  note("rename");
+  return static_cast<int>(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
+}
+
+}  // extern "C"
+
 namespace dermis::store {
+
+std::vector<std::string> take_disk_calls() {
+  const std::scoped_lock lock(calls_mutex);
+  return std::exchange(calls, {});
+}
+
 namespace {
 
 TEST(AtomicFile, appears_complete_on_commit) {
@@ -25,6 +75,16 @@ TEST(AtomicFile, appears_complete_on_commit) {
   EXPECT_TRUE(file->commit());
   EXPECT_EQ(read_bytes(folder.file("a.csv")), "one,two\n");
   EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(AtomicFile, appears_when_its_bytes_are_on_the_disk_and_has_its_name_kept) {
+  const TemporaryFolder folder;
+  Result<AtomicFile> file = AtomicFile::create(folder.file("a.csv"));
+  ASSERT_TRUE(file);
+  file->write("one");
+  static_cast<void>(take_disk_calls());
+  EXPECT_TRUE(file->commit());
+  EXPECT_EQ(take_disk_calls(), (std::vector<std::string>{"bytes", "rename", "names"}));
 }
 
 TEST(AtomicFile, writes_more_than_its_buffer) {

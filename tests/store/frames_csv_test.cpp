@@ -11,6 +11,7 @@
 
 #include "dermis/core/random.hpp"
 #include "store/mutations.hpp"
+#include "store/random_frames.hpp"
 #include "store/temporary_folder.hpp"
 
 namespace dermis::store {
@@ -18,16 +19,9 @@ namespace {
 
 Result<std::vector<RawFrame>> parse(const std::string& text, std::size_t rows = 1, std::size_t cols = 2,
                                     const std::string& name = "frames.csv") {
-  const auto reader = FramesCsvReader::open(std::make_unique<std::istringstream>(text), name, rows, cols);
+  const auto reader = FramesCsvReader::open(std::make_unique<std::istringstream>(text), name, FrameShape{rows, cols});
   if (!reader) return reader.error();
-  std::vector<RawFrame> frames;
-  RawFrame frame;
-  while (true) {
-    const Result<bool> got_frame = (*reader)->next(frame);
-    if (!got_frame) return got_frame.error();
-    if (!*got_frame) return frames;
-    frames.push_back(frame);
-  }
+  return read_all(**reader);
 }
 
 std::string error_of(const std::string& text, std::size_t rows = 1, std::size_t cols = 2) {
@@ -110,8 +104,8 @@ TEST(FramesCsvReader, takes_a_file_with_a_header_only) {
 }
 
 TEST(FramesCsvReader, tells_the_line_of_the_last_frame) {
-  const auto reader =
-      FramesCsvReader::open(std::make_unique<std::istringstream>("time_s,r0c0\n0,1\n\n1,2\n"), "frames.csv", 1, 1);
+  const auto reader = FramesCsvReader::open(std::make_unique<std::istringstream>("time_s,r0c0\n0,1\n\n1,2\n"),
+                                            "frames.csv", FrameShape{1, 1});
   ASSERT_TRUE(reader);
   RawFrame frame;
   EXPECT_EQ((*reader)->line(), 1U);
@@ -136,6 +130,29 @@ TEST(FramesCsvReader, names_the_first_missing_column) {
 TEST(FramesCsvReader, names_both_sizes_where_the_array_is_another) {
   EXPECT_EQ(error_of(header_of(12, 10), 16, 16), "frames.csv:1: has 12x10 taxels, the array is 16x16");
   EXPECT_EQ(error_of(header_of(32, 32), 16, 16), "frames.csv:1: has 32x32 taxels, the array is 16x16");
+}
+
+std::string learning_error_of(const std::string& text) {
+  const auto reader = FramesCsvReader::open(std::make_unique<std::istringstream>(text), "frames.csv");
+  return reader ? "no error" : reader.error().message;
+}
+
+TEST(FramesCsvReader, learns_the_shape_from_the_last_column) {
+  const auto reader = FramesCsvReader::open(std::make_unique<std::istringstream>(header_of(3, 2)), "frames.csv");
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_EQ((*reader)->shape(), (FrameShape{3, 2}));
+}
+
+TEST(FramesCsvReader, refuses_a_header_from_which_no_shape_can_be_learnt) {
+  EXPECT_EQ(learning_error_of("time_s\n"),
+            "frames.csv:1: its last column is 'time_s', not a taxel; the header ends with r0c0,...");
+  EXPECT_EQ(learning_error_of("time_s,r0c0,x\n"),
+            "frames.csv:1: its last column is 'x', not a taxel; the header ends with r0c0,...");
+  EXPECT_EQ(learning_error_of("time_s,r0c0,r1c1\n"), "frames.csv:1: column r0c1 is missing; its last column says 2x2");
+  EXPECT_EQ(learning_error_of("time_s,r1024c0\n"),
+            "frames.csv:1: its last column is 'r1024c0'; at most 1024x1024 taxels can be read");
+  EXPECT_EQ(learning_error_of("time_s,r0c18446744073709551615\n"),
+            "frames.csv:1: its last column is 'r0c18446744073709551615'; at most 1024x1024 taxels can be read");
 }
 
 TEST(FramesCsvReader, names_an_unknown_column) {
@@ -194,18 +211,18 @@ class EndlessBuffer : public std::streambuf {
 
 TEST(FramesCsvReader, refuses_an_endless_line) {
   EndlessBuffer buffer;
-  const auto reader = FramesCsvReader::open(std::make_unique<std::istream>(&buffer), "frames.csv", 1, 1);
+  const auto reader = FramesCsvReader::open(std::make_unique<std::istream>(&buffer), "frames.csv", FrameShape{1, 1});
   ASSERT_FALSE(reader);
   EXPECT_EQ(reader.error().message, "frames.csv:1: is longer than 32 MiB; one frame or load belongs on each line");
 }
 
 TEST(FramesCsvReader, names_a_path_that_cannot_be_opened) {
   const TemporaryFolder folder;
-  const auto missing = FramesCsvReader::open(folder.file("x"), 1, 1);
+  const auto missing = FramesCsvReader::open(folder.file("x"));
   ASSERT_FALSE(missing);
   EXPECT_EQ(missing.error().kind, ErrorKind::bad_input);
   EXPECT_EQ(missing.error().message, "cannot open '" + folder.file("x") + "': No such file or directory");
-  const auto directory = read_frames("/", 1, 1);
+  const auto directory = FramesCsvReader::open("/");
   ASSERT_FALSE(directory);
   EXPECT_EQ(directory.error().message, "cannot open '/': Is a directory");
 }
@@ -216,7 +233,7 @@ TEST(FramesCsvReader, gives_a_value_or_a_one_line_error_for_mutations) {
   expect_value_or_one_line_error(text, 5000, [](const std::string& t) { return parse(t, 2, 2, "mutated"); });
 }
 
-RawFrame random_frame(Random& random, std::size_t taxels) {
+RawFrame random_csv_frame(Random& random, std::size_t taxels) {
   RawFrame frame;
   frame.time = Nanos(static_cast<std::int64_t>(random.bits() >> 2U) - (std::int64_t{1} << 61U));
   if (random.below(2) == 0) frame.temperature_celsius = random.uniform(-40.0, 80.0);
@@ -232,12 +249,14 @@ TEST(FramesCsvWriter, writes_what_reads_back_equal) {
   const TemporaryFolder folder;
   Random random(1);
   std::vector<RawFrame> frames;
-  for (int i = 0; i < 300; ++i) frames.push_back(random_frame(random, 12));
-  Result<FramesCsvWriter> writer = FramesCsvWriter::create(folder.file("f.csv"), 3, 4);
+  for (int i = 0; i < 300; ++i) frames.push_back(random_csv_frame(random, 12));
+  const auto writer = FramesCsvWriter::create(folder.file("f.csv"), {3, 4});
   ASSERT_TRUE(writer);
-  for (const RawFrame& frame : frames) ASSERT_TRUE(writer->write(frame));
-  ASSERT_TRUE(writer->commit());
-  const auto read = read_frames(folder.file("f.csv"), 3, 4);
+  for (const RawFrame& frame : frames) ASSERT_TRUE((*writer)->write(frame));
+  ASSERT_TRUE((*writer)->commit());
+  const auto reader = FramesCsvReader::open(folder.file("f.csv"));
+  ASSERT_TRUE(reader) << reader.error().message;
+  const auto read = read_all(**reader);
   ASSERT_TRUE(read) << read.error().message;
   ASSERT_EQ(read->size(), frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -250,20 +269,20 @@ TEST(FramesCsvWriter, writes_what_reads_back_equal) {
 
 TEST(FramesCsvWriter, writes_only_the_columns_asked_for) {
   const TemporaryFolder folder;
-  Result<FramesCsvWriter> writer =
-      FramesCsvWriter::create(folder.file("f.csv"), 1, 2, {.temperature_celsius = false, .supply_v = true});
+  const auto writer =
+      FramesCsvWriter::create(folder.file("f.csv"), {1, 2}, {.temperature_celsius = false, .supply_v = true});
   ASSERT_TRUE(writer);
-  ASSERT_TRUE(writer->write({std::chrono::milliseconds(-1500), 20.0, 5.0, {1.0F, -std::nanf("")}}));
-  ASSERT_TRUE(writer->write({std::chrono::seconds(2), 20.0, std::nullopt, {0.5F, 4095.0F}}));
-  ASSERT_TRUE(writer->commit());
+  ASSERT_TRUE((*writer)->write({std::chrono::milliseconds(-1500), 20.0, 5.0, {1.0F, -std::nanf("")}}));
+  ASSERT_TRUE((*writer)->write({std::chrono::seconds(2), 20.0, std::nullopt, {0.5F, 4095.0F}}));
+  ASSERT_TRUE((*writer)->commit());
   EXPECT_EQ(read_bytes(folder.file("f.csv")), "time_s,supply_v,r0c0,r0c1\n-1.5,5,1,nan\n2,,0.5,4095\n");
 }
 
 TEST(FramesCsvWriter, reports_a_full_disk) {
-  Result<FramesCsvWriter> writer = FramesCsvWriter::create("/dev/full", 1, 1);
+  const auto writer = FramesCsvWriter::create("/dev/full", {1, 1});
   ASSERT_TRUE(writer);
-  static_cast<void>(writer->write({Nanos(0), {}, {}, {1.0F}}));
-  const Status committed = writer->commit();
+  static_cast<void>((*writer)->write({Nanos(0), {}, {}, {1.0F}}));
+  const Status committed = (*writer)->commit();
   ASSERT_FALSE(committed);
   EXPECT_EQ(committed.error().message, "cannot write '/dev/full': No space left on device");
 }

@@ -28,10 +28,12 @@ class ConfigFile {
   ConfigFile& operator=(ConfigFile&&) noexcept;
   ~ConfigFile();
 
-  /// Keys are dotted paths: "readout.load_ohm".
+  /// Keys are dotted paths: "readout.load_ohm"; of a list of tables, [[array]], each by its place: "array[0].name".
   [[nodiscard]] bool contains(std::string_view key) const;
   /// True where the key holds exactly this text, for keys that take a number or a word.
   [[nodiscard]] bool is_text(std::string_view key, std::string_view text);
+  /// True where the key holds any text, for keys that take a list or the name of a file.
+  [[nodiscard]] bool holds_text(std::string_view key);
   void number(std::string_view key, double& value);  ///< A finite number, as everywhere below.
   void number(std::string_view key, std::optional<double>& value);
   void integer(std::string_view key, int& value);
@@ -49,6 +51,10 @@ class ConfigFile {
   void number_per_line(std::string_view key, std::size_t size, const Word& word, std::vector<double>& values);
   /// A list of exactly `size` numbers.
   void numbers(std::string_view key, std::size_t size, std::vector<double>& values);
+  /// A list of any size of lists of exactly `size` numbers.
+  void number_rows(std::string_view key, std::size_t size, std::vector<std::vector<double>>& rows);
+  /// How many tables a list of tables has; 0 where there is none.
+  [[nodiscard]] std::size_t table_count(std::string_view key);
   /// A list of any size of integers of 0 or more, or of texts.
   void counts(std::string_view key, std::vector<std::size_t>& values);
   void texts(std::string_view key, std::vector<std::string>& values);

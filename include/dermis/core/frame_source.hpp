@@ -2,10 +2,37 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 
 namespace dermis {
+
+/// Shape of the frames of a source: RawFrame::counts has rows * cols values, row-major.
+struct FrameShape {
+  std::size_t rows = 0;
+  std::size_t cols = 0;
+
+  [[nodiscard]] std::size_t taxel_count() const noexcept { return rows * cols; }
+  bool operator==(const FrameShape&) const = default;
+};
+
+/// What a source has delivered, and what it has missed.
+struct SourceStatistics {
+  std::uint64_t frames = 0;               ///< Delivered.
+  std::uint64_t lost_frames = 0;          ///< Never seen: gaps in the numbers of the device.
+  std::uint64_t damaged_frames = 0;       ///< Seen and dropped: checksum, length or content cannot be right.
+  std::uint64_t skipped_bytes = 0;        ///< Bytes that belong to no delivered frame.
+  std::uint64_t reconnections = 0;        ///< Times the device came back after it was unplugged or closed.
+  double rate_hz = 0.0;                   ///< Delivered frames per second of arrival, over the last seconds.
+  Nanos jitter{};                         ///< Standard deviation of the time between two arrivals, over the same.
+  std::optional<double> clock_drift_ppm;  ///< The device's clock against the host's: positive where it runs fast.
+
+  bool operator==(const SourceStatistics&) const = default;
+};
 
 /// Where frames come from: a device, a recording or the simulator. Callers never ask which.
 /// Not thread-safe: one reader.
@@ -18,6 +45,11 @@ class FrameSource {
 
   /// Fills `frame` with the next frame, reusing its buffers. Returns false at the end of the source.
   [[nodiscard]] virtual Result<bool> next(RawFrame& frame) = 0;
+
+  /// Empty where only the first frame will tell.
+  [[nodiscard]] virtual std::optional<FrameShape> shape() const = 0;
+
+  [[nodiscard]] virtual SourceStatistics statistics() const { return {}; }
 };
 
 }  // namespace dermis

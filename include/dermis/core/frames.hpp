@@ -12,7 +12,7 @@
 /// Every per-taxel vector has the shape [rows, cols], row-major: index = row * cols + col.
 namespace dermis {
 
-/// Time since an arbitrary origin of the source (the first frame, the boot of the device).
+/// Time since an arbitrary origin of the source (the first frame, the boot of the device, 1970).
 using Nanos = std::chrono::nanoseconds;
 
 /// What is known about one taxel of one frame.
@@ -51,12 +51,27 @@ constexpr FrameStatus& operator|=(FrameStatus& a, FrameStatus b) noexcept {
 /// "ok", or the flags joined with '+', as in the status column of forces.csv.
 [[nodiscard]] std::string to_string(FrameStatus status);
 
+/// What the acquisition knows of a frame besides its readings; empty or 0 where the source cannot know it.
+struct Acquisition {
+  std::optional<std::uint64_t> sequence;  ///< The device's number of the frame, counted on where it wraps.
+  std::optional<Nanos> device_time;       ///< The device's clock, counted on where it wraps.
+  Nanos arrival_steady{};                 ///< The host's steady clock when the last byte of the frame had come.
+  Nanos arrival_utc{};                    ///< The host's UTC clock at that moment, since 1970.
+  std::uint32_t lost_before = 0;          ///< Frames known to be lost between the frame before and this one.
+  std::uint32_t held_taxels = 0;  ///< Taxels the device did not send: they hold what both sides predict (WiReSens).
+
+  bool operator==(const Acquisition&) const = default;
+};
+
 /// Unit 1 -> 2. What the device said.
 struct RawFrame {
+  /// When the frame was taken. A device's frames count from 1970 by the host's steady clock, set by UTC once, when the
+  /// source is opened, so that time never goes back; by the device's clock mapped to that one, where there is one.
   Nanos time{};
   std::optional<double> temperature_celsius;  ///< Temperature of the array [C]; empty where the source has none.
   std::optional<double> supply_v;             ///< Measured supply [V], > 0; empty where the source has none.
   std::vector<float> counts;  ///< ADC readings [counts], 0 ... 2^adc_bits - 1; fractional where a source averages.
+  Acquisition acquisition{};
 };
 
 /// Unit 2 -> 3. Validated; the supply is divided out.

@@ -4,6 +4,7 @@
 
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/compensation/line_faults.hpp"
+#include "dermis/compensation/offset_drift.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/force_fusion.hpp"
@@ -27,12 +28,16 @@ class Pipeline {
   [[nodiscard]] preprocessing::Rejection rejection() const noexcept { return conditioner_.rejection(); }
   [[nodiscard]] const compensation::LineFaultMonitor& line_faults() const noexcept { return monitor_; }
 
+  /// Zero is that of the calibration until the drift is followed (set_options) or tared.
+  [[nodiscard]] compensation::OffsetDrift& drift() noexcept { return drift_; }
+
  private:
   Pipeline(const Model& model, compensation::Compensator compensator);
 
   preprocessing::Conditioner conditioner_;
   compensation::Compensator compensator_;
   compensation::LineFaultMonitor monitor_;
+  compensation::OffsetDrift drift_;
   fusion::ForceFusion fusion_;
   ConditionedFrame conditioned_;
   ConductanceFrame conductance_;

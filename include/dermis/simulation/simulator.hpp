@@ -40,7 +40,7 @@ struct SimulationOptions {
 /// drives contacts, supply, temperature and all noise. Not thread-safe: one reader.
 class Simulator final : public FrameSource {
  public:
-  /// `frames`: number of frames of the scenes "multitouch" and "idle". Fails as Scene::create and
+  /// `frames`: number of frames of the scenes "multitouch", "contacts" and "idle". Fails as Scene::create and
   /// ConductiveRubber::create do.
   [[nodiscard]] static Result<std::unique_ptr<Simulator>> create(const ArrayDescription& array,
                                                                  const SimulationOptions& options,
@@ -48,13 +48,14 @@ class Simulator final : public FrameSource {
                                                                  std::optional<std::size_t> frames = {});
 
   [[nodiscard]] Result<bool> next(RawFrame& frame) override;
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return shape_; }
 
   [[nodiscard]] std::size_t frame_count() const noexcept { return scene_.frame_count(); }
 
   /// What a calibration rig would know of the last frame: its lines of loads.csv.
   [[nodiscard]] const std::vector<Load>& loads() const noexcept { return truth_.loads; }
 
-  /// What nobody could know of the last frame: true forces, temperature and supply.
+  /// What nobody could know of the last frame: true forces, contacts, temperature and supply.
   [[nodiscard]] const SceneFrame& truth() const noexcept { return truth_; }
 
   /// True conductances of the last frame [S], [rows, cols].
@@ -64,9 +65,11 @@ class Simulator final : public FrameSource {
   [[nodiscard]] const ConductiveRubber& rubber() const noexcept { return rubber_; }
 
  private:
-  Simulator(Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit, std::optional<FaultyCircuit> faulty,
-            const Readout& readout, const EnvironmentOptions& environment, std::uint64_t seed);
+  Simulator(const FrameShape& shape, Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit,
+            std::optional<FaultyCircuit> faulty, const Readout& readout, const EnvironmentOptions& environment,
+            std::uint64_t seed);
 
+  FrameShape shape_;
   Scene scene_;
   ConductiveRubber rubber_;
   ReadoutCircuit circuit_;

@@ -2,7 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -11,7 +14,8 @@
 namespace dermis::store {
 
 /// A file that appears complete or not at all: the bytes go to a temporary file in the same folder, which commit()
-/// renames over the target. A target that is there and is not a regular file (/dev/stdout, a pipe) is written directly.
+/// renames over the target. A target that is there and is not a regular file (/dev/stdout, a pipe) is written directly,
+/// at least every 50 ms of write().
 /// Not thread-safe.
 class AtomicFile {
  public:
@@ -25,6 +29,10 @@ class AtomicFile {
 
   /// Appends to a buffer of 1 MiB; the first error is kept, and all that follows is dropped.
   void write(std::string_view bytes);
+  /// Writes at a place of the file, counted from its beginning. Fails where the target is written directly.
+  void write_at(std::uint64_t offset, std::string_view bytes);
+  /// Reads back what was written by now; zeros where nothing was.
+  void read_at(std::uint64_t offset, std::span<char> bytes);
   /// The first error, or Done, as far as the buffer was written out.
   [[nodiscard]] Status status() const;
   /// Writes the rest, waits for the disk and renames. To be called once.
@@ -33,6 +41,7 @@ class AtomicFile {
  private:
   AtomicFile(std::string target, std::string temporary, int descriptor);
   void flush();
+  void flush_for_reader();
   void keep_error(int error_number);
   void close();
 
@@ -40,6 +49,7 @@ class AtomicFile {
   std::string temporary_;  ///< Empty where the target is written directly.
   int descriptor_ = -1;
   std::string buffer_;
+  std::chrono::steady_clock::time_point last_flush_{};
   std::optional<Error> first_error_;
 };
 

@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <istream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "dermis/core/frame_sink.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
@@ -26,16 +28,18 @@ struct FramesCsvColumns {
 /// temperature_celsius or supply_v is no value. Errors name the line and the column. Not thread-safe.
 class FramesCsvReader final : public FrameSource {
  public:
-  /// Opens the file and checks its header against an array of rows x cols taxels.
-  [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(const std::string& path, std::size_t rows,
-                                                                     std::size_t cols);
+  /// Opens the file and checks its header: against an array of that shape, or, where none is given, against the shape
+  /// that its last column names (1x1 ... 1024x1024).
+  [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(const std::string& path,
+                                                                     std::optional<FrameShape> shape = {});
   /// The same from a stream; `name` stands for the path in messages.
   [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(std::unique_ptr<std::istream> in,
-                                                                     const std::string& name, std::size_t rows,
-                                                                     std::size_t cols);
+                                                                     const std::string& name,
+                                                                     std::optional<FrameShape> shape = {});
   ~FramesCsvReader() override;
 
   [[nodiscard]] Result<bool> next(RawFrame& frame) override;
+  [[nodiscard]] std::optional<FrameShape> shape() const override;
 
   /// Line of the last frame, from 1 for the header.
   [[nodiscard]] std::size_t line() const noexcept;
@@ -46,20 +50,16 @@ class FramesCsvReader final : public FrameSource {
   std::unique_ptr<State> state_;
 };
 
-/// All frames of a file.
-[[nodiscard]] Result<std::vector<RawFrame>> read_frames(const std::string& path, std::size_t rows, std::size_t cols);
-
-/// Writes frames.csv: exact times, shortest digits that read back as the same number. Not thread-safe.
-class FramesCsvWriter {
+/// Writes frames.csv: exact times, shortest digits that read back as the same number; of what the acquisition knows of
+/// a frame, it keeps nothing. Without commit(), nothing is left behind. Not thread-safe.
+class FramesCsvWriter final : public FrameSink {
  public:
-  [[nodiscard]] static Result<FramesCsvWriter> create(const std::string& path, std::size_t rows, std::size_t cols,
-                                                      const FramesCsvColumns& columns = {});
+  [[nodiscard]] static Result<std::unique_ptr<FramesCsvWriter>> create(const std::string& path, FrameShape shape,
+                                                                       const FramesCsvColumns& columns = {});
 
-  /// Appends a frame of rows * cols counts; values of columns that are not in the file are dropped. Returns the first
-  /// write error as soon as it is known.
-  [[nodiscard]] Status write(const RawFrame& frame);
-  /// Puts the complete file in its place; without it, nothing is left behind.
-  [[nodiscard]] Status commit();
+  /// Appends a frame of `shape`; values of columns that are not in the file are dropped.
+  [[nodiscard]] Status write(const RawFrame& frame) override;
+  [[nodiscard]] Status commit() override;
 
  private:
   FramesCsvWriter(AtomicFile file, std::size_t taxel_count, const FramesCsvColumns& columns);

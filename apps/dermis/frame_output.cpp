@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "frame_output.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+#include <utility>
+
+#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/store/array_toml.hpp"
+#include "dermis/store/content_hash.hpp"
+#include "dermis/store/forces_csv.hpp"
+#include "dermis/store/frame_files.hpp"
+#include "dermis/store/recording.hpp"
+#include "open_source.hpp"
+
+namespace dermis::app {
+namespace {
+
+/// Frames into a recording, each with its forces.
+class RecordingWithForces final : public FrameSink {
+ public:
+  RecordingWithForces(pipeline::Pipeline pipeline, std::unique_ptr<store::RecordingWriter> recording)
+      : pipeline_(std::move(pipeline)), recording_(std::move(recording)) {}
+
+  Status write(const RawFrame& frame) override {
+    pipeline_.process(frame, force_);
+    return recording_->write(frame, force_);
+  }
+  Status commit() override { return recording_->commit(); }
+
+ private:
+  pipeline::Pipeline pipeline_;
+  std::unique_ptr<store::RecordingWriter> recording_;
+  ForceFrame force_;
+};
+
+class ForcesOnly final : public FrameSink {
+ public:
+  ForcesOnly(pipeline::Pipeline pipeline, store::ForcesCsvWriter forces)
+      : pipeline_(std::move(pipeline)), forces_(std::move(forces)) {}
+
+  Status write(const RawFrame& frame) override {
+    pipeline_.process(frame, force_);
+    return forces_.write(force_);
+  }
+  Status commit() override { return forces_.commit(); }
+
+ private:
+  pipeline::Pipeline pipeline_;
+  store::ForcesCsvWriter forces_;
+  ForceFrame force_;
+};
+
+Result<store::FrameNotes> notes_of(const FrameOutput& output) {
+  store::FrameNotes notes = output.notes;
+  if (output.array != nullptr) {
+    notes.name = output.array->name;
+    notes.array_toml = store::array_to_toml(*output.array);
+  }
+  if (output.model != nullptr) {
+    const Result<std::string> hash = store::content_hash(output.model_path);
+    if (!hash) return hash.error();
+    notes.model_hash = *hash;
+  }
+  return notes;
+}
+
+/// A recording that is whole at each moment, whatever happens to the process.
+Result<std::unique_ptr<FrameSink>> create_live_recording(const FrameOutput& output, const FrameShape& shape,
+                                                         const store::FrameNotes& notes) {
+  store::RecordingOptions options;
+  if (!notes.name.empty()) options.name = notes.name;
+  options.array_toml = notes.array_toml;
+  options.model_hash = notes.model_hash;
+  if (output.array != nullptr) options.pitch = {output.array->row_pitch_m, output.array->col_pitch_m};
+  std::optional<pipeline::Pipeline> pipeline;
+  if (output.model != nullptr) {
+    Result<pipeline::Pipeline> created = pipeline::Pipeline::create(*output.model);
+    if (!created) return created.error();
+    pipeline.emplace(std::move(*created));
+  }
+  Result<std::unique_ptr<store::RecordingWriter>> recording =
+      store::RecordingWriter::create(output.path, shape, options);
+  if (!recording) return recording.error();
+  if (!pipeline) return std::unique_ptr<FrameSink>(std::move(*recording));
+  return std::unique_ptr<FrameSink>(std::make_unique<RecordingWithForces>(std::move(*pipeline), std::move(*recording)));
+}
+
+}  // namespace
+
+store::FrameNotes notes_of_source(const std::string& from) {
+  if (is_live(from)) return {};
+  const Result<store::FrameNotes> notes = store::read_frame_notes(from);
+  return notes ? *notes : store::FrameNotes{};
+}
+
+Status check_output(const FrameOutput& output) {
+  const Result<store::FrameFormat> format = store::frame_format(output.path);
+  if (!format) return format.error();
+  if (output.model != nullptr && *format != store::FrameFormat::mcap) {
+    return bad_input("'" + output.path + "': has no place for forces; a recording has: end it in .mcap");
+  }
+  if (::access(output.path.c_str(), F_OK) == 0) return Done{};
+  const std::string folder = std::filesystem::path(output.path).parent_path().string();
+  if (::access(folder.empty() ? "." : folder.c_str(), W_OK) == 0) return Done{};
+  return failed("cannot write '" + output.path + "': " + std::strerror(errno));
+}
+
+Result<std::unique_ptr<FrameSink>> create_recording(const FrameOutput& output, const FrameShape& shape) {
+  if (const Status possible = check_output(output); !possible) return possible.error();
+  const Result<store::FrameNotes> notes = notes_of(output);
+  if (!notes) return notes.error();
+  if (*store::frame_format(output.path) == store::FrameFormat::mcap) {
+    return create_live_recording(output, shape, *notes);
+  }
+  return store::create_frames(output.path, shape, *notes);
+}
+
+Result<std::unique_ptr<FrameSink>> create_forces(const FrameOutput& output) {
+  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*output.model);
+  if (!pipeline) return pipeline.error();
+  Result<store::ForcesCsvWriter> forces =
+      store::ForcesCsvWriter::create(output.path, output.model->array.rows, output.model->array.cols);
+  if (!forces) return forces.error();
+  return std::unique_ptr<FrameSink>(std::make_unique<ForcesOnly>(std::move(*pipeline), std::move(*forces)));
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "dermis/acquisition/recorder.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/store/array_toml.hpp"
+#include "frame_output.hpp"
+#include "live_line.hpp"
+#include "open_source.hpp"
+#include "seconds.hpp"
+#include "stop_flag.hpp"
+
+namespace dermis::app {
+namespace {
+
+struct RecordOptions {
+  std::string from;
+  std::string out;
+  std::string array;
+  std::string model;
+  std::optional<std::uint64_t> frames;
+  std::optional<double> seconds;
+};
+
+/// The array of the frames and what computes their forces, as far as they were given.
+struct Known {
+  std::optional<ArrayDescription> array;
+  std::optional<pipeline::Model> model;
+};
+
+Result<Known> read_known(const RecordOptions& options) {
+  Known known;
+  if (!options.array.empty()) {
+    Result<ArrayDescription> array = store::read_array(options.array);
+    if (!array) return array.error();
+    known.array = std::move(*array);
+  }
+  if (!options.model.empty()) {
+    Result<pipeline::Model> model = pipeline::read_model(options.model);
+    if (!model) return model.error();
+    if (known.array && (known.array->rows != model->array.rows || known.array->cols != model->array.cols)) {
+      return bad_input(fmt::format("{}: is for {}x{} taxels, {} has {}x{}", options.model, model->array.rows,
+                                   model->array.cols, options.array, known.array->rows, known.array->cols));
+    }
+    if (!known.array) known.array = model->array;
+    known.model = std::move(*model);
+  }
+  return known;
+}
+
+std::string with_queue(const acquisition::RecorderProgress& progress) {
+  std::string text = summary(progress.frames, progress.source) + fmt::format(", queue {}", progress.queue.depth);
+  if (progress.queue.waits > 0) text += fmt::format(", waited {} times", progress.queue.waits);
+  return text;
+}
+
+Status record(const RecordOptions& options) {
+  std::atomic<bool>& stop = stop_flag();
+  acquisition::RecorderOptions recorder;
+  recorder.frames = options.frames;
+  recorder.stop = &stop;
+  recorder.source_stops = is_device(options.from);
+  if (options.seconds) {
+    const Result<Nanos> duration = nanos_from_seconds(*options.seconds, "--seconds");
+    if (!duration) return duration.error();
+    recorder.duration = *duration;
+  }
+  const Result<Known> known = read_known(options);
+  if (!known) return known.error();
+  const ArrayDescription* array = known->array ? &*known->array : nullptr;
+  const FrameOutput output{options.out, array, known->model ? &*known->model : nullptr, options.model,
+                           notes_of_source(options.from)};
+  if (Status possible = check_output(output); !possible) return possible;
+  Result<std::unique_ptr<FrameSource>> source = open_source(options.from, array);
+  if (!source) return source.error();
+
+  LiveLine line;
+  recorder.progress = [&](const acquisition::RecorderProgress& progress) { line.show(with_queue(progress)); };
+  acquisition::RecorderProgress last;
+  Status recorded = acquisition::record(
+      **source, [&](const FrameShape& shape) { return create_recording(output, shape); }, recorder, last);
+  line.end();
+  if (last.frames > 0) {
+    std::string sum = options.out + ": " + summary(last.frames, last.source);
+    if (last.queue.waits > 0) {
+      sum += fmt::format("; the device waited {} times, at most {:.0f} ms, for the {}", last.queue.waits,
+                         1e3 * std::chrono::duration<double>(last.queue.longest_wait).count(),
+                         known->model ? "model or the disk" : "disk");
+    }
+    say(sum);
+  }
+  if (recorded && last.frames == 0)
+    return failed("'" + options.from + "': not a single frame came: nothing is recorded");
+  return recorded;
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, Action& action) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App* command = app.add_subcommand("record", "Record a device, or anything else that gives frames");
+  command->add_option("--from", options->from, "URI of a device or of the simulator (docs/devices.md), or a file")
+      ->required();
+  command->add_option("--out", options->out, "Recording to write: .mcap, or another format of frames")->required();
+  command->add_option("--array", options->array, "array.toml, to keep with the frames");
+  command->add_option("--model", options->model, "Record the forces of this model, too");
+  auto* frames = command->add_option("--frames", options->frames, "Stop after so many frames")->check(not_negative);
+  command
+      ->add_option("--seconds", options->seconds,
+                   "Stop so long after the first frame, or after the start where none comes [s]")
+      ->excludes(frames);
+  command->callback([&action, options] { action = [options] { return record(*options); }; });
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/store/frame_files.hpp"
+#include "frame_output.hpp"
+#include "open_source.hpp"
+#include "pacer.hpp"
+#include "stop_flag.hpp"
+
+namespace dermis::app {
+namespace {
+
+struct ReplayOptions {
+  std::string recording;
+  double speed = 1.0;
+  std::string model;
+  std::string out = "/dev/stdout";
+};
+
+Result<std::unique_ptr<FrameSink>> create_sink(const FrameOutput& output, const FrameShape& shape) {
+  const Result<store::FrameFormat> format = store::frame_format(output.path);
+  if (!format) return format.error();
+  const bool is_table = *format == store::FrameFormat::csv;
+  return output.model != nullptr && is_table ? create_forces(output) : create_recording(output, shape);
+}
+
+/// Frame times of the recording -> moments of the replay.
+class Tempo {
+ public:
+  Tempo(double speed, Nanos first_time, const std::atomic<bool>* stop)
+      : speed_(speed), first_time_(first_time), pacer_(stop), stop_(stop) {}
+
+  /// False where it is to stop.
+  bool wait_for(Nanos time) {
+    if (!(speed_ > 0.0)) return !stop_->load();
+    return pacer_.wait_until(span(first_time_, time, speed_));
+  }
+
+ private:
+  double speed_;
+  Nanos first_time_;
+  Pacer pacer_;
+  const std::atomic<bool>* stop_;
+};
+
+Status replay(const ReplayOptions& options) {
+  const bool is_pace = options.speed >= 1e-3 && options.speed <= 1e6;
+  if (!is_pace && options.speed != 0.0) {
+    return bad_input("--speed: must be 0 (as fast as it goes), or 0.001 to 1e6 times the recorded one");
+  }
+  std::optional<pipeline::Model> model;
+  if (!options.model.empty()) {
+    Result<pipeline::Model> read = pipeline::read_model(options.model);
+    if (!read) return read.error();
+    model = std::move(*read);
+  }
+  const ArrayDescription* array = model ? &model->array : nullptr;
+  Result<std::unique_ptr<FrameSource>> source = open_source(options.recording, array);
+  if (!source) return source.error();
+  RawFrame frame;
+  Result<bool> more = (*source)->next(frame);
+  if (!more) return more.error();
+  if (!*more) return bad_input("'" + options.recording + "': has no frame to replay");
+
+  const FrameOutput output{options.out, array, model ? &*model : nullptr, options.model,
+                           notes_of_source(options.recording)};
+  Result<std::unique_ptr<FrameSink>> sink = create_sink(output, *(*source)->shape());
+  if (!sink) return sink.error();
+  Tempo tempo(options.speed, frame.time, &stop_flag());
+  while (more && *more && tempo.wait_for(frame.time)) {
+    if (Status written = (*sink)->write(frame); !written) return written;
+    more = (*source)->next(frame);
+  }
+  if (!more) return more.error();
+  return (*sink)->commit();
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, Action& action) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = app.add_subcommand("replay", "Play a recording at the pace of its frames, as counts or newtons");
+  command->add_option("recording", options->recording, "Recording (.mcap) or another file of frames")->required();
+  command->add_option("--speed", options->speed, "Times the recorded pace; 0: as fast as it goes")
+      ->capture_default_str();
+  command->add_option("--model", options->model, "Model file: replays the forces");
+  command->add_option("--out", options->out, "frames.csv, or forces.csv with --model; or .mcap")->capture_default_str();
+  command->callback([&action, options] { action = [options] { return replay(*options); }; });
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "dermis/compensation/line_faults.hpp"
+#include "serve/serve_session.hpp"
+
+namespace dermis::app {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+double seconds(Nanos span) {
+  return std::chrono::duration<double>(span).count();
+}
+
+messages::ArrayStatistics statistics_of(const std::string& name, const live::ArrayStatistics& array) {
+  messages::ArrayStatistics out;
+  out.name = name;
+  out.ended = array.ended;
+  out.error = array.error;
+  out.frames = array.frames;
+  out.rejected = array.rejected;
+  out.lost = array.source.lost_frames;
+  out.damaged = array.source.damaged_frames;
+  out.rate_hz = array.source.rate_hz;
+  out.jitter_s = seconds(array.source.jitter);
+  out.latency_p50_s = array.latency_p50 > Nanos{} ? seconds(array.latency_p50) : kUnknown;
+  out.latency_p99_s = array.latency_p99 > Nanos{} ? seconds(array.latency_p99) : kUnknown;
+  out.temperature_celsius = array.temperature_celsius.value_or(kUnknown);
+  out.supply_v = array.supply_v.value_or(kUnknown);
+  return out;
+}
+
+messages::Diagnosis diagnose(const std::string& name, const pipeline::Model& model,
+                             const live::ArrayStatistics& statistics) {
+  messages::Diagnosis diagnosis;
+  diagnosis.name = name;
+  diagnosis.hardware_id = model.array.name;
+  for (const compensation::LineFault& fault : statistics.faults) {
+    diagnosis.values.emplace_back(compensation::place_name(fault, model.array), compensation::to_string(fault.kind));
+  }
+  std::string dead;
+  for (std::size_t k = 0; k < model.networks.taxel_count(); ++k) {
+    if (model.networks.dead[k] != 0) dead += (dead.empty() ? "" : " ") + model.array.taxel_name(k);
+  }
+  if (!dead.empty()) diagnosis.values.emplace_back("dead since calibration", dead);
+  if (!statistics.error.empty()) {
+    diagnosis.level = messages::Diagnosis::Level::error;
+    diagnosis.message = statistics.error;
+  } else if (statistics.ended) {
+    diagnosis.level = messages::Diagnosis::Level::stale;
+    diagnosis.message = "the source has ended";
+  } else if (!statistics.faults.empty()) {
+    diagnosis.level = messages::Diagnosis::Level::warning;
+    diagnosis.message = fmt::format("{} fault{}", statistics.faults.size(), statistics.faults.size() == 1 ? "" : "s");
+  } else {
+    diagnosis.message = dead.empty() ? "healthy" : "dead taxels";
+  }
+  return diagnosis;
+}
+
+messages::CalibrationState state_of(CalibrationProgress progress) {
+  messages::CalibrationState state;
+  calibration::GuideState& guide = progress.state;
+  state.array = std::move(progress.array);
+  state.stage = static_cast<messages::CalibrationState::Stage>(guide.stage);
+  state.message = std::move(guide.message);
+  state.taxel = static_cast<std::uint32_t>(guide.taxel);
+  state.weight_n = guide.weight_n;
+  state.reading = guide.reading;
+  state.hold_share = guide.hold_share;
+  state.presses_done = static_cast<std::uint32_t>(guide.presses_done);
+  state.presses_total = static_cast<std::uint32_t>(guide.presses_total);
+  state.median_relative_error = guide.median_relative_error.value_or(kUnknown);
+  state.taxel_presses = std::move(guide.taxel_presses);
+  state.hint = static_cast<std::uint8_t>(guide.hint);
+  if (guide.pressed_taxel) state.pressed_taxel = static_cast<std::uint32_t>(*guide.pressed_taxel);
+  state.unpressed_relative_error = guide.unpressed_relative_error.value_or(kUnknown);
+  return state;
+}
+
+}  // namespace
+
+void ServeSession::publish(stream::ChannelId channel) {
+  server_->publish(channel, now(), message_);
+}
+
+void ServeSession::publish_statistics() {
+  if (!server_->has_subscribers(channels_.statistics)) return;
+  messages::Statistics statistics;
+  statistics.time = now();
+  for (std::size_t k = 0; k < suit_.arrays.size(); ++k) {
+    statistics.arrays.push_back(statistics_of(suit_.arrays[k].name, live_->statistics(k)));
+  }
+  statistics.recording = recorder_.recording();
+  statistics.recording_file = recorder_.path();
+  statistics.recording_frames = recorder_.frames();
+  const stream::ServerStatistics server = server_->statistics();
+  statistics.clients = static_cast<std::uint32_t>(server.clients);
+  statistics.client_drops = server.dropped;
+  messages::encode_statistics(statistics, kSuitFrame, message_);
+  publish(channels_.statistics);
+}
+
+void ServeSession::publish_health() {
+  if (!server_->has_subscribers(channels_.health)) return;
+  std::vector<messages::Diagnosis> diagnoses;
+  for (std::size_t k = 0; k < suit_.arrays.size(); ++k) {
+    diagnoses.push_back(diagnose(suit_.arrays[k].name, *model(k), live_->statistics(k)));
+  }
+  messages::encode_diagnostics(diagnoses, now(), kSuitFrame, message_);
+  publish(channels_.health);
+}
+
+void ServeSession::publish_transforms() {
+  if (!server_->has_subscribers(channels_.transforms)) return;
+  std::vector<messages::Transform> transforms;
+  for (const ServedArray& array : suit_.arrays) transforms.push_back({kSuitFrame, array.name, array.suit_from_array});
+  messages::encode_transforms(transforms, now(), message_);
+  publish(channels_.transforms);
+}
+
+void ServeSession::publish_calibration() {
+  if (!server_->has_subscribers(channels_.calibration)) return;
+  std::optional<CalibrationProgress> progress = calibration_->progress();
+  if (!progress) return;
+  messages::CalibrationState state = state_of(*std::move(progress));
+  state.time = now();
+  messages::encode_calibration_state(state, kSuitFrame, message_);
+  publish(channels_.calibration);
+}
+
+/// The clock of a recording, ten times a second while it runs and once when it stands still.
+void ServeSession::publish_playback() {
+  if (!suit_.playback) return;
+  const live::PlaybackStatus status = suit_.playback->status();
+  const bool changed =
+      status.now != last_playback_.now || status.state != last_playback_.state || status.speed != last_playback_.speed;
+  if (changed) server_->playback_changed(playback_state(status, false));
+  last_playback_ = status;
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+
+#include "array_view.hpp"
+#include "commands.hpp"
+#include "open_source.hpp"
+#include "pacer.hpp"
+#include "stop_flag.hpp"
+#include "top_screen.hpp"
+
+namespace dermis::app {
+namespace {
+
+constexpr std::chrono::milliseconds kRedrawTime{50};
+
+struct TopOptions {
+  std::string from;
+  std::string model;
+  std::optional<double> high;
+};
+
+TerminalColours colours_of_terminal() {
+  const auto value = [](const char* name) {
+    const char* const text = std::getenv(name);
+    return std::string_view(text == nullptr ? "" : text);
+  };
+  const std::string_view term = value("TERM");
+  if (!value("NO_COLOR").empty() || term.empty() || term == "dumb") return TerminalColours::without;
+  if (value("COLORTERM") == "truecolor" || value("COLORTERM") == "24bit") return TerminalColours::rgb;
+  return term.find("256color") == std::string_view::npos ? TerminalColours::without : TerminalColours::cube;
+}
+
+TerminalSize size_of_terminal() {
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || size.ws_col == 0) return {};
+  return {size.ws_row, size.ws_col};
+}
+
+/// False where the terminal has gone.
+bool put(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(STDOUT_FILENO, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
+  }
+  return true;
+}
+
+/// The terminal's other screen, without cursor; its own comes back at the end.
+class OtherScreen {
+ public:
+  OtherScreen() { put("\x1b[?1049h\x1b[?25l\x1b[2J"); }
+  OtherScreen(const OtherScreen&) = delete;
+  OtherScreen& operator=(const OtherScreen&) = delete;
+  ~OtherScreen() { put("\x1b[0m\x1b[?25h\x1b[?1049l"); }
+};
+
+/// Reads frames on a thread of its own, so that the screen follows the terminal while none comes.
+class Watcher {
+ public:
+  Watcher(ArrayView& view, const TopOptions& options) : view_(view), options_(options), thread_([this] { run(); }) {}
+  Watcher(const Watcher&) = delete;
+  Watcher& operator=(const Watcher&) = delete;
+  ~Watcher() {
+    stop_flag().store(true);
+    thread_.join();
+  }
+
+  [[nodiscard]] TopState state() const {
+    const std::scoped_lock lock(mutex_);
+    return state_;
+  }
+  [[nodiscard]] Status status() const {
+    const std::scoped_lock lock(mutex_);
+    return status_;
+  }
+
+ private:
+  void run() {
+    Pacer pacer(&stop_flag());
+    std::optional<Nanos> first;
+    while (!stop_flag().load()) {
+      const Result<bool> more = view_.next();
+      if (!more || !*more) {
+        const std::scoped_lock lock(mutex_);
+        if (!more) status_ = more.error();
+        state_.has_ended = true;
+        return;
+      }
+      if (!first) first = view_.raw().time;
+      if (!is_live(options_.from) && !pacer.wait_until(span(*first, view_.raw().time))) return;
+      take();
+    }
+  }
+
+  /// The scale grows where it must, and never shrinks.
+  void take() {
+    largest_ = std::max(largest_, largest_of(view_.values()));
+    const std::scoped_lock lock(mutex_);
+    state_.name = view_.name();
+    state_.unit = view_.unit();
+    state_.shape = view_.shape();
+    state_.values = view_.values();
+    state_.high = options_.high.value_or(view_.scale(largest_));
+    state_.has_contacts = view_.has_model();
+    state_.report = view_.contacts();
+    state_.statistics = view_.statistics();
+  }
+
+  ArrayView& view_;
+  const TopOptions& options_;
+  double largest_ = 0.0;
+  mutable std::mutex mutex_;  ///< Of the next two.
+  TopState state_;
+  Status status_ = Done{};
+  std::thread thread_;
+};
+
+Status show(ArrayView& view, const TopOptions& options) {
+  const TerminalColours colours = colours_of_terminal();
+  const OtherScreen screen;
+  const Watcher watcher(view, options);
+  while (!stop_flag().load()) {
+    const TopState state = watcher.state();
+    const std::string picture =
+        state.values.empty() ? "waiting for the first frame\x1b[K" : top_screen(state, size_of_terminal(), colours);
+    if (!put("\x1b[H" + picture + "\x1b[J")) break;
+    if (Status status = watcher.status(); !status) return status;
+    std::this_thread::sleep_for(kRedrawTime);
+  }
+  return Done{};
+}
+
+Status top(const TopOptions& options) {
+  if (::isatty(STDOUT_FILENO) == 0) {
+    return bad_input("top: the standard output is no terminal; 'dermis image' draws files, 'dermis run' writes tables");
+  }
+  if (options.high && !(*options.high > 0.0 && std::isfinite(*options.high))) {
+    return bad_input("--high: must be more than 0");
+  }
+  static_cast<void>(stop_flag());  // from here on, Ctrl-C ends the show and not the process
+  const Result<std::unique_ptr<ArrayView>> view = ArrayView::open(options.from, options.model);
+  if (!view) return view.error();
+  return show(**view, options);
+}
+
+}  // namespace
+
+void add_top(CLI::App& app, Action& action) {
+  auto options = std::make_shared<TopOptions>();
+  CLI::App* command = app.add_subcommand("top", "A live heat map in the terminal, until Ctrl-C");
+  command->add_option("--from", options->from, "URI of a device or of the simulator, or a recording")->required();
+  command->add_option("--model", options->model, "Model file: shows newtons and contacts instead of counts");
+  command->add_option("--high", options->high,
+                      "End of the colour scale [N, or counts]; without it, one that has covered all so far");
+  command->callback([&action, options] { action = [options] { return top(*options); }; });
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+
+// Bytes of devices to frames, one thread: what a decoder takes a second, in pieces as a serial port gives them at most.
+// Readings are random in 0 ... 199, which all protocols carry; half of the bytes of 16-bit readings are then zeros,
+// which is the hardest for the stuffing of the protocol dermis. Beside it what copying the same bytes takes.
+#include <benchmark/benchmark.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "dermis/acquisition/protocol.hpp"
+#include "dermis/core/random.hpp"
+#include "rows.hpp"
+
+namespace dermis {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kBytes = std::size_t{1} << 22U;
+
+struct Stream {
+  FrameShape shape;
+  std::vector<RawFrame> frames;
+  std::vector<std::uint8_t> bytes;
+};
+
+/// 32x32, or what the protocol has.
+Stream make_stream(const std::string& protocol) {
+  Stream stream;
+  std::unique_ptr<acquisition::Encoder> encoder;
+  for (const FrameShape& shape :
+       {FrameShape{32, 32}, FrameShape{16, 16}, FrameShape{56, 28}, FrameShape{24, 32}, FrameShape{1, 64}}) {
+    auto made = acquisition::make_encoder({.name = protocol, .shape = shape});
+    if (!made) continue;
+    stream.shape = shape;
+    encoder = std::move(made).value();
+    break;
+  }
+  if (!encoder) std::abort();
+  Random random(1);
+  while (stream.bytes.size() < kBytes) {
+    RawFrame& frame = stream.frames.emplace_back();
+    frame.counts.resize(stream.shape.taxel_count());
+    for (float& count : frame.counts) count = static_cast<float>(random.below(200));
+    encoder->encode(frame, stream.bytes);
+  }
+  encoder->finish(stream.bytes);
+  return stream;
+}
+
+/// Calls `take` with each frame.
+template <typename Take>
+void decode(const std::string& protocol, const Stream& stream, Take take) {
+  const auto decoder = acquisition::make_decoder({.name = protocol, .shape = stream.shape});
+  RawFrame frame;
+  std::span<const std::uint8_t> bytes = stream.bytes;
+  while (!bytes.empty()) {
+    const std::size_t size = std::min<std::size_t>(bytes.size(), 4096);
+    (*decoder)->push(bytes.first(size));
+    bytes = bytes.subspan(size);
+    while ((*decoder)->next(frame)) take(frame);
+  }
+  (*decoder)->finish();
+  while ((*decoder)->next(frame)) take(frame);
+}
+
+bool decodes_all(const std::string& protocol, const Stream& stream) {
+  std::size_t k = 0;
+  bool all_equal = true;
+  decode(protocol, stream, [&](const RawFrame& frame) {
+    all_equal = all_equal && k < stream.frames.size() && frame.counts == stream.frames[k].counts;
+    ++k;
+  });
+  return all_equal && k == stream.frames.size();
+}
+
+/// Reports the median speed of work(), which takes all bytes of the stream.
+template <typename Work>
+void measure(benchmark::State& state, const Stream& stream, bool checked, Work work) {
+  std::vector<double> speeds;
+  for (auto _ : state) {
+    const auto start = Clock::now();
+    work();
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    state.SetIterationTime(seconds);
+    speeds.push_back(1e-6 * static_cast<double>(stream.bytes.size()) / seconds);
+  }
+  std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2), speeds.end());
+  state.counters["median"] = speeds[speeds.size() / 2];
+  state.counters["checked"] = checked ? 1 : 0;
+}
+
+void register_protocol(const std::string& protocol) {
+  const auto decoding = [protocol](benchmark::State& state) {
+    const Stream stream = make_stream(protocol);
+    float last = 0.0F;
+    measure(state, stream, decodes_all(protocol, stream), [&] {
+      decode(protocol, stream, [&](const RawFrame& frame) { last = frame.counts.back(); });
+      benchmark::DoNotOptimize(last);
+    });
+  };
+  const auto copying = [protocol](benchmark::State& state) {
+    const Stream stream = make_stream(protocol);
+    std::vector<std::uint8_t> copy(stream.bytes.size());
+    measure(state, stream, true, [&] {
+      std::memcpy(copy.data(), stream.bytes.data(), copy.size());
+      benchmark::DoNotOptimize(copy.data());
+    });
+  };
+  benchmark::RegisterBenchmark(("decode_" + protocol + "|dermis").c_str(), decoding)->UseManualTime();
+  benchmark::RegisterBenchmark(("decode_" + protocol + "|memcpy").c_str(), copying)->UseManualTime();
+}
+
+/// Prints a line a benchmark and keeps the rows of the JSON file.
+class TableReporter final : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(const Context&) override {
+    fmt::print("one thread\n{:<24}{:<10}{:>10}{:>9}\n", "work", "engine", "MB/s", "checked");
+    return true;
+  }
+
+  void ReportRuns(const std::vector<Run>& runs) override {
+    for (const Run& run : runs) report(run);
+  }
+
+  [[nodiscard]] const nlohmann::ordered_json& rows() const { return rows_; }
+
+ private:
+  void report(const Run& run) {
+    const std::string& name = run.run_name.function_name;
+    const std::string work = name.substr(0, name.find('|'));
+    const std::string engine = name.substr(name.find('|') + 1);
+    const double median = run.counters.at("median").value;
+    const bool checked = run.counters.at("checked").value == 1.0;
+    fmt::print("{:<24}{:<10}{:>10.0f}{:>9}\n", work, engine, median, checked ? "yes" : "NO");
+    rows_.push_back({{"work", work},
+                     {"engine", engine},
+                     {"threads", 1},
+                     {"median", median},
+                     {"unit", "MB/s"},
+                     {"checked", checked}});
+  }
+
+  nlohmann::ordered_json rows_ = nlohmann::ordered_json::array();
+};
+
+}  // namespace
+}  // namespace dermis
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  for (const std::string& protocol : dermis::acquisition::protocol_names()) {
+    if (protocol != "auto") dermis::register_protocol(protocol);
+  }
+  dermis::TableReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return dermis::benchmarks::write_rows("acquisition", reporter.rows()) ? 0 : 1;
+}

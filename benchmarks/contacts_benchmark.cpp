@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+
+// Time of one frame, one thread, counts to contacts: the pipeline and a ContactTracker on the simulator's scene
+// `contacts`, with a model of the scene `calibration`; and the tracker alone.
+#include <benchmark/benchmark.h>
+
+#include <chrono>
+
+#include "dermis/calibration/calibrate.hpp"
+#include "dermis/fusion/contact.hpp"
+#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/simulation/simulator.hpp"
+#include "frame_times.hpp"
+#include "rows.hpp"
+
+namespace dermis {
+namespace {
+
+struct Recording {
+  std::vector<RawFrame> frames;
+  std::vector<Load> loads;
+};
+
+Recording record(const ArrayDescription& array, std::string_view scene) {
+  auto simulator = simulation::Simulator::create(array, {}, scene, 1);
+  Recording recording;
+  RawFrame frame;
+  while (*simulator.value()->next(frame)) {
+    recording.frames.push_back(frame);
+    recording.loads.insert(recording.loads.end(), simulator.value()->loads().begin(), simulator.value()->loads().end());
+  }
+  return recording;
+}
+
+/// The scene with contacts, and what the pipeline makes of it.
+struct Scene {
+  explicit Scene(std::size_t lines) : array(benchmarks::square_array(lines)), frames(record(array, "contacts").frames) {
+    const Recording presses = record(array, "calibration");
+    model = calibration::calibrate(array, presses.frames, presses.loads).value().model;
+  }
+  ArrayDescription array;
+  std::vector<RawFrame> frames;
+  pipeline::Model model;
+};
+
+const Scene& scene() {
+  static const Scene kScene(16);
+  return kScene;
+}
+
+void counts_to_contacts(benchmark::State& state) {
+  std::vector<RawFrame> frames = scene().frames;
+  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(scene().model);
+  fusion::ContactTracker tracker(scene().array);
+  ForceFrame force;
+  ContactReport report;
+  Nanos time{0};
+  std::size_t contacts = 0;
+  benchmarks::measure_frames(state, frames.size(), [&](std::size_t k) {
+    frames[k].time = time += std::chrono::milliseconds(10);
+    pipeline->process(frames[k], force);
+    tracker.process(force, report);
+    contacts += report.contacts.size();
+  });
+  state.counters["checked"] = contacts > 0 ? 1 : 0;
+}
+
+void newtons_to_contacts(benchmark::State& state) {
+  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(scene().model);
+  std::vector<ForceFrame> forces(scene().frames.size());
+  for (std::size_t k = 0; k < forces.size(); ++k) pipeline->process(scene().frames[k], forces[k]);
+  fusion::ContactTracker tracker(scene().array);
+  ContactReport report;
+  Nanos time{0};
+  std::size_t contacts = 0;
+  benchmarks::measure_frames(state, forces.size(), [&](std::size_t k) {
+    forces[k].time = time += std::chrono::milliseconds(10);
+    tracker.process(forces[k], report);
+    contacts += report.contacts.size();
+  });
+  state.counters["checked"] = contacts > 0 ? 1 : 0;
+}
+
+BENCHMARK(counts_to_contacts)->Name("frame: counts to contacts|dermis")->Arg(16)->UseManualTime();
+BENCHMARK(newtons_to_contacts)->Name("frame: newtons to contacts|dermis")->Arg(16)->UseManualTime();
+
+}  // namespace
+}  // namespace dermis
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  dermis::benchmarks::FrameTimesReporter reporter("one thread; scene contacts: up to five at once, 8-30 mm, 2-50 N");
+  benchmark::RunSpecifiedBenchmarks(&reporter);
+  return dermis::benchmarks::write_rows("contacts", reporter.rows()) ? 0 : 1;
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <cstdint>
+#include <sstream>
+
+#include "check_error.hpp"
+#include "dermis/store/npy.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  auto bytes = std::make_unique<std::istringstream>(std::string(reinterpret_cast<const char*>(data), size));
+  const auto reader = dermis::store::NpyReader::open(std::move(bytes), "fuzz", {100.0, {}});
+  if (!reader) {
+    dermis::fuzz::check_error(reader.error());
+    return 0;
+  }
+  const std::size_t taxels = (*reader)->shape()->taxel_count();
+  dermis::RawFrame frame;
+  while (true) {
+    const dermis::Result<bool> got_frame = (*reader)->next(frame);
+    if (!got_frame) dermis::fuzz::check_error(got_frame.error());
+    if (!got_frame || !*got_frame) return 0;
+    if (frame.counts.size() != taxels) std::abort();
+  }
+}

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <cstdint>
+#include <cstdlib>
+#include <span>
+
+#include "dermis/messages/ros_messages.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  namespace messages = dermis::messages;
+  const std::span<const std::uint8_t> message(data, size);
+  dermis::RawFrame frame;
+  if (const auto shape = messages::decode_image(message, frame)) {
+    if (frame.counts.size() != shape->taxel_count()) std::abort();
+  }
+  dermis::ForceFrame force;
+  if (const auto shape = messages::decode_grid(message, force)) {
+    if (force.newtons.size() != shape->taxel_count() || force.taxels.size() != shape->taxel_count()) std::abort();
+  }
+  static_cast<void>(messages::decode_acquisition(message, frame));
+  static_cast<void>(messages::decode_temperature(message));
+  static_cast<void>(messages::decode_frame_status(message, force));
+  return 0;
+}

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "dermis/acquisition/source_uri.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::acquisition {
+
+/// Bytes to and from a device, by any transport. No call takes longer than the time it is given. Not thread-safe.
+class ByteStream {
+ public:
+  enum class End {
+    none,    ///< There may be more.
+    closed,  ///< The other side closed in an orderly way; the end of a file.
+    lost,    ///< Unplugged, reset: closed as well, but nobody meant it.
+  };
+  struct Transferred {
+    std::size_t bytes = 0;
+    End end = End::none;
+  };
+
+  ByteStream() = default;
+  ByteStream(const ByteStream&) = delete;
+  ByteStream& operator=(const ByteStream&) = delete;
+  virtual ~ByteStream() = default;
+
+  /// Opens, or opens again what has ended. False: nobody has connected yet (tcp-listen, pty); to be called again.
+  /// Errors name the place and the mend.
+  [[nodiscard]] virtual Result<bool> open(Nanos timeout) = 0;
+
+  /// Reads what is there, or waits for it.
+  [[nodiscard]] virtual Transferred read(std::span<std::uint8_t> into, Nanos timeout) = 0;
+
+  /// Writes what the other side takes within the time.
+  [[nodiscard]] virtual Transferred write(std::span<const std::uint8_t> bytes, Nanos timeout) = 0;
+
+  /// What was opened, for people: "/dev/ttyACM0", "127.0.0.1:7000", the name of a new pty.
+  [[nodiscard]] virtual std::string name() const = 0;
+};
+
+/// The stream of a URI of parse_source_uri(), not yet open; not of a simulation. udp: receives on host and port.
+[[nodiscard]] Result<std::unique_ptr<ByteStream>> make_source_stream(const SourceUri& uri);
+
+/// The stream of a URI of parse_target_uri(), not yet open, to play a device. udp: sends to host and port.
+[[nodiscard]] Result<std::unique_ptr<ByteStream>> make_target_stream(const SourceUri& uri);
+
+}  // namespace dermis::acquisition

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::acquisition {
+
+/// What a decoder has made of the bytes so far.
+struct DecoderCounts {
+  std::uint64_t frames = 0;          ///< Delivered.
+  std::uint64_t lost_frames = 0;     ///< Gaps in the numbers of the device.
+  std::uint64_t damaged_frames = 0;  ///< Recognised and dropped: checksum, length or content cannot be right.
+  std::uint64_t skipped_bytes = 0;   ///< Bytes that belong to no delivered frame, those of damaged frames included.
+
+  bool operator==(const DecoderCounts&) const = default;
+};
+
+/// The bytes of one device -> frames. A pure function of the bytes: frames and counts do not depend on how the bytes
+/// are cut into pieces. Bytes may be anything; memory stays bounded (a few frames). After bytes were dropped, inserted
+/// or flipped, at most two frames besides the damaged ones pass before frames are delivered again.
+/// Not thread-safe.
+class Decoder {
+ public:
+  Decoder() = default;
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
+  virtual ~Decoder() = default;
+
+  /// Takes the next bytes of the stream, at most kMaxPush; next() is to be called until it returns false before more.
+  virtual void push(std::span<const std::uint8_t> bytes) = 0;
+  static constexpr std::size_t kMaxPush = 65536;
+
+  /// Fills counts, temperature, supply and of `frame.acquisition` sequence, device_time, lost_before and held_taxels;
+  /// time and arrivals are left to the caller. Returns false where the bytes so far hold no further whole frame.
+  /// Allocates nothing after the first frame.
+  [[nodiscard]] virtual bool next(RawFrame& frame) = 0;
+
+  /// No byte has come for a while (100 ms): next() delivers a whole frame that only waits for what follows it; one that
+  /// is cut stays. What is learnt from pauses between lines of text depends on them too.
+  virtual void idle() {}
+
+  /// The stream ended or was interrupted here: next() delivers the frame that only waited for what follows it, if
+  /// there is one; a frame that is cut is dropped. What was learnt (size, offsets) stays; push() may go on.
+  virtual void finish() = 0;
+
+  /// Number of bytes pushed since the beginning up to and including the last byte of the last frame of next().
+  [[nodiscard]] virtual std::uint64_t frame_end() const noexcept = 0;
+
+  /// Shape of the frames; empty until it is known.
+  [[nodiscard]] virtual std::optional<FrameShape> shape() const noexcept = 0;
+
+  [[nodiscard]] virtual const DecoderCounts& counts() const noexcept = 0;
+
+  /// Bytes that the device waits for before it sends its next frame; to be sent when a connection opens, after each
+  /// frame, and again after a second of silence. Empty for devices that send on their own, and while they do.
+  [[nodiscard]] virtual std::string_view request() const noexcept { return {}; }
+
+  /// The name of the protocol that "auto" has recognised; empty until then, and for decoders of one protocol.
+  [[nodiscard]] virtual std::string_view recognised() const noexcept { return {}; }
+};
+
+}  // namespace dermis::acquisition

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/acquisition/decoder.hpp"
+#include "dermis/acquisition/encoder.hpp"
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::acquisition {
+
+/// A device protocol and what may be said of it beforehand; docs/devices.md describes each.
+struct ProtocolOptions {
+  std::string name = "auto";           ///< One of protocol_names(): flexitac, 3dvitac, wiresens, ... or auto.
+  std::optional<FrameShape> shape{};   ///< Empty: the protocol's own or learnt from the bytes. 1x1 ... 1024x1024.
+  std::size_t nodes_per_packet = 120;  ///< wiresens: readings in a packet, 1 ... 32767.
+  bool delimited = true;               ///< wiresens: "wr" ends a packet (serial); false: bare packets (TCP, UDP).
+  int bit_shift = 5;                   ///< stag: bits of the low byte of a reading, 5 or 6.
+  bool datagrams = false;  ///< Frames may come late or twice (UDP): by number, where they have one, dropped.
+};
+
+/// "flexitac", "3dvitac", ..., and "auto" at the end.
+[[nodiscard]] const std::vector<std::string>& protocol_names();
+
+/// Fails on an unknown name (with the nearest known one), and on shapes or options that the protocol cannot have.
+[[nodiscard]] Result<std::unique_ptr<Decoder>> make_decoder(const ProtocolOptions& options);
+
+/// The same; `shape` is required, and "auto" cannot be encoded.
+[[nodiscard]] Result<std::unique_ptr<Encoder>> make_encoder(const ProtocolOptions& options);
+
+/// What bytes look like, as a protocol name, by which decoder finds the most frames in them; empty where none does.
+[[nodiscard]] std::string recognise_protocol(std::span<const std::uint8_t> bytes);
+
+}  // namespace dermis::acquisition

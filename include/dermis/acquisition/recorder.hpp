@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "dermis/acquisition/frame_queue.hpp"
+#include "dermis/core/frame_sink.hpp"
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::acquisition {
+
+struct RecorderProgress {
+  std::uint64_t frames = 0;   ///< Written.
+  SourceStatistics source{};  ///< Rate, lost, damaged.
+  QueueStatistics queue{};    ///< Depth and back-pressure.
+};
+
+struct RecorderOptions {
+  std::optional<std::uint64_t> frames{};  ///< Stop after so many.
+  std::optional<Nanos>
+      duration{};  ///< Stop so long after the first frame by frame times; after the begin where none comes.
+  /// Set: stop after the frame that is being read. The source watches the same flag, so record() sets it when the
+  /// duration is over and the device silent.
+  std::atomic<bool>* stop = nullptr;
+  bool source_stops =
+      false;  ///< By the flag, when it has given what it had received until then: record() waits for it.
+  std::size_t queue_frames = 256;  ///< Frames that may wait for the sink; fewer of large ones.
+  std::function<void(const RecorderProgress&)>
+      progress{};  ///< Called twice a second on the writing thread; must not throw.
+};
+
+/// Makes the sink for frames of a shape.
+using OpenSink = std::function<Result<std::unique_ptr<FrameSink>>(const FrameShape&)>;
+
+/// Source -> sink, losing nothing: frames are read on the thread of the caller and written on one of its own, with a
+/// queue between them. The sink is made as soon as the shape is known: at once, or with the first frame; a source
+/// without frames and shape leaves none. Ends at the end of the source, by the options, or with the first error of
+/// source or sink, which is returned; what was read until then is written and the sink committed in every case, unless
+/// there was nothing. `last` holds what was done in either case.
+[[nodiscard]] Status record(FrameSource& source, const OpenSink& open_sink, const RecorderOptions& options,
+                            RecorderProgress& last);
+
+}  // namespace dermis::acquisition

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "dermis/acquisition/protocol.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::acquisition {
+
+/// How the bytes of a device come (docs/devices.md).
+enum class Transport {
+  serial,           ///< serial:///dev/ttyACM0
+  tcp,              ///< tcp://host:port, the device listens
+  tcp_listen,       ///< tcp-listen://127.0.0.1:7000, the device connects
+  udp,              ///< udp://0.0.0.0:9000
+  standard_input,   ///< stdin:
+  file,             ///< file:/path, bytes of a device
+  simulation,       ///< sim:SCENE, frames of the simulator
+  pseudo_terminal,  ///< pty:, only to send: a serial device that does not exist
+  standard_output,  ///< stdout:, only to send
+};
+
+/// A URI taken apart. What a parameter does not say has its default; a parameter that does not suit the transport is an
+/// error of the parser.
+struct SourceUri {
+  std::string text;  ///< As it was given.
+  Transport transport = Transport::file;
+  std::string path;            ///< serial, file: the path; simulation: the scene.
+  std::string host;            ///< tcp, tcp-listen, udp: name or address, IPv6 without brackets.
+  std::uint16_t port = 0;      ///< 0 (any that is free) only for tcp-listen and udp.
+  ProtocolOptions protocol{};  ///< protocol, rows, cols, nodes_per_packet, delimited, bit_shift; not of a simulation.
+  unsigned baud = 0;           ///< serial: 50 ... 20,000,000; not given: the usual one of the protocol.
+  Nanos reconnect{};           ///< serial, tcp: how long an unplugged device may stay away; reconnect_s, 0 ... 1e6.
+  std::optional<FrameShape> array_shape{};  ///< simulation: rows and cols.
+  std::optional<double> rate_hz{};          ///< simulation: rate, > 0 ... 1e6; empty: as fast as it can.
+  std::uint64_t seed = 1;                   ///< simulation.
+  std::string array{};                      ///< simulation: path of an array.toml.
+  std::optional<std::size_t> frames{};      ///< simulation: length of the scenes multitouch, contacts and idle.
+};
+
+/// True where `text` begins as a URI of a transport does, right or wrong; false: a path of a file.
+[[nodiscard]] bool is_source_uri(std::string_view text);
+
+/// scheme:[//]place[?name=value&...]; %XX stands for a byte. Fails on unknown schemes, hosts without port, and on
+/// parameters that are unknown (with the nearest known one), do not suit the transport, come twice or are out of range.
+[[nodiscard]] Result<SourceUri> parse_source_uri(std::string_view text);
+
+/// Where an emulated device sends to: pty:, stdout:, serial, tcp, tcp-listen and udp (to that host), without
+/// parameters of protocols.
+[[nodiscard]] Result<SourceUri> parse_target_uri(std::string_view text);
+
+}  // namespace dermis::acquisition

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/calibration/calibrate.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// What a person is asked to press: every taxel with the first weight, then every taxel with the second, ...
+struct CalibrationPlan {
+  std::vector<std::size_t> taxels;                ///< Row-major, none twice, in the order in which they are pressed.
+  std::vector<double> weights_n;                  ///< 1 ... 16 weights of 0.01 ... 1000 N, in their order.
+  Nanos unloaded_time = std::chrono::seconds(3);  ///< Quiet time at the beginning, 0.2 ... 60 s.
+  Nanos hold_time = std::chrono::seconds(1);  ///< Of every press, after it settled for a quarter of it, 0.05 ... 30 s.
+
+  [[nodiscard]] std::size_t press_count() const noexcept { return taxels.size() * weights_n.size(); }
+
+  [[nodiscard]] std::size_t taxel_of(std::size_t press) const { return taxels[press % taxels.size()]; }
+  [[nodiscard]] double weight_of(std::size_t press) const { return weights_n[press / taxels.size()]; }
+
+  /// Names the first field that is wrong, as "weights_n: ..."; at most kMostGuidedPresses presses.
+  [[nodiscard]] Status validate(const ArrayDescription& array) const;
+};
+
+inline constexpr std::size_t kMostGuidedPresses = 8192;
+
+/// Every `stride`-th row and column (>= 1), as far from the edges as they can be, in reading order.
+[[nodiscard]] std::vector<std::size_t> taxels_with_stride(const ArrayDescription& array, std::size_t stride);
+
+/// 1, 2, 5, 10 and 20 N on about 16 taxels all over the array.
+[[nodiscard]] CalibrationPlan default_plan(const ArrayDescription& array);
+
+enum class GuideStage : std::uint8_t { none, unloaded, pressing, fitting, done, failed };
+
+/// What the person has to know besides the press that is asked for.
+enum class GuideHint : std::uint8_t {
+  none,
+  press,        ///< Put the weight on.
+  hold,         ///< It is on: hold still.
+  release,      ///< The press is kept: take the weight off.
+  other_taxel,  ///< GuideState::pressed_taxel is pressed instead.
+  unsteady,     ///< The reading moves: the hold began anew.
+  too_short,    ///< The weight was taken off before the hold was over.
+  several,      ///< GuideState::pressed_taxel is pressed, too.
+};
+
+struct GuideState {
+  GuideStage stage = GuideStage::none;
+  GuideHint hint = GuideHint::none;
+  std::string message;                       ///< What to do now, or what was reached, or what went wrong; for a person.
+  std::size_t taxel = 0;                     ///< To be pressed, row-major.
+  double weight_n = 0.0;                     ///< With.
+  double reading = 1.0;                      ///< Of that taxel now over that of the unloaded taxel: 1 unloaded, rising.
+  double hold_share = 0.0;                   ///< Of the quiet time or the hold that is done, 0 ... 1.
+  std::optional<std::size_t> pressed_taxel;  ///< The taxel that feels most; with hint `several` the other one.
+  std::size_t presses_done = 0;
+  std::size_t presses_total = 0;                   ///< Skipped ones left out.
+  std::optional<double> median_relative_error;     ///< Of the fit so far on presses it did not see.
+  std::optional<double> unpressed_relative_error;  ///< The same on taxels of which it saw no press.
+  std::vector<std::uint8_t> taxel_presses;         ///< Kept presses of each taxel.
+};
+
+/// Everything that was measured, as frames.csv and loads.csv have it.
+struct GuidedData {
+  std::vector<RawFrame> frames;
+  std::vector<Load> loads;
+};
+
+/// Walks a person through the calibration of one live array: unloaded first, then press after press, each recognised
+/// from the frames. What is kept of a press are means over a half or a quarter of the hold, so that a taxel with at
+/// least three weights gets the samples that a network of its own needs. While the person works, what is there is
+/// fitted on a thread of its own and judged by presses that were left out. Thread-safe.
+class GuidedCalibration {
+ public:
+  /// Errors: those of CalibrationPlan::validate(); an array that is not valid.
+  [[nodiscard]] static Result<std::unique_ptr<GuidedCalibration>> create(ArrayDescription array, CalibrationPlan plan);
+  GuidedCalibration(const GuidedCalibration&) = delete;
+  GuidedCalibration& operator=(const GuidedCalibration&) = delete;
+  /// Waits for a fit that is going on.
+  ~GuidedCalibration();
+
+  /// The next frame of the array; quick. Frames that cannot be used are passed over.
+  void feed(const RawFrame& raw);
+
+  /// Leaves the present press out. Errors: not pressing.
+  [[nodiscard]] Status skip();
+  /// Forgets the last press and asks for it again; also after a fit that failed. Errors: no press yet; fitting; done.
+  [[nodiscard]] Status repeat();
+  /// Fits with the presses that are there. Errors: no press yet; not pressing.
+  [[nodiscard]] Status finish();
+
+  [[nodiscard]] GuideState state() const;
+
+  /// Of stage `done`; null before.
+  [[nodiscard]] std::shared_ptr<const Calibration> calibration() const;
+  [[nodiscard]] GuidedData data() const;
+
+ private:
+  class Implementation;
+  explicit GuidedCalibration(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::calibration

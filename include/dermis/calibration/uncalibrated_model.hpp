@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::calibration {
+
+/// Stands for the model of an array that is still to be calibrated, so that it can be looked at meanwhile: no taxel has
+/// a force (TaxelStatus::dead). Where the circuit is unknown, readings are taken as proportional to conductance.
+/// `array` must be valid. Not to be written to a file.
+[[nodiscard]] pipeline::Model uncalibrated_model(const ArrayDescription& array);
+
+}  // namespace dermis::calibration

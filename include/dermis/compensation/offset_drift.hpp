@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::compensation {
+
+/// What calibration knows of the taxels when nothing touches them: offset + per_celsius * (T - centre) [S].
+struct UnloadedConductance {
+  std::vector<double> offset_siemens;
+  std::vector<double> per_celsius;
+  std::vector<double> sigma_siemens;  ///< Standard deviation of offset_siemens.
+  double centre_celsius = 20.0;
+  double half_span_celsius = 0.0;  ///< Temperatures beyond centre +- this are clamped.
+};
+
+struct OffsetDriftOptions {
+  bool track = false;  ///< Follow the idle taxels; off: only tare() moves the offsets.
+};
+
+/// Keeps zero at zero: subtracts from each conductance what the unloaded taxel has come to show beside its calibration,
+/// by an explicit tare, and by following idle taxels slowly. With u the conductance that the taxel is taken to have
+/// unloaded (calibration and tare) and s the 1-sigma of a reading, judged on means over 1 s of n frames:
+///
+/// band       0.1 u + 3 sigma_offset + 5 s / sqrt(min(n, 25))
+/// idle       within the band around the tracked offset; or below both this and the calibration, where no load can be
+/// pressed    above the band: the taxel and its 8 neighbours are not followed until 10 s after the last pressed second,
+///            for rubber creeps back
+/// followed   with the mean of a second that lies between idle ones, with a time constant of 30 s, after the first 30 s
+///            by no more than 0.01 u + 0.1 s a minute, and in all to at most 0.5 u + 3 (s + sigma_offset) above the
+///            offset of the calibration or the last tare
+///
+/// So a load above the band is never eaten, however long it lasts; one that grows into it costs less than the band
+/// where it grows by more than 0.02 u + 0.2 s a minute, and never more than the range. Temperature is fed forward by
+/// the calibration meanwhile. Where nothing is tracked and nothing was tared, frames pass untouched. Not thread-safe:
+/// one per stream.
+class OffsetDrift {
+ public:
+  /// The vectors of `unloaded` have the size of `shape` and hold numbers.
+  OffsetDrift(const FrameShape& shape, UnloadedConductance unloaded, const OffsetDriftOptions& options = {});
+  OffsetDrift(OffsetDrift&&) noexcept;
+  OffsetDrift& operator=(OffsetDrift&&) noexcept;
+  ~OffsetDrift();
+
+  /// Corrects `frame.siemens` in place; rejected frames pass. Allocates nothing.
+  void process(ConductanceFrame& frame) noexcept;
+
+  /// Takes what every taxel shows over the next second (10 frames where these take longer, but at most 10 s) for
+  /// unloaded, whatever it is. A taxel that has not moved beyond the noise of that mean keeps its offset.
+  void tare() noexcept;
+  [[nodiscard]] bool taring() const noexcept;
+  /// Back to the offsets of the calibration; also ends a tare that is going on.
+  void reset() noexcept;
+
+  void set_options(const OffsetDriftOptions& options) noexcept;
+  [[nodiscard]] const OffsetDriftOptions& options() const noexcept;
+
+  /// What is subtracted now, [rows, cols] [S].
+  [[nodiscard]] std::span<const double> offsets() const noexcept;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::compensation

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/core/surface.hpp"
+
+namespace dermis {
+
+/// One array of a suit: where its frames come from, what turns them into newtons, where it sits.
+struct SuitArray {
+  std::string name;   ///< Unique in the suit; a letter, then letters, digits and '_': topics are /<name>/raw, ...
+  std::string from;   ///< URI of a device or of the simulator.
+  std::string model;  ///< Path of its model file.
+  Pose base_from_array{};
+  bool mirrored = false;
+  ArrayShape shape{};
+};
+
+/// Several arrays on one body.
+struct SuitDescription {
+  std::string name = "suit";
+  std::vector<SuitArray> arrays;  ///< 1 ... 256
+
+  /// Names the first field that is wrong, as "array 'chest': ...".
+  [[nodiscard]] Status validate() const;
+};
+
+}  // namespace dermis

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dermis/compensation/line_faults.hpp"
+#include "dermis/core/contacts.hpp"
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/core/surface.hpp"
+#include "dermis/fusion/contact.hpp"
+#include "dermis/pipeline/model.hpp"
+
+/// A suit at work: every array on its own thread, one clock, one stream of results.
+namespace dermis::live {
+
+/// One array of the suit, ready to work.
+struct LiveArray {
+  std::string name;
+  std::unique_ptr<FrameSource> source;
+  std::shared_ptr<const pipeline::Model> model;
+  ArraySurface surface;
+};
+
+/// All that was made of one frame of one array. Valid during the call.
+struct ArrayResult {
+  std::size_t array = 0;
+  const RawFrame& raw;
+  const ConductanceFrame& conductance;
+  const ForceFrame& force;
+  const ContactReport& report;
+  std::span<const SuitContact> contacts;
+};
+
+/// How an array is doing.
+struct ArrayStatistics {
+  SourceStatistics source;
+  std::uint64_t frames = 0;    ///< Through the pipeline.
+  std::uint64_t rejected = 0;  ///< Of them.
+  Nanos latency_p50{};         ///< From the arrival of the last byte to the contacts, over the last seconds;
+  Nanos latency_p99{};         ///< 0 where the source does not tell when its frames came.
+  bool ended = false;          ///< The source has no more, or failed:
+  std::string error;           ///< why; empty where it just ended.
+  std::vector<compensation::LineFault> faults;
+  std::optional<double> temperature_celsius;  ///< Of the last frame,
+  std::optional<double> supply_v;             ///< as measured.
+};
+
+struct LiveOptions {
+  fusion::ContactOptions contacts;
+  bool track_drift = true;
+  /// Called for every frame of every array, on the thread of that array, several at once: it must be quick and
+  /// thread-safe, and not call the suit.
+  std::function<void(const ArrayResult&)> on_result{};
+  std::function<void(const std::string&)> notice{};  ///< One line for the log; on the thread of an array.
+};
+
+/// Runs all arrays until their sources end or stop() is called; a source that fails ends its array alone. What is set
+/// takes effect with an array's next frame. Thread-safe.
+class LiveSuit {
+ public:
+  /// Fails, as "array 'chest': ...", where a model cannot work or does not fit its source or its surface.
+  [[nodiscard]] static Result<std::unique_ptr<LiveSuit>> create(std::vector<LiveArray> arrays, LiveOptions options);
+  LiveSuit(const LiveSuit&) = delete;
+  LiveSuit& operator=(const LiveSuit&) = delete;
+  /// As stop().
+  ~LiveSuit();
+
+  /// Once.
+  void start();
+  /// Waits for the threads. Each ends with the frame it works on or waits for, so a source that may wait long must have
+  /// been told to end (DeviceOptions::stop).
+  void stop();
+  /// True where no array works any more.
+  [[nodiscard]] bool ended() const noexcept;
+
+  /// `options` must be valid.
+  void set_contact_options(const fusion::ContactOptions& options);
+  [[nodiscard]] fusion::ContactOptions contact_options() const;
+  void set_track_drift(bool track);
+  [[nodiscard]] bool track_drift() const;
+  /// Of one array, or of all: takes what they show from now on for unloaded (compensation::OffsetDrift::tare).
+  void tare(std::optional<std::size_t> array = {});
+  /// Back to the zero of the calibration.
+  void reset_tare(std::optional<std::size_t> array = {});
+  /// Another model for an array that is at work, of the same size and pitch: after a calibration. Contacts keep their
+  /// ids, faults and tare begin anew.
+  [[nodiscard]] Status set_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
+
+  [[nodiscard]] std::size_t array_count() const noexcept;
+  [[nodiscard]] ArrayStatistics statistics(std::size_t array) const;
+
+ private:
+  class Implementation;
+  explicit LiveSuit(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::live

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/store/suit_recording.hpp"
+
+namespace dermis::live {
+
+/// What a playback is to do from now on.
+struct PlaybackCommand {
+  bool play = true;             ///< After the end, from the beginning again, unless it is to seek.
+  double speed = 1.0;           ///< Times the recorded pace: taken between 0.01 and 100.
+  std::optional<Nanos> seek{};  ///< Taken between the first and the last frame.
+};
+
+struct PlaybackStatus {
+  enum class State : std::uint8_t { playing, paused, ended };
+  State state = State::playing;
+  Nanos now{};  ///< In the times of the recording.
+  double speed = 1.0;
+};
+
+/// Plays the arrays of a recording on one clock, at the pace of their frame times. After a seek, each array gives its
+/// first frame of that time or later at once, also while paused. Where a consumer is slower than the pace, the clock
+/// waits for it: no frame is left out. Memory: the frames of a few tenths of a second. Thread-safe.
+class Playback {
+ public:
+  /// `path`: "rec.mcap", or "rec.mcap#chest" for one array of it. Begins paused at the first frame.
+  [[nodiscard]] static Result<std::unique_ptr<Playback>> open(const std::string& path);
+  Playback(const Playback&) = delete;
+  Playback& operator=(const Playback&) = delete;
+  ~Playback();
+
+  /// Those that are played.
+  [[nodiscard]] const std::vector<store::RecordedArray>& arrays() const noexcept;
+  [[nodiscard]] Nanos start() const noexcept;  ///< Time of the first and of
+  [[nodiscard]] Nanos end() const noexcept;    ///< the last frame.
+
+  /// The frames of an array, for one thread; next() waits until a frame is due, and at the end for a seek. They are as
+  /// recorded, but for arrival_steady, which is now. To be asked for once for each array.
+  [[nodiscard]] std::unique_ptr<FrameSource> source(std::size_t array);
+
+  PlaybackStatus control(const PlaybackCommand& command);
+  [[nodiscard]] PlaybackStatus status() const;
+
+  /// All sources end, now and for ever.
+  void stop();
+
+ private:
+  class Implementation;
+  class Source;
+  explicit Playback(std::shared_ptr<Implementation> implementation);
+  std::shared_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::live

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+/// Frames as ROS 2 messages, in CDR. encode_...() replace what is in `message`, and allocate nothing once it has its
+/// size; decode_...() take any bytes, and fail with what is wrong, without a place.
+namespace dermis::messages {
+
+/// A type of message: its name, and its definition as "ros2msg": the fields, and after a line of 80 '=' those of each
+/// type that they use.
+struct MessageType {
+  const char* name;  ///< "sensor_msgs/msg/Image"
+  std::string definition;
+};
+
+[[nodiscard]] const MessageType& image_type();
+[[nodiscard]] const MessageType& temperature_type();
+[[nodiscard]] const MessageType& grid_type();
+[[nodiscard]] const MessageType& acquisition_type();
+[[nodiscard]] const MessageType& frame_status_type();
+
+/// sensor_msgs/msg/Image of frame.counts, stamped with frame.time: "16UC1" where all counts are whole numbers of
+/// 0 ... 65535, else "32FC1". Reads back with the same bits.
+void encode_image(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
+                  std::vector<std::uint8_t>& message);
+/// Sets counts, and time to the stamp. Takes the encodings 16UC1, mono16 and 32FC1, of 1x1 ... 1024x1024 taxels, in
+/// either byte order.
+[[nodiscard]] Result<FrameShape> decode_image(std::span<const std::uint8_t> message, RawFrame& frame);
+
+/// sensor_msgs/msg/Temperature [C]; the variance is given as 0, unknown.
+void encode_temperature(double celsius, Nanos time, std::string_view frame_id, std::vector<std::uint8_t>& message);
+[[nodiscard]] Result<double> decode_temperature(std::span<const std::uint8_t> message);
+
+/// dermis_msgs/msg/Acquisition: frame.acquisition, frame.time and frame.supply_v, without loss.
+void encode_acquisition(const RawFrame& frame, std::vector<std::uint8_t>& message);
+/// Sets those fields.
+[[nodiscard]] Status decode_acquisition(std::span<const std::uint8_t> message, RawFrame& frame);
+
+/// Distance between neighbouring taxels [m].
+struct Pitch {
+  double row_m = 0.010;
+  double col_m = 0.010;
+};
+
+/// foxglove_msgs/msg/Grid with the fields newtons and sigma_newtons (float32) and status (uint8, TaxelStatus) of each
+/// taxel; r0c0 lies in the origin of `frame_id`, columns along x, rows along y.
+void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& pitch, std::string_view frame_id,
+                 std::vector<std::uint8_t>& message);
+/// Sets time to the stamp, newtons, sigma_newtons and taxels. Takes what encode_grid() writes.
+[[nodiscard]] Result<FrameShape> decode_grid(std::span<const std::uint8_t> message, ForceFrame& frame);
+
+/// dermis_msgs/msg/FrameStatus: the time and the status of a frame of forces.
+void encode_frame_status(const ForceFrame& frame, std::vector<std::uint8_t>& message);
+/// Sets time and status.
+[[nodiscard]] Status decode_frame_status(std::span<const std::uint8_t> message, ForceFrame& frame);
+
+}  // namespace dermis::messages

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "dermis/core/contacts.hpp"
+#include "dermis/report/png.hpp"
+#include "dermis/report/svg.hpp"
+
+namespace dermis::report {
+
+/// One frame of an array as a picture: each measured taxel in the colour of a fixed scale with its unit, r0c0 at the
+/// top left; contacts as ellipses with their forces. Nothing is interpolated.
+struct FramePicture {
+  std::string title;     ///< "chest"
+  std::string subtitle;  ///< "12.340 s, total 23.4 N"
+  std::size_t rows = 0;  ///< >= 1
+  std::size_t cols = 0;  ///< >= 1
+  double row_pitch_m = 0.010;
+  double col_pitch_m = 0.010;
+  std::vector<double> values;     ///< [rows, cols]; NaN and infinity are crossed out.
+  double high = 1.0;              ///< End of the scale, which begins at 0; finite and > 0.
+  std::string unit;               ///< "N"
+  std::vector<Contact> contacts;  ///< Those that have ended are not drawn.
+};
+
+/// For svg_document().
+[[nodiscard]] Drawing frame_drawing(const FramePicture& picture);
+
+/// The same in pixels; all pictures of one size of array have one size.
+[[nodiscard]] Pixels frame_pixels(const FramePicture& picture);
+
+}  // namespace dermis::report

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+/// HTTP and WebSocket on one port; the stream is the Foxglove WebSocket protocol (docs/stream.md).
+namespace dermis::stream {
+
+/// A file of the viewer, served over HTTP to anybody. The bytes must outlive the server.
+struct Asset {
+  std::string_view path;  ///< "/index.html"; that one is also served as "/".
+  std::string_view content_type;
+  bool is_gzip = false;  ///< The bytes are compressed: sent with Content-Encoding: gzip.
+  std::span<const std::uint8_t> bytes;
+};
+
+struct ServerOptions {
+  std::string host = "127.0.0.1";  ///< Address to bind to; anything but loopback needs a token.
+  std::uint16_t port = 8080;       ///< 0: any free one; see Server::port().
+  /// Asked of every client for the stream and the documents, as ?token=... or Authorization: Bearer; empty: none.
+  /// At least 8 letters, digits and "-._~", as it stands in URLs.
+  std::string token;
+  std::string name = "dermis";                       ///< Told to clients.
+  std::size_t most_clients = 64;                     ///< 1 ... 1000; more are refused with 503.
+  std::size_t client_queue_bytes = 2U << 20U;        ///< Per client; beyond it the oldest data messages are dropped.
+  std::function<void(const std::string&)> notice{};  ///< One line for the log; called on the server's thread.
+
+  /// Names the first field that is out of its range, as "--host: ...".
+  [[nodiscard]] Status validate() const;
+};
+
+using ChannelId = std::uint32_t;
+
+/// The value of a parameter; monostate: not set.
+using ParameterValue = std::variant<std::monostate, bool, double, std::string, std::vector<double>>;
+
+struct Parameter {
+  std::string name;  ///< "/contacts/onset_sigma"
+  ParameterValue value;
+};
+
+/// Asked of the owner by clients. Called on the server's thread, one at a time: what takes long goes elsewhere.
+struct Handlers {
+  /// All parameters as they are now.
+  std::function<std::vector<Parameter>()> parameters{};
+  /// Sets one; the line of an error goes to the client that asked and to the log.
+  std::function<Status(const Parameter&)> set_parameter{};
+};
+
+/// A service that clients call with JSON and that answers with JSON.
+struct Service {
+  std::string name;  ///< "/calibration/start"
+  /// Request in, response out; on the server's thread.
+  std::function<Result<std::string>(std::string_view request)> call;
+};
+
+/// The playback of a recording, as Foxglove's playbackControl has it.
+struct PlaybackState {
+  enum class Status : std::uint8_t { playing = 0, paused = 1, buffering = 2, ended = 3 };
+  Status status = Status::playing;
+  Nanos now{};
+  float speed = 1.0F;
+  bool did_seek = false;
+};
+struct PlaybackControl {
+  bool play = true;
+  float speed = 1.0F;
+  std::optional<Nanos> seek{};
+};
+struct Playback {
+  Nanos start{};  ///< Time of the first and of
+  Nanos end{};    ///< the last frame.
+  std::function<PlaybackState(const PlaybackControl&)> control{};
+};
+
+struct ServerStatistics {
+  std::size_t clients = 0;
+  std::uint64_t messages = 0;  ///< Handed to clients.
+  std::uint64_t dropped = 0;   ///< Data messages that a slow client did not get.
+  std::uint64_t refused = 0;   ///< Connections: token, origin, subprotocol, too many.
+};
+
+/// Serves the assets and streams channels to any number of clients. One thread of its own. A client that is slow, sends
+/// garbage or says nothing costs the others nothing: its queue is bounded and its oldest data are dropped, and what is
+/// not the protocol closes its connection with one line in the log.
+/// Thread-safe.
+class Server {
+ public:
+  /// Binds the port. Fails with what to do about it where the port is in use or not permitted.
+  [[nodiscard]] static Result<std::unique_ptr<Server>> create(const ServerOptions& options, std::vector<Asset> assets,
+                                                              Handlers handlers = {},
+                                                              std::vector<Service> services = {},
+                                                              std::optional<Playback> playback = {});
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+  /// Closes all connections.
+  ~Server();
+
+  [[nodiscard]] std::uint16_t port() const noexcept;
+
+  /// Begins to serve: from now on the handlers and services may be called. To be called once.
+  void start();
+
+  /// Advertised to all clients, also to those that are connected. At most 4096.
+  ChannelId add_channel(std::string topic, std::string schema_name, std::string schema);
+
+  /// What "/name.json" is from now on. Unlike the assets it is given to those with the token only.
+  void set_document(std::string path, std::string content_type, std::string content);
+
+  [[nodiscard]] bool has_subscribers(ChannelId channel) const noexcept;
+
+  /// Queues a message for all subscribers of the channel and returns at once; copies the bytes, once for all clients.
+  void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message);
+
+  /// Tells the clients that follow them that parameters have changed.
+  void parameters_changed();
+  void playback_changed(const PlaybackState& state);
+  /// A line that clients show to their users; level as Foxglove's: 0 info, 1 warning, 2 error.
+  void status(int level, std::string_view message);
+
+  [[nodiscard]] ServerStatistics statistics() const;
+
+ private:
+  class Implementation;
+  explicit Server(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::stream

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/acquisition/protocol.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "acquisition/protocols.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/nearest_name.hpp"
+
+namespace dermis::acquisition {
+namespace {
+
+constexpr std::array kProtocols = {
+    ProtocolEntry{"3dvitac", std::nullopt, make_3dvitac_decoder, make_3dvitac_encoder},
+    ProtocolEntry{"csv", std::nullopt, make_csv_decoder, make_csv_encoder},
+    ProtocolEntry{"dermis", std::nullopt, make_dermis_decoder, make_dermis_encoder},
+    ProtocolEntry{"flexitac", std::nullopt, make_flexitac_decoder, make_flexitac_encoder},
+    ProtocolEntry{"m1616", FrameShape{16, 16}, make_m1616_decoder, make_m1616_encoder},
+    ProtocolEntry{"pressure-mat", FrameShape{56, 28}, make_pressure_mat_decoder, make_pressure_mat_encoder},
+    ProtocolEntry{"stag", std::nullopt, make_stag_decoder, make_stag_encoder},
+    ProtocolEntry{"tactileglove", std::nullopt, make_tactileglove_decoder, make_tactileglove_encoder},
+    ProtocolEntry{"wiresens", std::nullopt, make_wiresens_decoder, make_wiresens_encoder},
+    ProtocolEntry{"wuji", FrameShape{24, 32}, make_wuji_decoder, make_wuji_encoder},
+    ProtocolEntry{"auto", std::nullopt, make_auto_decoder, nullptr},
+};
+
+const ProtocolEntry* find(const std::string& name) {
+  const auto* found = std::find_if(kProtocols.begin(), kProtocols.end(),
+                                   [&](const ProtocolEntry& entry) { return entry.name == name; });
+  return found == kProtocols.end() ? nullptr : found;
+}
+
+std::string to_string(const FrameShape& shape) {
+  return "rows=" + std::to_string(shape.rows) + "&cols=" + std::to_string(shape.cols);
+}
+
+Error unknown(const std::string& name) {
+  const std::vector<std::string>& names = protocol_names();
+  const std::string nearest = nearest_name(name, {names.begin(), names.end()});
+  if (!nearest.empty()) return bad_input("protocol=" + name + ": is not known; did you mean '" + nearest + "'?");
+  std::string all;
+  for (const std::string& known : names) all += (all.empty() ? "" : ", ") + known;
+  return bad_input("protocol=" + name + ": is not known; known are " + all);
+}
+
+/// The protocol, with options that it can have.
+Result<const ProtocolEntry*> find_for(const ProtocolOptions& options) {
+  const ProtocolEntry* protocol = find(options.name);
+  if (protocol == nullptr) return unknown(options.name);
+  if (!options.shape) return protocol;
+  const FrameShape& shape = *options.shape;
+  const auto is_valid = [](std::size_t lines) { return lines >= 1 && lines <= kMaxLines; };
+  if (!is_valid(shape.rows) || !is_valid(shape.cols)) {
+    return bad_input(to_string(shape) + ": rows and cols must be 1 ... " + std::to_string(kMaxLines));
+  }
+  if (protocol->only_shape && shape != *protocol->only_shape) {
+    return bad_input(to_string(shape) + ": protocol=" + options.name + " has " + to_string(*protocol->only_shape));
+  }
+  return protocol;
+}
+
+}  // namespace
+
+const std::vector<std::string>& protocol_names() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> all;
+    for (const ProtocolEntry& entry : kProtocols) all.emplace_back(entry.name);
+    return all;
+  }();
+  return kNames;
+}
+
+Result<std::unique_ptr<Decoder>> make_decoder(const ProtocolOptions& options) {
+  const Result<const ProtocolEntry*> protocol = find_for(options);
+  if (!protocol) return protocol.error();
+  return (*protocol)->make_decoder(options);
+}
+
+Result<std::unique_ptr<Encoder>> make_encoder(const ProtocolOptions& options) {
+  if (options.name == "auto") return bad_input("protocol=auto: cannot be sent; name the protocol of the device");
+  const Result<const ProtocolEntry*> protocol = find_for(options);
+  if (!protocol) return protocol.error();
+  if (!options.shape) return bad_input("protocol=" + options.name + ": needs rows and cols to send frames");
+  return (*protocol)->make_encoder(options);
+}
+
+}  // namespace dermis::acquisition

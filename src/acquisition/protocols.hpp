@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "dermis/acquisition/decoder.hpp"
+#include "dermis/acquisition/encoder.hpp"
+#include "dermis/acquisition/protocol.hpp"
+#include "dermis/core/result.hpp"
+
+/// One pair of factories a protocol, listed in protocol.cpp; each in the file of its name. Shapes that are given are
+/// valid and those of the protocol where it has but one; encoders are given one.
+namespace dermis::acquisition {
+
+struct ProtocolEntry {
+  const char* name = nullptr;
+  std::optional<FrameShape> only_shape{};  ///< Empty where devices of the protocol differ.
+  Result<std::unique_ptr<Decoder>> (*make_decoder)(const ProtocolOptions&) = nullptr;
+  Result<std::unique_ptr<Encoder>> (*make_encoder)(const ProtocolOptions&) = nullptr;
+};
+
+Result<std::unique_ptr<Decoder>> make_dermis_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_dermis_encoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Decoder>> make_flexitac_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_flexitac_encoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Decoder>> make_m1616_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_m1616_encoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Decoder>> make_pressure_mat_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_pressure_mat_encoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Decoder>> make_wuji_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_wuji_encoder(const ProtocolOptions& options);
+
+Result<std::unique_ptr<Decoder>> make_3dvitac_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_3dvitac_encoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Decoder>> make_csv_decoder(const ProtocolOptions& options);
+/// Takes lines of any number of values for frames, as one row each: to recognise them.
+std::unique_ptr<Decoder> make_csv_decoder_of_any_line();
+Result<std::unique_ptr<Encoder>> make_csv_encoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Decoder>> make_stag_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_stag_encoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Decoder>> make_tactileglove_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_tactileglove_encoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Decoder>> make_wiresens_decoder(const ProtocolOptions& options);
+Result<std::unique_ptr<Encoder>> make_wiresens_encoder(const ProtocolOptions& options);
+
+Result<std::unique_ptr<Decoder>> make_auto_decoder(const ProtocolOptions& options);
+
+}  // namespace dermis::acquisition

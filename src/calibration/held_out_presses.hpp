@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "dermis/calibration/guided_calibration.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::calibration {
+
+/// A press that was kept.
+struct GuidedPress {
+  std::size_t taxel = 0;
+  double newtons = 0.0;
+  std::vector<RawFrame> frames;
+};
+using GuidedPresses = std::vector<std::shared_ptr<const GuidedPress>>;
+
+/// The unloaded frames, then those of the presses, with their loads.
+[[nodiscard]] GuidedData labelled_frames(const ArrayDescription& array, const std::vector<RawFrame>& unloaded,
+                                         const GuidedPresses& presses);
+
+/// Median relative error on presses that a fit without them finds; empty where there are too few. `array` is to be
+/// known in full. On taxels with other presses: of every second taxel one press is left out, never its heaviest,
+/// because forces are not extrapolated.
+[[nodiscard]] std::optional<double> error_on_left_out_presses(const ArrayDescription& array,
+                                                              const std::vector<RawFrame>& unloaded,
+                                                              const GuidedPresses& presses);
+
+/// The same on taxels without a press: all presses of a quarter of the taxels are left out, four times. Empty where
+/// every taxel is pressed.
+[[nodiscard]] std::optional<double> error_on_left_out_taxels(const ArrayDescription& array,
+                                                             const std::vector<RawFrame>& unloaded,
+                                                             const GuidedPresses& presses);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "calibration/frame_mean.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::calibration {
+
+/// The unloaded array, found in frames that show nothing but noise: kQuietBlocks stretches of time in a row whose means
+/// agree on every taxel. Whatever moves begins it anew.
+class QuietWindow {
+ public:
+  /// `ratio_per_count`: what one count of the ADC is as a ratio.
+  QuietWindow(Nanos length, double ratio_per_count);
+
+  void feed(const RawFrame& raw, std::span<const double> ratio);
+
+  [[nodiscard]] bool is_done() const noexcept { return quiet_.size() >= kQuietBlocks; }
+  [[nodiscard]] bool is_disturbed() const noexcept { return is_disturbed_; }
+  [[nodiscard]] double share(Nanos now) const noexcept;
+  /// Some of the single frames of the window, evenly, in order.
+  [[nodiscard]] std::vector<RawFrame> frames() const;
+  /// All of it.
+  [[nodiscard]] FrameMean mean() const;
+
+ private:
+  static constexpr std::size_t kQuietBlocks = 4;
+  static constexpr std::size_t kMostFrames = 128;
+
+  struct Block {
+    FrameMean mean;
+    std::vector<RawFrame> frames;
+    std::size_t every = 1;  // frame is kept
+  };
+  void keep(const RawFrame& raw);
+  [[nodiscard]] bool agree(const FrameMean& a, const FrameMean& b) const;
+
+  Nanos block_length_;
+  double ratio_per_count_;
+  Block current_;
+  std::vector<Block> quiet_;
+  bool is_disturbed_ = false;
+};
+
+/// What the array feels.
+struct Touch {
+  /// The taxel that rises most, if one stands out of the noise; the expected one from half as much on.
+  std::optional<std::size_t> strongest;
+  std::optional<std::size_t> beside;  ///< The strongest other one, from half as much on.
+};
+
+/// Compares readings with those of the unloaded array. Idle readings are followed slowly, so that drift of the array
+/// over an hour is not taken for a touch.
+class TouchSense {
+ public:
+  TouchSense(const FrameMean& unloaded, double ratio_per_count);
+
+  [[nodiscard]] Touch feel(std::span<const double> ratio, std::size_t expected) const;
+  /// Of an array that nothing touches, `seconds` after the last one.
+  void follow(std::span<const double> ratio, double seconds);
+
+  [[nodiscard]] double excess(std::span<const double> ratio, std::size_t taxel) const noexcept {
+    return ratio[taxel] - level_[taxel];
+  }
+  [[nodiscard]] double noise(std::size_t taxel) const noexcept { return noise_[taxel]; }
+  /// Excess that stands out of the noise.
+  [[nodiscard]] double threshold(std::size_t taxel) const noexcept;
+  /// Reading over that of the unloaded taxel.
+  [[nodiscard]] double relative(std::span<const double> ratio, std::size_t taxel) const noexcept;
+
+ private:
+  double ratio_per_count_;
+  std::vector<double> level_;
+  std::vector<double> noise_;
+};
+
+}  // namespace dermis::calibration

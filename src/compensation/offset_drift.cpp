@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/compensation/offset_drift.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+namespace dermis::compensation {
+namespace {
+
+constexpr double kBlockS = 1.0;
+constexpr double kLongestGapS = 60.0;               // Frames further apart, or back in time, begin anew.
+constexpr double kFollowS = 30.0;                   // Time constant of following,
+constexpr double kPriorBlocks = 10.0;               // and how many blocks the offset that it begins with is worth.
+constexpr float kSettlingBlocks = 30.0F;            // From the beginning; after that no faster than
+constexpr double kUnloadedPerSecond = 0.01 / 60.0;  // 1 % of the unloaded conductance a minute
+constexpr double kSigmasPerSecond = 1.0 / 600.0;    // and a sigma in ten.
+constexpr float kCreepBackS = 10.0F;
+constexpr double kBandOfUnloaded = 0.1;
+constexpr double kRangeOfUnloaded = 0.5;
+constexpr double kBandSigmas = 5.0;
+constexpr double kRangeSigmas = 3.0;
+constexpr double kMostAveraged = 25.0;  // Not all noise is white.
+constexpr std::size_t kLeastTareFrames = 10;
+constexpr double kLongestTareS = 10.0;
+
+double seconds(Nanos span) {
+  return 1e-9 * static_cast<double>(span.count());
+}
+
+}  // namespace
+
+class OffsetDrift::Implementation {
+ public:
+  Implementation(const FrameShape& shape, UnloadedConductance unloaded, const OffsetDriftOptions& options);
+
+  void process(ConductanceFrame& frame) noexcept;
+  void tare() noexcept;
+  void reset() noexcept;
+  void set_options(const OffsetDriftOptions& options) noexcept;
+
+  [[nodiscard]] bool taring() const noexcept { return taring_; }
+  [[nodiscard]] const OffsetDriftOptions& options() const noexcept { return options_; }
+  [[nodiscard]] std::span<const double> offsets() const noexcept { return offset_; }
+
+ private:
+  void begin_block(Nanos time) noexcept;
+  void forget_history() noexcept;
+  void accumulate(const ConductanceFrame& frame) noexcept;
+  [[nodiscard]] bool block_is_complete(double block_s) const noexcept;
+  void finish_block(double block_s) noexcept;
+  void average_block() noexcept;
+  void take_block_as_zero() noexcept;
+  void find_pressed() noexcept;
+  void hold_pressed(double block_s) noexcept;
+  [[nodiscard]] bool pressed_nearby(std::size_t row, std::size_t col) const noexcept;
+  void follow_idle(double block_s) noexcept;
+  void follow(std::size_t taxel, double block_s) noexcept;
+  [[nodiscard]] double unloaded_siemens(std::size_t taxel) const noexcept;
+  [[nodiscard]] double band(std::size_t taxel) const noexcept;
+  [[nodiscard]] bool is_below_any_load(std::size_t taxel) const noexcept;
+  [[nodiscard]] bool is_idle(std::size_t taxel) const noexcept;
+
+  FrameShape shape_;
+  UnloadedConductance unloaded_;
+  OffsetDriftOptions options_;
+  bool taring_ = false;
+  bool corrects_ = false;  // An offset may be other than 0.
+
+  std::vector<double> offset_;  // Subtracted; beside the calibration [S].
+  std::vector<double> tared_;   // The same after the last tare, from which following may only go so far [S].
+
+  // The block that is being averaged.
+  Nanos block_begin_{};
+  Nanos last_time_{};
+  std::size_t frames_ = 0;
+  double temperature_sum_ = 0.0;
+  std::vector<double> sum_;            // Of the frames; then their mean beside the calibration [S].
+  std::vector<double> sigma_;          // Of one reading, in the last frame [S].
+  std::vector<std::uint8_t> trouble_;  // Not 0: some frame had a status other than ok.
+
+  std::vector<std::uint8_t> pressed_;  // In this block.
+  std::vector<float> hold_s_;          // Not followed for so long.
+  std::vector<double> candidate_;      // Mean of the block before, to be followed if this one is idle, too.
+  std::vector<std::uint8_t> has_candidate_;
+  std::vector<float> followed_blocks_;
+};
+
+OffsetDrift::Implementation::Implementation(const FrameShape& shape, UnloadedConductance unloaded,
+                                            const OffsetDriftOptions& options)
+    : shape_(shape),
+      unloaded_(std::move(unloaded)),
+      options_(options),
+      offset_(shape.taxel_count()),
+      tared_(shape.taxel_count()),
+      sum_(shape.taxel_count()),
+      sigma_(shape.taxel_count()),
+      trouble_(shape.taxel_count()),
+      pressed_(shape.taxel_count()),
+      hold_s_(shape.taxel_count()),
+      candidate_(shape.taxel_count()),
+      has_candidate_(shape.taxel_count()),
+      followed_blocks_(shape.taxel_count()) {
+  assert(unloaded_.offset_siemens.size() == shape.taxel_count());
+  assert(unloaded_.per_celsius.size() == shape.taxel_count());
+  assert(unloaded_.sigma_siemens.size() == shape.taxel_count());
+}
+
+void OffsetDrift::Implementation::process(ConductanceFrame& frame) noexcept {
+  const bool observes = options_.track || taring_;
+  if (!observes && !corrects_) return;
+  const std::size_t taxels = offset_.size();
+  const bool fits =
+      frame.siemens.size() == taxels && frame.sigma_siemens.size() == taxels && frame.taxels.size() == taxels;
+  if (has(frame.status, FrameStatus::rejected) || !fits) return;
+  if (observes && !has(frame.status, FrameStatus::not_converged)) {
+    const double since_last_s = seconds(frame.time - last_time_);
+    const double block_s = seconds(frame.time - block_begin_);
+    if (frames_ > 0 && (since_last_s < 0.0 || since_last_s > kLongestGapS)) {
+      forget_history();
+    } else if (frames_ > 0 && block_is_complete(block_s)) {
+      finish_block(block_s);
+    }
+    if (frames_ == 0) begin_block(frame.time);
+    accumulate(frame);
+  }
+  double* const siemens = frame.siemens.data();
+  const double* const offset = offset_.data();
+  for (std::size_t k = 0; k < taxels; ++k) {
+    const double corrected = siemens[k] - offset[k];
+    siemens[k] = corrected < 0.0 ? 0.0 : corrected;  // NaN stays
+  }
+}
+
+void OffsetDrift::Implementation::tare() noexcept {
+  taring_ = true;
+  forget_history();
+}
+
+void OffsetDrift::Implementation::reset() noexcept {
+  taring_ = false;
+  corrects_ = false;
+  std::fill(offset_.begin(), offset_.end(), 0.0);
+  std::fill(tared_.begin(), tared_.end(), 0.0);
+  std::fill(hold_s_.begin(), hold_s_.end(), 0.0F);
+  std::fill(followed_blocks_.begin(), followed_blocks_.end(), 0.0F);
+  forget_history();
+}
+
+void OffsetDrift::Implementation::set_options(const OffsetDriftOptions& options) noexcept {
+  if (options.track && !options_.track) forget_history();
+  options_ = options;
+}
+
+void OffsetDrift::Implementation::begin_block(Nanos time) noexcept {
+  block_begin_ = time;
+  temperature_sum_ = 0.0;
+  std::fill(sum_.begin(), sum_.end(), 0.0);
+  std::fill(trouble_.begin(), trouble_.end(), std::uint8_t{0});
+}
+
+void OffsetDrift::Implementation::forget_history() noexcept {
+  frames_ = 0;
+  std::fill(has_candidate_.begin(), has_candidate_.end(), std::uint8_t{0});
+}
+
+void OffsetDrift::Implementation::accumulate(const ConductanceFrame& frame) noexcept {
+  const double beside_centre = frame.temperature_celsius.value_or(unloaded_.centre_celsius) - unloaded_.centre_celsius;
+  temperature_sum_ += std::clamp(beside_centre, -unloaded_.half_span_celsius, unloaded_.half_span_celsius);
+  const double* const siemens = frame.siemens.data();
+  double* const sum = sum_.data();
+  for (std::size_t k = 0; k < sum_.size(); ++k) sum[k] += siemens[k];
+  const TaxelStatus* const status = frame.taxels.data();
+  std::uint8_t* const trouble = trouble_.data();
+  for (std::size_t k = 0; k < trouble_.size(); ++k) trouble[k] |= static_cast<std::uint8_t>(status[k]);
+  std::copy(frame.sigma_siemens.begin(), frame.sigma_siemens.end(), sigma_.begin());
+  last_time_ = frame.time;
+  ++frames_;
+}
+
+bool OffsetDrift::Implementation::block_is_complete(double block_s) const noexcept {
+  if (!taring_) return block_s >= kBlockS;
+  return block_s >= kBlockS && (frames_ >= kLeastTareFrames || block_s >= kLongestTareS);
+}
+
+void OffsetDrift::Implementation::finish_block(double block_s) noexcept {
+  average_block();
+  if (taring_) {
+    take_block_as_zero();
+  } else {
+    find_pressed();
+    hold_pressed(block_s);
+    follow_idle(block_s);
+  }
+  frames_ = 0;
+}
+
+void OffsetDrift::Implementation::average_block() noexcept {
+  const double per_frame = 1.0 / static_cast<double>(frames_);
+  const double beside_centre = temperature_sum_ * per_frame;
+  for (std::size_t k = 0; k < sum_.size(); ++k) {
+    sum_[k] = sum_[k] * per_frame - unloaded_.offset_siemens[k] - unloaded_.per_celsius[k] * beside_centre;
+  }
+}
+
+/// Shrinks the step by the share of its square that the noise of the mean may be (James and Stein 1961).
+void OffsetDrift::Implementation::take_block_as_zero() noexcept {
+  for (std::size_t k = 0; k < offset_.size(); ++k) {
+    const double step = sum_[k] - offset_[k];
+    const double variance = sigma_[k] * sigma_[k] / static_cast<double>(frames_);
+    const double shrunk = step * std::max(0.0, 1.0 - variance / (step * step));
+    if (std::isfinite(shrunk)) offset_[k] += shrunk;
+  }
+  tared_ = offset_;
+  std::fill(hold_s_.begin(), hold_s_.end(), 0.0F);
+  std::fill(followed_blocks_.begin(), followed_blocks_.end(), 0.0F);
+  taring_ = false;
+  corrects_ = true;
+}
+
+double OffsetDrift::Implementation::unloaded_siemens(std::size_t taxel) const noexcept {
+  return std::max(0.0, unloaded_.offset_siemens[taxel] + tared_[taxel]);
+}
+
+double OffsetDrift::Implementation::band(std::size_t taxel) const noexcept {
+  const double averaged = std::min(static_cast<double>(frames_), kMostAveraged);
+  return kBandOfUnloaded * unloaded_siemens(taxel) + kRangeSigmas * unloaded_.sigma_siemens[taxel] +
+         kBandSigmas * sigma_[taxel] / std::sqrt(averaged);
+}
+
+void OffsetDrift::Implementation::find_pressed() noexcept {
+  for (std::size_t k = 0; k < pressed_.size(); ++k) pressed_[k] = sum_[k] - offset_[k] > band(k) ? 1 : 0;
+}
+
+void OffsetDrift::Implementation::hold_pressed(double block_s) noexcept {
+  for (std::size_t row = 0; row < shape_.rows; ++row) {
+    for (std::size_t col = 0; col < shape_.cols; ++col) {
+      float& hold_s = hold_s_[row * shape_.cols + col];
+      hold_s = pressed_nearby(row, col) ? kCreepBackS : std::max(0.0F, hold_s - static_cast<float>(block_s));
+    }
+  }
+}
+
+bool OffsetDrift::Implementation::pressed_nearby(std::size_t row, std::size_t col) const noexcept {
+  const std::size_t last_row = std::min(row + 1, shape_.rows - 1);
+  const std::size_t last_col = std::min(col + 1, shape_.cols - 1);
+  for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= last_row; ++r) {
+    for (std::size_t c = col - std::min<std::size_t>(col, 1); c <= last_col; ++c) {
+      if (pressed_[r * shape_.cols + c] != 0) return true;
+    }
+  }
+  return false;
+}
+
+/// False for NaN, as is_idle().
+bool OffsetDrift::Implementation::is_below_any_load(std::size_t taxel) const noexcept {
+  return sum_[taxel] < offset_[taxel] && sum_[taxel] < -band(taxel);
+}
+
+bool OffsetDrift::Implementation::is_idle(std::size_t taxel) const noexcept {
+  if (trouble_[taxel] != 0 || hold_s_[taxel] > 0.0F) return false;
+  return std::abs(sum_[taxel] - offset_[taxel]) <= band(taxel) || is_below_any_load(taxel);
+}
+
+void OffsetDrift::Implementation::follow_idle(double block_s) noexcept {
+  for (std::size_t k = 0; k < offset_.size(); ++k) {
+    const bool idle = is_idle(k);
+    if (idle && has_candidate_[k] != 0) follow(k, block_s);
+    has_candidate_[k] = idle ? 1 : 0;
+    if (idle) candidate_[k] = sum_[k];
+  }
+  corrects_ = true;
+}
+
+void OffsetDrift::Implementation::follow(std::size_t taxel, double block_s) noexcept {
+  const double unloaded = unloaded_siemens(taxel);
+  float& blocks = followed_blocks_[taxel];
+  const double gain = std::max(std::min(1.0, block_s / kFollowS), 1.0 / (kPriorBlocks + static_cast<double>(blocks)));
+  double step = gain * (candidate_[taxel] - offset_[taxel]);
+  if (blocks >= kSettlingBlocks && !is_below_any_load(taxel)) {
+    const double largest = block_s * (kUnloadedPerSecond * unloaded + kSigmasPerSecond * sigma_[taxel]);
+    step = std::clamp(step, -largest, largest);
+  }
+  const double most =
+      tared_[taxel] + kRangeOfUnloaded * unloaded + kRangeSigmas * (sigma_[taxel] + unloaded_.sigma_siemens[taxel]);
+  offset_[taxel] = std::min(offset_[taxel] + step, most);
+  blocks = std::min(blocks + 1.0F, kSettlingBlocks);
+}
+
+OffsetDrift::OffsetDrift(const FrameShape& shape, UnloadedConductance unloaded, const OffsetDriftOptions& options)
+    : implementation_(std::make_unique<Implementation>(shape, std::move(unloaded), options)) {}
+OffsetDrift::OffsetDrift(OffsetDrift&&) noexcept = default;
+OffsetDrift& OffsetDrift::operator=(OffsetDrift&&) noexcept = default;
+OffsetDrift::~OffsetDrift() = default;
+
+void OffsetDrift::process(ConductanceFrame& frame) noexcept {
+  implementation_->process(frame);
+}
+
+void OffsetDrift::tare() noexcept {
+  implementation_->tare();
+}
+
+bool OffsetDrift::taring() const noexcept {
+  return implementation_->taring();
+}
+
+void OffsetDrift::reset() noexcept {
+  implementation_->reset();
+}
+
+void OffsetDrift::set_options(const OffsetDriftOptions& options) noexcept {
+  implementation_->set_options(options);
+}
+
+const OffsetDriftOptions& OffsetDrift::options() const noexcept {
+  return implementation_->options();
+}
+
+std::span<const double> OffsetDrift::offsets() const noexcept {
+  return implementation_->offsets();
+}
+
+}  // namespace dermis::compensation

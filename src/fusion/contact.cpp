@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/fusion/contact.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "fusion/contact_gauge.hpp"
+#include "fusion/contact_tracks.hpp"
+#include "fusion/stressed_areas.hpp"
+
+namespace dermis::fusion {
+namespace {
+
+constexpr std::size_t kMostContacts = 255;
+
+Status check_range(const char* name, double value, double low, double high) {
+  if (value >= low && value <= high) return Done{};
+  return bad_input("contacts." + std::string(name) + ": is " + std::to_string(value) + ", must be " +
+                   std::to_string(low) + " to " + std::to_string(high));
+}
+
+}  // namespace
+
+Status ContactOptions::validate() const {
+  if (Status valid = check_range("onset_sigma", onset_sigma, 1.0, 100.0); !valid) return valid;
+  if (Status valid = check_range("onset_force_n", onset_force_n, 0.0, 1000.0); !valid) return valid;
+  if (Status valid = check_range("release_share", release_share, 0.1, 1.0); !valid) return valid;
+  return check_range("most_contacts", static_cast<double>(most_contacts), 1.0, static_cast<double>(kMostContacts));
+}
+
+class ContactTracker::Implementation {
+ public:
+  Implementation(const ArrayDescription& array, const ContactOptions& contact_options)
+      : options(contact_options),
+        rows_(array.rows),
+        cols_(array.cols),
+        row_pitch_m_(array.row_pitch_m),
+        col_pitch_m_(array.col_pitch_m),
+        areas_(array.rows, array.cols),
+        gauge_(array),
+        tracks_(kReachPitches * std::max(array.row_pitch_m, array.col_pitch_m)) {
+    assert(array.validate().has_value());
+    found_.reserve(array.taxel_count());
+    expected_.reserve(kMostContacts);
+    held_.reserve(kMostContacts);
+  }
+
+  void process(const ForceFrame& force, ContactReport& report) noexcept {
+    assert(force.newtons.size() == rows_ * cols_ && force.sigma_newtons.size() == rows_ * cols_);
+    report.time = force.time;
+    report.status = force.status;
+    report.contacts.reserve(2 * options.most_contacts);
+    find_held_taxels(force.time);
+    areas_.find(force, options.release_share * options.onset_sigma, held_);
+    found_.clear();
+    for (const std::span<std::uint32_t> taxels : areas_.areas()) add(force, taxels);
+    keep_strongest();
+    tracks_.update(force, found_, report.contacts);
+    add_up(report);
+  }
+
+  void forget() noexcept { tracks_.forget(); }
+
+  ContactOptions options;
+
+ private:
+  static constexpr double kReachPitches = 2.0;
+
+  void find_held_taxels(Nanos time) {
+    tracks_.predict(time, expected_);
+    held_.clear();
+    for (const ExpectedContact& expected : expected_) {
+      const PlaneVector place = expected.place;
+      const double row = std::clamp(place.y / row_pitch_m_, 0.0, static_cast<double>(rows_ - 1));
+      const double col = std::clamp(place.x / col_pitch_m_, 0.0, static_cast<double>(cols_ - 1));
+      held_.push_back(static_cast<std::uint32_t>(std::lround(row)) * static_cast<std::uint32_t>(cols_) +
+                      static_cast<std::uint32_t>(std::lround(col)));
+    }
+  }
+
+  /// An area too weak to go on is left out, and one that holds two contacts is parted.
+  void add(const ForceFrame& force, std::span<std::uint32_t> taxels) {
+    FoundContact found;
+    found.peak = taxels.front();
+    found.contact =
+        gauge_.measure(force, taxels, options.release_share * options.onset_sigma, expected_at(taxels.front()));
+    found.profile = gauge_.profile();
+    const std::size_t own = gauge_.part(force, taxels);
+    if (own < taxels.size() && own > 0 && can_go_on(force, taxels.subspan(own)) && is_top(force, taxels, taxels[own])) {
+      add(force, taxels.first(own));
+      add(force, taxels.subspan(own));
+      return;
+    }
+    if (!can_go_on(force, taxels)) return;
+    found.can_begin = is_strong(force, taxels, 1.0);
+    found_.push_back(found);
+  }
+
+  /// No taxel of another area beside it is stronger; else it is the rim of that one.
+  [[nodiscard]] bool is_top(const ForceFrame& force, std::span<const std::uint32_t> area, std::uint32_t taxel) const {
+    const std::size_t row = taxel / cols_;
+    const std::size_t col = taxel % cols_;
+    for (std::size_t r = row > 0 ? row - 1 : 0; r <= std::min(row + 1, rows_ - 1); ++r) {
+      for (std::size_t c = col > 0 ? col - 1 : 0; c <= std::min(col + 1, cols_ - 1); ++c) {
+        const auto beside = static_cast<std::uint32_t>(r * cols_ + c);
+        if (!(force.newtons[beside] > force.newtons[taxel])) continue;
+        if (std::find(area.begin(), area.end(), beside) == area.end()) return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool can_go_on(const ForceFrame& force, std::span<const std::uint32_t> taxels) const {
+    return is_strong(force, taxels, expected_at(taxels.front()) != nullptr ? options.release_share : 1.0);
+  }
+
+  /// `share`: of the thresholds of an onset.
+  [[nodiscard]] bool is_strong(const ForceFrame& force, std::span<const std::uint32_t> taxels, double share) const {
+    const float sigma = force.sigma_newtons[taxels.front()];
+    const bool stands_out = std::isinf(sigma) || force.newtons[taxels.front()] >= share * options.onset_sigma * sigma;
+    double newtons = 0.0;
+    for (const std::uint32_t taxel : taxels) newtons += force.newtons[taxel];
+    return stands_out && newtons >= share * options.onset_force_n;
+  }
+
+  /// The nearest contact expected on this taxel or on a neighbour of it; null where there is none.
+  [[nodiscard]] const ExpectedContact* expected_at(std::uint32_t taxel) const {
+    const ExpectedContact* found = nullptr;
+    std::int64_t least = 3;  // of the squared distance: the 8 neighbours are at 1 or 2
+    for (std::size_t k = 0; k < held_.size(); ++k) {
+      const auto rows = static_cast<std::int64_t>(held_[k] / cols_) - static_cast<std::int64_t>(taxel / cols_);
+      const auto cols = static_cast<std::int64_t>(held_[k] % cols_) - static_cast<std::int64_t>(taxel % cols_);
+      const std::int64_t distance = rows * rows + cols * cols;
+      if (distance >= least) continue;
+      least = distance;
+      found = &expected_[k];
+    }
+    return found;
+  }
+
+  void keep_strongest() {
+    if (found_.size() <= options.most_contacts) return;
+    std::sort(found_.begin(), found_.end(), [](const FoundContact& a, const FoundContact& b) {
+      return a.contact.force_n != b.contact.force_n ? a.contact.force_n > b.contact.force_n : a.peak < b.peak;
+    });
+    found_.resize(options.most_contacts);
+  }
+
+  static void add_up(ContactReport& report) {
+    double sum = 0.0;
+    double variance = 0.0;
+    PlaneVector first;
+    for (const Contact& contact : report.contacts) {
+      if (contact.phase == ContactPhase::release) continue;
+      sum += contact.force_n;
+      variance += contact.sigma_force_n * contact.sigma_force_n;
+      first.x += contact.force_n * contact.position.x;
+      first.y += contact.force_n * contact.position.y;
+    }
+    report.total_force_n = sum;
+    report.sigma_total_n = std::sqrt(variance);
+    report.centre_of_pressure.reset();
+    if (sum > 0.0) report.centre_of_pressure = PlaneVector{first.x / sum, first.y / sum};
+  }
+
+  std::size_t rows_;
+  std::size_t cols_;
+  double row_pitch_m_;
+  double col_pitch_m_;
+  StressedAreas areas_;
+  ContactGauge gauge_;
+  ContactTracks tracks_;
+  std::vector<ExpectedContact> expected_;
+  // [expected]: the taxel it is on
+  std::vector<std::uint32_t> held_;
+  std::vector<FoundContact> found_;
+};
+
+ContactTracker::ContactTracker(const ArrayDescription& array, const ContactOptions& options)
+    : implementation_(std::make_unique<Implementation>(array, options)) {
+  assert(options.validate().has_value());
+}
+
+ContactTracker::ContactTracker(ContactTracker&&) noexcept = default;
+ContactTracker& ContactTracker::operator=(ContactTracker&&) noexcept = default;
+ContactTracker::~ContactTracker() = default;
+
+void ContactTracker::process(const ForceFrame& force, ContactReport& report) noexcept {
+  implementation_->process(force, report);
+}
+
+void ContactTracker::forget() noexcept {
+  implementation_->forget();
+}
+
+void ContactTracker::set_options(const ContactOptions& options) noexcept {
+  assert(options.validate().has_value());
+  implementation_->options = options;
+}
+
+const ContactOptions& ContactTracker::options() const noexcept {
+  return implementation_->options;
+}
+
+}  // namespace dermis::fusion

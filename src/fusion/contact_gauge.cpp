@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "fusion/contact_gauge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace dermis::fusion {
+namespace {
+
+constexpr std::size_t kMostFitted = 40;       // pressed taxels; of more the centre of mass is as good
+constexpr double kPriorRadiusPitches = 0.75;  // fingers and heels of hands on a pitch of 10 mm
+constexpr float kPriorSigma = 0.6F;
+constexpr float kMismatchOfTaxel = 0.003F;  // what the shape of a real patch differs by from the model's
+constexpr float kMismatchOfPeak = 0.0005F;
+constexpr float kGoodChiSquared = 3.0F;      // per degree of freedom, of a patch; else the other profile is tried
+constexpr float kRoundChiSquared = 1000.0F;  // beyond which a contact is not round: the centre of mass is taken
+constexpr float kMostShareOfOther = 0.35F;   // of a peak, that a contact without a valley before it can have
+constexpr double kLeastPitchesApart = 1.6;   // from this contact's centre to the strongest taxel of another
+constexpr float kLeastShareOfOther = 0.5F;   // of a taxel's force, that is not this contact's
+
+double taxel_area(const ArrayDescription& array) {
+  const double diameter = 0.7 * std::min(array.row_pitch_m, array.col_pitch_m);
+  return array.taxel_area_m2.value_or(std::numbers::pi / 4.0 * diameter * diameter);
+}
+
+}  // namespace
+
+ContactGauge::ContactGauge(const ArrayDescription& array)
+    : rows_(array.rows),
+      cols_(array.cols),
+      row_pitch_m_(array.row_pitch_m),
+      col_pitch_m_(array.col_pitch_m),
+      taxel_area_m2_(taxel_area(array)),
+      taxel_radius_m_(std::sqrt(taxel_area_m2_ / std::numbers::pi)),
+      small_contacts_(
+          SmallContactTable::of({array.col_pitch_m / taxel_radius_m_, array.row_pitch_m / taxel_radius_m_})),
+      visited_(array.taxel_count()) {
+  const double pitch = std::sqrt(row_pitch_m_ * col_pitch_m_);
+  prior_.log_radius = static_cast<float>(std::log(kPriorRadiusPitches * pitch / taxel_radius_m_));
+  prior_.sigma = kPriorSigma;
+  for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+    places_.push_back({centre(taxel).x / taxel_radius_m_, centre(taxel).y / taxel_radius_m_});
+  }
+  fit_taxels_.reserve(9 * kMostFitted);
+  unexplained_.reserve(kMostFitted);
+  PatchResponse::of(PatchProfile::hertz);
+}
+
+Contact ContactGauge::measure(const ForceFrame& force, std::span<const std::uint32_t> taxels, double pressed_sigma,
+                              const ExpectedContact* expected) {
+  Contact contact;
+  fit_.reset();
+  pressed_sigma_ = static_cast<float>(pressed_sigma);
+  sum_forces(force, taxels, contact);
+  find_moments(force, taxels, contact);
+  if (look_up(force, taxels, contact)) return contact;
+  if (taxels.size() <= kMostFitted) fit(force, taxels, expected, contact);
+  return contact;
+}
+
+void ContactGauge::sum_forces(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const {
+  double variance = 0.0;
+  for (const std::uint32_t taxel : taxels) {
+    const double newtons = force.newtons[taxel];
+    const double sigma = force.sigma_newtons[taxel];
+    contact.force_n += newtons;
+    variance += sigma * sigma;
+    contact.position.x += newtons * centre(taxel).x;
+    contact.position.y += newtons * centre(taxel).y;
+  }
+  const auto count = static_cast<double>(taxels.size());
+  contact.position.x /= contact.force_n;
+  contact.position.y /= contact.force_n;
+  contact.sigma_position_m = {0.2 * col_pitch_m_ / std::sqrt(count), 0.2 * row_pitch_m_ / std::sqrt(count)};
+  contact.sigma_force_n = std::sqrt(variance);
+  contact.area_m2 = count * row_pitch_m_ * col_pitch_m_;
+  contact.peak_pressure_pa = force.newtons[taxels.front()] / taxel_area_m2_;
+  contact.mean_pressure_pa = contact.force_n / (count * taxel_area_m2_);
+  contact.taxels = static_cast<std::uint32_t>(taxels.size());
+}
+
+void ContactGauge::find_moments(const ForceFrame& force, std::span<const std::uint32_t> taxels,
+                                Contact& contact) const {
+  double xx = 0.0;
+  double xy = 0.0;
+  double yy = 0.0;
+  for (const std::uint32_t taxel : taxels) {
+    const double share = force.newtons[taxel] / contact.force_n;
+    const PlaneVector place = centre(taxel);
+    const double x = place.x - contact.position.x;
+    const double y = place.y - contact.position.y;
+    xx += share * x * x;
+    xy += share * x * y;
+    yy += share * y * y;
+  }
+  const double half = 0.5 * std::sqrt((xx - yy) * (xx - yy) + 4.0 * xy * xy);
+  const double middle = 0.5 * (xx + yy);
+  contact.major_axis_m = std::sqrt(middle + half);
+  contact.minor_axis_m = std::sqrt(std::max(0.0, middle - half));
+  const double angle = 0.5 * std::atan2(2.0 * xy, xx - yy);
+  contact.angle_rad = angle <= -std::numbers::pi / 2.0 ? std::numbers::pi / 2.0 : angle;
+}
+
+bool ContactGauge::look_up(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const {
+  if (taxels.size() > 4) return false;
+  const std::size_t peak = taxels.front();
+  const std::size_t row = peak / cols_;
+  const std::size_t col = peak % cols_;
+  if (row == 0 || col == 0 || row + 1 == rows_ || col + 1 == cols_) return false;
+  const auto newtons = [&](std::size_t r, std::size_t c) { return force.newtons[r * cols_ + c]; };
+  const std::size_t beside = newtons(row, col + 1) >= newtons(row, col - 1) ? col + 1 : col - 1;
+  const std::size_t below = newtons(row + 1, col) >= newtons(row - 1, col) ? row + 1 : row - 1;
+  for (const std::uint32_t taxel : taxels) {
+    const std::size_t r = taxel / cols_;
+    const std::size_t c = taxel % cols_;
+    if ((r != row && r != below) || (c != col && c != beside)) return false;
+  }
+  float variance = 0.0F;
+  for (std::size_t r = row - 1; r <= row + 1; ++r) {
+    for (std::size_t c = col - 1; c <= col + 1; ++c) {
+      if (r == row && c == col) continue;
+      const float sigma = force.sigma_newtons[r * cols_ + c];
+      variance += 0.125F * sigma * sigma;
+    }
+  }
+  if (!std::isfinite(variance) || !std::isfinite(force.sigma_newtons[peak])) return false;
+  const float strongest = newtons(row, col);
+  const auto place = small_contacts_->find({newtons(row, beside) / strongest, newtons(below, col) / strongest,
+                                            newtons(below, beside) / strongest, std::sqrt(variance) / strongest});
+  if (!place) return false;
+  const double across = beside > col ? taxel_radius_m_ : -taxel_radius_m_;
+  const double down = below > row ? taxel_radius_m_ : -taxel_radius_m_;
+  const PlaneVector at = centre(peak);
+  contact.position = {at.x + across * place->x, at.y + down * place->y};
+  contact.sigma_position_m = {taxel_radius_m_ * std::sqrt(place->variance_x),
+                              taxel_radius_m_ * std::sqrt(place->variance_y)};
+  const double radius = taxel_radius_m_ * std::exp(place->log_radius);
+  contact.area_m2 = std::numbers::pi * radius * radius;
+  return true;
+}
+
+void ContactGauge::gather(const ForceFrame& force, std::span<const std::uint32_t> taxels) {
+  ++area_;
+  fit_taxels_.clear();
+  origin_taxel_ = taxels.front();
+  origin_ = centre(origin_taxel_);
+  peak_newtons_ = force.newtons[taxels.front()];
+  for (const std::uint32_t taxel : taxels) {
+    visited_[taxel] = area_;
+    add_taxel(force, taxel);
+  }
+  for (const std::uint32_t taxel : taxels) {
+    const std::size_t row = taxel / cols_;
+    const std::size_t col = taxel % cols_;
+    const std::size_t last_row = std::min(row + 1, rows_ - 1);
+    const std::size_t last_col = std::min(col + 1, cols_ - 1);
+    for (std::size_t r = row > 0 ? row - 1 : 0; r <= last_row; ++r) {
+      for (std::size_t c = col > 0 ? col - 1 : 0; c <= last_col; ++c) {
+        const std::size_t beside = r * cols_ + c;
+        if (visited_[beside] == area_) continue;
+        visited_[beside] = area_;
+        const bool is_of_other = force.newtons[beside] >= pressed_sigma_ * force.sigma_newtons[beside];
+        if (!is_of_other) add_taxel(force, static_cast<std::uint32_t>(beside));
+      }
+    }
+  }
+}
+
+void ContactGauge::add_taxel(const ForceFrame& force, std::uint32_t taxel) {
+  const float newtons = force.newtons[taxel];
+  const float sigma = force.sigma_newtons[taxel];
+  if (!std::isfinite(newtons) || !std::isfinite(sigma)) return;
+  const PlaneVector at = places_[taxel];
+  const PlaneVector origin = places_[origin_taxel_];
+  const float of_taxel = kMismatchOfTaxel * newtons;
+  const float of_peak = kMismatchOfPeak * peak_newtons_;
+  const float weight = 1.0F / std::sqrt(sigma * sigma + of_taxel * of_taxel + of_peak * of_peak);
+  fit_taxels_.push_back({static_cast<float>(at.x - origin.x), static_cast<float>(at.y - origin.y), newtons, weight});
+}
+
+std::size_t ContactGauge::part(const ForceFrame& force, std::span<std::uint32_t> taxels) {
+  if (!fit_) return taxels.size();
+  unexplained_.clear();
+  std::size_t explained = 0;
+  for (const std::uint32_t taxel : taxels) {
+    if (is_explained(force, taxel)) {
+      taxels[explained++] = taxel;
+    } else {
+      unexplained_.push_back(taxel);
+    }
+  }
+  std::copy(unexplained_.begin(), unexplained_.end(), taxels.begin() + static_cast<std::ptrdiff_t>(explained));
+  return explained;
+}
+
+/// What another contact presses is weak against this one's peak, or there would be a valley.
+bool ContactGauge::is_explained(const ForceFrame& force, std::uint32_t taxel) const {
+  const float newtons = force.newtons[taxel];
+  const float sigma = force.sigma_newtons[taxel];
+  if (!(newtons < kMostShareOfOther * peak_newtons_) || !std::isfinite(sigma)) return true;
+  const double dx = places_[taxel].x - places_[origin_taxel_].x - fit_->patch.x;
+  const double dy = places_[taxel].y - places_[origin_taxel_].y - fit_->patch.y;
+  const double distance = std::sqrt(dx * dx + dy * dy);
+  if (taxel_radius_m_ * distance < kLeastPitchesApart * std::min(row_pitch_m_, col_pitch_m_)) return true;
+  const PatchResponse::Row response = PatchResponse::of(fit_->profile).row(fit_->patch.log_radius);
+  const float expected = fit_->patch.newtons * response.share(static_cast<float>(distance));
+  return newtons - expected < std::max(kLeastShareOfOther * newtons, pressed_sigma_ * sigma);
+}
+
+Patch ContactGauge::start_at(PlaneVector place, double radius_m, double newtons) const {
+  Patch start;
+  start.x = static_cast<float>((place.x - origin_.x) / taxel_radius_m_);
+  start.y = static_cast<float>((place.y - origin_.y) / taxel_radius_m_);
+  start.log_radius = static_cast<float>(std::log(radius_m / taxel_radius_m_));
+  start.newtons = static_cast<float>(newtons);
+  return start;
+}
+
+/// Radius of a patch about `place` that presses all these taxels.
+double ContactGauge::reach(std::span<const std::uint32_t> taxels, PlaneVector place) const {
+  double most = 0.0;
+  for (const std::uint32_t taxel : taxels) {
+    const double dx = centre(taxel).x - place.x;
+    const double dy = centre(taxel).y - place.y;
+    most = std::max(most, dx * dx + dy * dy);
+  }
+  return std::max(taxel_radius_m_, std::sqrt(most) - 0.6 * taxel_radius_m_);
+}
+
+void ContactGauge::fit(const ForceFrame& force, std::span<const std::uint32_t> taxels, const ExpectedContact* expected,
+                       Contact& contact) {
+  gather(force, taxels);
+  const double newtons = 2.0 * contact.force_n;  // about half of the force lies between the taxels
+  const Patch start = expected != nullptr ? start_at(expected->place, expected->radius_m, newtons)
+                                          : start_at(contact.position, reach(taxels, contact.position), newtons);
+  const PatchProfile first = expected != nullptr ? expected->profile : PatchProfile::hertz;
+  const PatchProfile second = first == PatchProfile::hertz ? PatchProfile::flat : PatchProfile::hertz;
+  const auto freedom = static_cast<float>(std::max<std::size_t>(fit_taxels_.size(), 5) - 4);
+  PatchFit found = fit_patch(fit_taxels_, first, start, prior_);
+  if (found.chi_squared > kGoodChiSquared * freedom) {
+    const PatchFit other = fit_patch(fit_taxels_, second, found.patch, prior_);
+    if (other.chi_squared < found.chi_squared) found = other;
+  }
+  const float misfit = std::max(1.0F, found.chi_squared / freedom);
+  const PlaneVector sigma{taxel_radius_m_ * std::sqrt(misfit * found.variance_x),
+                          taxel_radius_m_ * std::sqrt(misfit * found.variance_y)};
+  if (!(sigma.x > 0.0 && sigma.x < col_pitch_m_ && sigma.y > 0.0 && sigma.y < row_pitch_m_))
+    return;  // the taxels do not tell: the centre of mass does
+  fit_ = found;
+  if (misfit > kRoundChiSquared) return;
+  contact.position = {origin_.x + taxel_radius_m_ * found.patch.x, origin_.y + taxel_radius_m_ * found.patch.y};
+  contact.sigma_position_m = sigma;
+  const double fitted_radius = taxel_radius_m_ * std::exp(found.patch.log_radius);
+  contact.area_m2 = std::numbers::pi * fitted_radius * fitted_radius;
+}
+
+}  // namespace dermis::fusion

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/contacts.hpp"
+#include "dermis/core/frames.hpp"
+#include "fusion/contact_tracks.hpp"
+#include "fusion/patch_fit.hpp"
+#include "fusion/small_contact_table.hpp"
+
+namespace dermis::fusion {
+
+/// Fine positioning and the size of the force: what the taxels of one stressed area tell about the contact on it.
+class ContactGauge {
+ public:
+  explicit ContactGauge(const ArrayDescription& array);
+
+  /// `taxels`: those of the area, by falling force; at least one. Other taxels from `pressed_sigma` standard deviations
+  /// on belong to other contacts. `expected`, or null: where to begin the search for the patch, which is faster, and
+  /// leads to the same one. Of the result id, phase, onset and velocity are left.
+  [[nodiscard]] Contact measure(const ForceFrame& force, std::span<const std::uint32_t> taxels, double pressed_sigma,
+                                const ExpectedContact* expected);
+
+  /// Of the contact measured last.
+  [[nodiscard]] PatchProfile profile() const noexcept { return fit_ ? fit_->profile : PatchProfile::hertz; }
+
+  /// Of the taxels measured last, those that the patch found does not explain are put last, both parts by falling
+  /// force; returns how many it does explain. A weak contact beside a strong one makes no valley, but leaves such
+  /// taxels.
+  [[nodiscard]] std::size_t part(const ForceFrame& force, std::span<std::uint32_t> taxels);
+
+ private:
+  void sum_forces(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
+  void find_moments(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
+  void fit(const ForceFrame& force, std::span<const std::uint32_t> taxels, const ExpectedContact* expected,
+           Contact& contact);
+  [[nodiscard]] Patch start_at(PlaneVector place, double radius_m, double newtons) const;
+  [[nodiscard]] double reach(std::span<const std::uint32_t> taxels, PlaneVector place) const;
+  /// False where it cannot: at the edge, beside a taxel without force, or on more than a block of 2 x 2 taxels.
+  [[nodiscard]] bool look_up(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
+  void gather(const ForceFrame& force, std::span<const std::uint32_t> taxels);
+  void add_taxel(const ForceFrame& force, std::uint32_t taxel);
+  [[nodiscard]] bool is_explained(const ForceFrame& force, std::uint32_t taxel) const;
+  [[nodiscard]] PlaneVector centre(std::size_t taxel) const noexcept {
+    const std::size_t row = taxel / cols_;
+    return {static_cast<double>(taxel - row * cols_) * col_pitch_m_, static_cast<double>(row) * row_pitch_m_};
+  }
+
+  std::size_t rows_;
+  std::size_t cols_;
+  double row_pitch_m_;
+  double col_pitch_m_;
+  double taxel_area_m2_;
+  double taxel_radius_m_;
+  RadiusPrior prior_;
+  std::shared_ptr<const SmallContactTable> small_contacts_;
+  std::uint32_t origin_taxel_ = 0;
+  PlaneVector origin_;  // of fit_taxels_: the strongest taxel [m]
+  float peak_newtons_ = 0.0F;
+  float pressed_sigma_ = 0.0F;
+  std::optional<PatchFit> fit_;  // of the area measured last
+  std::vector<std::uint32_t> unexplained_;
+  std::vector<PlaneVector> places_;  // of the taxels, in radii of a taxel
+  std::vector<FitTaxel> fit_taxels_;
+  std::vector<std::uint32_t> visited_;  // [rows + 2, cols + 2]: the last area that looked at a taxel
+  std::uint32_t area_ = 0;
+};
+
+}  // namespace dermis::fusion

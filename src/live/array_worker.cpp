@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "live/array_worker.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+namespace dermis::live {
+namespace {
+
+constexpr Nanos kTellInterval = std::chrono::milliseconds(100);
+constexpr Nanos kLate = std::chrono::milliseconds(500);
+constexpr Nanos kSilence = std::chrono::seconds(2);  // without a frame, the rate is 0
+constexpr double kSilentIntervals = 3.0;             // of slow sources
+
+Nanos steady_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+Result<std::unique_ptr<pipeline::Pipeline>> make_pipeline(const pipeline::Model& model) {
+  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
+  if (!pipeline) return pipeline.error();
+  return std::make_unique<pipeline::Pipeline>(*std::move(pipeline));
+}
+
+Status check_sizes(const LiveArray& array) {
+  const ArrayDescription& description = array.model->array;
+  const std::optional<FrameShape> shape = array.source->shape();
+  if (shape && *shape != FrameShape{description.rows, description.cols}) {
+    return bad_input(fmt::format("the source has {}x{} taxels, its model {}x{}", shape->rows, shape->cols,
+                                 description.rows, description.cols));
+  }
+  if (array.surface.taxels().size() != description.taxel_count()) {
+    return bad_input(fmt::format("the surface has {} taxels, the model {}", array.surface.taxels().size(),
+                                 description.taxel_count()));
+  }
+  return Done{};
+}
+
+bool is_silent(const ArrayStatistics& told, Nanos since) {
+  return since > kSilence && 1e-9 * static_cast<double>(since.count()) * told.source.rate_hz > kSilentIntervals;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ArrayWorker>> ArrayWorker::create(std::size_t index, LiveArray array,
+                                                         const LiveOptions& options) {
+  if (const Status fits = check_sizes(array); !fits) return fits.error();
+  Result<std::unique_ptr<pipeline::Pipeline>> pipeline = make_pipeline(*array.model);
+  if (!pipeline) return pipeline.error();
+  return std::unique_ptr<ArrayWorker>(new ArrayWorker(index, std::move(array), *std::move(pipeline), options));
+}
+
+ArrayWorker::ArrayWorker(std::size_t index, LiveArray array, std::unique_ptr<pipeline::Pipeline> pipeline,
+                         const LiveOptions& options)
+    : index_(index),
+      array_(std::move(array)),
+      options_(options),
+      pipeline_(std::move(pipeline)),
+      track_drift_(options.track_drift),
+      tracker_(array_.model->array, options.contacts) {
+  pipeline_->drift().set_options({.track = track_drift_});
+}
+
+void ArrayWorker::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+void ArrayWorker::join() {
+  if (thread_.joinable()) thread_.join();
+}
+
+template <typename Change>
+void ArrayWorker::request(const Change& change) {
+  const std::lock_guard lock(requests_mutex_);
+  change(requests_);
+  has_requests_.store(true, std::memory_order_release);
+}
+
+void ArrayWorker::set_contact_options(const fusion::ContactOptions& options) {
+  request([&](Requests& requests) { requests.contacts = options; });
+}
+
+void ArrayWorker::set_track_drift(bool track) {
+  request([&](Requests& requests) { requests.track_drift = track; });
+}
+
+void ArrayWorker::set_zero(ZeroRequest zero) {
+  request([&](Requests& requests) { requests.zero = zero; });
+}
+
+Status ArrayWorker::set_model(const pipeline::Model& model) {
+  const ArrayDescription& present = array_.model->array;
+  const ArrayDescription& next = model.array;
+  if (next.rows != present.rows || next.cols != present.cols || next.row_pitch_m != present.row_pitch_m ||
+      next.col_pitch_m != present.col_pitch_m) {
+    return bad_input(fmt::format("array '{}': the new model is of another size or pitch", array_.name));
+  }
+  Result<std::unique_ptr<pipeline::Pipeline>> pipeline = make_pipeline(model);
+  if (!pipeline) return bad_input(fmt::format("array '{}': {}", array_.name, pipeline.error().message));
+  request([&](Requests& requests) { requests.pipeline = *std::move(pipeline); });
+  return Done{};
+}
+
+void ArrayWorker::take_requests() {
+  if (!has_requests_.load(std::memory_order_acquire)) return;
+  Requests asked;
+  {
+    const std::lock_guard lock(requests_mutex_);
+    asked = std::exchange(requests_, {});
+    has_requests_.store(false, std::memory_order_relaxed);
+  }
+  if (asked.pipeline) pipeline_ = std::move(asked.pipeline);
+  if (asked.contacts) tracker_.set_options(*asked.contacts);
+  track_drift_ = asked.track_drift.value_or(track_drift_);
+  pipeline_->drift().set_options({.track = track_drift_});
+  if (asked.zero == ZeroRequest::tare) pipeline_->drift().tare();
+  if (asked.zero == ZeroRequest::reset) pipeline_->drift().reset();
+}
+
+void ArrayWorker::run() {
+  Result<bool> more = true;
+  while (more && *more && !stopping_.load(std::memory_order_relaxed)) more = step();
+  finish(more ? Status(Done{}) : Status(more.error()));
+}
+
+Result<bool> ArrayWorker::step() {
+  Result<bool> more = array_.source->next(raw_);
+  if (!more || !*more) return more;
+  take_requests();
+  pipeline_->process(raw_, force_);
+  if (pipeline_->rejection() == preprocessing::Rejection::time_going_backwards && was_sought_back()) begin_anew();
+  last_time_ = raw_.time;
+  tracker_.process(force_, report_);
+  place_contacts();
+  meter(steady_now());
+  if (options_.on_result) {
+    options_.on_result({index_, raw_, pipeline_->conductance(), force_, report_, contacts_});
+  }
+  return true;
+}
+
+/// A frame of a device that comes a little late is rejected and no more.
+bool ArrayWorker::was_sought_back() const noexcept {
+  return last_time_ - raw_.time > kLate;
+}
+
+/// A recording was sought back: the frame counts, and what touched the array then is not followed from now.
+void ArrayWorker::begin_anew() {
+  pipeline_->process(raw_, force_);
+  tracker_.forget();
+}
+
+void ArrayWorker::place_contacts() {
+  contacts_.resize(report_.contacts.size());
+  for (std::size_t k = 0; k < contacts_.size(); ++k) {
+    const Contact& contact = report_.contacts[k];
+    contacts_[k] = {index_, contact, array_.surface.at(contact.position),
+                    array_.surface.along(contact.position, contact.velocity)};
+  }
+}
+
+void ArrayWorker::meter(Nanos now) {
+  ++frames_;
+  if (has(force_.status, FrameStatus::rejected)) ++rejected_;
+  const Nanos arrival = raw_.acquisition.arrival_steady;
+  if (arrival > Nanos{}) latencies_.add(now, now - arrival);
+  if (now - told_at_ < kTellInterval) return;
+  const std::unique_lock lock(told_mutex_, std::try_to_lock);
+  if (lock) tell(now);
+}
+
+/// With told_mutex_ held.
+void ArrayWorker::tell(Nanos now) {
+  told_at_ = now;
+  told_.source = array_.source->statistics();
+  told_.frames = frames_;
+  told_.rejected = rejected_;
+  told_.latency_p50 = latencies_.quantile(now, 0.5);
+  told_.latency_p99 = latencies_.quantile(now, 0.99);
+  const auto faults = pipeline_->line_faults().faults();
+  told_.faults.assign(faults.begin(), faults.end());
+  told_.temperature_celsius = raw_.temperature_celsius;
+  told_.supply_v = raw_.supply_v;
+}
+
+void ArrayWorker::finish(const Status& outcome) {
+  {
+    const std::lock_guard lock(told_mutex_);
+    tell(steady_now());
+    told_.ended = true;
+    if (!outcome) told_.error = outcome.error().message;
+  }
+  if (options_.notice && !outcome) options_.notice(fmt::format("array '{}': {}", array_.name, outcome.error().message));
+  ended_.store(true, std::memory_order_release);
+}
+
+ArrayStatistics ArrayWorker::statistics() const {
+  const std::lock_guard lock(told_mutex_);
+  ArrayStatistics statistics = told_;
+  if (!statistics.ended && is_silent(statistics, steady_now() - told_at_)) statistics.source.rate_hz = 0.0;
+  return statistics;
+}
+
+}  // namespace dermis::live

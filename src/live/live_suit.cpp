@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/live/live_suit.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cassert>
+#include <mutex>
+#include <utility>
+
+#include "live/array_worker.hpp"
+
+namespace dermis::live {
+
+class LiveSuit::Implementation {
+ public:
+  explicit Implementation(LiveOptions options)
+      : options_(std::move(options)), contacts_(options_.contacts), track_drift_(options_.track_drift) {}
+
+  Status add(LiveArray array) {
+    const std::string place = fmt::format("array '{}': ", array.name);
+    Result<std::unique_ptr<ArrayWorker>> worker = ArrayWorker::create(workers_.size(), std::move(array), options_);
+    if (!worker) return bad_input(place + worker.error().message);
+    workers_.push_back(*std::move(worker));
+    return Done{};
+  }
+
+  void stop() {
+    for (const auto& worker : workers_) worker->ask_to_stop();
+    for (const auto& worker : workers_) worker->join();
+  }
+
+  void set_contact_options(const fusion::ContactOptions& options) {
+    const std::lock_guard lock(mutex_);
+    contacts_ = options;
+    for (const auto& worker : workers_) worker->set_contact_options(options);
+  }
+  fusion::ContactOptions contact_options() const {
+    const std::lock_guard lock(mutex_);
+    return contacts_;
+  }
+
+  void set_track_drift(bool track) {
+    const std::lock_guard lock(mutex_);
+    track_drift_ = track;
+    for (const auto& worker : workers_) worker->set_track_drift(track);
+  }
+  bool track_drift() const {
+    const std::lock_guard lock(mutex_);
+    return track_drift_;
+  }
+
+  void set_zero(std::optional<std::size_t> array, ZeroRequest request) {
+    if (array) return at(*array).set_zero(request);
+    for (const auto& worker : workers_) worker->set_zero(request);
+  }
+
+  ArrayWorker& at(std::size_t array) const {
+    assert(array < workers_.size());
+    return *workers_[array];
+  }
+  const std::vector<std::unique_ptr<ArrayWorker>>& workers() const { return workers_; }
+
+ private:
+  const LiveOptions options_;
+  std::vector<std::unique_ptr<ArrayWorker>> workers_;
+  mutable std::mutex mutex_;
+  fusion::ContactOptions contacts_;
+  bool track_drift_;
+};
+
+Result<std::unique_ptr<LiveSuit>> LiveSuit::create(std::vector<LiveArray> arrays, LiveOptions options) {
+  if (arrays.empty()) return bad_input("a suit needs at least one array");
+  if (const Status valid = options.contacts.validate(); !valid) return valid.error();
+  auto implementation = std::make_unique<Implementation>(std::move(options));
+  for (LiveArray& array : arrays) {
+    if (const Status added = implementation->add(std::move(array)); !added) return added.error();
+  }
+  return std::unique_ptr<LiveSuit>(new LiveSuit(std::move(implementation)));
+}
+
+LiveSuit::LiveSuit(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
+
+LiveSuit::~LiveSuit() {
+  stop();
+}
+
+void LiveSuit::start() {
+  for (const auto& worker : implementation_->workers()) worker->start();
+}
+
+void LiveSuit::stop() {
+  implementation_->stop();
+}
+
+bool LiveSuit::ended() const noexcept {
+  const auto& workers = implementation_->workers();
+  return std::all_of(workers.begin(), workers.end(), [](const auto& worker) { return worker->ended(); });
+}
+
+void LiveSuit::set_contact_options(const fusion::ContactOptions& options) {
+  assert(options.validate());
+  implementation_->set_contact_options(options);
+}
+
+fusion::ContactOptions LiveSuit::contact_options() const {
+  return implementation_->contact_options();
+}
+
+void LiveSuit::set_track_drift(bool track) {
+  implementation_->set_track_drift(track);
+}
+
+bool LiveSuit::track_drift() const {
+  return implementation_->track_drift();
+}
+
+void LiveSuit::tare(std::optional<std::size_t> array) {
+  implementation_->set_zero(array, ZeroRequest::tare);
+}
+
+void LiveSuit::reset_tare(std::optional<std::size_t> array) {
+  implementation_->set_zero(array, ZeroRequest::reset);
+}
+
+Status LiveSuit::set_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model) {
+  assert(model);
+  return implementation_->at(array).set_model(*model);
+}
+
+std::size_t LiveSuit::array_count() const noexcept {
+  return implementation_->workers().size();
+}
+
+ArrayStatistics LiveSuit::statistics(std::size_t array) const {
+  return implementation_->at(array).statistics();
+}
+
+}  // namespace dermis::live

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/messages/cdr.hpp"
+
+namespace dermis::messages {
+
+std::uint8_t* CdrWriter::append(std::size_t count) {
+  bytes_.resize(bytes_.size() + count);
+  return bytes_.data() + (bytes_.size() - count);
+}
+
+}  // namespace dermis::messages

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/messages/ros_messages.hpp"
+
+namespace dermis::messages {
+
+/// foxglove_msgs/PackedElementField of a cell.
+struct GridField {
+  const char* name;
+  std::uint32_t offset;
+  std::uint8_t type;
+};
+
+inline constexpr std::uint8_t kUint8Field = 1;
+inline constexpr std::uint8_t kFloat32Field = 7;
+
+/// What a grid is of: when, how large, where.
+struct GridPlace {
+  Nanos time;
+  FrameShape shape;
+  Pitch pitch;
+  std::string_view frame_id;
+};
+
+/// foxglove_msgs/msg/Grid with cells of zeros; returns their place, row-major.
+std::span<std::uint8_t> write_grid(const GridPlace& place, std::span<const GridField> fields, std::size_t cell_bytes,
+                                   std::vector<std::uint8_t>& message);
+
+}  // namespace dermis::messages

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/messages/ros_messages.hpp"
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cstring>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/messages/cdr.hpp"
+#include "messages/count_words.hpp"
+#include "messages/grid.hpp"
+#include "messages/header.hpp"
+
+namespace dermis::messages {
+namespace {
+
+Nanos read_stamp(CdrReader& reader) {
+  const auto seconds = reader.read<std::int32_t>();
+  const auto nanos = reader.read<std::uint32_t>();
+  return Nanos(seconds * kNanosPerSecond + nanos);
+}
+
+Nanos read_header(CdrReader& reader) {
+  const Nanos stamp = read_stamp(reader);
+  static_cast<void>(reader.read_text());
+  return stamp;
+}
+
+Error not_whole(const MessageType& type) {
+  return bad_input(std::string("the message is no whole ") + type.name + " in CDR");
+}
+
+/// The fields of an image before its data, and the place of the data.
+std::span<std::uint8_t> write_image(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
+                                    const char* encoding, std::size_t taxel_bytes, std::vector<std::uint8_t>& message) {
+  CdrWriter writer(message);
+  write_header(writer, frame.time, frame_id);
+  writer.write(static_cast<std::uint32_t>(shape.rows));
+  writer.write(static_cast<std::uint32_t>(shape.cols));
+  writer.write_text(encoding);
+  writer.write(std::uint8_t{0});
+  writer.write(static_cast<std::uint32_t>(shape.cols * taxel_bytes));
+  return writer.write_bytes(shape.taxel_count() * taxel_bytes);
+}
+
+void read_words(std::span<const std::uint8_t> row, bool big_endian, std::span<float> counts) {
+  if (!big_endian) return uint16_to_counts(row.data(), counts.size(), counts.data());
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    counts[i] = static_cast<float>(256U * row[2 * i] + row[2 * i + 1]);
+  }
+}
+
+void read_floats(std::span<const std::uint8_t> row, bool big_endian, std::span<float> counts) {
+  std::memcpy(counts.data(), row.data(), 4 * counts.size());
+  if (!big_endian) return;
+  for (float& count : counts) count = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(count)));
+}
+
+// The cell of a grid of forces: float32 newtons, float32 sigma_newtons, uint8 status.
+constexpr std::size_t kSigmaOffset = 4;
+constexpr std::size_t kStatusOffset = 8;
+constexpr std::size_t kCellBytes = 9;
+constexpr std::array<GridField, 3> kGridFields{GridField{"newtons", 0, kFloat32Field},
+                                               {"sigma_newtons", kSigmaOffset, kFloat32Field},
+                                               {"status", kStatusOffset, kUint8Field}};
+
+bool read_grid_fields(CdrReader& reader) {
+  bool expected = reader.read<std::uint32_t>() == kGridFields.size();
+  for (const GridField& field : kGridFields) {
+    expected = expected && reader.read_text() == field.name && reader.read<std::uint32_t>() == field.offset &&
+               reader.read<std::uint8_t>() == field.type;
+  }
+  return expected;
+}
+
+bool read_cells(std::span<const std::uint8_t> cells, ForceFrame& frame) {
+  const std::size_t taxel_count = cells.size() / kCellBytes;
+  frame.newtons.resize(taxel_count);
+  frame.sigma_newtons.resize(taxel_count);
+  frame.taxels.resize(taxel_count);
+  for (std::size_t i = 0; i < taxel_count; ++i) {
+    const std::uint8_t* cell = cells.data() + i * kCellBytes;
+    std::memcpy(&frame.newtons[i], cell, sizeof(float));
+    std::memcpy(&frame.sigma_newtons[i], cell + kSigmaOffset, sizeof(float));
+    if (cell[kStatusOffset] > static_cast<std::uint8_t>(TaxelStatus::invalid)) return false;
+    frame.taxels[i] = static_cast<TaxelStatus>(cell[kStatusOffset]);
+  }
+  return true;
+}
+
+bool is_possible(std::size_t rows, std::size_t cols) {
+  return rows >= 1 && rows <= kMaxLines && cols >= 1 && cols <= kMaxLines;
+}
+
+template <typename T>
+void write_optional(CdrWriter& writer, const std::optional<T>& value) {
+  writer.write(static_cast<std::uint8_t>(value ? 1 : 0));
+  writer.write(value.value_or(T{}));
+}
+
+template <typename T>
+std::optional<T> read_optional(CdrReader& reader) {
+  const bool has_value = reader.read<std::uint8_t>() != 0;
+  const T value = reader.read<T>();
+  return has_value ? std::optional<T>(value) : std::nullopt;
+}
+
+Nanos read_nanos(CdrReader& reader) {
+  return Nanos(reader.read<std::int64_t>());
+}
+
+}  // namespace
+
+void encode_image(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
+                  std::vector<std::uint8_t>& message) {
+  assert(frame.counts.size() == shape.taxel_count());
+  const std::span<std::uint8_t> words = write_image(frame, shape, frame_id, "16UC1", 2, message);
+  if (counts_to_uint16(frame.counts.data(), frame.counts.size(), words.data())) return;
+  const std::span<std::uint8_t> floats = write_image(frame, shape, frame_id, "32FC1", 4, message);
+  std::memcpy(floats.data(), frame.counts.data(), floats.size());
+}
+
+Result<FrameShape> decode_image(std::span<const std::uint8_t> message, RawFrame& frame) {
+  CdrReader reader(message);
+  frame.time = read_header(reader);
+  const std::size_t rows = reader.read<std::uint32_t>();
+  const std::size_t cols = reader.read<std::uint32_t>();
+  const std::string_view encoding = reader.read_text();
+  const bool big_endian = reader.read<std::uint8_t>() != 0;
+  const std::size_t step = reader.read<std::uint32_t>();
+  const std::span<const std::uint8_t> data = reader.read_bytes();
+  if (!reader.good()) return not_whole(image_type());
+  const bool is_words = encoding == "16UC1" || encoding == "mono16";
+  if (!is_words && encoding != "32FC1") {
+    return bad_input("the image is " + std::string(encoding.substr(0, 20)) + "; 16UC1, mono16 and 32FC1 can be read");
+  }
+  if (!is_possible(rows, cols)) {
+    return bad_input("the image has " + std::to_string(rows) + "x" + std::to_string(cols) +
+                     " pixels; 1x1 to 1024x1024 can be read");
+  }
+  const std::size_t row_bytes = cols * (is_words ? 2 : 4);
+  if (step < row_bytes || data.size() / step < rows) return bad_input("the image is shorter than its size says");
+  frame.counts.resize(rows * cols);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const std::span<float> counts = std::span<float>(frame.counts).subspan(row * cols, cols);
+    const std::span<const std::uint8_t> bytes = data.subspan(row * step, row_bytes);
+    is_words ? read_words(bytes, big_endian, counts) : read_floats(bytes, big_endian, counts);
+  }
+  return FrameShape{rows, cols};
+}
+
+void encode_temperature(double celsius, Nanos time, std::string_view frame_id, std::vector<std::uint8_t>& message) {
+  CdrWriter writer(message);
+  write_header(writer, time, frame_id);
+  writer.write(celsius);
+  writer.write(0.0);
+}
+
+Result<double> decode_temperature(std::span<const std::uint8_t> message) {
+  CdrReader reader(message);
+  static_cast<void>(read_header(reader));
+  const auto celsius = reader.read<double>();
+  static_cast<void>(reader.read<double>());
+  if (!reader.good()) return not_whole(temperature_type());
+  return celsius;
+}
+
+void encode_acquisition(const RawFrame& frame, std::vector<std::uint8_t>& message) {
+  const Acquisition& acquisition = frame.acquisition;
+  CdrWriter writer(message);
+  writer.write(frame.time.count());
+  write_optional(writer, acquisition.sequence);
+  writer.write(static_cast<std::uint8_t>(acquisition.device_time ? 1 : 0));
+  writer.write(acquisition.device_time.value_or(Nanos{}).count());
+  writer.write(acquisition.arrival_steady.count());
+  writer.write(acquisition.arrival_utc.count());
+  writer.write(acquisition.lost_before);
+  writer.write(acquisition.held_taxels);
+  write_optional(writer, frame.supply_v);
+}
+
+Status decode_acquisition(std::span<const std::uint8_t> message, RawFrame& frame) {
+  Acquisition& acquisition = frame.acquisition;
+  CdrReader reader(message);
+  frame.time = read_nanos(reader);
+  acquisition.sequence = read_optional<std::uint64_t>(reader);
+  const std::optional<std::int64_t> device_time = read_optional<std::int64_t>(reader);
+  acquisition.device_time = device_time ? std::optional<Nanos>(*device_time) : std::nullopt;
+  acquisition.arrival_steady = read_nanos(reader);
+  acquisition.arrival_utc = read_nanos(reader);
+  acquisition.lost_before = reader.read<std::uint32_t>();
+  acquisition.held_taxels = reader.read<std::uint32_t>();
+  frame.supply_v = read_optional<double>(reader);
+  if (!reader.good()) return not_whole(acquisition_type());
+  return Done{};
+}
+
+void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& pitch, std::string_view frame_id,
+                 std::vector<std::uint8_t>& message) {
+  assert(frame.newtons.size() == shape.taxel_count());
+  assert(frame.sigma_newtons.size() == shape.taxel_count() && frame.taxels.size() == shape.taxel_count());
+  const std::span<std::uint8_t> cells =
+      write_grid({frame.time, shape, pitch, frame_id}, kGridFields, kCellBytes, message);
+  for (std::size_t i = 0; i < shape.taxel_count(); ++i) {
+    std::uint8_t* cell = cells.data() + i * kCellBytes;
+    std::memcpy(cell, &frame.newtons[i], sizeof(float));
+    std::memcpy(cell + kSigmaOffset, &frame.sigma_newtons[i], sizeof(float));
+    cell[kStatusOffset] = static_cast<std::uint8_t>(frame.taxels[i]);
+  }
+}
+
+Result<FrameShape> decode_grid(std::span<const std::uint8_t> message, ForceFrame& frame) {
+  CdrReader reader(message);
+  frame.time = read_header(reader);
+  for (int i = 0; i < 7; ++i) static_cast<void>(reader.read<double>());  // pose
+  const std::size_t cols = reader.read<std::uint32_t>();
+  static_cast<void>(reader.read<double>());  // pitch
+  static_cast<void>(reader.read<double>());
+  const std::size_t row_stride = reader.read<std::uint32_t>();
+  const std::size_t cell_stride = reader.read<std::uint32_t>();
+  const bool are_forces = read_grid_fields(reader) && cell_stride == kCellBytes;
+  const std::span<const std::uint8_t> cells = are_forces ? reader.read_bytes() : std::span<const std::uint8_t>{};
+  if (!reader.good()) return not_whole(grid_type());
+  if (!are_forces) return bad_input("the grid has other fields than newtons, sigma_newtons and status");
+  if (cols == 0 || cols > kMaxLines || row_stride != cols * kCellBytes || cells.size() % row_stride != 0 ||
+      !is_possible(cells.size() / row_stride, cols) || !read_cells(cells, frame)) {
+    return bad_input("the grid holds no forces of 1x1 to 1024x1024 taxels");
+  }
+  return FrameShape{cells.size() / row_stride, cols};
+}
+
+void encode_frame_status(const ForceFrame& frame, std::vector<std::uint8_t>& message) {
+  CdrWriter writer(message);
+  writer.write(frame.time.count());
+  writer.write(static_cast<std::uint8_t>(frame.status));
+}
+
+Status decode_frame_status(std::span<const std::uint8_t> message, ForceFrame& frame) {
+  CdrReader reader(message);
+  frame.time = read_nanos(reader);
+  frame.status = static_cast<FrameStatus>(reader.read<std::uint8_t>());
+  if (!reader.good()) return not_whole(frame_status_type());
+  return Done{};
+}
+
+}  // namespace dermis::messages

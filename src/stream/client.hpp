@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/stream/server.hpp"
+#include "stream/foxglove_protocol.hpp"
+#include "stream/outgoing_queue.hpp"
+
+namespace dermis::stream {
+
+/// What clients can ask of: the owner of the server, and what it offers.
+struct Offer {
+  Handlers handlers;
+  std::vector<Service> services;
+  std::optional<Playback> playback;
+};
+
+/// Told when the number of subscriptions to a channel changes, by +1 or -1.
+using SubscriptionsChanged = std::function<void(ChannelId channel, int change)>;
+
+/// One client of the stream, as the protocol has it: what it asked for and what waits for it. Knows no socket.
+/// Not thread-safe.
+class Client {
+ public:
+  /// `offer` must outlive it. `is_sdk`: speaks foxglove.sdk.v1, which has playback.
+  Client(const Offer& offer, bool is_sdk, std::size_t queue_bytes, SubscriptionsChanged changed);
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+  ~Client();
+
+  /// Says what there is. To be called once.
+  void greet(const std::string& name, const std::string& session, std::span<const Channel> channels);
+  /// Once for each channel, in the order of their ids; those that it knows by greet() are left out.
+  void advertise(const Channel& channel);
+
+  /// A message of the client. An error: it does not speak the protocol.
+  [[nodiscard]] Status receive(std::span<const std::uint8_t> bytes, bool is_text);
+
+  /// Queues the message where the client has subscribed to the channel; messages and drops are counted on.
+  void publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, ServerStatistics& statistics);
+  [[nodiscard]] bool follows_parameters() const noexcept { return !followed_.empty(); }
+  void tell_parameters(std::span<const Parameter> all);
+  void tell_playback(const PlaybackState& state, std::string_view request_id = {});
+  void tell_status(int level, std::string_view message);
+
+  [[nodiscard]] OutgoingQueue& queue() noexcept { return queue_; }
+
+ private:
+  void handle(const OtherRequest&) {}
+  void handle(const Subscribe& request);
+  void handle(const Unsubscribe& request);
+  void handle(const GetParameters& request);
+  void handle(const SetParameters& request);
+  void handle(const FollowParameters& request);
+  void handle(const ServiceCall& request);
+  void handle(const PlaybackRequest& request);
+  [[nodiscard]] std::vector<Parameter> parameters(const std::set<std::string, std::less<>>& names) const;
+
+  const Offer& offer_;
+  bool is_sdk_;
+  SubscriptionsChanged changed_;
+  OutgoingQueue queue_;
+  ChannelId next_channel_ = 0;                          // the first that it was not told of
+  std::map<std::uint32_t, ChannelId> channel_of_;       // by subscription
+  std::map<ChannelId, std::uint32_t> subscription_of_;  // by channel; one each
+  std::set<std::string, std::less<>> followed_;
+};
+
+}  // namespace dermis::stream

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""dermis serve from outside: what it refuses, its page and documents, its recording. The stream itself: tests/stream."""
+import gzip
+import json
+import re
+import signal
+import socket
+import subprocess
+import time
+import unittest
+import urllib.error
+import urllib.request
+
+import support
+from support import SmallArray, dermis
+
+PATIENCE = 120  # [s]
+LIVE = "sim:contacts?rows=4&cols=5&rate=100"
+
+
+class Serve(SmallArray):
+    def serve(self, *options):
+        """The running server and its address."""
+        process = subprocess.Popen([support.BINARY, "serve", "--port", "0", *map(str, options)], cwd=self.work,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        line = process.stderr.readline()
+        found = re.search(r"serving (.*) at (http://\S+/)", line)
+        self.assertTrue(found, line)
+        return process, found[2]
+
+    def end(self, process):
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(PATIENCE), 0)
+
+    def get(self, address):
+        with urllib.request.urlopen(address, timeout=PATIENCE) as answer:
+            body = answer.read()
+            return gzip.decompress(body) if answer.headers["Content-Encoding"] == "gzip" else body
+
+    def recorded_frames(self, recording):
+        result = dermis("convert", recording, self.work / "recorded.csv")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return len((self.work / "recorded.csv").read_text().splitlines()) - 1
+
+    def test_page_and_suit(self):
+        process, address = self.serve("--from", LIVE, "--model", self.model)
+        self.assertIn(b"<html", self.get(address).lower())
+        suit = json.loads(self.get(address + "suit.json"))
+        [array] = suit["arrays"]
+        self.assertEqual((array["name"], array["rows"], array["cols"]), ("small", 4, 5))
+        self.assertEqual(array["full_scale_counts"], 4095)
+        self.assertAlmostEqual(array["full_scale_n"], 50.0, delta=0.01)
+        self.assertEqual(len(array["positions"]), 20)
+        self.assertEqual(array["positions"][6], [0.01, 0.01, 0.0])
+        self.assertEqual(array["normals"][0], [0.0, 0.0, 1.0])
+        self.end(process)
+
+    def test_an_array_that_is_still_to_be_calibrated(self):
+        process, address = self.serve("--from", LIVE, "--model", self.array)
+        self.assertEqual(json.loads(self.get(address + "suit.json"))["arrays"][0]["full_scale_n"], 50.0)
+        self.end(process)
+
+    def test_token(self):
+        process, address = self.serve("--from", LIVE, "--model", self.model, "--token", "secret-1")
+        self.assertIn(b"<html", self.get(address).lower())
+        with self.assertRaises(urllib.error.HTTPError) as refused:
+            self.get(address + "suit.json")
+        self.assertEqual(refused.exception.code, 401)
+        refused.exception.close()
+        self.assertIn("arrays", json.loads(self.get(address + "suit.json?token=secret-1")))
+        self.end(process)
+
+    def test_records_all_arrays_of_a_suit(self):
+        suit = self.written("suit.toml", "\n".join(
+            f'[[array]]\nname = "{name}"\nfrom = "{LIVE}&seed={seed}"\nmodel = "{self.model}"\n'
+            f"base_from_array = {{translation_mm = [{100 * seed}, 0, 0]}}\n" for seed, name in enumerate(("left", "right"))))
+        recording = self.work / "suit.mcap"
+        process, address = self.serve("--suit", suit, "--record", recording)
+        arrays = json.loads(self.get(address + "suit.json"))["arrays"]
+        self.assertEqual([array["name"] for array in arrays], ["left", "right"])
+        self.assertEqual(arrays[1]["positions"][0], [0.1, 0.0, 0.0])
+        time.sleep(1.0)
+        self.end(process)
+        for name in ("left", "right"):
+            self.assertGreater(self.recorded_frames(f"{recording}#{name}"), 30)
+
+        process, address = self.serve("--from", recording, "--suit", suit)
+        self.assertEqual([array["name"] for array in json.loads(self.get(address + "suit.json"))["arrays"]],
+                         ["left", "right"])
+        self.end(process)
+        process, address = self.serve("--from", f"{recording}#right", "--model", self.model)
+        self.end(process)
+
+    def test_what_cannot_be_served(self):
+        serve = ["serve", "--port", "0"]
+        frames = self.contacts / "frames.csv"
+        self.refuse(serve, ["--from", "--model", "--suit"])
+        self.refuse([*serve, "--from", LIVE], ["--model"])
+        self.refuse([*serve, "--from", LIVE, "--model", self.work / "none.safetensors"], ["none.safetensors"])
+        self.refuse([*serve, "--from", frames, "--model", self.model], ["frames.csv", "dermis convert"])
+        self.refuse([*serve, "--from", "sim:contacts?rows=4&cols=5", "--model", self.model], ["rate=100"])
+        for wrong in ("bogus=1", "rate=abc"):
+            self.refuse([*serve, "--from", f"sim:contacts?{wrong}", "--model", self.model], [wrong.partition("=")[0]])
+        self.refuse([*serve, "--from", LIVE, "--model", self.model, "--record", "r.csv"], ["--record", ".mcap"])
+        self.refuse([*serve, "--from", LIVE, "--model", self.model, "--host", "0.0.0.0"], ["token"])
+        self.refuse([*serve, "--suit", self.work / "none.toml"], ["none.toml"])
+
+    def test_a_port_that_is_taken(self):
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            port = taken.getsockname()[1]
+            self.refuse(["serve", "--from", LIVE, "--model", self.model, "--port", port], [str(port)], status=1)
+
+    def test_a_recording_that_cannot_be_written(self):
+        self.refuse(["serve", "--port", "0", "--from", LIVE, "--model", self.model, "--record", "/nowhere/r.mcap"],
+                    ["/nowhere/r.mcap"], status=1)
+
+
+if __name__ == "__main__":
+    support.main()

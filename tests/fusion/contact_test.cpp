@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/fusion/contact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "support/allocation_guard.hpp"
+#include "support/pressure_patches.hpp"
+
+namespace dermis::fusion {
+namespace {
+
+using std::chrono::milliseconds;
+using support::disc_array;
+using support::measured_forces;
+using support::PressurePatch;
+using support::round_patch;
+using support::taxel_forces;
+
+/// Feeds a tracker with patches at 100 frames/s.
+class Touch {
+ public:
+  explicit Touch(const ContactOptions& options = {}) : tracker(array, options) {}
+
+  const ContactReport& frame(const std::vector<PressurePatch>& patches) { return process(forces(patches)); }
+
+  ForceFrame forces(const std::vector<PressurePatch>& patches) {
+    return measured_forces(taxel_forces(array, patches), random);
+  }
+
+  const ContactReport& process(ForceFrame force) {
+    force.time = time;
+    time += milliseconds(10);
+    tracker.process(force, report);
+    return report;
+  }
+
+  ArrayDescription array = disc_array();
+  Random random{1};
+  Nanos time{0};
+  ContactTracker tracker;
+  ContactReport report;
+};
+
+TEST(ContactOptions, names_the_field_that_is_out_of_range) {
+  EXPECT_TRUE(ContactOptions{}.validate().has_value());
+  ContactOptions options;
+  options.release_share = 0.05;
+  EXPECT_EQ(options.validate().error().message.rfind("contacts.release_share: ", 0), 0U);
+  options = {};
+  options.onset_sigma = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(options.validate().error().message.rfind("contacts.onset_sigma: ", 0), 0U);
+  options = {};
+  options.onset_force_n = -1.0;
+  EXPECT_EQ(options.validate().error().message.rfind("contacts.onset_force_n: ", 0), 0U);
+  options = {};
+  options.most_contacts = 256;
+  EXPECT_EQ(options.validate().error().message.rfind("contacts.most_contacts: ", 0), 0U);
+}
+
+TEST(ContactTracker, reports_nothing_where_nothing_presses) {
+  Touch touch;
+  for (int k = 0; k < 20; ++k) EXPECT_TRUE(touch.frame({}).contacts.empty());
+  EXPECT_EQ(touch.report.total_force_n, 0.0);
+  EXPECT_FALSE(touch.report.centre_of_pressure.has_value());
+}
+
+TEST(ContactTracker, tells_place_and_force_of_a_contact) {
+  Touch touch;
+  const PressurePatch patch = round_patch(0.062, 0.087, 0.020, 10.0);
+  const ContactReport& report = touch.frame({patch});
+  ASSERT_EQ(report.contacts.size(), 1U);
+  const Contact& contact = report.contacts[0];
+  EXPECT_EQ(contact.id, 1U);
+  EXPECT_EQ(contact.phase, ContactPhase::onset);
+  EXPECT_NEAR(contact.position.x, 0.062, 2e-3);
+  EXPECT_NEAR(contact.position.y, 0.087, 2e-3);
+  double newtons = 0.0;
+  for (const double force : taxel_forces(touch.array, {patch})) newtons += force;
+  EXPECT_NEAR(contact.force_n, newtons, 0.04 * newtons);
+  EXPECT_EQ(report.total_force_n, contact.force_n);
+  EXPECT_NEAR(report.centre_of_pressure->x, contact.position.x, 1e-12);
+}
+
+TEST(ContactTracker, places_contacts_within_the_error_it_states) {
+  struct Bound {
+    double diameter_m;
+    double median_m;
+  };
+  for (const Bound bound : {Bound{0.008, 3.0e-3}, Bound{0.015, 0.9e-3}, Bound{0.025, 0.3e-3}}) {
+    Touch touch;
+    std::vector<double> errors;
+    std::size_t within_two_sigma = 0;
+    for (int k = 0; k < 100; ++k) {
+      const PressurePatch patch =
+          round_patch(touch.random.uniform(0.02, 0.13), touch.random.uniform(0.02, 0.13), bound.diameter_m, 20.0);
+      ContactTracker tracker(touch.array);
+      tracker.process(touch.forces({patch}), touch.report);
+      if (touch.report.contacts.size() != 1) continue;
+      const Contact& contact = touch.report.contacts[0];
+      errors.push_back(std::hypot(contact.position.x - patch.x, contact.position.y - patch.y));
+      within_two_sigma += std::abs(contact.position.x - patch.x) < 2.0 * contact.sigma_position_m.x ? 1 : 0;
+    }
+    ASSERT_GE(errors.size(), 90U) << bound.diameter_m;
+    std::sort(errors.begin(), errors.end());
+    EXPECT_LT(errors[errors.size() / 2], bound.median_m) << bound.diameter_m;
+    EXPECT_GE(within_two_sigma, errors.size() * 8 / 10) << bound.diameter_m;
+  }
+}
+
+TEST(ContactTracker, tells_touching_contacts_apart) {
+  Touch touch;
+  EXPECT_EQ(
+      touch.frame({round_patch(0.050, 0.050, 0.024, 10.0), round_patch(0.077, 0.051, 0.020, 5.0)}).contacts.size(), 2U);
+}
+
+TEST(ContactTracker, follows_a_contact_from_onset_to_release) {
+  Touch touch;
+  EXPECT_TRUE(touch.frame({}).contacts.empty());
+  for (int k = 0; k < 50; ++k) {
+    const double seconds = 0.01 * k;
+    const ContactReport& report = touch.frame({round_patch(0.05 + 0.1 * seconds, 0.07, 0.02, 10.0)});
+    ASSERT_EQ(report.contacts.size(), 1U);
+    EXPECT_EQ(report.contacts[0].id, 1U);
+    EXPECT_EQ(report.contacts[0].phase, k == 0 ? ContactPhase::onset : ContactPhase::held);
+    EXPECT_EQ(report.contacts[0].onset, milliseconds(10));
+  }
+  EXPECT_NEAR(touch.report.contacts[0].velocity.x, 0.1, 0.03);
+  EXPECT_NEAR(touch.report.contacts[0].velocity.y, 0.0, 0.03);
+  touch.frame({});
+  ASSERT_EQ(touch.report.contacts.size(), 1U);
+  EXPECT_EQ(touch.report.contacts[0].phase, ContactPhase::release);
+  EXPECT_EQ(touch.report.total_force_n, 0.0);
+  EXPECT_TRUE(touch.frame({}).contacts.empty());
+  EXPECT_EQ(touch.frame({round_patch(0.05, 0.07, 0.02, 10.0)}).contacts[0].id, 2U);
+}
+
+TEST(ContactTracker, keeps_the_ids_of_small_contacts_that_slide_rise_and_fade) {
+  Touch touch;
+  for (int k = 0; k < 300; ++k) {
+    const double u = k / 300.0;
+    const double newtons = 8.0 * std::sin(3.1416 * (0.1 + 0.8 * u));
+    touch.frame({round_patch(0.02 + 0.1 * u, 0.03, 0.010, newtons), round_patch(0.155, 0.14 - 0.06 * u, 0.011, newtons),
+                 round_patch(0.03, 0.10 + 0.03 * u, 0.009, 10.0 - newtons)});
+    ASSERT_EQ(touch.report.contacts.size(), 3U) << k;
+    for (std::uint32_t id = 1; id <= 3; ++id) {
+      const Contact& contact = touch.report.contacts[id - 1];
+      EXPECT_EQ(contact.id, id) << k;
+      EXPECT_TRUE(std::isfinite(contact.position.x) && std::isfinite(contact.position.y)) << k;
+      EXPECT_TRUE(contact.sigma_position_m.x > 0.0 && contact.sigma_position_m.x < 0.01) << k;
+      EXPECT_TRUE(contact.sigma_position_m.y > 0.0 && contact.sigma_position_m.y < 0.01) << k;
+    }
+  }
+}
+
+TEST(ContactTracker, a_contact_near_the_threshold_does_not_flicker) {
+  Touch touch;
+  std::size_t onsets = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double newtons = 0.6 * std::sin(3.1416 * k / 300.0);
+    for (const Contact& contact : touch.frame({round_patch(0.05, 0.07, 0.008, newtons)}).contacts) {
+      onsets += contact.phase == ContactPhase::onset ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(onsets, 1U);
+}
+
+TEST(ContactTracker, holds_through_frames_without_forces) {
+  Touch touch;
+  const PressurePatch patch = round_patch(0.05, 0.07, 0.02, 10.0);
+  touch.frame({patch});
+  ForceFrame nothing = touch.forces({patch});
+  nothing.status = FrameStatus::rejected;
+  nothing.newtons.assign(nothing.newtons.size(), std::numeric_limits<float>::quiet_NaN());
+  nothing.sigma_newtons = nothing.newtons;
+  ASSERT_EQ(touch.process(nothing).contacts.size(), 1U);
+  EXPECT_EQ(touch.report.contacts[0].phase, ContactPhase::held);
+  EXPECT_EQ(touch.frame({patch}).contacts[0].id, 1U);
+}
+
+TEST(ContactTracker, a_dead_line_does_not_cut_a_contact) {
+  Touch touch;
+  ForceFrame force = touch.forces({round_patch(0.062, 0.070, 0.030, 20.0)});
+  for (std::size_t taxel = 112; taxel < 128; ++taxel) {  // of row 7
+    force.newtons[taxel] = std::numeric_limits<float>::quiet_NaN();
+    force.sigma_newtons[taxel] = std::numeric_limits<float>::quiet_NaN();
+  }
+  EXPECT_EQ(touch.process(force).contacts.size(), 1U);
+}
+
+TEST(ContactTracker, a_saturated_contact_has_no_known_force) {
+  Touch touch;
+  ForceFrame force = touch.forces({round_patch(0.060, 0.070, 0.020, 50.0)});
+  force.sigma_newtons[7 * 16 + 6] = std::numeric_limits<float>::infinity();
+  const ContactReport& report = touch.process(force);
+  ASSERT_EQ(report.contacts.size(), 1U);
+  EXPECT_TRUE(std::isinf(report.contacts[0].sigma_force_n));
+  EXPECT_TRUE(std::isfinite(report.contacts[0].sigma_position_m.x));
+}
+
+TEST(ContactTracker, keeps_the_strongest_contacts) {
+  ContactOptions options;
+  options.most_contacts = 2;
+  Touch touch(options);
+  touch.frame(
+      {round_patch(0.02, 0.02, 0.02, 5.0), round_patch(0.07, 0.07, 0.02, 20.0), round_patch(0.12, 0.12, 0.02, 10.0)});
+  ASSERT_EQ(touch.report.contacts.size(), 2U);
+  for (const Contact& contact : touch.report.contacts) EXPECT_GT(contact.position.x, 0.06);
+}
+
+TEST(ContactTracker, allocates_nothing_per_frame) {
+  Touch touch;
+  std::vector<ForceFrame> frames;
+  for (int k = 0; k < 40; ++k) {
+    std::vector<PressurePatch> patches;
+    for (int n = 0; n <= k % 4; ++n) patches.push_back(round_patch(0.02 + 0.035 * n, 0.03 + 0.002 * k, 0.016, 10.0));
+    frames.push_back(touch.forces(patches));
+    frames.back().time = milliseconds(10 * k);
+  }
+  touch.tracker.process(frames[0], touch.report);
+  const support::AllocationGuard guard;
+  for (const ForceFrame& frame : frames) touch.tracker.process(frame, touch.report);
+  EXPECT_EQ(guard.count(), 0U);
+}
+
+}  // namespace
+}  // namespace dermis::fusion

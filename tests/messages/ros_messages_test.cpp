@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/messages/ros_messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+
+#include "dermis/core/random.hpp"
+#include "support/allocation_guard.hpp"
+#include "support/simd_targets.hpp"
+
+namespace dermis::messages {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+template <typename T>
+bool has_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+RawFrame frame_of(std::vector<float> counts, Nanos time = Nanos(1'700'000'000'123'456'789)) {
+  RawFrame frame;
+  frame.time = time;
+  frame.counts = std::move(counts);
+  return frame;
+}
+
+/// The text of an Image's encoding stands behind stamp, frame_id, height and width.
+bool holds(const Bytes& message, const std::string& text) {
+  return std::search(message.begin(), message.end(), text.begin(), text.end()) != message.end();
+}
+
+TEST(Image, IsLaidOutAsRosLaysItOut) {
+  Bytes message;
+  encode_image(frame_of({1, 2, 258, 4, 5, 65535}, Nanos(7'000'000'009)), {2, 3}, "a", message);
+  const Bytes expected{
+      0, 1, 0, 0,                                                                    //
+      7, 0, 0, 0, 9,  0, 0, 0, 2, 0, 0, 0, 'a', 0,   0,   0,                         // stamp, frame_id
+      2, 0, 0, 0, 3,  0, 0, 0, 6, 0, 0, 0, '1', '6', 'U', 'C', '1', 0, 0,    0,      // height, width, encoding
+      6, 0, 0, 0, 12, 0, 0, 0, 1, 0, 2, 0, 2,   1,   4,   0,   5,   0, 0xFF, 0xFF};  // step, data
+  EXPECT_EQ(message, expected);
+}
+
+TEST(Image, AllCountsReadBackWithTheirBits) {
+  support::for_each_simd_target([] {
+    Random random(1);
+    for (std::size_t size = 1; size < 200; ++size) {
+      std::vector<float> counts(size);
+      for (float& count : counts) count = static_cast<float>(random.below(65536));
+      counts[random.below(size)] = random.below(2) == 0 ? 65535.0F : 0.0F;
+      const RawFrame frame = frame_of(counts);
+      Bytes message;
+      encode_image(frame, {1, size}, "array", message);
+      EXPECT_TRUE(holds(message, "16UC1"));
+      RawFrame again;
+      const Result<FrameShape> shape = decode_image(message, again);
+      ASSERT_TRUE(shape);
+      EXPECT_EQ(*shape, (FrameShape{1, size}));
+      EXPECT_TRUE(has_same_bits(again.counts, counts));
+      EXPECT_EQ(again.time, frame.time);
+    }
+  });
+}
+
+TEST(Image, OneCountThatIsNoWordMakesAllFloats) {
+  const auto signalling = std::bit_cast<float>(0x7FA00001U);
+  for (const float odd : {kNan, -kNan, signalling, kInfinity, -kInfinity, -0.0F, -1.0F, 0.5F, 65535.5F, 65536.0F, 3e9F,
+                          -3e9F, 1e-45F, 4294967296.0F}) {
+    support::for_each_simd_target([odd] {
+      for (const std::size_t size : {1U, 3U, 16U, 33U, 67U}) {
+        for (std::size_t place = 0; place < size; ++place) {
+          std::vector<float> counts(size, 4095.0F);
+          counts[place] = odd;
+          Bytes message;
+          encode_image(frame_of(counts), {size, 1}, "array", message);
+          EXPECT_TRUE(holds(message, "32FC1"));
+          RawFrame again;
+          ASSERT_TRUE(decode_image(message, again));
+          EXPECT_TRUE(has_same_bits(again.counts, counts)) << odd;
+        }
+      }
+    });
+  }
+}
+
+TEST(Image, TimesBeyondAStampTakeItsEnds) {
+  const auto stamp_of = [](Nanos time) {
+    Bytes message;
+    encode_image(frame_of({1}, time), {1, 1}, "", message);
+    RawFrame again;
+    EXPECT_TRUE(decode_image(message, again));
+    return again.time;
+  };
+  EXPECT_EQ(stamp_of(Nanos(-1)), Nanos(-1));
+  EXPECT_EQ(stamp_of(Nanos(0)), Nanos(0));
+  EXPECT_EQ(stamp_of(Nanos::max()), Nanos(2'147'483'647'999'999'999));
+  EXPECT_EQ(stamp_of(Nanos::min()), Nanos(-2'147'483'648'000'000'000));
+}
+
+Bytes image_with(const char* encoding, std::uint8_t is_bigendian, std::uint32_t height, std::uint32_t width,
+                 std::uint32_t step, const Bytes& data);
+
+TEST(Image, DecodesBigEndianAndPaddedRows) {
+  RawFrame frame;
+  ASSERT_TRUE(decode_image(image_with("mono16", 1, 2, 2, 5, {1, 2, 0, 3, 99, 0, 4, 255, 255, 99}), frame));
+  EXPECT_EQ(frame.counts, (std::vector<float>{258, 3, 4, 65535}));
+  ASSERT_TRUE(decode_image(image_with("32FC1", 1, 1, 1, 4, {0x3F, 0x80, 0, 0}), frame));
+  EXPECT_EQ(frame.counts, std::vector<float>{1.0F});
+}
+
+TEST(Image, WhatIsNoImageIsRefused) {
+  RawFrame frame;
+  const auto refusal = [&](const Bytes& message) {
+    const Result<FrameShape> decoded = decode_image(message, frame);
+    return decoded ? std::string("decoded") : decoded.error().message;
+  };
+  EXPECT_NE(refusal(image_with("rgb8", 0, 1, 1, 3, {1, 2, 3})).find("rgb8"), std::string::npos);
+  EXPECT_NE(refusal(image_with("16UC1", 0, 0, 1, 2, {})).find("0x1"), std::string::npos);
+  EXPECT_NE(refusal(image_with("16UC1", 0, 1, 0, 0, {})).find("1x0"), std::string::npos);
+  EXPECT_NE(refusal(image_with("16UC1", 0, 1025, 1, 2, Bytes(2050))).find("1025x1"), std::string::npos);
+  EXPECT_NE(refusal(image_with("16UC1", 0, 2, 2, 4, Bytes(7))).find("shorter"), std::string::npos);
+  EXPECT_NE(refusal(image_with("16UC1", 0, 2, 2, 3, Bytes(8))).find("shorter"), std::string::npos);
+  EXPECT_NE(refusal(image_with("16UC1", 0, 2, 2, 0xFFFFFFFF, Bytes(8))).find("shorter"), std::string::npos);
+  EXPECT_NE(refusal({}).find("no whole"), std::string::npos);
+}
+
+TEST(Temperature, ReadsBack) {
+  for (const double celsius : {23.456, -40.0, 0.0}) {
+    Bytes message;
+    encode_temperature(celsius, Nanos(5), "array", message);
+    const Result<double> again = decode_temperature(message);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(*again, celsius);
+  }
+  EXPECT_FALSE(decode_temperature(Bytes{0, 1, 0, 0}));
+}
+
+TEST(AcquisitionMessage, EveryFieldReadsBack) {
+  Random random(2);
+  for (int i = 0; i < 1000; ++i) {
+    RawFrame frame;
+    frame.time = Nanos(static_cast<std::int64_t>(random.bits()));
+    if (random.below(2) == 0) frame.acquisition.sequence = random.bits();
+    if (random.below(2) == 0) frame.acquisition.device_time = Nanos(static_cast<std::int64_t>(random.bits()));
+    frame.acquisition.arrival_steady = Nanos(static_cast<std::int64_t>(random.bits()));
+    frame.acquisition.arrival_utc = Nanos(static_cast<std::int64_t>(random.bits()));
+    frame.acquisition.lost_before = static_cast<std::uint32_t>(random.bits());
+    frame.acquisition.held_taxels = static_cast<std::uint32_t>(random.bits());
+    if (random.below(2) == 0) frame.supply_v = random.normal();
+    Bytes message;
+    encode_acquisition(frame, message);
+    RawFrame again;
+    again.supply_v = 1.0;
+    again.acquisition.sequence = 1;
+    again.acquisition.device_time = Nanos(1);
+    ASSERT_TRUE(decode_acquisition(message, again));
+    EXPECT_EQ(again.acquisition, frame.acquisition);
+    EXPECT_EQ(again.time, frame.time);
+    EXPECT_EQ(again.supply_v, frame.supply_v);
+  }
+}
+
+ForceFrame random_forces(std::size_t taxel_count, std::uint64_t seed) {
+  Random random(seed);
+  ForceFrame frame;
+  frame.time = Nanos(1'000'000'007);
+  frame.status = FrameStatus::saturated | FrameStatus::line_fault;
+  for (std::size_t i = 0; i < taxel_count; ++i) {
+    frame.newtons.push_back(random.below(5) == 0 ? kNan : static_cast<float>(random.uniform(0.0, 40.0)));
+    frame.sigma_newtons.push_back(random.below(5) == 0 ? kInfinity : static_cast<float>(random.uniform(0.0, 1.0)));
+    frame.taxels.push_back(static_cast<TaxelStatus>(random.below(6)));
+  }
+  return frame;
+}
+
+TEST(Grid, ForcesReadBackWithTheirBits) {
+  for (const FrameShape shape : {FrameShape{1, 1}, {3, 5}, {64, 160}}) {
+    const ForceFrame frame = random_forces(shape.taxel_count(), 3);
+    Bytes message;
+    encode_grid(frame, shape, {0.005, 0.004}, "array", message);
+    ForceFrame again;
+    const Result<FrameShape> decoded = decode_grid(message, again);
+    ASSERT_TRUE(decoded);
+    EXPECT_EQ(*decoded, shape);
+    EXPECT_EQ(again.time, frame.time);
+    EXPECT_TRUE(has_same_bits(again.newtons, frame.newtons));
+    EXPECT_TRUE(has_same_bits(again.sigma_newtons, frame.sigma_newtons));
+    EXPECT_EQ(again.taxels, frame.taxels);
+    encode_frame_status(frame, message);
+    ASSERT_TRUE(decode_frame_status(message, again));
+    EXPECT_EQ(again.status, frame.status);
+  }
+}
+
+TEST(Messages, AnyDamageIsAValueOrAnError) {
+  const ForceFrame forces = random_forces(6, 4);
+  RawFrame raw = frame_of({1, 2, 3, 4, 5, 6});
+  std::vector<Bytes> messages(5);
+  encode_image(raw, {2, 3}, "array", messages[0]);
+  encode_grid(forces, {2, 3}, {}, "array", messages[1]);
+  encode_acquisition(raw, messages[2]);
+  encode_temperature(20.0, Nanos(1), "array", messages[3]);
+  encode_frame_status(forces, messages[4]);
+  Random random(5);
+  RawFrame frame;
+  ForceFrame force;
+  for (int i = 0; i < 20000; ++i) {
+    Bytes message = messages[random.below(messages.size())];
+    for (int k = 0; k < 3; ++k) message[random.below(message.size())] = static_cast<std::uint8_t>(random.bits());
+    message.resize(random.below(message.size() + 1));
+    if (const auto shape = decode_image(message, frame)) {
+      ASSERT_EQ(frame.counts.size(), shape->taxel_count());
+    }
+    if (const auto shape = decode_grid(message, force)) {
+      ASSERT_EQ(force.newtons.size(), shape->taxel_count());
+      ASSERT_EQ(force.taxels.size(), shape->taxel_count());
+    }
+    static_cast<void>(decode_acquisition(message, frame));
+    static_cast<void>(decode_temperature(message));
+    static_cast<void>(decode_frame_status(message, force));
+  }
+}
+
+TEST(Messages, AWarmBufferIsReused) {
+  if (!support::kAllocationsAreCounted) GTEST_SKIP() << "the sanitizer owns malloc";
+  const FrameShape shape{64, 160};
+  const ForceFrame forces = random_forces(shape.taxel_count(), 6);
+  const RawFrame raw = frame_of(std::vector<float>(shape.taxel_count(), 17.0F));
+  Bytes message;
+  RawFrame again;
+  const auto use_all = [&] {
+    encode_temperature(20.0, Nanos(1), "array", message);
+    encode_acquisition(raw, message);
+    encode_grid(forces, shape, {}, "array", message);
+    encode_image(raw, shape, "array", message);
+    EXPECT_TRUE(decode_image(message, again));
+  };
+  use_all();
+  const support::AllocationGuard guard;
+  use_all();
+  EXPECT_EQ(guard.count(), 0U);
+}
+
+TEST(MessageTypes, DefinitionsNameEveryTypeThatTheyUse) {
+  for (const MessageType* type :
+       {&image_type(), &temperature_type(), &grid_type(), &acquisition_type(), &frame_status_type()}) {
+    std::size_t begin = 0;
+    while (begin < type->definition.size()) {
+      const std::size_t end = type->definition.find('\n', begin);
+      ASSERT_NE(end, std::string::npos);
+      const std::string line = type->definition.substr(begin, end - begin);
+      begin = end + 1;
+      std::string used = line.substr(0, line.find_first_of(" ["));
+      if (used.find('/') == std::string::npos) continue;
+      EXPECT_NE(type->definition.find("\nMSG: " + used + "\n"), std::string::npos) << line;
+    }
+  }
+}
+
+void put(Bytes& bytes, std::uint32_t value) {
+  while ((bytes.size() - 4) % 4 != 0) bytes.push_back(0);
+  for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<std::uint8_t>(value >> (8U * static_cast<unsigned>(i))));
+}
+
+/// Written by hand, from the definition of the message.
+Bytes image_with(const char* encoding, std::uint8_t is_bigendian, std::uint32_t height, std::uint32_t width,
+                 std::uint32_t step, const Bytes& data) {
+  Bytes bytes{0, 1, 0, 0};
+  for (const std::uint32_t field : {0U, 0U, 1U}) put(bytes, field);  // stamp, empty frame_id
+  bytes.push_back(0);
+  put(bytes, height);
+  put(bytes, width);
+  put(bytes, static_cast<std::uint32_t>(std::strlen(encoding) + 1));
+  bytes.insert(bytes.end(), encoding, encoding + std::strlen(encoding) + 1);
+  bytes.push_back(is_bigendian);
+  put(bytes, step);
+  put(bytes, static_cast<std::uint32_t>(data.size()));
+  bytes.insert(bytes.end(), data.begin(), data.end());
+  return bytes;
+}
+
+}  // namespace
+}  // namespace dermis::messages

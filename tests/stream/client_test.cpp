@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "stream/client.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "stream/notice_limiter.hpp"
+
+namespace dermis::stream {
+namespace {
+
+using nlohmann::json;
+
+SharedBytes bytes_of(std::size_t size, std::uint8_t value = 0) {
+  return std::make_shared<const std::vector<std::uint8_t>>(size, value);
+}
+
+TEST(OutgoingQueue, drops_the_oldest_data_and_no_control_message) {
+  OutgoingQueue queue(1000);
+  queue.push_text("hello");
+  for (std::uint8_t i = 0; i < 10; ++i) {
+    const std::size_t dropped = queue.push_data(1, Nanos(i), bytes_of(287, i));  // 300 with the header
+    EXPECT_EQ(dropped, i < 3 ? 0U : 1U);
+  }
+  EXPECT_LE(queue.data_bytes(), 1000U);
+  EXPECT_TRUE(queue.pop().is_text);
+  for (const int expected : {7, 8, 9}) EXPECT_EQ(queue.pop().bytes->front(), expected);
+  EXPECT_TRUE(queue.empty());
+  EXPECT_EQ(queue.data_bytes(), 0U);
+  EXPECT_EQ(queue.control_bytes(), 0U);
+}
+
+TEST(OutgoingQueue, holds_one_message_however_large) {
+  OutgoingQueue queue(1000);
+  EXPECT_EQ(queue.push_data(1, Nanos(0), bytes_of(2000)), 0U);
+  EXPECT_EQ(queue.push_data(1, Nanos(0), bytes_of(3000)), 1U);
+  EXPECT_EQ(queue.pop().bytes->size(), 3000U);
+  EXPECT_TRUE(queue.empty());
+}
+
+struct StreamClient : testing::Test {
+  std::vector<Parameter> parameters{{"/a", 1.0}, {"/b", true}};
+  Offer offer{{[this] { return parameters; },
+               [this](const Parameter& set) -> Status {
+                 if (set.name != "/a") return bad_input("'" + set.name + "' cannot be set");
+                 parameters[0] = set;
+                 return Done{};
+               }},
+              {{"/echo",
+                [](std::string_view request) -> Result<std::string> {
+                  if (request == "fail") return failed("it cannot be done");
+                  return std::string(request);
+                }}},
+              {}};
+  std::map<ChannelId, int> subscribers;
+  Client client{offer, true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; }};
+
+  void say(const std::string& text) {
+    EXPECT_TRUE(client.receive({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, true)) << text;
+  }
+  json next_text() {
+    const OutgoingMessage message = client.queue().pop();
+    EXPECT_TRUE(message.is_text);
+    return json::parse(message.bytes->begin(), message.bytes->end());
+  }
+};
+
+TEST_F(StreamClient, gets_what_it_subscribed_to_under_its_own_ids) {
+  say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2},{"id":7,"channelId":3}]})");
+  EXPECT_EQ(subscribers[2], 1);
+  ServerStatistics statistics;
+  client.publish(2, Nanos(1), bytes_of(4), statistics);
+  client.publish(4, Nanos(1), bytes_of(4), statistics);
+  EXPECT_EQ(statistics.messages, 1U);
+  EXPECT_EQ(client.queue().pop().header->at(1), 5);
+  say(R"({"op":"unsubscribe","subscriptionIds":[5,99]})");
+  client.publish(2, Nanos(1), bytes_of(4), statistics);
+  EXPECT_TRUE(client.queue().empty());
+  EXPECT_EQ(subscribers[2], 0);
+}
+
+TEST_F(StreamClient, subscribes_to_a_channel_once) {
+  say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2},{"id":6,"channelId":2},{"id":5,"channelId":3}]})");
+  EXPECT_EQ(subscribers[2], 1);
+  EXPECT_EQ(subscribers[3], 0);
+  EXPECT_EQ(next_text()["op"], "status");
+  EXPECT_EQ(next_text()["op"], "status");
+}
+
+TEST_F(StreamClient, leaves_no_subscriber_behind) {
+  {
+    Client other(offer, true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; });
+    const std::string text = R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2}]})";
+    EXPECT_TRUE(other.receive({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, true));
+    EXPECT_EQ(subscribers[2], 1);
+  }
+  EXPECT_EQ(subscribers[2], 0);
+}
+
+TEST_F(StreamClient, hears_of_each_channel_once) {
+  const std::vector<Channel> channels{{0, "/a", "t", "s"}, {1, "/b", "t", "s"}};
+  client.greet("dermis", "session", channels);
+  EXPECT_EQ(next_text()["op"], "serverInfo");
+  EXPECT_EQ(next_text()["channels"].size(), 2U);
+  EXPECT_EQ(next_text()["services"][0]["name"], "/echo");
+  client.advertise(channels[1]);
+  EXPECT_TRUE(client.queue().empty());
+  client.advertise({2, "/c", "t", "s"});
+  EXPECT_EQ(next_text()["channels"][0]["topic"], "/c");
+}
+
+TEST_F(StreamClient, reads_sets_and_follows_parameters) {
+  say(R"({"op":"getParameters","parameterNames":[],"id":"all"})");
+  json answer = next_text();
+  EXPECT_EQ(answer["id"], "all");
+  EXPECT_EQ(answer["parameters"].size(), 2U);
+  say(R"({"op":"setParameters","parameters":[{"name":"/a","value":3}],"id":"set"})");
+  answer = next_text();
+  ASSERT_EQ(answer["parameters"].size(), 1U);
+  EXPECT_EQ(answer["parameters"][0]["value"], 3.0);
+  say(R"({"op":"subscribeParameterUpdates","parameterNames":["/a"]})");
+  EXPECT_EQ(next_text()["parameters"][0]["name"], "/a");
+  client.tell_parameters(parameters);
+  EXPECT_EQ(next_text()["parameters"].size(), 1U);
+}
+
+TEST_F(StreamClient, is_told_why_a_parameter_was_not_set) {
+  say(R"({"op":"setParameters","parameters":[{"name":"/b","value":3}]})");
+  const json answer = next_text();
+  EXPECT_EQ(answer["op"], "status");
+  EXPECT_EQ(answer["message"], "'/b' cannot be set");
+}
+
+TEST_F(StreamClient, calls_services) {
+  client.queue().push_text("first");
+  const auto call = [this](std::uint8_t service, const std::string& request) {
+    std::vector<std::uint8_t> bytes{2, service, 0, 0, 0, 9, 0, 0, 0, 4, 0, 0, 0, 'j', 's', 'o', 'n'};
+    bytes.insert(bytes.end(), request.begin(), request.end());
+    EXPECT_TRUE(client.receive(bytes, false));
+    static_cast<void>(client.queue().pop());
+  };
+  call(0, "abc");
+  const OutgoingMessage answer = client.queue().pop();
+  EXPECT_EQ(std::string(answer.bytes->end() - 3, answer.bytes->end()), "abc");
+  client.queue().push_text("first");
+  call(0, "fail");
+  EXPECT_EQ(next_text()["message"], "it cannot be done");
+  client.queue().push_text("first");
+  call(1, "abc");
+  EXPECT_EQ(next_text()["op"], "serviceCallFailure");
+}
+
+TEST(NoticeLimiter, keeps_repetitions_back_and_counts_them) {
+  std::vector<std::string> lines;
+  NoticeLimiter notices([&](const std::string& line) { lines.push_back(line); });
+  const auto start = NoticeLimiter::Clock::now();
+  for (int i = 0; i < 100; ++i) notices.say("cut", "line", start);
+  notices.say("refused", "other", start);
+  notices.say("cut", "line", start + std::chrono::seconds(11));
+  EXPECT_EQ(lines, (std::vector<std::string>{"line", "other", "line (and 99 more like it)"}));
+}
+
+}  // namespace
+}  // namespace dermis::stream

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+// Usage: node browser_test.mjs path/to/dermis
+import assert from "node:assert/strict";
+import { after, before, describe, it } from "node:test";
+import { assertUnhurt, becomes, Bench, freePort, openBrowser, openPage, WAIT_MS } from "./harness.mjs";
+
+let bench;
+let browser;
+
+before(async () => {
+  bench = new Bench(process.argv[2]);
+  browser = await openBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  bench?.close();
+});
+
+const loop = () => ["--from", "sim:contacts?rate=200", ...bench.model];
+
+/** Serves and shows for the time of a test. */
+async function shown(command, view, test) {
+  const server = await bench.serve("--port", "0", ...command);
+  try {
+    const page = await openPage(browser, `${server.url}#/${view}`);
+    await becomes(page, "live");
+    await test(page, server);
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+  }
+}
+
+async function eventually(page, check, argument) {
+  await page.waitForFunction(check, argument, { polling: 50, timeout: WAIT_MS });
+}
+
+const number = (text) => Number(text.replace("\u2212", "-").replace(/[^-\d.]/g, ""));
+
+describe("a recording", () => {
+  it("shows in each taxel what its CSV says, at the place that is sought", async () => {
+    await shown(["--from", bench.path("recording.mcap"), ...bench.model], "array", async (page) => {
+      await page.locator("[data-role=transport]").waitFor();
+      if ((await page.locator("[data-role=play]").textContent()) === "Pause") await page.click("[data-role=play]");
+      const maps = page.locator("[data-role=maps]");
+      await maps.focus();
+      const seen = new Set();
+      for (const place of [100, 500, 900]) {
+        await page.locator("[data-role=scrub]").fill(String(place));
+        await eventually(page, (before) => {
+          const stamp = document.querySelector("[data-view=array]").dataset.stamp;
+          return stamp !== undefined && stamp !== before && Number(stamp) > 0;
+        }, [...seen].at(-1));
+        await page.waitForTimeout(200);
+        const stamp = await page.locator("[data-view=array]").getAttribute("data-stamp");
+        seen.add(stamp);
+        const frame = bench.counts.findIndex((row) => Math.abs(Number(row.time_s) - Number(stamp)) < 0.01);
+        assert.ok(frame >= 0, `no frame at ${stamp}`);
+        await maps.press("ArrowRight");
+        await page.waitForTimeout(200);
+        const row = page.locator("[data-role=cursor]");
+        const taxel = await row.getAttribute("data-taxel");
+        const field = async (name) => number(await row.locator(`[data-field=${name}]`).textContent());
+        assert.equal(await field("counts"), Number(bench.counts[frame][taxel]));
+        const newtons = Number(bench.forces[frame][taxel]);
+        assert.ok(Math.abs((await field("newtons")) - newtons) <= 0.0006 + 0.02 * newtons, `${taxel} at ${stamp}: ${await field("newtons")}, not ${newtons}`);
+      }
+      assert.equal(seen.size, 3);
+    });
+  });
+});
+
+describe("each view", () => {
+  it("of the array draws taxels, contacts and figures, and takes pins", async () => {
+    await shown(loop(), "array", async (page) => {
+      await eventually(page, () => Number(document.querySelector("[data-role=total-force]").textContent) > 0.2);
+      await page.locator("[data-contact]").first().waitFor();
+      const maps = page.locator("[data-role=maps]");
+      await maps.focus();
+      await maps.press("ArrowDown");
+      await maps.press("Enter");
+      await page.locator("[data-role=pin-1][data-taxel]").waitFor();
+      const colours = await page.evaluate(() => {
+        const canvas = document.querySelector("[data-role=maps] canvas");
+        const copy = document.createElement("canvas");
+        [copy.width, copy.height] = [canvas.width, canvas.height];
+        return new Promise((resolve) =>
+          requestAnimationFrame(() => {
+            const pen = copy.getContext("2d");
+            pen.drawImage(canvas, 0, 0);
+            const bytes = pen.getImageData(0, 0, copy.width, copy.height).data;
+            const found = new Set();
+            for (let at = 0; at < bytes.length; at += 4) if (bytes[at + 3] > 0) found.add((bytes[at] << 16) | (bytes[at + 1] << 8) | bytes[at + 2]);
+            resolve(found.size);
+          }),
+        );
+      });
+      assert.ok(colours > 2, `${colours} colours`);
+      await page.keyboard.press("i");
+      assert.ok(await page.locator("[data-role=interpolate]").isChecked());
+      await page.selectOption("[data-role=scale-force]", "20");
+      assert.match(await page.locator("section[aria-label='Force map'] .scale-ticks").textContent(), /20$/);
+    });
+  });
+
+  it("of time plots totals and contacts, and stands still while paused", async () => {
+    await shown(loop(), "time", async (page) => {
+      await eventually(page, () => Number(document.querySelector("[data-role=plot-totals] .figure")?.textContent) > 0);
+      await page.locator("[data-role=plot-contacts] li:not(.absent)").first().waitFor();
+      await page.keyboard.press(" ");
+      await page.waitForTimeout(150);
+      const words = await page.locator("[data-role=plot-totals] .legend").textContent();
+      await page.waitForTimeout(400);
+      assert.equal(await page.locator("[data-role=plot-totals] .legend").textContent(), words);
+    });
+  });
+
+  it("of the suit shows the array in space and opens it", async () => {
+    await shown(loop(), "suit", async (page) => {
+      const label = page.locator(".array-label").first();
+      await label.waitFor();
+      await eventually(page, () => /[1-9]/.test(document.querySelector(".array-label .figure").textContent));
+      await page.locator("[data-role=suit]").focus();
+      await page.keyboard.press("ArrowLeft");
+      await label.click();
+      await page.locator("[data-view=array]").waitFor();
+    });
+  });
+
+  it("of health tells rates and faults", async () => {
+    await shown(loop(), "health", async (page) => {
+      await eventually(page, () => parseFloat(document.querySelector("[data-field=rate]")?.textContent) > 100);
+      await page.locator("[data-role=faults] > li").first().waitFor();
+    });
+  });
+});
+
+describe("the bar", () => {
+  it("records, tares and sets thresholds", async () => {
+    await shown(loop(), "array", async (page) => {
+      await page.click("[data-role=record]");
+      await page.locator("[data-role=record][aria-pressed=true]").waitFor();
+      await eventually(page, () => document.querySelector("[data-role=recording-file]").textContent.endsWith(".mcap"));
+      await page.click("[data-role=record]");
+      await page.locator("[data-role=record][aria-pressed=false]").waitFor();
+      await page.click("[data-role=tare]");
+      await page.locator("[data-role=tare][aria-pressed=true]").waitFor();
+      await page.click("[data-role=show-thresholds]");
+      const force = page.locator("[data-parameter='/contacts/onset_force_n']");
+      await force.fill("0.75");
+      await force.press("Tab");
+      const other = await openPage(browser, page.url());
+      await eventually(other, () => document.querySelector("[data-parameter='/contacts/onset_force_n']").value === "0.75");
+      await other.close();
+    });
+  });
+});
+
+describe("the connection", () => {
+  it("says that the token is wrong and takes the right one", async () => {
+    const server = await bench.serve("--port", "0", "--token", "right-one", ...loop());
+    try {
+      const page = await openPage(browser, `${server.url}?token=wrong`);
+      await becomes(page, "wrong token");
+      await page.fill("#token", "right-one");
+      await page.keyboard.press("Enter");
+      await becomes(page, "live");
+      assert.ok(page.url().includes("token=right"));
+      await page.close();
+    } finally {
+      await server.stop();
+    }
+  });
+
+  it("survives a server that ends and comes again", async () => {
+    const port = String(await freePort());
+    let server = await bench.serve("--port", port, ...loop());
+    try {
+      const page = await openPage(browser, server.url);
+      await page.locator("[data-contact]").first().waitFor();
+      await server.stop();
+      await becomes(page, "retrying");
+      server = await bench.serve("--port", port, ...loop());
+      await becomes(page, "live");
+      const before = await page.locator("[data-view=array]").getAttribute("data-stamp");
+      await eventually(page, (stamp) => document.querySelector("[data-view=array]").dataset.stamp !== stamp, before);
+      assertUnhurt(page);
+      await page.close();
+    } finally {
+      await server.stop();
+    }
+  });
+
+  it("comes back 100 times and keeps nothing of the times before", async () => {
+    await shown(loop(), "array", async (page) => {
+      const again = (times) =>
+        page.evaluate(async (left) => {
+          const root = document.documentElement;
+          for (; left > 0; --left) {
+            document.querySelector("[data-role=connection]").click();
+            while (root.dataset.connection !== "live") await new Promise((done) => setTimeout(done, 5));
+          }
+        }, times);
+      const client = await page.context().newCDPSession(page);
+      await client.send("Performance.enable");
+      const counts = async () => {
+        await client.send("HeapProfiler.collectGarbage");
+        await page.waitForTimeout(300);
+        await client.send("HeapProfiler.collectGarbage");
+        const { metrics } = await client.send("Performance.getMetrics");
+        return Object.fromEntries(metrics.map(({ name, value }) => [name, value]));
+      };
+      await again(10);
+      const early = await counts();
+      await again(100);
+      const late = await counts();
+      assert.equal(late.JSEventListeners, early.JSEventListeners);
+      assert.ok(late.Nodes <= early.Nodes + 250, `${early.Nodes} to ${late.Nodes} nodes`);
+      const growth = late.JSHeapUsedSize - early.JSHeapUsedSize;
+      assert.ok(growth < 500000, `the heap grew by ${growth} bytes`);
+    });
+  });
+});

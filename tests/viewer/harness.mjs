@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+// A small array, its model and a recording of it, `dermis serve`, and pages of headless Chromium that look at it.
+import assert from "node:assert/strict";
+import { execFileSync, spawn } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:net";
+import { tmpdir } from "node:os";
+import { join, resolve } from "node:path";
+import { createRequire } from "node:module";
+
+const { chromium } = createRequire(new URL("../npm/package.json", import.meta.url))("playwright-core");
+
+export const WAIT_MS = 60_000;
+
+const ARRAY = `[array]
+name = "small"
+rows = 4
+cols = 5
+pitch_mm = [10.0, 10.0]
+taxel_area_mm2 = 38.48
+
+[readout]
+circuit = "divider"
+drive_ohm = 20.0
+load_ohm = 200.0
+adc_bits = 12
+adc_reference_v = 5.0
+supply_v = 5.0
+`;
+
+/** The rows of a CSV file as objects by column. */
+export function readCsv(path) {
+  const [head, ...lines] = readFileSync(path, "utf8").trim().split("\n");
+  const columns = head.split(",");
+  return lines.map((line) => Object.fromEntries(line.split(",").map((value, index) => [columns[index], value])));
+}
+
+export function freePort() {
+  return new Promise((resolve, reject) => {
+    const server = createServer();
+    server.on("error", reject);
+    server.listen(0, "127.0.0.1", () => {
+      const { port } = server.address();
+      server.close(() => resolve(port));
+    });
+  });
+}
+
+/** A temporary folder with array.toml, model.safetensors, recording.mcap (200 frames, a second apart), and as CSV its counts
+ *  and what `dermis run` makes of it. */
+export class Bench {
+  constructor(binary) {
+    this.binary = resolve(binary);
+    this.folder = mkdtempSync(join(tmpdir(), "dermis-viewer-"));
+    writeFileSync(this.path("array.toml"), ARRAY);
+    const array = ["--array", this.path("array.toml")];
+    this.run("simulate", ...array, "--scene", "calibration", "--out", this.path("calibration"));
+    this.run("simulate", ...array, "--scene", "multitouch", "--frames", "200", "--seed", "2", "--out", this.path("contacts"));
+    const samples = ["--frames", this.path("calibration/frames.csv"), "--loads", this.path("calibration/loads.csv")];
+    this.run("calibrate", ...array, ...samples, "--out", this.path("model.safetensors"));
+    this.run("convert", this.path("contacts/frames.csv"), this.path("recording.mcap"), ...array);
+    this.run("run", ...this.model, "--in", this.path("recording.mcap"), "--out", this.path("forces.csv"));
+    this.counts = readCsv(this.path("contacts/frames.csv"));
+    this.forces = readCsv(this.path("forces.csv"));
+  }
+
+  get model() {
+    return ["--model", this.path("model.safetensors")];
+  }
+
+  path(name) {
+    return join(this.folder, name);
+  }
+
+  run(...command) {
+    execFileSync(this.binary, command, { stdio: ["ignore", "ignore", "pipe"], timeout: 120000 });
+  }
+
+  /** `dermis serve` with these arguments, once it says where it serves. */
+  async serve(...command) {
+    const server = spawn(this.binary, ["serve", ...command], { stdio: ["ignore", "pipe", "pipe"], cwd: this.folder });
+    let said = "";
+    const url = await new Promise((found, reject) => {
+      const hear = (text) => {
+        said += text;
+        const address = /http:\/\/[^\s/]+\//.exec(said);
+        if (address !== null) found(address[0]);
+      };
+      server.stdout.on("data", hear);
+      server.stderr.on("data", hear);
+      server.on("exit", (status) => reject(new Error(`serve ended with ${status}: ${said}`)));
+    });
+    return {
+      url,
+      port: Number(new URL(url).port),
+      stop: () =>
+        new Promise((ended) => {
+          server.removeAllListeners("exit");
+          server.on("exit", ended);
+          server.kill("SIGINT");
+        }),
+    };
+  }
+
+  close() {
+    rmSync(this.folder, { recursive: true, force: true });
+  }
+}
+
+export async function openBrowser() {
+  return chromium.launch({
+    executablePath: process.env.DERMIS_CHROMIUM ?? "/usr/bin/chromium",
+    args: [
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+      "--enable-precise-memory-info",
+      "--js-flags=--expose-gc",
+    ],
+  });
+}
+
+/** A page that fails the test where a script of it fails. */
+export async function openPage(browser, url) {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
+  page.setDefaultTimeout(WAIT_MS);
+  page.failures = [];
+  page.on("pageerror", (error) => page.failures.push(String(error)));
+  await page.goto(url);
+  return page;
+}
+
+export async function becomes(page, connection) {
+  await page.locator(`html[data-connection="${connection}"]`).waitFor({ state: "attached" });
+}
+
+export function assertUnhurt(page) {
+  assert.deepEqual(page.failures, []);
+}

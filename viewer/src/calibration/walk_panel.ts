@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element, setData, setHidden, setText } from "../dom";
+import { fixed } from "../format";
+import { CalibrationHint, CalibrationStage, type CalibrationState } from "../messages/calibration_state";
+import type { ArrayDescription } from "../suit";
+import { taxelName } from "../views/array/geometry";
+import { HoldRing } from "./hold_ring";
+import { inGrams } from "./plan";
+import { QualityPlot } from "./quality_plot";
+
+const MOST_READING_DECADES = 3;
+
+export interface WalkActions {
+  skip(): void;
+  repeat(): void;
+  finish(): void;
+  save(): void;
+  cancel(): void;
+}
+
+function button(role: string, words: string, key: string, act: () => void): HTMLButtonElement {
+  return element("button", { class: "button", type: "button", "data-role": role, title: key === "" ? "" : `Key ${key}`, onclick: act }, words);
+}
+
+function percent(value: number): string {
+  return `${fixed(100 * value, value < 0.1 ? 1 : 0)} %`;
+}
+
+function levelOf({ stage, hint }: CalibrationState): "good" | "warn" | "bad" | "" {
+  if (stage === CalibrationStage.failed) return "bad";
+  if (stage === CalibrationStage.done) return "good";
+  if (stage !== CalibrationStage.pressing) return "";
+  if (hint === CalibrationHint.release) return "good";
+  return hint >= CalibrationHint.otherTaxel ? "warn" : "";
+}
+
+/** What to do now, how far it is, how good it is. */
+export class WalkPanel {
+  readonly element: HTMLElement;
+  readonly plot = new QualityPlot();
+  readonly #progress = element("progress", { "aria-label": "Presses", "data-role": "progress", max: 1, value: 0 });
+  readonly #count = element("span", { class: "figure", "data-role": "count" });
+  readonly #words = element("p", { class: "instruction", role: "status", "aria-live": "assertive", "data-role": "instruction" });
+  readonly #ring = new HoldRing();
+  readonly #readingName = element("span");
+  readonly #reading = element("span", { class: "figure", "data-role": "reading" });
+  readonly #bar = element("div", { class: "reading-bar" });
+  readonly #readingRow: HTMLElement;
+  readonly #quality = element("span", { class: "quality-figure", "data-role": "quality" });
+  readonly #unpressed = element("p", { class: "dim", "data-role": "unpressed" });
+  readonly #pressing: HTMLElement;
+  readonly #skip: HTMLButtonElement;
+  readonly #repeat: HTMLButtonElement;
+  readonly #finish: HTMLButtonElement;
+  readonly #save: HTMLButtonElement;
+  readonly #cancel: HTMLButtonElement;
+
+  constructor(actions: WalkActions) {
+    this.#skip = button("skip", "Skip", "S", () => actions.skip());
+    this.#repeat = button("repeat", "Last one again", "R", () => actions.repeat());
+    this.#finish = button("finish", "Finish now", "", () => actions.finish());
+    this.#save = button("save", "Save and use", "Enter", () => actions.save());
+    this.#save.classList.add("primary");
+    this.#cancel = button("cancel", "Cancel", "", () => actions.cancel());
+    this.#readingRow = element(
+      "div",
+      { class: "reading" },
+      element("div", { class: "reading-head" }, this.#readingName, this.#reading),
+      element("div", { class: "reading-track" }, this.#bar),
+    );
+    this.#pressing = element("div", { class: "pressing" }, this.#ring.element, this.#readingRow);
+    this.element = element(
+      "div",
+      { class: "calibration-walk", "data-role": "walk" },
+      element("div", { class: "walk-progress" }, this.#progress, this.#count),
+      this.#words,
+      this.#pressing,
+      element(
+        "section",
+        { class: "quality", "aria-label": "Quality of the fit so far" },
+        element("div", { class: "reading-head" }, element("h2", {}, "Error on presses the fit did not see"), this.#quality),
+        this.plot.element,
+        this.#unpressed,
+      ),
+      element("div", { class: "walk-buttons" }, this.#save, this.#skip, this.#repeat, this.#finish, element("span", { class: "stretch" }), this.#cancel),
+    );
+  }
+
+  set(state: CalibrationState, array: ArrayDescription | undefined): void {
+    const { stage } = state;
+    this.#progress.max = Math.max(1, state.pressesTotal);
+    this.#progress.value = state.pressesDone;
+    setText(this.#count, `${state.pressesDone} of ${state.pressesTotal}`);
+    this.#say(state);
+    setData(this.#words, "level", levelOf(state));
+    setData(this.element, "stage", String(stage));
+    this.#setPress(state, array);
+    this.plot.add(state.pressesDone, state.pressesTotal, state.medianRelativeError);
+    const isKnown = !Number.isNaN(state.medianRelativeError);
+    setText(this.#quality, isKnown ? percent(state.medianRelativeError) : "after some presses");
+    this.#quality.classList.toggle("dim", !isKnown);
+    setText(this.#unpressed, Number.isNaN(state.unpressedRelativeError) ? "" : `On taxels that were not pressed: about ${percent(state.unpressedRelativeError)}`);
+    this.#setButtons(state);
+  }
+
+  /** What came of it is told in several sentences, a line each. */
+  #say({ stage, message }: CalibrationState): void {
+    const isResult = stage === CalibrationStage.done;
+    const lines = isResult ? message.split(/(?<=\.) (?=[A-Z0-9])/) : [message];
+    if (this.#words.dataset["message"] === message) return;
+    this.#words.dataset["message"] = message;
+    this.#words.replaceChildren(...lines.flatMap((line) => [element("span", {}, line), " "]));
+  }
+
+  #setPress(state: CalibrationState, array: ArrayDescription | undefined): void {
+    const isPressing = state.stage === CalibrationStage.pressing;
+    setHidden(this.#pressing, !isPressing && state.stage !== CalibrationStage.unloaded);
+    if (isPressing) this.#ring.set(state.holdShare, `${Number(state.weightN.toPrecision(4))} N`, inGrams(state.weightN));
+    else this.#ring.set(state.holdShare, "0 N", "nothing");
+    setHidden(this.#readingRow, !isPressing);
+    if (array !== undefined) setText(this.#readingName, `Reading of ${taxelName(state.taxel, array)}`);
+    setText(this.#reading, `${fixed(state.reading, state.reading < 9.95 ? 1 : 0)} \u00d7 unloaded`);
+    const share = Math.log10(Math.max(1, state.reading)) / MOST_READING_DECADES;
+    this.#bar.style.width = `${(100 * Math.min(1, share)).toFixed(1)}%`;
+  }
+
+  #setButtons({ stage, pressesDone, message }: CalibrationState): void {
+    const isPressing = stage === CalibrationStage.pressing;
+    const isOver = stage === CalibrationStage.done || stage === CalibrationStage.failed;
+    setHidden(this.#skip, isOver);
+    setHidden(this.#finish, isOver);
+    setHidden(this.#save, !isOver);
+    setHidden(this.#repeat, stage === CalibrationStage.done);
+    this.#skip.disabled = !isPressing;
+    this.#finish.disabled = !isPressing || pressesDone === 0;
+    this.#repeat.disabled = pressesDone === 0 || (!isPressing && stage !== CalibrationStage.failed);
+    this.#save.disabled = message.includes("Saved as");
+    setText(this.#save, stage === CalibrationStage.failed ? "Save what was measured" : "Save and use");
+    setText(this.#cancel, stage === CalibrationStage.done ? "Close" : "Cancel");
+  }
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { ContactsFrame, readContacts, readContactsArray } from "../messages/contacts";
+import { type HealthStatus, type Statistics, readHealth, readStatistics } from "../messages/statistics";
+import { Signal } from "../signal";
+import type { Stream } from "../stream/stream";
+import type { Suit } from "../suit";
+import { ContactSlots } from "./contact_slots";
+import { ForceHistory } from "./force_history";
+
+/** What is known of one array, whatever is shown. */
+export class ArrayLive {
+  readonly contacts = new ContactsFrame();
+  /** Rises with each message. */
+  version = 0;
+  readonly total = new ForceHistory();
+  readonly slots = new ContactSlots();
+}
+
+/** What is followed from the beginning, as every view needs it: contacts, statistics, health. */
+export class LiveData {
+  arrays: ArrayLive[] = [];
+  readonly statistics = new Signal<Statistics | undefined>(undefined);
+  readonly health = new Signal<readonly HealthStatus[]>([]);
+  /** Time of the newest frame of any array. */
+  latestS = 0;
+  version = 0;
+  #names: string[] = [];
+
+  constructor(stream: Stream, suit: Suit) {
+    suit.description.follow(({ arrays }) => this.#restart(arrays.map(({ name }) => name)));
+    stream.subscribe("/contacts", (message) => this.#receive(message));
+    stream.subscribe("/statistics", (message) => (this.statistics.value = readStatistics(message)));
+    stream.subscribe("/health", (message) => (this.health.value = readHealth(message)));
+  }
+
+  #restart(names: string[]): void {
+    if (names.join("/") === this.#names.join("/")) return;
+    this.#names = names;
+    this.arrays = names.map(() => new ArrayLive());
+  }
+
+  #receive(message: DataView): void {
+    const array = this.arrays[readContactsArray(message, this.#names)];
+    if (array === undefined) return;
+    const { contacts } = array;
+    readContacts(message, contacts);
+    array.total.add(contacts.stampS, contacts.totalForceN);
+    array.slots.add(contacts);
+    array.version += 1;
+    this.version += 1;
+    if (contacts.stampS > this.latestS || contacts.stampS < this.latestS - 1) this.latestS = contacts.stampS;
+  }
+}

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { describe, expect, it } from "vitest";
+import { readCalibrationState } from "./calibration_state";
+import { CdrReader } from "./cdr_reader";
+import { ContactsFrame, readContacts, readContactsArray } from "./contacts";
+import { emptyGrid, type PointsFrame, readCounts, readGrid, readPoints } from "./grids";
+import { readHealth, readStatistics } from "./statistics";
+import { written } from "./test_messages";
+
+const header = { stamp: { sec: 1234, nanosec: 500000000 }, frame_id: "suit" };
+const zero = { x: 0, y: 0, z: 0 };
+
+function contact(id: number): object {
+  return {
+    id,
+    phase: 1,
+    onset: { sec: 1230, nanosec: 250000000 },
+    x: 0.0125,
+    y: 0.031,
+    sigma_x: 0.0002,
+    sigma_y: 0.0003,
+    velocity_x: 0.1,
+    velocity_y: -0.2,
+    force_n: 12.5,
+    sigma_force_n: 0.25,
+    area_m2: 4e-4,
+    peak_pressure_pa: 52000,
+    mean_pressure_pa: 31000,
+    major_axis_m: 0.006,
+    minor_axis_m: 0.004,
+    angle_rad: 0.7,
+    taxels: 9,
+    position: { x: 0.1, y: 0.2, z: 0.3 },
+    normal: { x: 0, y: 0, z: 1 },
+    velocity: zero,
+  };
+}
+
+function contacts(array: string, ids: number[]): DataView {
+  return written("dermis_msgs/msg/Contacts", {
+    header,
+    array,
+    total_force_n: 25,
+    sigma_total_n: 0.5,
+    has_centre_of_pressure: true,
+    centre_of_pressure: { x: 1, y: 2, z: 3 },
+    contacts: ids.map(contact),
+  });
+}
+
+describe("contacts", () => {
+  it("come with all of their fields", () => {
+    const frame = new ContactsFrame();
+    readContacts(contacts("left_arm", [7, 9]), frame);
+    expect(frame).toMatchObject({ stampS: 1234.5, totalForceN: 25, sigmaTotalN: 0.5, hasCentreOfPressure: true, count: 2 });
+    expect([...frame.centreOfPressure]).toEqual([1, 2, 3]);
+    const [, second] = frame.contacts;
+    expect(second).toMatchObject({
+      id: 9,
+      phase: 1,
+      onsetS: 1230.25,
+      x: 0.0125,
+      y: 0.031,
+      sigmaX: 0.0002,
+      sigmaY: 0.0003,
+      velocityX: 0.1,
+      velocityY: -0.2,
+      forceN: 12.5,
+      sigmaForceN: 0.25,
+      areaM2: 4e-4,
+      peakPressurePa: 52000,
+      meanPressurePa: 31000,
+      majorAxisM: 0.006,
+      minorAxisM: 0.004,
+      angleRad: 0.7,
+      taxels: 9,
+    });
+    expect([...second!.position]).toEqual([0.1, 0.2, 0.3]);
+    expect([...second!.normal]).toEqual([0, 0, 1]);
+  });
+
+  it("are told apart by array without reading the rest", () => {
+    expect(readContactsArray(contacts("palm", []), ["palm_2", "chest", "palm"])).toBe(2);
+    expect(readContactsArray(contacts("back", []), ["palm"])).toBe(-1);
+  });
+
+  it("use the same objects again", () => {
+    const frame = new ContactsFrame();
+    readContacts(contacts("a", [1, 2, 3]), frame);
+    const first = frame.contacts[0];
+    readContacts(contacts("a", [4]), frame);
+    expect(frame.count).toBe(1);
+    expect(frame.contacts[0]).toBe(first);
+    expect(first!.id).toBe(4);
+  });
+});
+
+describe("grids", () => {
+  const cells = new Uint8Array(2 * 3 * 9);
+  const view = new DataView(cells.buffer);
+  for (let taxel = 0; taxel < 6; ++taxel) {
+    view.setFloat32(9 * taxel, 1.5 * taxel, true);
+    view.setFloat32(9 * taxel + 4, 0.25 * taxel, true);
+    view.setUint8(9 * taxel + 8, taxel);
+  }
+  const grid = {
+    timestamp: header.stamp,
+    frame_id: "palm",
+    pose: { position: zero, orientation: { ...zero, w: 1 } },
+    column_count: 3,
+    cell_size: { x: 0.01, y: 0.02 },
+    row_stride: 27,
+    cell_stride: 9,
+    fields: [
+      { name: "newtons", offset: 0, type: 7 },
+      { name: "sigma_newtons", offset: 4, type: 7 },
+      { name: "status", offset: 8, type: 1 },
+    ],
+    data: cells,
+  };
+
+  it("give value, sigma and status of each taxel", () => {
+    const frame = emptyGrid();
+    readGrid(written("foxglove_msgs/msg/Grid", grid), frame);
+    expect(frame).toMatchObject({ stampS: 1234.5, rows: 2, cols: 3 });
+    expect([...frame.values]).toEqual([0, 1.5, 3, 4.5, 6, 7.5]);
+    expect([...frame.sigmas]).toEqual([0, 0.25, 0.5, 0.75, 1, 1.25]);
+    expect([...frame.statuses]).toEqual([0, 1, 2, 3, 4, 5]);
+  });
+
+  it("that say more than they hold throw", () => {
+    const message = written("foxglove_msgs/msg/Grid", grid);
+    const cut = new DataView(message.buffer, message.byteOffset, message.byteLength - 20);
+    expect(() => readGrid(cut, emptyGrid())).toThrow(RangeError);
+  });
+});
+
+describe("counts", () => {
+  it("are read from 16UC1 and 32FC1, with rows that are longer than their taxels", () => {
+    const words = new Uint8Array(new Uint16Array([1, 2, 999, 4095, 5, 999]).buffer);
+    const image = { header, height: 2, width: 2, encoding: "16UC1", is_bigendian: 0, step: 6, data: words };
+    const frame = emptyGrid();
+    readCounts(written("sensor_msgs/msg/Image", image), frame);
+    expect([...frame.values]).toEqual([1, 2, 4095, 5]);
+    const floats = new Uint8Array(new Float32Array([1.5, 2.5, 3.5, 4.5]).buffer);
+    readCounts(written("sensor_msgs/msg/Image", { ...image, encoding: "32FC1", step: 8, data: floats }), frame);
+    expect([...frame.values]).toEqual([1.5, 2.5, 3.5, 4.5]);
+  });
+});
+
+describe("points", () => {
+  it("give force and status wherever these fields are", () => {
+    const data = new Uint8Array(2 * 20);
+    const view = new DataView(data.buffer);
+    view.setFloat32(12, 3.5, true);
+    view.setFloat32(32, 7.25, true);
+    view.setUint8(36, 4);
+    const field = (name: string, offset: number, datatype: number): object => ({ name, offset, datatype, count: 1 });
+    const message = written("sensor_msgs/msg/PointCloud2", {
+      header,
+      height: 1,
+      width: 2,
+      fields: [field("x", 0, 7), field("y", 4, 7), field("z", 8, 7), field("newtons", 12, 7), field("status", 16, 2)],
+      is_bigendian: false,
+      point_step: 20,
+      row_step: 40,
+      data,
+      is_dense: false,
+    });
+    const frame: PointsFrame = { stampS: 0, newtons: new Float32Array(0), statuses: new Uint8Array(0) };
+    readPoints(message, frame);
+    expect(frame.stampS).toBe(1234.5);
+    expect([...frame.newtons]).toEqual([3.5, 7.25]);
+    expect([...frame.statuses]).toEqual([0, 4]);
+  });
+});
+
+describe("statistics, health and calibration", () => {
+  it("read as they were written", () => {
+    const array = {
+      name: "chest",
+      ended: false,
+      error: "the port is gone",
+      frames: 5000000000n,
+      rejected: 1n,
+      lost: 2n,
+      damaged: 3n,
+      rate_hz: 999.5,
+      jitter_s: 2e-5,
+      latency_p50_s: 1.5e-5,
+      latency_p99_s: 6e-5,
+      temperature_celsius: NaN,
+      supply_v: 5.02,
+    };
+    const statistics = { header, arrays: [array], recording: true, recording_file: "a.mcap", recording_frames: 17n, clients: 2, client_drops: 4n };
+    expect(readStatistics(written("dermis_msgs/msg/Statistics", statistics))).toEqual({
+      stampS: 1234.5,
+      arrays: [
+        {
+          name: "chest",
+          ended: false,
+          error: "the port is gone",
+          frames: 5000000000,
+          rejected: 1,
+          lost: 2,
+          damaged: 3,
+          rateHz: 999.5,
+          jitterS: 2e-5,
+          latencyP50S: 1.5e-5,
+          latencyP99S: 6e-5,
+          temperatureCelsius: NaN,
+          supplyV: 5.02,
+        },
+      ],
+      recording: true,
+      recordingFile: "a.mcap",
+      recordingFrames: 17,
+      clients: 2,
+      clientDrops: 4,
+    });
+  });
+
+  it("tell faults in words", () => {
+    const status = { level: 1, name: "chest", message: "column 3 is open", hardware_id: "", values: [{ key: "column 3", value: "open line" }] };
+    expect(readHealth(written("diagnostic_msgs/msg/DiagnosticArray", { header, status: [status] }))).toEqual([
+      { level: 1, name: "chest", message: "column 3 is open", values: [{ key: "column 3", value: "open line" }] },
+    ]);
+  });
+
+  it("guide a calibration", () => {
+    const state = {
+      header,
+      array: "palm",
+      stage: 2,
+      message: "Press r1c0",
+      taxel: 8,
+      weight_n: 5,
+      reading: 1.75,
+      hold_share: 0.5,
+      presses_done: 3,
+      presses_total: 12,
+      median_relative_error: NaN,
+      taxel_presses: new Uint8Array([1, 0, 2]),
+    };
+    const read = readCalibrationState(written("dermis_msgs/msg/CalibrationState", state));
+    expect(read).toMatchObject({ array: "palm", stage: 2, message: "Press r1c0", taxel: 8, weightN: 5, reading: 1.75, holdShare: 0.5 });
+    expect(read).toMatchObject({ pressesDone: 3, pressesTotal: 12, medianRelativeError: NaN });
+    expect([...read.taxelPresses]).toEqual([1, 0, 2]);
+  });
+});
+
+describe("the CDR reader", () => {
+  it("refuses what is no CDR in little-endian, and texts that end beyond the message", () => {
+    expect(() => new CdrReader().begin(new DataView(new ArrayBuffer(8)))).toThrow(RangeError);
+    const short = new DataView(new Uint8Array([0, 1, 0, 0, 255, 0, 0, 0, 65]).buffer);
+    expect(() => new CdrReader().begin(short).text()).toThrow(RangeError);
+    expect(() => new CdrReader().begin(short).textIs("A".repeat(254))).toThrow(RangeError);
+  });
+});

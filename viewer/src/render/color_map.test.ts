@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { describe, expect, it } from "vitest";
+import { colorOf, rgbOf, shaderSource } from "./color_map";
+
+/** OKLab: distances in it are differences to the eye (Ottosson, 2020). */
+function oklab(share: number): [number, number, number] {
+  const [red, green, blue] = rgbOf(share).map((value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4)) as [number, number, number];
+  const long = Math.cbrt(0.4122214708 * red + 0.5363325363 * green + 0.0514459929 * blue);
+  const medium = Math.cbrt(0.2119034982 * red + 0.6806995451 * green + 0.1073969566 * blue);
+  const short = Math.cbrt(0.0883024619 * red + 0.2817188376 * green + 0.6299787005 * blue);
+  return [
+    0.2104542553 * long + 0.793617785 * medium - 0.0040720468 * short,
+    1.9779984951 * long - 2.428592205 * medium + 0.4505937099 * short,
+    0.0259040371 * long + 0.7827717662 * medium - 0.808675766 * short,
+  ];
+}
+
+const STEPS = 64;
+const colors = Array.from({ length: STEPS + 1 }, (_, step) => oklab(step / STEPS));
+
+describe("the colour map", () => {
+  it("becomes lighter with every step, from nearly black to nearly white", () => {
+    for (let step = 1; step <= STEPS; ++step) expect(colors[step]![0]).toBeGreaterThan(colors[step - 1]![0]);
+    expect(colors[0]![0]).toBeLessThan(0.2);
+    expect(colors[STEPS]![0]).toBeGreaterThan(0.93);
+  });
+
+  it("changes by equal steps to the eye, within a fifth", () => {
+    const distances = colors.slice(1).map((color, step) => Math.hypot(...color.map((value, index) => value - colors[step]![index]!)));
+    const mean = distances.reduce((sum, distance) => sum + distance, 0) / STEPS;
+    for (const distance of distances) expect(Math.abs(distance / mean - 1)).toBeLessThan(0.2);
+  });
+
+  it("keeps the colour of its ends beyond them", () => {
+    expect(colorOf(-1)).toBe(colorOf(0));
+    expect(colorOf(7)).toBe(colorOf(1));
+    expect(colorOf(0)).toMatch(/^rgb\(\d+ \d+ \d+\)$/);
+  });
+
+  it("is the same polynomial in the shader", () => {
+    const source = shaderSource();
+    const vectors = [...source.matchAll(/vec3\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)/g)].map((match) => match.slice(1).map(Number));
+    const share = 0.37;
+    const green = vectors.reduce((sum, vector, power) => sum + vector[1]! * share ** power, 0);
+    expect(green).toBeCloseTo(rgbOf(share)[1], 3);
+  });
+});

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+
+/**
+ * From ink through red to pale yellow, in equal steps to the eye: lightness and distance in OKLab rise evenly, so a map shows
+ * no edge that the forces have not, and reads the same in grey. Rows: coefficients of share^0, share^1, ... for red, green,
+ * blue in sRGB.
+ */
+export const COEFFICIENTS: readonly (readonly [number, number, number])[] = [
+  [0.0479, 0.0528, 0.1676],
+  [0.4204, 0.5649, 1.3116],
+  [6.8652, -0.6374, 4.4242],
+  [-18.8601, -4.9426, -30.1666],
+  [28.3001, 20.3941, 50.8979],
+  [-24.5515, -22.1484, -35.9475],
+  [8.755, 7.6851, 9.9848],
+];
+
+function channel(share: number, index: 0 | 1 | 2): number {
+  let value = 0;
+  for (let power = COEFFICIENTS.length - 1; power >= 0; --power) value = value * share + COEFFICIENTS[power]![index];
+  return Math.min(1, Math.max(0, value));
+}
+
+/** Red, green and blue in 0 ... 1 of a share of the scale; beyond its ends the colour of the end. */
+export function rgbOf(share: number): [number, number, number] {
+  const inside = Math.min(1, Math.max(0, share));
+  return [channel(inside, 0), channel(inside, 1), channel(inside, 2)];
+}
+
+export function colorOf(share: number): string {
+  const [red, green, blue] = rgbOf(share);
+  return `rgb(${Math.round(255 * red)} ${Math.round(255 * green)} ${Math.round(255 * blue)})`;
+}
+
+export function cssGradient(direction: string): string {
+  const stops = Array.from({ length: 25 }, (_, index) => colorOf(index / 24));
+  return `linear-gradient(${direction}, ${stops.join(", ")})`;
+}
+
+/** GLSL: vec3 color_map(float share). */
+export function shaderSource(): string {
+  const vectors = COEFFICIENTS.map((row) => `vec3(${row.map((value) => value.toFixed(4)).join(", ")})`);
+  const horner = vectors.reduceRight((inner, vector) => (inner === "" ? vector : `${vector} + x * (${inner})`), "");
+  return `vec3 color_map(float share) {
+  float x = clamp(share, 0.0, 1.0);
+  return clamp(${horner}, 0.0, 1.0);
+}`;
+}

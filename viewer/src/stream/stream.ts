@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { Signal } from "../signal";
+import type { SuitDescription } from "../suit";
+import { Backoff } from "./backoff";
+import * as protocol from "./protocol";
+import { ServiceCalls } from "./service_calls";
+
+export type Connection =
+  | { kind: "connecting" }
+  | { kind: "live" }
+  /** It was live before, or never came up; the next attempt is at that time of performance.now(). */
+  | { kind: "retrying"; wasLive: boolean; atMs: number }
+  | { kind: "wrong token" };
+
+export interface Notice {
+  level: number;
+  message: string;
+}
+
+/** Gets a message in CDR; log time in seconds. The bytes may be kept. */
+export type MessageHandler = (message: DataView, logTimeS: number) => void;
+
+interface Topic {
+  readonly name: string;
+  readonly subscriptionId: number;
+  readonly handlers: Set<MessageHandler>;
+  channelId: number | undefined;
+}
+
+const LIVE_BEFORE_BACKOFF_RESETS_MS = 2000;
+const SILENCE_MS = 10000;
+
+/**
+ * The connection to the server: comes back by itself with back-off, and subscribes to the same topics again. Nothing is
+ * asked of the server that nobody follows.
+ */
+export class Stream {
+  readonly connection = new Signal<Connection>({ kind: "connecting" });
+  readonly serverInfo = new Signal<protocol.ServerInfo | undefined>(undefined);
+  readonly parameters = new Signal<ReadonlyMap<string, protocol.ParameterValue>>(new Map());
+  readonly services = new Signal<ReadonlyMap<string, number>>(new Map());
+  readonly playback = new Signal<protocol.PlaybackState | undefined>(undefined);
+  readonly notice = new Signal<Notice | undefined>(undefined);
+  /** Since the page was opened. */
+  messages = 0;
+  bytes = 0;
+  reconnects = -1;
+
+  readonly #base: URL;
+  readonly #onSuit: (suit: SuitDescription) => void;
+  readonly #backoff = new Backoff();
+  readonly #topics = new Map<string, Topic>();
+  readonly #subscriptions: Topic[] = [];
+  readonly #channels = new Map<string, number>();
+  readonly #calls = new ServiceCalls();
+  #token: string;
+  #socket: WebSocket | undefined;
+  #timer = 0;
+  #attempts = 0;
+  #liveSinceMs = 0;
+  #lastMessageMs = 0;
+
+  constructor(base: URL, onSuit: (suit: SuitDescription) => void) {
+    this.#base = base;
+    this.#onSuit = onSuit;
+    this.#token = base.searchParams.get("token") ?? "";
+  }
+
+  /** Begins to connect; also at once where it waits for the next attempt. */
+  connect(): void {
+    window.clearTimeout(this.#timer);
+    this.#drop();
+    this.connection.value = { kind: "connecting" };
+    void this.#attempt();
+  }
+
+  get token(): string {
+    return this.#token;
+  }
+
+  connectWith(token: string): void {
+    this.#token = token;
+    this.#backoff.reset();
+    this.connect();
+  }
+
+  subscribe(name: string, handler: MessageHandler): () => void {
+    const topic = this.#topic(name);
+    topic.handlers.add(handler);
+    if (topic.handlers.size === 1) this.#begin(topic);
+    return () => {
+      if (topic.handlers.delete(handler) && topic.handlers.size === 0) this.#end(topic);
+    };
+  }
+
+  /** Answers what the service answers; fails with the server's message. */
+  async callService(name: string, request: object): Promise<unknown> {
+    const id = this.services.value.get(name);
+    if (id === undefined || this.#socket === undefined) throw new Error(`${name}: the server does not offer it now`);
+    const { callId, answer } = this.#calls.begin();
+    this.#socket.send(protocol.serviceCallRequest(id, callId, JSON.stringify(request)));
+    return answer;
+  }
+
+  setParameter(name: string, value: boolean | number | string): void {
+    this.#send({ op: "setParameters", parameters: [{ name, value }], id: "set" });
+  }
+
+  control(play: boolean, speed: number, seekS?: number): void {
+    if (this.connection.value.kind === "live") this.#socket?.send(protocol.playbackControl(play, speed, seekS));
+  }
+
+  has(capability: string): boolean {
+    return this.serverInfo.value?.capabilities.includes(capability) ?? false;
+  }
+
+  async #attempt(): Promise<void> {
+    const attempt = ++this.#attempts;
+    try {
+      const response = await fetch(this.#address("suit.json"), { signal: AbortSignal.timeout(5000), cache: "no-store" });
+      if (attempt !== this.#attempts) return;
+      if (response.status === 401 || response.status === 403) {
+        this.connection.value = { kind: "wrong token" };
+        return;
+      }
+      if (!response.ok) throw new Error(`suit.json: ${response.status}`);
+      const suit = (await response.json()) as SuitDescription;
+      if (attempt !== this.#attempts) return;
+      this.#onSuit(suit);
+      this.#open();
+    } catch {
+      if (attempt === this.#attempts) this.#retry();
+    }
+  }
+
+  #address(path: string): URL {
+    const address = new URL(path, this.#base);
+    address.search = this.#token === "" ? "" : `?${new URLSearchParams({ token: this.#token })}`;
+    address.hash = "";
+    return address;
+  }
+
+  #open(): void {
+    const address = this.#address("./");
+    address.protocol = address.protocol.replace("http", "ws");
+    const socket = new WebSocket(address, protocol.SUBPROTOCOLS);
+    socket.binaryType = "arraybuffer";
+    socket.onmessage = (event: MessageEvent<string | ArrayBuffer>) => this.#receive(event.data);
+    socket.onclose = () => this.#retry();
+    this.#socket = socket;
+    this.#lastMessageMs = performance.now();
+    this.#watch();
+  }
+
+  /** A server whose machine is gone closes nothing: silence is an end, too. */
+  #watch(): void {
+    this.#timer = window.setTimeout(() => {
+      if (performance.now() - this.#lastMessageMs > SILENCE_MS) this.#retry();
+      else this.#watch();
+    }, 1000);
+  }
+
+  #drop(): void {
+    if (this.#socket !== undefined) {
+      this.#socket.onmessage = null;
+      this.#socket.onclose = null;
+      this.#socket.close();
+      this.#socket = undefined;
+    }
+    this.#channels.clear();
+    for (const topic of this.#topics.values()) topic.channelId = undefined;
+    this.#calls.failAll("the connection was lost");
+    this.services.value = new Map();
+  }
+
+  #retry(): void {
+    const wasLive = this.connection.value.kind === "live";
+    if (wasLive && performance.now() - this.#liveSinceMs > LIVE_BEFORE_BACKOFF_RESETS_MS) this.#backoff.reset();
+    this.#drop();
+    window.clearTimeout(this.#timer);
+    const waitMs = this.#backoff.nextMs();
+    this.connection.value = { kind: "retrying", wasLive: this.reconnects >= 0, atMs: performance.now() + waitMs };
+    this.#timer = window.setTimeout(() => this.connect(), waitMs);
+  }
+
+  #receive(data: string | ArrayBuffer): void {
+    this.#lastMessageMs = performance.now();
+    this.messages += 1;
+    if (typeof data === "string") {
+      this.#receiveText(JSON.parse(data) as protocol.ServerText);
+      return;
+    }
+    this.bytes += data.byteLength;
+    const message = new DataView(data);
+    switch (message.getUint8(0)) {
+      case protocol.ServerOpcode.messageData: {
+        const topic = this.#subscriptions[message.getUint32(1, true)];
+        if (topic === undefined) return;
+        const payload = new DataView(data, protocol.MESSAGE_DATA_BYTES);
+        const logTimeS = protocol.readNanos(message, 5);
+        for (const handler of topic.handlers) handler(payload, logTimeS);
+        return;
+      }
+      case protocol.ServerOpcode.serviceCallResponse:
+        this.#calls.answer(protocol.readServiceCallResponse(message));
+        return;
+      case protocol.ServerOpcode.playbackState:
+        this.playback.value = protocol.readPlaybackState(message);
+        return;
+    }
+  }
+
+  #receiveText(text: protocol.ServerText): void {
+    switch (text.op) {
+      case "serverInfo":
+        return this.#begun(text);
+      case "advertise":
+        return this.#advertised(text.channels);
+      case "unadvertise":
+        return this.#unadvertised(text.channelIds);
+      case "advertiseServices":
+        this.services.value = new Map([...this.services.value, ...text.services.map(({ name, id }) => [name, id] as const)]);
+        return;
+      case "unadvertiseServices":
+        this.services.value = new Map([...this.services.value].filter(([, id]) => !text.serviceIds.includes(id)));
+        return;
+      case "parameterValues":
+        return this.#parametersCame(text.parameters, text.id);
+      case "serviceCallFailure":
+        return this.#calls.fail(text.callId, text.message);
+      case "status":
+        this.notice.value = { level: text.level, message: text.message };
+        return;
+      case "removeStatus":
+        this.notice.value = undefined;
+        return;
+    }
+  }
+
+  #begun(info: protocol.ServerInfo): void {
+    this.reconnects += 1;
+    this.#liveSinceMs = performance.now();
+    this.playback.value = undefined;
+    this.parameters.value = new Map();
+    this.serverInfo.value = info;
+    this.connection.value = { kind: "live" };
+    if (this.has("parameters")) this.#send({ op: "getParameters", parameterNames: [], id: "all" });
+  }
+
+  #parametersCame(parameters: protocol.Parameter[], id?: string): void {
+    const all = new Map(this.parameters.value);
+    for (const { name, value } of parameters) all.set(name, value);
+    this.parameters.value = all;
+    if (id !== "all" || !this.has("parametersSubscribe")) return;
+    this.#send({ op: "subscribeParameterUpdates", parameterNames: parameters.map(({ name }) => name) });
+  }
+
+  #topic(name: string): Topic {
+    let topic = this.#topics.get(name);
+    if (topic === undefined) {
+      const subscriptionId = this.#subscriptions.length;
+      topic = { name, subscriptionId, handlers: new Set(), channelId: this.#channels.get(name) };
+      this.#topics.set(name, topic);
+      this.#subscriptions.push(topic);
+    }
+    return topic;
+  }
+
+  #advertised(channels: protocol.Channel[]): void {
+    for (const { id, topic: name } of channels) {
+      this.#channels.set(name, id);
+      const topic = this.#topics.get(name);
+      if (topic === undefined) continue;
+      topic.channelId = id;
+      if (topic.handlers.size > 0) this.#begin(topic);
+    }
+  }
+
+  #unadvertised(channelIds: number[]): void {
+    for (const [name, id] of [...this.#channels]) if (channelIds.includes(id)) this.#channels.delete(name);
+    for (const topic of this.#topics.values()) {
+      if (topic.channelId !== undefined && channelIds.includes(topic.channelId)) topic.channelId = undefined;
+    }
+  }
+
+  #begin({ subscriptionId, channelId }: Topic): void {
+    if (channelId !== undefined) this.#send({ op: "subscribe", subscriptions: [{ id: subscriptionId, channelId }] });
+  }
+
+  #end({ subscriptionId, channelId }: Topic): void {
+    if (channelId !== undefined) this.#send({ op: "unsubscribe", subscriptionIds: [subscriptionId] });
+  }
+
+  #send(request: object): void {
+    if (this.#socket?.readyState === WebSocket.OPEN) this.#socket.send(JSON.stringify(request));
+  }
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { Signal } from "./signal";
+
+/** One array, as /suit.json describes it. */
+export interface ArrayDescription {
+  name: string;
+  rows: number;
+  cols: number;
+  pitch_m: [number, number];
+  taxel_area_m2: number | null;
+  full_scale_counts: number;
+  full_scale_n: number;
+  positions: [number, number, number][];
+  normals: [number, number, number][];
+}
+
+export interface SuitDescription {
+  name: string;
+  arrays: ArrayDescription[];
+}
+
+/** The suit that is served and the array that the user looks at. */
+export class Suit {
+  readonly description = new Signal<SuitDescription>({ name: "", arrays: [] });
+  readonly selected = new Signal<ArrayDescription | undefined>(undefined);
+
+  /** Keeps the array that is selected where the new description has one of its name. */
+  replace(description: SuitDescription): void {
+    this.description.value = description;
+    this.select(this.selected.value?.name ?? "");
+  }
+
+  /** The first array where there is none of that name. */
+  select(name: string): void {
+    const { arrays } = this.description.value;
+    this.selected.value = arrays.find((array) => array.name === name) ?? arrays[0];
+  }
+
+  indexOf(name: string): number {
+    return this.description.value.arrays.findIndex((array) => array.name === name);
+  }
+}

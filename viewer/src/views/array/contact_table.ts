@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element, setData, setHidden, setText } from "../../dom";
+import { fixed } from "../../format";
+import { SLOTS } from "../../live/contact_slots";
+import type { ArrayLive } from "../../live/live_data";
+import { type Contact, ContactPhase } from "../../messages/contacts";
+
+const HEADS = ["Id", "Force", "1 \u03c3", "x", "y", "Area", "Peak", "Held"];
+const UNITS = ["", "N", "N", "mm", "mm", "mm\u00b2", "kPa", "s"];
+
+class Row {
+  readonly element: HTMLTableRowElement;
+  readonly #swatch = element("span", { class: "swatch" });
+  readonly #id = element("span");
+  readonly #cells: HTMLElement[] = [];
+
+  constructor() {
+    this.element = element("tr", {}, element("th", { scope: "row", class: "figure" }, this.#swatch, this.#id));
+    for (const name of ["force", "sigma", "x", "y", "area", "peak", "held"]) {
+      const cell = element("td", { class: "figure", "data-field": name });
+      this.#cells.push(cell);
+      this.element.append(cell);
+    }
+  }
+
+  show(contact: Contact, slot: number, stampS: number): void {
+    setData(this.element, "contact", String(contact.id));
+    setText(this.#id, String(contact.id));
+    const color = slot >= 0 ? `var(--series-${slot + 1})` : "var(--text-dim)";
+    if (this.#swatch.style.background !== color) this.#swatch.style.background = color;
+    this.#set(0, fixed(contact.forceN, 2));
+    this.#set(1, fixed(contact.sigmaForceN, 2));
+    this.#set(2, fixed(1e3 * contact.x, 2));
+    this.#set(3, fixed(1e3 * contact.y, 2));
+    this.#set(4, fixed(1e6 * contact.areaM2, 0));
+    this.#set(5, fixed(1e-3 * contact.peakPressurePa, 1));
+    this.#set(6, fixed(stampS - contact.onsetS, 1));
+  }
+
+  #set(index: number, text: string): void {
+    setText(this.#cells[index]!, text);
+  }
+}
+
+/** The contacts of the array, by id. */
+export class ContactTable {
+  readonly element: HTMLElement;
+  readonly #rows = Array.from({ length: SLOTS }, () => new Row());
+  readonly #more = element("p", { class: "dim note" });
+
+  constructor() {
+    const head = (text: string, index: number): HTMLElement =>
+      element("th", { scope: "col" }, text, element("span", { class: "unit" }, UNITS[index]!));
+    this.element = element(
+      "section",
+      { class: "panel", "aria-label": "Contacts" },
+      element("header", { class: "panel-title" }, element("h2", {}, "Contacts")),
+      element(
+        "div",
+        { class: "table-room" },
+        element(
+          "table",
+          { class: "table contact-table" },
+          element("thead", {}, element("tr", {}, ...HEADS.map(head))),
+          element("tbody", { "data-role": "contacts" }, ...this.#rows.map((row) => row.element)),
+        ),
+        this.#more,
+      ),
+    );
+  }
+
+  show({ contacts: frame, slots }: ArrayLive): void {
+    let used = 0;
+    let hidden = 0;
+    for (let index = 0; index < frame.count; ++index) {
+      const contact = frame.contacts[index]!;
+      if (contact.phase === ContactPhase.release) continue;
+      if (used < SLOTS) this.#rows[used++]!.show(contact, slots.indexOf(contact.id), frame.stampS);
+      else hidden += 1;
+    }
+    this.#rows.forEach((row, index) => setHidden(row.element, index >= used));
+    setText(this.#more, used === 0 ? "Nothing touches this array." : hidden > 0 ? `and ${hidden} more` : "");
+  }
+}

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { SLOTS } from "../../live/contact_slots";
+import type { ArrayLive } from "../../live/live_data";
+import { type Contact, ContactPhase } from "../../messages/contacts";
+import type { Area } from "../../render/heat_maps";
+import type { ArrayDescription } from "../../suit";
+import { cssColor } from "../../theme";
+import { AXIS_LEFT } from "./geometry";
+
+const TURN = 2 * Math.PI;
+const HALO = "rgb(0 0 0 / 70%)";
+const INK = "#ffffff";
+const FONT = '600 12px "Inter", "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", Arial, sans-serif';
+
+/** What is drawn over the maps: contacts with their trails, cursor, pins. */
+export class Overlay {
+  readonly canvas: HTMLCanvasElement;
+  showContacts = true;
+  readonly #pen: CanvasRenderingContext2D;
+  #seriesColors: string[] = [];
+  #plate = "";
+  #plateText = "";
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.canvas = canvas;
+    this.#pen = canvas.getContext("2d")!;
+  }
+
+  readColors(): void {
+    this.#seriesColors = Array.from({ length: SLOTS }, (_, index) => cssColor(`--series-${index + 1}`));
+    this.#plate = cssColor("--surface");
+    this.#plateText = cssColor("--text");
+  }
+
+  resize(width: number, height: number, pixelRatio: number): void {
+    this.canvas.width = Math.round(width * pixelRatio);
+    this.canvas.height = Math.round(height * pixelRatio);
+    this.#pen.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
+  }
+
+  draw(areas: readonly Area[], array: ArrayDescription, live: ArrayLive | undefined, cursor: number, pins: readonly number[]): void {
+    this.#pen.save();
+    this.#pen.resetTransform();
+    this.#pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    this.#pen.restore();
+    for (const area of areas) {
+      pins.forEach((taxel, index) => this.#drawPin(area, array, taxel, index + 1));
+      if (cursor >= 0) this.#drawCursor(area, array, cursor);
+    }
+    const force = areas[areas.length - 1];
+    if (force !== undefined && live !== undefined && this.showContacts) this.#drawContacts(force, array, live);
+  }
+
+  #drawCursor(area: Area, array: ArrayDescription, taxel: number): void {
+    const width = area.width / array.cols;
+    const height = area.height / array.rows;
+    const left = area.left + (taxel % array.cols) * width;
+    const top = area.top + Math.floor(taxel / array.cols) * height;
+    this.#strokeTwice(() => this.#pen.strokeRect(left + 0.5, top + 0.5, width, height), 1.5);
+  }
+
+  #drawPin(area: Area, array: ArrayDescription, taxel: number, label: number): void {
+    const width = area.width / array.cols;
+    const height = area.height / array.rows;
+    const left = area.left + (taxel % array.cols) * width;
+    const top = area.top + Math.floor(taxel / array.cols) * height;
+    const pen = this.#pen;
+    pen.setLineDash([3, 2]);
+    this.#strokeTwice(() => pen.strokeRect(left + 1, top + 1, width - 1, height - 1), 1);
+    pen.setLineDash([]);
+    if (Math.min(width, height) < 14) return;
+    pen.font = FONT;
+    pen.textAlign = "left";
+    pen.textBaseline = "top";
+    this.#textTwice(String(label), left + 3, top + 2);
+  }
+
+  #drawContacts(area: Area, array: ArrayDescription, live: ArrayLive): void {
+    const pixelsX = area.width / (array.cols * array.pitch_m[1]);
+    const pixelsY = area.height / (array.rows * array.pitch_m[0]);
+    const originX = area.left + (0.5 * area.width) / array.cols;
+    const originY = area.top + (0.5 * area.height) / array.rows;
+    const pen = this.#pen;
+    pen.save();
+    pen.beginPath();
+    pen.rect(area.left - AXIS_LEFT, area.top, area.width + 2 * AXIS_LEFT, area.height);
+    pen.clip();
+    for (let index = 0; index < live.contacts.count; ++index) {
+      const contact = live.contacts.contacts[index]!;
+      if (contact.phase === ContactPhase.release) continue;
+      const slot = live.slots.indexOf(contact.id);
+      this.#drawTrail(live, slot, originX, originY, pixelsX, pixelsY);
+      const x = originX + contact.x * pixelsX;
+      const y = originY + contact.y * pixelsY;
+      this.#drawOutline(contact, x, y, pixelsX, pixelsY);
+      this.#drawLabel(contact, slot, x, y, pixelsX, pixelsY, area);
+    }
+    pen.restore();
+  }
+
+  #drawTrail(live: ArrayLive, slot: number, originX: number, originY: number, pixelsX: number, pixelsY: number): void {
+    const trail = live.slots.slots[slot]?.trail;
+    if (trail === undefined || trail.length < 2) return;
+    const pen = this.#pen;
+    pen.strokeStyle = INK;
+    pen.lineWidth = 1.25;
+    for (let point = 1; point < trail.length; ++point) {
+      pen.globalAlpha = (0.7 * point) / trail.length;
+      pen.beginPath();
+      pen.moveTo(originX + trail.x(point - 1) * pixelsX, originY + trail.y(point - 1) * pixelsY);
+      pen.lineTo(originX + trail.x(point) * pixelsX, originY + trail.y(point) * pixelsY);
+      pen.stroke();
+    }
+    pen.globalAlpha = 1;
+  }
+
+  /** An ellipse of the area of the contact, in its proportions; inside, where it is with 95 %: two sigmas. */
+  #drawOutline(contact: Contact, x: number, y: number, pixelsX: number, pixelsY: number): void {
+    const pen = this.#pen;
+    const slenderness = contact.minorAxisM > 0 ? Math.min(4, contact.majorAxisM / contact.minorAxisM) : 1;
+    const major = Math.sqrt((contact.areaM2 / Math.PI) * slenderness) * pixelsX;
+    const minor = Math.sqrt(contact.areaM2 / Math.PI / slenderness) * pixelsY;
+    const ellipse = (radiusX: number, radiusY: number, angle: number): void => {
+      pen.beginPath();
+      pen.ellipse(x, y, Math.max(1, radiusX), Math.max(1, radiusY), angle, 0, TURN);
+      pen.stroke();
+    };
+    this.#strokeTwice(() => ellipse(major, minor, contact.angleRad), 1.5);
+    this.#strokeTwice(() => ellipse(2 * contact.sigmaX * pixelsX, 2 * contact.sigmaY * pixelsY, 0), 1.5);
+  }
+
+  #drawLabel(contact: Contact, slot: number, x: number, y: number, pixelsX: number, pixelsY: number, area: Area): void {
+    const pen = this.#pen;
+    const text = `#${contact.id}  ${contact.forceN.toFixed(contact.forceN < 10 ? 2 : 1)} N`;
+    pen.font = FONT;
+    const width = pen.measureText(text).width + 16;
+    const reach = Math.sqrt(contact.areaM2 / Math.PI);
+    const left = Math.min(x + 0.75 * reach * pixelsX + 4, area.left + area.width - width - 2);
+    const top = Math.max(y - 0.75 * reach * pixelsY - 22, area.top + 2);
+    pen.fillStyle = this.#plate;
+    pen.globalAlpha = 0.92;
+    pen.fillRect(left, top, width, 18);
+    pen.globalAlpha = 1;
+    pen.fillStyle = this.#seriesColors[slot] ?? this.#plateText;
+    pen.fillRect(left, top, 4, 18);
+    pen.fillStyle = this.#plateText;
+    pen.textAlign = "left";
+    pen.textBaseline = "middle";
+    pen.fillText(text, left + 9, top + 9.5);
+  }
+
+  /** Dark below light: seen on every colour of the map. */
+  #strokeTwice(stroke: () => void, width: number): void {
+    const pen = this.#pen;
+    pen.strokeStyle = HALO;
+    pen.lineWidth = width + 2;
+    stroke();
+    pen.strokeStyle = INK;
+    pen.lineWidth = width;
+    stroke();
+  }
+
+  #textTwice(text: string, x: number, y: number): void {
+    const pen = this.#pen;
+    pen.strokeStyle = HALO;
+    pen.lineWidth = 3;
+    pen.strokeText(text, x, y);
+    pen.fillStyle = INK;
+    pen.fillText(text, x, y);
+  }
+}

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element, setText } from "../../dom";
+import { fixed, statusWord } from "../../format";
+import type { ArrayLive } from "../../live/live_data";
+import { type Contact, ContactPhase } from "../../messages/contacts";
+import { type GridFrame, TaxelStatus } from "../../messages/grids";
+import type { ArrayDescription } from "../../suit";
+import { taxelName } from "./geometry";
+
+const NAMES = ["Contacts", "Highest taxel", "Sum of taxels", "Faulty taxels"] as const;
+
+/** The figures of the whole array. */
+export class Summary {
+  readonly element: HTMLElement;
+  readonly #total = element("span", { class: "large figure", "data-role": "total-force" });
+  readonly #sigma = element("span", { class: "dim figure" });
+  readonly #values = NAMES.map((name) => element("dd", { class: "figure", "data-role": name.toLowerCase().replaceAll(" ", "-") }));
+
+  constructor() {
+    const pairs = NAMES.flatMap((name, index) => [element("dt", {}, name), this.#values[index]!]);
+    this.element = element(
+      "section",
+      { class: "panel summary", "aria-label": "Total" },
+      element("header", { class: "panel-title" }, element("h2", {}, "Total of contacts")),
+      element("p", { class: "total" }, this.#total, element("span", { class: "total-unit" }, "N"), this.#sigma),
+      element("dl", { class: "pairs" }, ...pairs),
+    );
+  }
+
+  show(array: ArrayDescription, { contacts }: ArrayLive, force: GridFrame): void {
+    setText(this.#total, fixed(contacts.totalForceN, 2));
+    setText(this.#sigma, `\u00b1 ${fixed(contacts.sigmaTotalN, 2)}`);
+    const { highest, sum, faulty, worst } = survey(force);
+    setText(this.#values[0]!, String(touching(contacts.contacts, contacts.count)));
+    setText(this.#values[1]!, highest < 0 ? fixed(NaN, 0) : `${fixed(force.values[highest]!, 2)} N  ${taxelName(highest, array)}`);
+    setText(this.#values[2]!, `${fixed(sum, 2)} N`);
+    setText(this.#values[3]!, faulty === 0 ? "none" : `${faulty}, ${statusWord(worst)}`);
+  }
+}
+
+function touching(contacts: readonly Contact[], count: number): number {
+  let number = 0;
+  for (let index = 0; index < count; ++index) if (contacts[index]!.phase !== ContactPhase.release) number += 1;
+  return number;
+}
+
+function survey({ values, statuses }: GridFrame): { highest: number; sum: number; faulty: number; worst: number } {
+  const found = { highest: -1, sum: 0, faulty: 0, worst: 0 };
+  for (let taxel = 0; taxel < values.length; ++taxel) {
+    if (statuses[taxel]! >= TaxelStatus.dead) {
+      found.faulty += 1;
+      found.worst = Math.max(found.worst, statuses[taxel]!);
+      continue;
+    }
+    found.sum += values[taxel]!;
+    if (found.highest < 0 || values[taxel]! > values[found.highest]!) found.highest = taxel;
+  }
+  return found;
+}

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element, setData, setText } from "../../dom";
+import { engineering, fixed, statusWord } from "../../format";
+import type { GridFrame } from "../../messages/grids";
+import type { ArrayDescription } from "../../suit";
+import { taxelName } from "./geometry";
+import { ohms } from "./quantities";
+
+export const MOST_PINS = 6;
+const COLUMNS = ["counts", "ohms", "siemens", "newtons", "sigma", "status"] as const;
+
+export interface Frames {
+  raw: GridFrame;
+  conductance: GridFrame;
+  force: GridFrame;
+}
+
+class Row {
+  readonly element: HTMLTableRowElement;
+  readonly #name = element("th", { scope: "row" });
+  readonly #cells = new Map<string, HTMLElement>();
+
+  constructor(role: string) {
+    this.element = element("tr", { "data-role": role }, this.#name);
+    for (const column of COLUMNS) {
+      const cell = element("td", { "data-field": column, class: column === "status" ? "" : "figure" });
+      this.#cells.set(column, cell);
+      this.element.append(cell);
+    }
+  }
+
+  show(label: string, taxel: number, array: ArrayDescription, { raw, conductance, force }: Frames): void {
+    setText(this.#name, label);
+    setData(this.element, "taxel", taxelName(taxel, array));
+    const siemens = valueAt(conductance, taxel);
+    const status = force.statuses[taxel] ?? conductance.statuses[taxel] ?? 0;
+    this.#set("counts", fixed(valueAt(raw, taxel), Number.isInteger(valueAt(raw, taxel)) ? 0 : 1));
+    this.#set("ohms", Number.isNaN(siemens) ? fixed(NaN, 0) : ohms(siemens));
+    this.#set("siemens", Number.isNaN(siemens) ? fixed(NaN, 0) : engineering(siemens, "S"));
+    this.#set("newtons", `${fixed(valueAt(force, taxel), 3)} N`);
+    this.#set("sigma", `\u00b1 ${fixed(force.sigmas[taxel] ?? NaN, 3)} N`);
+    this.#set("status", statusWord(status));
+    setData(this.element, "status", statusWord(status));
+  }
+
+  clear(label: string): void {
+    setText(this.#name, label);
+    delete this.element.dataset["taxel"];
+    delete this.element.dataset["status"];
+    for (const column of COLUMNS) this.#set(column, "");
+  }
+
+  #set(column: string, text: string): void {
+    setText(this.#cells.get(column)!, text);
+  }
+}
+
+function valueAt(frame: GridFrame, taxel: number): number {
+  return frame.values[taxel] ?? NaN;
+}
+
+/** What the taxel under the cursor and the pinned ones read. */
+export class TaxelTable {
+  readonly element: HTMLElement;
+  readonly #cursor = new Row("cursor");
+  readonly #pins = Array.from({ length: MOST_PINS }, (_, index) => new Row(`pin-${index + 1}`));
+
+  constructor() {
+    const heads = ["Taxel", "Counts", "Resistance", "Conductance", "Force", "1 \u03c3", "Status"];
+    this.element = element(
+      "section",
+      { class: "panel", "aria-label": "Taxels" },
+      element("header", { class: "panel-title" }, element("h2", {}, "Taxels"), element("span", { class: "dim" }, "click to pin, up to six")),
+      element(
+        "div",
+        { class: "table-room" },
+        element(
+          "table",
+          { class: "table taxel-table" },
+          element("thead", {}, element("tr", {}, ...heads.map((head) => element("th", { scope: "col" }, head)))),
+          element("tbody", {}, this.#cursor.element, ...this.#pins.map((row) => row.element)),
+        ),
+      ),
+    );
+  }
+
+  show(array: ArrayDescription, frames: Frames, cursor: number, pins: readonly number[]): void {
+    if (cursor >= 0) this.#cursor.show(taxelName(cursor, array), cursor, array, frames);
+    else this.#cursor.clear("cursor");
+    this.#pins.forEach((row, index) => {
+      const taxel = pins[index];
+      row.element.hidden = taxel === undefined;
+      if (taxel !== undefined) row.show(`${index + 1}  ${taxelName(taxel, array)}`, taxel, array, frames);
+    });
+  }
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element, setData, setText } from "../../dom";
+import { count, engineering, fixed } from "../../format";
+import type { ArrayStatistics, HealthStatus, Statistics } from "../../messages/statistics";
+import type { View, ViewContext, ViewFactory } from "../../view";
+
+const HEADS = ["Array", "State", "Rate", "Jitter", "Frames", "Lost", "Damaged", "Rejected", "Latency p50", "p99", "Temperature", "Supply"];
+const LEVELS = ["good", "warn", "bad", "warn"] as const;
+const LEVEL_WORDS = ["well", "warning", "error", "no news"] as const;
+const PERIOD_MS = 500;
+
+function time(seconds: number): string {
+  return Number.isNaN(seconds) ? fixed(seconds, 0) : engineering(seconds, "s");
+}
+
+function known(value: number, digits: number, unit: string): string {
+  return Number.isNaN(value) ? fixed(value, 0) : `${fixed(value, digits)} ${unit}`;
+}
+
+class ArrayRow {
+  readonly element: HTMLTableRowElement;
+  readonly #cells = HEADS.slice(1).map((head) => element("td", { class: head === "State" ? "" : "figure", "data-field": head.toLowerCase() }));
+
+  constructor(name: string, open: () => void) {
+    const link = element("button", { class: "link", onclick: open, title: "Show its maps" }, name);
+    this.element = element("tr", { "data-array": name }, element("th", { scope: "row" }, link), ...this.#cells);
+  }
+
+  show(array: ArrayStatistics): void {
+    const state = array.error !== "" ? array.error : array.ended ? "ended" : "live";
+    setData(this.#cells[0]!, "level", array.error !== "" ? "bad" : array.ended ? "warn" : "good");
+    const texts = [
+      state,
+      known(array.rateHz, 1, "Hz"),
+      time(array.jitterS),
+      count(array.frames),
+      count(array.lost),
+      count(array.damaged),
+      count(array.rejected),
+      time(array.latencyP50S),
+      time(array.latencyP99S),
+      known(array.temperatureCelsius, 1, "\u00b0C"),
+      known(array.supplyV, 3, "V"),
+    ];
+    this.#cells.forEach((cell, index) => setText(cell, texts[index]!));
+    [4, 5, 6].forEach((column) => this.#cells[column]!.classList.toggle("attention", this.#cells[column]!.textContent !== "0"));
+  }
+}
+
+class HealthView implements View {
+  readonly name = "health";
+  readonly title = "Health";
+  readonly element: HTMLElement;
+  readonly #context: ViewContext;
+  readonly #rows = element("tbody");
+  readonly #faults = element("ul", { class: "faults", "data-role": "faults" });
+  readonly #figures = element("dl", { class: "pairs wide-pairs", "data-role": "page-figures" });
+  readonly #unfollow: (() => void)[] = [];
+  #arrayRows = new Map<string, ArrayRow>();
+  #seen = { ms: 0, frames: 0, messages: 0, bytes: 0 };
+
+  constructor(context: ViewContext) {
+    this.#context = context;
+    this.element = element(
+      "div",
+      { class: "view health-view", "data-view": "health" },
+      element(
+        "section",
+        { class: "panel", "aria-label": "Arrays" },
+        element("header", { class: "panel-title" }, element("h2", {}, "Arrays")),
+        element(
+          "div",
+          { class: "table-room" },
+          element(
+            "table",
+            { class: "table health-table" },
+            element("thead", {}, element("tr", {}, ...HEADS.map((head) => element("th", { scope: "col" }, head)))),
+            this.#rows,
+          ),
+        ),
+      ),
+      element(
+        "div",
+        { class: "columns" },
+        element("section", { class: "panel", "aria-label": "Faults" }, element("header", { class: "panel-title" }, element("h2", {}, "Faults")), this.#faults),
+        element("section", { class: "panel", "aria-label": "Stream and page" }, element("header", { class: "panel-title" }, element("h2", {}, "Stream and page")), this.#figures),
+      ),
+    );
+  }
+
+  show(): void {
+    const { live } = this.#context;
+    this.#seen.ms = 0;
+    this.#unfollow.push(
+      live.statistics.follow((statistics) => this.#showArrays(statistics)),
+      live.health.follow((health) => this.#showFaults(health)),
+    );
+  }
+
+  hide(): void {
+    for (const end of this.#unfollow.splice(0)) end();
+  }
+
+  draw(nowMs: number): void {
+    if (nowMs - this.#seen.ms < PERIOD_MS) return;
+    const { stream, display, live } = this.#context;
+    const seconds = (nowMs - this.#seen.ms) / 1000;
+    const rate = (now: number, before: number): number => (this.#seen.ms === 0 ? NaN : (now - before) / seconds);
+    const server = live.statistics.value;
+    const pairs: [string, string][] = [
+      ["Time of frame to screen, p50", known(1e3 * display.latency(0.5), 1, "ms")],
+      ["p99", known(1e3 * display.latency(0.99), 1, "ms")],
+      ["Maps drawn", known(rate(display.framesDrawn, this.#seen.frames), 0, "a second")],
+      ["Messages", known(rate(stream.messages, this.#seen.messages), 0, "a second")],
+      ["Received", known(rate(stream.bytes, this.#seen.bytes) / 1024, 1, "KiB/s")],
+      ["Connections lost", count(Math.max(0, stream.reconnects))],
+      ["Clients of the server", server === undefined ? fixed(NaN, 0) : count(server.clients)],
+      ["Messages slow clients missed", server === undefined ? fixed(NaN, 0) : count(server.clientDrops)],
+      ["Recording", server?.recording ? `${server.recordingFile}, ${count(server.recordingFrames)} frames` : "off"],
+    ];
+    this.#showPairs(pairs);
+    this.#seen = { ms: nowMs, frames: display.framesDrawn, messages: stream.messages, bytes: stream.bytes };
+  }
+
+  #showPairs(pairs: [string, string][]): void {
+    if (this.#figures.childElementCount === 0) {
+      this.#figures.append(...pairs.flatMap(([name]) => [element("dt", {}, name), element("dd", { class: "figure", "data-figure": name })]));
+    }
+    pairs.forEach(([, text], index) => setText(this.#figures.children[2 * index + 1] as HTMLElement, text));
+  }
+
+  #showArrays(statistics: Statistics | undefined): void {
+    if (statistics === undefined) return;
+    if (statistics.arrays.map(({ name }) => name).join("/") !== [...this.#arrayRows.keys()].join("/")) {
+      this.#arrayRows = new Map(statistics.arrays.map(({ name }) => [name, new ArrayRow(name, () => this.#context.open("array", name))]));
+      this.#rows.replaceChildren(...[...this.#arrayRows.values()].map((row) => row.element));
+    }
+    for (const array of statistics.arrays) this.#arrayRows.get(array.name)!.show(array);
+  }
+
+  #showFaults(health: readonly HealthStatus[]): void {
+    this.#faults.replaceChildren(
+      ...health.map(({ level, name, message, values }) =>
+        element(
+          "li",
+          { "data-array": name },
+          element("span", { class: "pill", "data-level": LEVELS[level] ?? "warn" }, LEVEL_WORDS[level] ?? String(level)),
+          element("strong", {}, name),
+          element("span", {}, message),
+          element("ul", {}, ...values.map(({ key, value }) => element("li", {}, element("span", { class: "dim" }, key), value))),
+        ),
+      ),
+    );
+  }
+}
+
+export const createHealthView: ViewFactory = (context) => new HealthView(context);

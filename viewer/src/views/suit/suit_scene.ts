@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import * as three from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import { type Contact, type ContactsFrame, ContactPhase } from "../../messages/contacts";
+import type { PointsFrame } from "../../messages/grids";
+import type { SuitDescription } from "../../suit";
+import { cssColor, rgbColor } from "../../theme";
+import { ContactArrows, MOST_ARROWS } from "./contact_arrows";
+import { TaxelCloud } from "./taxel_cloud";
+
+const TURN_STEP = 0.12;
+const ZOOM_STEP = 1.15;
+const FIT_ATTEMPTS = 6;
+/** Of the height and width of the picture. */
+const FIT_SHARE = 0.8;
+/** Clicks this near to a taxel mean its array, as a share of the suit's size. */
+const CLICK_SHARE = 0.03;
+
+/** What is drawn once in the suit's frame: three.js, loaded when the view is first shown. */
+export class SuitScene {
+  readonly #renderer: three.WebGLRenderer;
+  readonly #scene = new three.Scene();
+  readonly #camera = new three.PerspectiveCamera(35, 1, 0.001, 100);
+  readonly #controls: OrbitControls;
+  readonly #arrows = new ContactArrows();
+  readonly #centre = new three.Vector3();
+  readonly #projected = new three.Vector3();
+  readonly #right = new three.Vector3();
+  readonly #up = new three.Vector3();
+  /** Where the arrows begin, and what presses there. */
+  readonly #tails = Array.from({ length: MOST_ARROWS }, () => new three.Vector3());
+  readonly #forces = new Float64Array(MOST_ARROWS);
+  #arrowCount = 0;
+  #cloud: TaxelCloud | undefined;
+  #suit: SuitDescription | undefined;
+  #size = 1;
+  #width = 1;
+  #height = 1;
+  #isDue = true;
+  /** By the user: a new size of the page leaves it as it is. */
+  #isTurned = false;
+
+  constructor(canvas: HTMLCanvasElement) {
+    this.#renderer = new three.WebGLRenderer({ canvas, antialias: true });
+    this.#renderer.outputColorSpace = three.LinearSRGBColorSpace;
+    three.ColorManagement.enabled = false;
+    this.#controls = new OrbitControls(this.#camera, canvas);
+    this.#controls.enableDamping = false;
+    this.#controls.addEventListener("change", () => (this.#isDue = true));
+    this.#controls.addEventListener("start", () => (this.#isTurned = true));
+    this.#scene.add(this.#arrows.group);
+  }
+
+  setSuit(suit: SuitDescription): void {
+    if (this.#cloud !== undefined) {
+      this.#scene.remove(this.#cloud.mesh);
+      this.#cloud.dispose();
+    }
+    this.#suit = suit;
+    this.#cloud = new TaxelCloud(suit);
+    this.#scene.add(this.#cloud.mesh);
+    const box = new three.Box3();
+    const point = new three.Vector3();
+    for (const { positions } of suit.arrays) for (const position of positions) box.expandByPoint(point.fromArray(position));
+    box.getCenter(this.#centre);
+    this.#size = Math.max(0.02, box.getSize(point).length());
+    this.home();
+    this.readColors();
+  }
+
+  /** Looks at the whole suit from before and a little above; lying flat, from above. */
+  home(): void {
+    this.#isTurned = false;
+    const facing = this.#meanNormal();
+    const liesFlat = Math.abs(facing.z) > 0.6;
+    this.#camera.up.set(0, liesFlat ? 1 : 0, liesFlat ? 0 : 1);
+    if (!liesFlat) facing.setZ(0);
+    if (facing.length() < 0.35) facing.set(1, 0, 0);
+    const side = new three.Vector3().crossVectors(this.#camera.up, facing).normalize();
+    const direction = facing.normalize().addScaledVector(side, liesFlat ? 0.25 : 0.6).addScaledVector(this.#camera.up, 0.3).normalize();
+    this.#camera.near = 0.01 * this.#size;
+    this.#camera.far = 20 * this.#size;
+    this.#camera.updateProjectionMatrix();
+    this.#fit(direction);
+    this.#isDue = true;
+  }
+
+  #meanNormal(): three.Vector3 {
+    const mean = new three.Vector3();
+    const normal = new three.Vector3();
+    const normals = (this.#suit?.arrays ?? []).flatMap((array) => array.normals);
+    for (const each of normals) mean.add(normal.fromArray(each));
+    return mean.divideScalar(Math.max(1, normals.length));
+  }
+
+  /** As near as all taxels can be seen, and room for arrows and names around them. */
+  #fit(direction: three.Vector3): void {
+    const target = this.#controls.target.copy(this.#centre);
+    const point = new three.Vector3();
+    const extent = new three.Box3();
+    let distance = 2 * this.#size;
+    for (let attempt = 0; attempt < FIT_ATTEMPTS; ++attempt) {
+      this.#camera.position.copy(target).addScaledVector(direction, distance);
+      this.#controls.update();
+      this.#camera.updateMatrixWorld();
+      extent.makeEmpty();
+      for (const { positions } of this.#suit?.arrays ?? []) {
+        for (const position of positions) extent.expandByPoint(point.fromArray(position).project(this.#camera));
+      }
+      if (extent.isEmpty()) return;
+      extent.getCenter(point);
+      const height = distance * Math.tan(three.MathUtils.degToRad(0.5 * this.#camera.fov));
+      this.#camera.matrixWorld.extractBasis(this.#right, this.#up, this.#projected);
+      target.addScaledVector(this.#right, point.x * height * this.#camera.aspect).addScaledVector(this.#up, point.y * height);
+      extent.getSize(point);
+      distance *= Math.max(0.3, (0.5 * Math.max(point.x, point.y)) / FIT_SHARE);
+    }
+    this.#camera.position.copy(target).addScaledVector(direction, distance);
+    this.#controls.update();
+  }
+
+  readColors(): void {
+    this.#scene.background = new three.Color(cssColor("--surface"));
+    this.#arrows.setColor(cssColor("--accent"));
+    this.#cloud?.setColors(rgbColor("--fault"), rgbColor("--fault-stripe"), rgbColor("--accent"), rgbColor("--rim"));
+    this.#isDue = true;
+  }
+
+  resize(width: number, height: number, pixelRatio: number): void {
+    this.#width = Math.max(1, width);
+    this.#height = Math.max(1, height);
+    this.#renderer.setPixelRatio(pixelRatio);
+    this.#renderer.setSize(this.#width, this.#height, false);
+    this.#camera.aspect = this.#width / this.#height;
+    this.#camera.updateProjectionMatrix();
+    if (!this.#isTurned) this.home();
+    this.#isDue = true;
+  }
+
+  setScale(end: number): void {
+    this.#cloud?.setScale(end);
+    this.#isDue = true;
+  }
+
+  choose(array: number): void {
+    this.#cloud?.choose(array);
+    this.#isDue = true;
+  }
+
+  setForces(points: PointsFrame): void {
+    this.#cloud?.setForces(points.newtons, points.statuses);
+    this.#isDue = true;
+  }
+
+  setContacts(frames: readonly ContactsFrame[], scaleEnd: number): void {
+    this.#arrows.begin();
+    this.#arrowCount = 0;
+    for (const { contacts, count } of frames) {
+      for (let index = 0; index < count; ++index) this.#addArrow(contacts[index]!, scaleEnd);
+    }
+    this.#arrows.end();
+    this.#isDue = true;
+  }
+
+  #addArrow(contact: Contact, scaleEnd: number): void {
+    const tail = this.#tails[this.#arrowCount];
+    if (tail === undefined || contact.phase === ContactPhase.release) return;
+    this.#arrows.add(contact, scaleEnd, this.#size, tail);
+    this.#forces[this.#arrowCount] = contact.forceN;
+    this.#arrowCount += 1;
+  }
+
+  get arrowCount(): number {
+    return this.#arrowCount;
+  }
+
+  arrowForce(index: number): number {
+    return this.#forces[index]!;
+  }
+
+  arrowPlace(index: number): [number, number] | undefined {
+    const { x, y, z } = this.#tails[index]!;
+    return this.project(x, y, z);
+  }
+
+  turn(right: number, up: number): void {
+    this.#isTurned = true;
+    const offset = this.#camera.position.clone().sub(this.#controls.target);
+    offset.applyAxisAngle(this.#camera.up, TURN_STEP * right);
+    const side = new three.Vector3().crossVectors(this.#camera.up, offset).normalize();
+    const tilted = offset.clone().applyAxisAngle(side, -TURN_STEP * up);
+    if (tilted.angleTo(this.#camera.up) > 0.1 && tilted.angleTo(this.#camera.up) < Math.PI - 0.1) offset.copy(tilted);
+    this.#camera.position.copy(this.#controls.target).add(offset);
+    this.#controls.update();
+    this.#isDue = true;
+  }
+
+  zoom(steps: number): void {
+    this.#isTurned = true;
+    const offset = this.#camera.position.clone().sub(this.#controls.target);
+    this.#camera.position.copy(this.#controls.target).addScaledVector(offset, ZOOM_STEP ** -steps);
+    this.#controls.update();
+    this.#isDue = true;
+  }
+
+  /** True where something was drawn. */
+  draw(): boolean {
+    if (!this.#isDue) return false;
+    this.#isDue = false;
+    this.#renderer.render(this.#scene, this.#camera);
+    return true;
+  }
+
+  /** Where a point of the suit is on the canvas, in CSS pixels; behind the camera: undefined. */
+  project(x: number, y: number, z: number): [number, number] | undefined {
+    this.#projected.set(x, y, z).project(this.#camera);
+    if (this.#projected.z > 1) return undefined;
+    return [(0.5 + 0.5 * this.#projected.x) * this.#width, (0.5 - 0.5 * this.#projected.y) * this.#height];
+  }
+
+  /** The array at a place of the canvas; -1: none. */
+  arrayAt(x: number, y: number): number {
+    const ray = new three.Raycaster();
+    ray.setFromCamera(new three.Vector2((2 * x) / this.#width - 1, 1 - (2 * y) / this.#height), this.#camera);
+    const point = new three.Vector3();
+    let found = -1;
+    let nearest = Infinity;
+    (this.#suit?.arrays ?? []).forEach(({ positions }, array) => {
+      for (const position of positions) {
+        point.fromArray(position);
+        const depth = point.distanceTo(this.#camera.position);
+        if (depth < nearest && ray.ray.distanceToPoint(point) < CLICK_SHARE * this.#size) [found, nearest] = [array, depth];
+      }
+    });
+    return found;
+  }
+}

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element, setHidden, setText } from "../../dom";
+import { fixed } from "../../format";
+import { type PointsFrame, readPoints } from "../../messages/grids";
+import { cssGradient } from "../../render/color_map";
+import { setting } from "../../settings";
+import type { View, ViewContext, ViewFactory } from "../../view";
+import type { SuitScene } from "./suit_scene";
+
+const ENDS_N = [0.5, 1, 2, 5, 10, 20, 50, 100];
+const LABEL_PERIOD_MS = 200;
+const CLICK_PIXELS = 4;
+const MOST_FORCES = 24;
+
+/** The name and total force of an array, beside its place. */
+class ArrayLabel {
+  readonly element: HTMLElement;
+  readonly #force = element("span", { class: "figure" });
+
+  constructor(name: string, open: () => void) {
+    this.element = element("button", { class: "array-label", onclick: open, "data-array": name, "aria-label": `Open ${name}` }, name, this.#force);
+  }
+
+  place(at: [number, number] | undefined): void {
+    this.element.hidden = at === undefined;
+    if (at !== undefined) this.element.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px) translate(-50%, -120%)`;
+  }
+
+  show(newtons: number): void {
+    setText(this.#force, `${fixed(newtons, 1)} N`);
+  }
+}
+
+/** Above the middle of what is seen of these points. */
+function above(scene: SuitScene, points: readonly [number, number, number][]): [number, number] | undefined {
+  let top = Infinity;
+  let sum = 0;
+  for (const point of points) {
+    const at = scene.project(...point);
+    if (at === undefined) return undefined;
+    top = Math.min(top, at[1]);
+    sum += at[0];
+  }
+  return [sum / points.length, top];
+}
+
+class SuitView implements View {
+  readonly name = "suit";
+  readonly title = "Suit";
+  readonly element: HTMLElement;
+  readonly #context: ViewContext;
+  readonly #canvas = element("canvas", { class: "layer" });
+  readonly #room: HTMLElement;
+  readonly #ticks = element("div", { class: "scale-ticks figure" });
+  readonly #end = setting<number>("scale.suit", 10, (value) => ENDS_N.includes(value));
+  readonly #frame: PointsFrame = { stampS: 0, newtons: new Float32Array(0), statuses: new Uint8Array(0) };
+  readonly #resizing = new ResizeObserver(() => this.#resize());
+  readonly #forces = Array.from({ length: MOST_FORCES }, () => element("span", { class: "force-label figure", hidden: true, "aria-hidden": "true" }));
+  #labels: ArrayLabel[] = [];
+  /** Of each array the taxels at its border, one of which is the highest on the screen. */
+  #anchors: [number, number, number][][] = [];
+  #scene: SuitScene | undefined;
+  #isLoading = false;
+  #message: DataView | undefined;
+  #unsubscribe: () => void = () => undefined;
+  #contactsVersion = -1;
+  #labelMs = 0;
+  #pressed: [number, number] = [0, 0];
+
+  constructor(context: ViewContext) {
+    this.#context = context;
+    this.#room = element(
+      "div",
+      {
+        class: "panel suit-room",
+        tabindex: 0,
+        role: "application",
+        "aria-label": "The suit. Arrow keys turn it, plus and minus bring it nearer, Home shows all of it.",
+        "data-role": "suit",
+      },
+      this.#canvas,
+      ...this.#forces,
+    );
+    this.element = element("div", { class: "view suit-view", "data-view": "suit" }, this.#makeToolbar(), this.#room);
+    this.#room.addEventListener("pointerdown", ({ clientX, clientY }) => (this.#pressed = [clientX, clientY]));
+    this.#room.addEventListener("click", (event) => this.#click(event));
+    this.#room.addEventListener("keydown", (event) => this.#steer(event));
+    context.suit.description.follow(() => this.#describe());
+    context.suit.selected.follow((array) => this.#scene?.choose(array === undefined ? -1 : context.suit.indexOf(array.name)));
+    context.theme.shown.follow(() => this.#scene?.readColors());
+    this.#end.follow((end) => this.#setScale(end));
+  }
+
+  show(): void {
+    void this.#load();
+    this.#resizing.observe(this.#room);
+    this.#unsubscribe = this.#context.stream.subscribe("/suit/points", (message) => (this.#message = message));
+  }
+
+  hide(): void {
+    this.#unsubscribe();
+    this.#resizing.disconnect();
+  }
+
+  draw(nowMs: number): void {
+    const scene = this.#scene;
+    if (scene === undefined) return;
+    const { live, paused, display } = this.#context;
+    const message = this.#message;
+    if (!paused.value && message !== undefined) {
+      this.#message = undefined;
+      readPoints(message, this.#frame);
+      scene.setForces(this.#frame);
+      display.drawn(this.#frame.stampS);
+    }
+    if (!paused.value && live.version !== this.#contactsVersion) {
+      this.#contactsVersion = live.version;
+      scene.setContacts(live.arrays.map(({ contacts }) => contacts), this.#end.value);
+    }
+    if (scene.draw()) this.#placeLabels(scene);
+    if (nowMs - this.#labelMs >= LABEL_PERIOD_MS) this.#showLabels(nowMs);
+  }
+
+  async #load(): Promise<void> {
+    if (this.#isLoading) return;
+    this.#isLoading = true;
+    const { SuitScene } = await import("./suit_scene");
+    this.#scene = new SuitScene(this.#canvas);
+    this.#describe();
+    this.#resize();
+  }
+
+  #makeToolbar(): HTMLElement {
+    const select = element(
+      "select",
+      { class: "field compact", "aria-label": "End of the force scale", onchange: () => (this.#end.value = Number(select.value)) },
+      ...ENDS_N.map((end) => element("option", { value: end, selected: end === this.#end.value }, `0 \u2013 ${end} N`)),
+    );
+    const strip = element("div", { class: "scale-strip", style: `background: ${cssGradient("to right")}` });
+    return element(
+      "div",
+      { class: "toolbar" },
+      element("div", { class: "scale suit-scale" }, strip, this.#ticks),
+      select,
+      element("button", { class: "button", onclick: () => this.#scene?.home() }, "Whole suit"),
+      element("p", { class: "dim" }, "Drag to turn, scroll to come nearer, click an array to open it"),
+    );
+  }
+
+  #setScale(end: number): void {
+    this.#ticks.replaceChildren(
+      ...[0, 0.25, 0.5, 0.75, 1].map((share) => element("span", { style: `left: ${100 * share}%` }, String(share * end))),
+    );
+    this.#contactsVersion = -1;
+    this.#scene?.setScale(end);
+  }
+
+  #describe(): void {
+    const { suit } = this.#context;
+    const { arrays } = suit.description.value;
+    if (this.#scene === undefined || arrays.length === 0) return;
+    this.#scene.setSuit(suit.description.value);
+    this.#scene.setScale(this.#end.value);
+    this.#scene.choose(suit.indexOf(suit.selected.value?.name ?? ""));
+    for (const label of this.#labels) label.element.remove();
+    this.#labels = arrays.map(({ name }) => new ArrayLabel(name, () => this.#context.open("array", name)));
+    this.#anchors = arrays.map(({ positions, rows, cols }) =>
+      [0, Math.floor(rows / 2), rows - 1].flatMap((row) => [0, Math.floor(cols / 2), cols - 1].map((col) => positions[row * cols + col]!)),
+    );
+    this.#room.append(...this.#labels.map((label) => label.element));
+  }
+
+  #resize(): void {
+    this.#scene?.resize(this.#room.clientWidth, this.#room.clientHeight, window.devicePixelRatio);
+  }
+
+  #placeLabels(scene: SuitScene): void {
+    this.#labels.forEach((label, index) => label.place(above(scene, this.#anchors[index]!)));
+    this.#forces.forEach((label, index) => {
+      const at = index < scene.arrowCount ? scene.arrowPlace(index) : undefined;
+      setHidden(label, at === undefined);
+      if (at === undefined) return;
+      label.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px) translate(-50%, -50%)`;
+    });
+  }
+
+  #showLabels(nowMs: number): void {
+    this.#labelMs = nowMs;
+    if (this.#context.paused.value) return;
+    this.#forces.forEach((label, index) => setText(label, `${fixed(this.#scene?.arrowForce(index) ?? NaN, 1)} N`));
+    this.#labels.forEach((label, index) => label.show(this.#context.live.arrays[index]?.contacts.totalForceN ?? NaN));
+  }
+
+  #click(event: MouseEvent): void {
+    const [x, y] = this.#pressed;
+    if (event.target !== this.#canvas || Math.hypot(event.clientX - x, event.clientY - y) > CLICK_PIXELS) return;
+    const { left, top } = this.#room.getBoundingClientRect();
+    const array = this.#scene?.arrayAt(event.clientX - left, event.clientY - top) ?? -1;
+    if (array >= 0) this.#context.open("array", this.#context.suit.description.value.arrays[array]!.name);
+  }
+
+  #steer(event: KeyboardEvent): void {
+    const scene = this.#scene;
+    if (scene === undefined || event.target !== this.#room) return;
+    if (event.key === "ArrowLeft") scene.turn(-1, 0);
+    else if (event.key === "ArrowRight") scene.turn(1, 0);
+    else if (event.key === "ArrowUp") scene.turn(0, 1);
+    else if (event.key === "ArrowDown") scene.turn(0, -1);
+    else if (event.key === "+" || event.key === "=") scene.zoom(1);
+    else if (event.key === "-") scene.zoom(-1);
+    else if (event.key === "Home") scene.home();
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+}
+
+export const createSuitView: ViewFactory = (context) => new SuitView(context);
