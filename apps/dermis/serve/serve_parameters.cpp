@@ -37,7 +37,7 @@ std::vector<stream::Parameter> ServeSession::parameters() const {
 Status ServeSession::set_parameter(const stream::Parameter& parameter) {
   if (const auto* number = std::get_if<double>(&parameter.value)) return set_number(parameter.name, *number);
   if (const auto* on = std::get_if<bool>(&parameter.value)) {
-    const Status set = set_switch(parameter.name, *on);
+    Status set = set_switch(parameter.name, *on);
     if (set) server_->parameters_changed();  // others with it: the file of a recording, the tare of each array
     return set;
   }
