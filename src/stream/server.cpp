@@ -28,6 +28,7 @@ using boost::system::error_code;
 constexpr std::size_t kMostChannels = 4096;
 constexpr std::size_t kMostWaitingBytes = 64U << 20U;  // published, not yet handed to the clients
 constexpr std::size_t kMostVisitors = 64;              // connections that are no clients of the stream
+constexpr std::size_t kMostAtOnce = 16;                // connections that are taken in a row
 constexpr std::size_t kShortestToken = 8;
 
 std::string random_session() {
@@ -110,6 +111,7 @@ class Server::Implementation final : public SessionOwner {
 
  private:
   void accept();
+  void accept_waiting();
   void admit(tcp::socket socket);
   void hand_out();
   void change_subscribers(ChannelId channel, int change);
@@ -147,6 +149,7 @@ Status Server::Implementation::listen() {
   if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
   if (!error) acceptor_.bind(endpoint, error);
   if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+  if (!error) acceptor_.non_blocking(true, error);
   if (error) return in_use_or_forbidden(options_, error);
   port_ = acceptor_.local_endpoint(error).port();
   return Done{};
@@ -165,16 +168,23 @@ void Server::Implementation::stop() {
 }
 
 void Server::Implementation::accept() {
-  acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
-    if (error == asio::error::operation_aborted) return;
-    if (!error) {
-      admit(std::move(socket));
-      return accept();
-    }
-    notices_.say("accept", "cannot take a connection: " + error.message());
-    pause_.expires_after(std::chrono::milliseconds(100));
-    pause_.async_wait([this](const error_code&) { accept(); });
+  acceptor_.async_wait(tcp::acceptor::wait_read, [this](const error_code& error) {
+    if (!error) accept_waiting();
   });
+}
+
+/// Several at a time: where many come, one for each round of what the others want would keep the last waiting long.
+void Server::Implementation::accept_waiting() {
+  error_code error;
+  for (std::size_t i = 0; i < kMostAtOnce && !error; ++i) {
+    tcp::socket socket(context_);
+    acceptor_.accept(socket, error);
+    if (!error) admit(std::move(socket));
+  }
+  if (!error || error == asio::error::would_block) return accept();
+  notices_.say("accept", "cannot take a connection: " + error.message());
+  pause_.expires_after(std::chrono::milliseconds(100));
+  pause_.async_wait([this](const error_code&) { accept(); });
 }
 
 /// Who says nothing, or says it slowly, has to make room: a new connection is always taken.
