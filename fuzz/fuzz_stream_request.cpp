@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "stream/access.hpp"
 #include "stream/client.hpp"
@@ -22,9 +24,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
        [](const Parameter&) -> dermis::Status { return dermis::Done{}; }},
       {{"/echo", [](std::string_view request) -> dermis::Result<std::string> { return std::string(request); }}},
       Playback{{}, dermis::Nanos(1), [](const PlaybackControl&) { return PlaybackState{}; }}};
-  Client client(offer, true, 1U << 20U, [](ChannelId, int) {});
+  std::vector<Question> questions;
+  Client client(
+      offer, true, 1U << 20U, [](ChannelId, int) {},
+      [&](Question question) { questions.push_back(std::move(question)); });
   client.greet("dermis", "session", {});
   static_cast<void>(client.receive(std::span(data, size).subspan(1), data[0] % 2 == 0));
+  for (const Question& question : questions) question()(client);
   ServerStatistics statistics;
   const auto bytes = std::make_shared<const std::vector<std::uint8_t>>(10);
   for (ChannelId channel = 0; channel < 4; ++channel) client.publish(channel, {}, bytes, statistics);

@@ -8,7 +8,7 @@
 namespace dermis::compensation {
 
 ResistorNetwork::ResistorNetwork(std::size_t nodes, std::size_t free_nodes, const std::vector<Edge>& edges)
-    : nodes_(nodes), free_nodes_(free_nodes), work_(nodes, 0.0), root_(nodes, kGround) {
+    : free_nodes_(free_nodes), work_(nodes, 0.0), root_(nodes, kGround) {
   find_links(edges);
   place_edges(edges);
   link_siemens_.resize(link_count());

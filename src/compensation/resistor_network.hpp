@@ -49,7 +49,6 @@ class ResistorNetwork {
   void eliminate_node(std::size_t node) noexcept;
   void find_roots() noexcept;
 
-  std::size_t nodes_;
   std::size_t free_nodes_;
   std::vector<std::size_t> first_link_;    // of each free node and the end [free_nodes + 1]
   std::vector<std::size_t> neighbour_;     // of each link: the later node

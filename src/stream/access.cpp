@@ -8,7 +8,6 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
-#include <string>
 
 namespace dermis::stream {
 namespace {
@@ -48,6 +47,10 @@ bool is_address(std::string_view host) {
   std::array<unsigned char, sizeof(in6_addr)> address{};
   return equal_without_case(host, kLocalhost) || inet_pton(AF_INET, text.c_str(), address.data()) == 1 ||
          inet_pton(AF_INET6, text.c_str(), address.data()) == 1;
+}
+
+std::string numeric_address(std::string_view host) {
+  return equal_without_case(host, kLocalhost) ? "127.0.0.1" : std::string(host);
 }
 
 bool is_url_safe(std::string_view token) {

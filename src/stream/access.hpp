@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <string>
 #include <string_view>
 
 /// Who may have the stream. A page of any site that is open in a browser can reach a server on loopback: what it
@@ -13,6 +14,9 @@ namespace dermis::stream {
 
 /// An address that can be bound to: IPv4, IPv6 or "localhost".
 [[nodiscard]] bool is_address(std::string_view host);
+
+/// The address in numbers: "LocalHost" -> "127.0.0.1".
+[[nodiscard]] std::string numeric_address(std::string_view host);
 
 /// Letters, digits and "-._~".
 [[nodiscard]] bool is_url_safe(std::string_view token);

@@ -9,13 +9,40 @@ namespace dermis::stream {
 namespace {
 
 constexpr std::size_t kMostSubscriptions = 10'000;
-constexpr std::size_t kMostFollowed = 10'000;
 constexpr int kErrorLevel = 2;
+
+using Names = std::set<std::string, std::less<>>;
+
+/// Those of these names; no names: all.
+std::vector<Parameter> parameters_of(const Offer& offer, const Names& names) {
+  if (!offer.handlers.parameters) return {};
+  std::vector<Parameter> all = offer.handlers.parameters();
+  if (!names.empty()) {
+    std::erase_if(all, [&](const Parameter& parameter) { return !names.contains(parameter.name); });
+  }
+  return all;
+}
+
+/// What went wrong.
+std::vector<std::string> set_parameters(const Offer& offer, std::span<const Parameter> parameters) {
+  std::vector<std::string> errors;
+  if (!offer.handlers.set_parameter) return errors;
+  for (const Parameter& parameter : parameters) {
+    const Status set = offer.handlers.set_parameter(parameter);
+    if (!set) errors.push_back(set.error().message);
+  }
+  return errors;
+}
 
 }  // namespace
 
-Client::Client(const Offer& offer, bool is_sdk, std::size_t queue_bytes, SubscriptionsChanged changed)
-    : offer_(offer), is_sdk_(is_sdk), changed_(std::move(changed)), queue_(queue_bytes) {}
+Client::Client(const Offer& offer, bool is_sdk, std::size_t queue_bytes, SubscriptionsChanged changed, Ask ask)
+    : offer_(offer),
+      is_sdk_(is_sdk),
+      changed_(std::move(changed)),
+      ask_(std::move(ask)),
+      queue_(queue_bytes),
+      most_control_bytes_(queue_bytes) {}
 
 Client::~Client() {
   for (const auto& [subscription, channel] : channel_of_) changed_(channel, -1);
@@ -30,6 +57,7 @@ void Client::greet(const std::string& name, const std::string& session, std::spa
     next_channel_ = channels.back().id + 1;
   }
   if (!offer_.services.empty()) queue_.push_text(advertise_services_text(offer_.services));
+  most_control_bytes_ += queue_.control_bytes();
 }
 
 void Client::advertise(const Channel& channel) {
@@ -91,44 +119,47 @@ void Client::handle(const Unsubscribe& request) {
   }
 }
 
-std::vector<Parameter> Client::parameters(const std::set<std::string, std::less<>>& names) const {
-  if (!offer_.handlers.parameters) return {};
-  std::vector<Parameter> all = offer_.handlers.parameters();
-  if (!names.empty()) {
-    std::erase_if(all, [&](const Parameter& parameter) { return !names.contains(parameter.name); });
-  }
-  return all;
-}
-
 void Client::handle(const GetParameters& request) {
-  queue_.push_text(parameter_values_text(parameters({request.names.begin(), request.names.end()}), request.id));
+  ask_([&offer = offer_, request]() -> Answer {
+    const Names names(request.names.begin(), request.names.end());
+    return [text = parameter_values_text(parameters_of(offer, names), request.id)](Client& client) {
+      client.queue_.push_text(text);
+    };
+  });
 }
 
 void Client::handle(const SetParameters& request) {
-  std::set<std::string, std::less<>> names;
-  for (const Parameter& parameter : request.parameters) {
-    names.insert(parameter.name);
-    if (!offer_.handlers.set_parameter) continue;
-    const Status set = offer_.handlers.set_parameter(parameter);
-    if (!set) tell_status(kErrorLevel, set.error().message);
-  }
-  if (!request.id.empty()) queue_.push_text(parameter_values_text(parameters(names), request.id));
+  ask_([&offer = offer_, request]() -> Answer {
+    const std::vector<std::string> errors = set_parameters(offer, request.parameters);
+    Names names;
+    for (const Parameter& parameter : request.parameters) names.insert(parameter.name);
+    std::string text;
+    if (!request.id.empty()) text = parameter_values_text(parameters_of(offer, names), request.id);
+    return [errors, text](Client& client) {
+      for (const std::string& error : errors) client.tell_status(kErrorLevel, error);
+      if (!text.empty()) client.queue_.push_text(text);
+    };
+  });
+}
+
+void Client::handle(const FollowParameters& request) {
+  ask_([&offer = offer_, request]() -> Answer {
+    return [request, all = parameters_of(offer, {})](Client& client) { client.follow(request, all); };
+  });
 }
 
 /// No names: all.
-void Client::handle(const FollowParameters& request) {
-  std::vector<std::string> names = request.names;
-  if (names.empty()) {
-    for (const Parameter& parameter : parameters({})) names.push_back(parameter.name);
-  }
-  for (const std::string& name : names) {
-    if (!request.follow) {
-      followed_.erase(name);
-    } else if (followed_.size() < kMostFollowed) {
-      followed_.insert(name);
+void Client::follow(const FollowParameters& request, std::span<const Parameter> all) {
+  const Names names(request.names.begin(), request.names.end());
+  for (const Parameter& parameter : all) {
+    if (!names.empty() && !names.contains(parameter.name)) continue;
+    if (request.follow) {
+      followed_.insert(parameter.name);
+    } else {
+      followed_.erase(parameter.name);
     }
   }
-  if (request.follow && !followed_.empty()) tell_parameters(parameters(followed_));
+  if (request.follow) tell_parameters(all);
 }
 
 void Client::handle(const ServiceCall& request) {
@@ -136,13 +167,22 @@ void Client::handle(const ServiceCall& request) {
     return queue_.push_text(service_failure_text(request, "there is no such service"));
   }
   if (request.encoding != "json") return queue_.push_text(service_failure_text(request, "the encoding must be 'json'"));
-  const Result<std::string> answer = offer_.services[request.service].call(request.request);
-  if (!answer) return queue_.push_text(service_failure_text(request, answer.error().message));
-  queue_.push_binary(service_response(request, *answer));
+  ask_([&offer = offer_, request]() -> Answer {
+    const Result<std::string> answer = offer.services[request.service].call(request.request);
+    return [request, answer](Client& client) {
+      if (!answer) return client.queue_.push_text(service_failure_text(request, answer.error().message));
+      client.queue_.push_binary(service_response(request, *answer));
+    };
+  });
 }
 
 void Client::handle(const PlaybackRequest& request) {
-  if (offer_.playback) tell_playback(offer_.playback->control(request.control), request.id);
+  if (!offer_.playback) return;
+  ask_([&offer = offer_, request]() -> Answer {
+    return [state = offer.playback->control(request.control), id = request.id](Client& client) {
+      client.tell_playback(state, id);
+    };
+  });
 }
 
 }  // namespace dermis::stream

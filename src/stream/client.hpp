@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -27,12 +29,20 @@ struct Offer {
 /// Told when the number of subscriptions to a channel changes, by +1 or -1.
 using SubscriptionsChanged = std::function<void(ChannelId channel, int change)>;
 
+class Client;
+/// What the owner was asked, which may take its time, and what is to be done with the client then.
+using Answer = std::function<void(Client&)>;
+using Question = std::function<Answer()>;
+/// Has a question answered, one after the other, on any thread; the answer comes on the client's, if that is still
+/// there.
+using Ask = std::function<void(Question)>;
+
 /// One client of the stream, as the protocol has it: what it asked for and what waits for it. Knows no socket.
 /// Not thread-safe.
 class Client {
  public:
-  /// `offer` must outlive it. `is_sdk`: speaks foxglove.sdk.v1, which has playback.
-  Client(const Offer& offer, bool is_sdk, std::size_t queue_bytes, SubscriptionsChanged changed);
+  /// `offer` must outlive it and its questions. `is_sdk`: speaks foxglove.sdk.v1, which has playback.
+  Client(const Offer& offer, bool is_sdk, std::size_t queue_bytes, SubscriptionsChanged changed, Ask ask);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
   ~Client();
@@ -42,17 +52,18 @@ class Client {
   /// Once for each channel, in the order of their ids; those that it knows by greet() are left out.
   void advertise(const Channel& channel);
 
-  /// A message of the client. An error: it does not speak the protocol.
+  /// A message of the client, which asks once at most. An error: it does not speak the protocol.
   [[nodiscard]] Status receive(std::span<const std::uint8_t> bytes, bool is_text);
 
   /// Queues the message where the client has subscribed to the channel; messages and drops are counted on.
   void publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, ServerStatistics& statistics);
-  [[nodiscard]] bool follows_parameters() const noexcept { return !followed_.empty(); }
   void tell_parameters(std::span<const Parameter> all);
   void tell_playback(const PlaybackState& state, std::string_view request_id = {});
   void tell_status(int level, std::string_view message);
 
   [[nodiscard]] OutgoingQueue& queue() noexcept { return queue_; }
+  /// More than its greeting and `queue_bytes` wait for it that are no data.
+  [[nodiscard]] bool asks_and_does_not_read() const noexcept { return queue_.control_bytes() > most_control_bytes_; }
 
  private:
   void handle(const OtherRequest&) {}
@@ -63,12 +74,14 @@ class Client {
   void handle(const FollowParameters& request);
   void handle(const ServiceCall& request);
   void handle(const PlaybackRequest& request);
-  [[nodiscard]] std::vector<Parameter> parameters(const std::set<std::string, std::less<>>& names) const;
+  void follow(const FollowParameters& request, std::span<const Parameter> all);
 
   const Offer& offer_;
   bool is_sdk_;
   SubscriptionsChanged changed_;
+  Ask ask_;
   OutgoingQueue queue_;
+  std::size_t most_control_bytes_;
   ChannelId next_channel_ = 0;                          // the first that it was not told of
   std::map<std::uint32_t, ChannelId> channel_of_;       // by subscription
   std::map<ChannelId, std::uint32_t> subscription_of_;  // by channel; one each

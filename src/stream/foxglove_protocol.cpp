@@ -137,7 +137,7 @@ Result<ClientRequest> parse_set_parameters(const json& message) {
     if (parameter.name.empty()) return no_list("parameters");
     if (const auto value = entry.find("value"); value != entry.end() && !value->is_null()) {
       std::optional<ParameterValue> parsed = parse_value(*value);
-      if (!parsed) return bad_input("parameter '" + parameter.name + "' has a value of no known type");
+      if (!parsed) return bad_input("a parameter has a value of no known type");
       parameter.value = std::move(*parsed);
     }
     request.parameters.push_back(std::move(parameter));

@@ -15,7 +15,8 @@
 #include "dermis/stream/server.hpp"
 
 /// The Foxglove WebSocket protocol as bytes: text messages are JSON, binary ones begin with an opcode and are
-/// little-endian. Requests may be anything; what is not the protocol is an error without a place.
+/// little-endian. Requests may be anything; what is not the protocol is an error without a place, and without a word of
+/// the request, as it goes into the log.
 namespace dermis::stream {
 
 inline constexpr std::string_view kSdkSubprotocol = "foxglove.sdk.v1";

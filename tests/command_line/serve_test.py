@@ -65,6 +65,11 @@ class Serve(SmallArray):
         self.assertEqual(json.loads(self.get(address + "suit.json"))["arrays"][0]["full_scale_n"], 50.0)
         self.end(process)
 
+    def test_a_host_in_capitals(self):
+        process, address = self.serve("--from", LIVE, "--model", self.model, "--host", "LOCALHOST")
+        self.assertIn(b"<html", self.get(address).lower())
+        self.end(process)
+
     def test_token(self):
         process, address = self.serve("--from", LIVE, "--model", self.model, "--token", "secret-1")
         self.assertIn(b"<html", self.get(address).lower())

@@ -20,6 +20,12 @@ TEST(Access, tells_loopback_from_the_rest) {
   EXPECT_FALSE(is_loopback_authority("[::1"));
 }
 
+TEST(Access, knows_localhost_in_any_case) {
+  EXPECT_EQ(numeric_address("localhost"), "127.0.0.1");
+  EXPECT_EQ(numeric_address("LOCALHOST"), "127.0.0.1");
+  EXPECT_EQ(numeric_address("::1"), "::1");
+}
+
 TEST(Access, pages_of_this_server_and_programs_have_the_same_origin) {
   EXPECT_TRUE(is_same_origin("", "127.0.0.1:8080"));
   EXPECT_TRUE(is_same_origin("http://127.0.0.1:8080", "127.0.0.1:8080"));

@@ -58,7 +58,8 @@ struct StreamClient : testing::Test {
                 }}},
               {}};
   std::map<ChannelId, int> subscribers;
-  Client client{offer, true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; }};
+  Client client{offer, true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; },
+                [this](const Question& question) { question()(client); }};
 
   void say(const std::string& text) {
     EXPECT_TRUE(client.receive({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, true)) << text;
@@ -94,7 +95,7 @@ TEST_F(StreamClient, subscribes_to_a_channel_once) {
 
 TEST_F(StreamClient, leaves_no_subscriber_behind) {
   {
-    Client other(offer, true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; });
+    Client other(offer, true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; }, {});
     const std::string text = R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2}]})";
     EXPECT_TRUE(other.receive({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, true));
     EXPECT_EQ(subscribers[2], 1);
@@ -127,6 +128,26 @@ TEST_F(StreamClient, reads_sets_and_follows_parameters) {
   EXPECT_EQ(next_text()["parameters"][0]["name"], "/a");
   client.tell_parameters(parameters);
   EXPECT_EQ(next_text()["parameters"].size(), 1U);
+}
+
+TEST_F(StreamClient, follows_what_there_is) {
+  for (int i = 0; i < 100; ++i) {
+    say(R"({"op":"subscribeParameterUpdates","parameterNames":["/no)" + std::to_string(i) + "\"]}");
+  }
+  client.tell_parameters(std::vector<Parameter>{{"/no1", 1.0}});
+  EXPECT_TRUE(client.queue().empty()) << "names that no parameter had are not kept";
+  say(R"({"op":"subscribeParameterUpdates","parameterNames":[]})");
+  EXPECT_EQ(next_text()["parameters"].size(), 2U);
+  say(R"({"op":"unsubscribeParameterUpdates","parameterNames":["/b"]})");
+  client.tell_parameters(parameters);
+  EXPECT_EQ(next_text()["parameters"].size(), 1U);
+}
+
+TEST_F(StreamClient, may_have_as_many_answers_wait_as_data) {
+  client.greet("dermis", "session", std::vector<Channel>{{0, "/a", "t", std::string(3U << 20U, 's')}});
+  EXPECT_FALSE(client.asks_and_does_not_read()) << "the greeting is not of its asking";
+  client.queue().push_text(std::string(1U << 20U, 'x'));
+  EXPECT_TRUE(client.asks_and_does_not_read());
 }
 
 TEST_F(StreamClient, is_told_why_a_parameter_was_not_set) {

@@ -73,6 +73,15 @@ TEST(FoxgloveProtocol, refuses_what_it_is_not) {
   }
 }
 
+TEST(FoxgloveProtocol, errors_repeat_nothing_of_the_request) {
+  for (const char* text : {R"({"op":"setParameters","parameters":[{"name":"\nevil","value":{}}]})", R"({"evil":1})",
+                           R"({"op":"subscribe","subscriptions":["\nevil"]})"}) {
+    const auto request = parse_text_request(text);
+    ASSERT_FALSE(request);
+    EXPECT_EQ(request.error().message.find("evil"), std::string::npos) << request.error().message;
+  }
+}
+
 TEST(FoxgloveProtocol, ignores_what_it_does_not_offer) {
   EXPECT_TRUE(std::holds_alternative<OtherRequest>(*parse_text_request(R"({"op":"subscribeConnectionGraph"})")));
 }

@@ -59,8 +59,8 @@ ServeSession::ServeSession(ServedSuit suit, const std::string& record)
 ServeSession::~ServeSession() {
   if (suit_.playback) suit_.playback->stop();
   if (live_) live_->stop();
-  static_cast<void>(recorder_.end());  // which tells the clients where it fails
-  server_.reset();
+  if (server_) server_->stop();
+  static_cast<void>(recorder_.end());
 }
 
 Result<std::unique_ptr<ServeSession>> ServeSession::create(ServedSuit suit, const stream::ServerOptions& options,

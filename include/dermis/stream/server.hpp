@@ -33,9 +33,10 @@ struct ServerOptions {
   /// Asked of every client for the stream and the documents, as ?token=... or Authorization: Bearer; empty: none.
   /// At least 8 letters, digits and "-._~", as it stands in URLs.
   std::string token;
-  std::string name = "dermis";                       ///< Told to clients.
-  std::size_t most_clients = 64;                     ///< 1 ... 1000; more are refused with 503.
-  std::size_t client_queue_bytes = 2U << 20U;        ///< Per client; beyond it the oldest data messages are dropped.
+  std::string name = "dermis";    ///< Told to clients.
+  std::size_t most_clients = 64;  ///< Of the stream, 1 ... 1000; more are refused with 503.
+  /// Per client; beyond it the oldest data messages are dropped, and who lets as many bytes of answers wait is cut off.
+  std::size_t client_queue_bytes = 2U << 20U;
   std::function<void(const std::string&)> notice{};  ///< One line for the log; called on the server's thread.
 
   /// Names the first field that is out of its range, as "--host: ...".
@@ -52,7 +53,8 @@ struct Parameter {
   ParameterValue value;
 };
 
-/// Asked of the owner by clients. Called on the server's thread, one at a time: what takes long goes elsewhere.
+/// Asked of the owner by clients. Called one at a time, with the services and the playback, on a thread of their own:
+/// what takes long delays the answers to clients, and not the stream.
 struct Handlers {
   /// All parameters as they are now.
   std::function<std::vector<Parameter>()> parameters{};
@@ -63,7 +65,7 @@ struct Handlers {
 /// A service that clients call with JSON and that answers with JSON.
 struct Service {
   std::string name;  ///< "/calibration/start"
-  /// Request in, response out; on the server's thread.
+  /// Request in, response out.
   std::function<Result<std::string>(std::string_view request)> call;
 };
 
@@ -90,12 +92,12 @@ struct ServerStatistics {
   std::size_t clients = 0;
   std::uint64_t messages = 0;  ///< Handed to clients.
   std::uint64_t dropped = 0;   ///< Data messages that a slow client did not get.
-  std::uint64_t refused = 0;   ///< Connections: token, origin, subprotocol, too many.
+  std::uint64_t refused = 0;   ///< Connections: token, origin, subprotocol, too many; or they made room for others.
 };
 
-/// Serves the assets and streams channels to any number of clients. One thread of its own. A client that is slow, sends
-/// garbage or says nothing costs the others nothing: its queue is bounded and its oldest data are dropped, and what is
-/// not the protocol closes its connection with one line in the log.
+/// Serves the assets and streams channels to many clients, on a thread of its own. A client that is slow, sends garbage
+/// or says nothing costs the others nothing: its queue is bounded and its oldest data are dropped, and what is not the
+/// protocol closes its connection with one line in the log.
 /// Thread-safe.
 class Server {
  public:
@@ -106,13 +108,16 @@ class Server {
                                                               std::optional<Playback> playback = {});
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
-  /// Closes all connections.
+  /// As stop().
   ~Server();
 
   [[nodiscard]] std::uint16_t port() const noexcept;
 
   /// Begins to serve: from now on the handlers and services may be called. To be called once.
   void start();
+
+  /// Closes all connections; waits for the handler or service that is at work, and calls none from then on.
+  void stop();
 
   /// Advertised to all clients, also to those that are connected. At most 4096.
   ChannelId add_channel(std::string topic, std::string schema_name, std::string schema);
