@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <numbers>
+#include <utility>
 #include <vector>
 
 #include "dermis/calibration/calibrate.hpp"
@@ -278,7 +280,7 @@ void print_several_contacts(PressedArray& pressed) {
     std::size_t frames = 0;
     std::vector<double> force_errors;
     std::vector<double> place_errors;
-    for (std::size_t k = 0; k < 500; ++k) {
+    for (std::size_t k = 0; k < 1500; ++k) {
       const std::vector<PressurePatch> patches = several(pressed, count);
       std::vector<double> newtons;
       std::vector<double> all(pressed.array.taxel_count());
@@ -307,6 +309,37 @@ void print_several_contacts(PressedArray& pressed) {
                100.0 * static_cast<double>(right) / static_cast<double>(frames), frames,
                100.0 * percentile(force_errors, 0.5), 100.0 * percentile(force_errors, 0.95),
                percentile(place_errors, 0.5), percentile(place_errors, 0.95));
+  }
+}
+
+void print_elongated_contacts(PressedArray& pressed) {
+  fmt::print("\none elliptical contact at any angle, 5-100 N\n");
+  fmt::print("{:>9}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "shape", "axes mm", "found as 1", "median mm", "p95 mm",
+             "angle med", "angle p95");
+  ContactReport report;
+  for (const Profile profile : {Profile::hertz, Profile::flat}) {
+    for (const auto& [axis, other_axis] : {std::pair{24.0, 16.0}, {36.0, 20.0}, {50.0, 16.0}, {60.0, 12.0}}) {
+      std::vector<double> place_errors;
+      std::vector<double> angle_errors;
+      constexpr std::size_t kFrames = 200;
+      for (std::size_t k = 0; k < kFrames; ++k) {
+        Random& random = pressed.random;
+        const PressurePatch patch{
+            random.uniform(0.03, 0.12),  random.uniform(0.03, 0.12),     0.5e-3 * axis, 0.5e-3 * other_axis,
+            random.uniform(-1.57, 1.57), random.log_uniform(5.0, 100.0), profile};
+        fusion::ContactTracker tracker(pressed.array);
+        tracker.process(pressed.press(support::taxel_forces(pressed.array, {patch})), report);
+        if (report.contacts.size() != 1) continue;
+        const Contact& contact = report.contacts[0];
+        place_errors.push_back(1e3 * std::hypot(contact.position.x - patch.x, contact.position.y - patch.y));
+        const double off = std::remainder(contact.angle_rad - patch.angle_rad, std::numbers::pi);
+        angle_errors.push_back(std::abs(off) * 180.0 / std::numbers::pi);
+      }
+      fmt::print("{:>9}{:>9.0f}x{:.0f}{:>11.1f}%{:>12.2f}{:>12.2f}{:>12.1f}{:>12.1f}\n",
+                 profile == Profile::hertz ? "hertz" : "flat", axis, other_axis,
+                 100.0 * static_cast<double>(place_errors.size()) / kFrames, percentile(place_errors, 0.5),
+                 percentile(place_errors, 0.95), percentile(angle_errors, 0.5), percentile(angle_errors, 0.95));
+    }
   }
 }
 
@@ -408,5 +441,6 @@ int main() {
   dermis::PressedArray pressed(array, model);
   dermis::print_single_contacts(pressed);
   dermis::print_several_contacts(pressed);
+  dermis::print_elongated_contacts(pressed);
   return 0;
 }

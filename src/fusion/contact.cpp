@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdlib>
+#include <numbers>
 #include <string>
 
 #include "fusion/contact_gauge.hpp"
@@ -69,6 +70,7 @@ class ContactTracker::Implementation {
 
  private:
   static constexpr double kReachPitches = 2.0;
+  static constexpr double kPitchesApart = 1.7;
 
   void find_held_taxels(Nanos time) {
     tracks_.predict(time, expected_);
@@ -90,7 +92,8 @@ class ContactTracker::Implementation {
         gauge_.measure(force, taxels, options.release_share * options.onset_sigma, expected_at(taxels.front()));
     found.profile = gauge_.profile();
     const std::size_t own = gauge_.part(force, taxels);
-    if (own < taxels.size() && own > 0 && can_go_on(force, taxels.subspan(own)) && is_top(force, taxels, taxels[own])) {
+    if (own < taxels.size() && own > 0 && can_go_on(force, taxels.subspan(own)) && is_top(force, taxels, taxels[own]) &&
+        are_apart(force, taxels.first(own), taxels.subspan(own))) {
       add(force, taxels.first(own));
       add(force, taxels.subspan(own));
       return;
@@ -98,6 +101,17 @@ class ContactTracker::Implementation {
     if (!can_go_on(force, taxels)) return;
     found.can_begin = is_strong(force, taxels, 1.0);
     found_.push_back(found);
+  }
+
+  /// The patches of two contacts do not overlap; those found on the parts of an elongated one do, near each other.
+  [[nodiscard]] bool are_apart(const ForceFrame& force, std::span<const std::uint32_t> one,
+                               std::span<const std::uint32_t> other) {
+    const double pressed_sigma = options.release_share * options.onset_sigma;
+    const Contact a = gauge_.measure(force, one, pressed_sigma, nullptr);
+    const Contact b = gauge_.measure(force, other, pressed_sigma, nullptr);
+    const double distance = std::hypot(a.position.x - b.position.x, a.position.y - b.position.y);
+    return distance >= kPitchesApart * std::max(row_pitch_m_, col_pitch_m_) ||
+           distance >= std::sqrt(a.area_m2 / std::numbers::pi) + std::sqrt(b.area_m2 / std::numbers::pi);
   }
 
   /// No taxel of another area beside it is stronger; else it is the rim of that one.

@@ -10,16 +10,16 @@
 namespace dermis::fusion {
 namespace {
 
+constexpr std::size_t kSmall = 4;             // pressed taxels, of which patches of many sizes press as many
 constexpr std::size_t kMostFitted = 40;       // pressed taxels; of more the centre of mass is as good
 constexpr double kPriorRadiusPitches = 0.75;  // fingers and heels of hands on a pitch of 10 mm
 constexpr float kPriorSigma = 0.6F;
 constexpr float kMismatchOfTaxel = 0.003F;  // what the shape of a real patch differs by from the model's
 constexpr float kMismatchOfPeak = 0.0005F;
-constexpr float kGoodChiSquared = 3.0F;      // per degree of freedom, of a patch; else the other profile is tried
-constexpr float kRoundChiSquared = 1000.0F;  // beyond which a contact is not round: the centre of mass is taken
-constexpr float kMostShareOfOther = 0.35F;   // of a peak, that a contact without a valley before it can have
-constexpr double kLeastPitchesApart = 1.6;   // from this contact's centre to the strongest taxel of another
-constexpr float kLeastShareOfOther = 0.5F;   // of a taxel's force, that is not this contact's
+constexpr float kRoundMisfit = 1000.0F;     // beyond which a contact is not round: the centre of mass is taken
+constexpr float kMostShareOfOther = 0.35F;  // of a peak, that a contact without a valley before it can have
+constexpr double kLeastPitchesApart = 1.6;  // from this contact's centre to the strongest taxel of another
+constexpr float kLeastShareOfOther = 0.5F;  // of a taxel's force, that is not this contact's
 
 double taxel_area(const ArrayDescription& array) {
   const double diameter = 0.7 * std::min(array.row_pitch_m, array.col_pitch_m);
@@ -56,9 +56,32 @@ Contact ContactGauge::measure(const ForceFrame& force, std::span<const std::uint
   pressed_sigma_ = static_cast<float>(pressed_sigma);
   sum_forces(force, taxels, contact);
   find_moments(force, taxels, contact);
-  if (look_up(force, taxels, contact)) return contact;
-  if (taxels.size() <= kMostFitted) fit(force, taxels, expected, contact);
+  if (const std::optional<Place> found = place(force, taxels, contact, expected)) {
+    contact.position = found->position;
+    contact.sigma_position_m = found->sigma;
+    contact.area_m2 = std::numbers::pi * found->radius_m * found->radius_m;
+  }
   return contact;
+}
+
+/// One or two taxels tell no more than the table. On a block of three or four, the patch of about the radius that
+/// presses them is taken, and the table tells how far off others that fit may be.
+std::optional<ContactGauge::Place> ContactGauge::place(const ForceFrame& force, std::span<const std::uint32_t> taxels,
+                                                       const Contact& contact, const ExpectedContact* expected) {
+  if (taxels.size() > kMostFitted) return {};
+  const std::optional<Place> of_table = look_up(force, taxels);
+  if (of_table && taxels.size() <= 2) return of_table;
+  gather(force, taxels);
+  const double newtons = 2.0 * contact.force_n;  // about half of the force lies between the taxels
+  if (!of_table && expected != nullptr) {
+    return fit(taxels, start_at(expected->place, expected->radius_m, newtons), expected->profile);
+  }
+  const Patch start = start_at(contact.position, reach(taxels, contact.position), newtons);
+  std::optional<Place> of_fit = fit(taxels, start, PatchProfile::hertz);
+  if (!of_table || !of_fit) return of_fit ? of_fit : of_table;
+  of_fit->sigma = {std::hypot(of_table->sigma.x, of_fit->position.x - of_table->position.x),
+                   std::hypot(of_table->sigma.y, of_fit->position.y - of_table->position.y)};
+  return of_fit;
 }
 
 void ContactGauge::sum_forces(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const {
@@ -104,19 +127,20 @@ void ContactGauge::find_moments(const ForceFrame& force, std::span<const std::ui
   contact.angle_rad = angle <= -std::numbers::pi / 2.0 ? std::numbers::pi / 2.0 : angle;
 }
 
-bool ContactGauge::look_up(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const {
-  if (taxels.size() > 4) return false;
+std::optional<ContactGauge::Place> ContactGauge::look_up(const ForceFrame& force,
+                                                         std::span<const std::uint32_t> taxels) const {
+  if (taxels.size() > kSmall) return {};
   const std::size_t peak = taxels.front();
   const std::size_t row = peak / cols_;
   const std::size_t col = peak % cols_;
-  if (row == 0 || col == 0 || row + 1 == rows_ || col + 1 == cols_) return false;
+  if (row == 0 || col == 0 || row + 1 == rows_ || col + 1 == cols_) return {};
   const auto newtons = [&](std::size_t r, std::size_t c) { return force.newtons[r * cols_ + c]; };
   const std::size_t beside = newtons(row, col + 1) >= newtons(row, col - 1) ? col + 1 : col - 1;
   const std::size_t below = newtons(row + 1, col) >= newtons(row - 1, col) ? row + 1 : row - 1;
   for (const std::uint32_t taxel : taxels) {
     const std::size_t r = taxel / cols_;
     const std::size_t c = taxel % cols_;
-    if ((r != row && r != below) || (c != col && c != beside)) return false;
+    if ((r != row && r != below) || (c != col && c != beside)) return {};
   }
   float variance = 0.0F;
   for (std::size_t r = row - 1; r <= row + 1; ++r) {
@@ -126,20 +150,17 @@ bool ContactGauge::look_up(const ForceFrame& force, std::span<const std::uint32_
       variance += 0.125F * sigma * sigma;
     }
   }
-  if (!std::isfinite(variance) || !std::isfinite(force.sigma_newtons[peak])) return false;
+  if (!std::isfinite(variance) || !std::isfinite(force.sigma_newtons[peak])) return {};
   const float strongest = newtons(row, col);
   const auto place = small_contacts_->find({newtons(row, beside) / strongest, newtons(below, col) / strongest,
                                             newtons(below, beside) / strongest, std::sqrt(variance) / strongest});
-  if (!place) return false;
+  if (!place) return {};
   const double across = beside > col ? taxel_radius_m_ : -taxel_radius_m_;
   const double down = below > row ? taxel_radius_m_ : -taxel_radius_m_;
   const PlaneVector at = centre(peak);
-  contact.position = {at.x + across * place->x, at.y + down * place->y};
-  contact.sigma_position_m = {taxel_radius_m_ * std::sqrt(place->variance_x),
-                              taxel_radius_m_ * std::sqrt(place->variance_y)};
-  const double radius = taxel_radius_m_ * std::exp(place->log_radius);
-  contact.area_m2 = std::numbers::pi * radius * radius;
-  return true;
+  return Place{{at.x + across * place->x, at.y + down * place->y},
+               {taxel_radius_m_ * std::sqrt(place->variance_x), taxel_radius_m_ * std::sqrt(place->variance_y)},
+               taxel_radius_m_ * std::exp(place->log_radius)};
 }
 
 void ContactGauge::gather(const ForceFrame& force, std::span<const std::uint32_t> taxels) {
@@ -230,31 +251,21 @@ double ContactGauge::reach(std::span<const std::uint32_t> taxels, PlaneVector pl
   return std::max(taxel_radius_m_, std::sqrt(most) - 0.6 * taxel_radius_m_);
 }
 
-void ContactGauge::fit(const ForceFrame& force, std::span<const std::uint32_t> taxels, const ExpectedContact* expected,
-                       Contact& contact) {
-  gather(force, taxels);
-  const double newtons = 2.0 * contact.force_n;  // about half of the force lies between the taxels
-  const Patch start = expected != nullptr ? start_at(expected->place, expected->radius_m, newtons)
-                                          : start_at(contact.position, reach(taxels, contact.position), newtons);
-  const PatchProfile first = expected != nullptr ? expected->profile : PatchProfile::hertz;
-  const PatchProfile second = first == PatchProfile::hertz ? PatchProfile::flat : PatchProfile::hertz;
-  const auto freedom = static_cast<float>(std::max<std::size_t>(fit_taxels_.size(), 5) - 4);
-  PatchFit found = fit_patch(fit_taxels_, first, start, prior_);
-  if (found.chi_squared > kGoodChiSquared * freedom) {
-    const PatchFit other = fit_patch(fit_taxels_, second, found.patch, prior_);
-    if (other.chi_squared < found.chi_squared) found = other;
-  }
-  const float misfit = std::max(1.0F, found.chi_squared / freedom);
-  const PlaneVector sigma{taxel_radius_m_ * std::sqrt(misfit * found.variance_x),
-                          taxel_radius_m_ * std::sqrt(misfit * found.variance_y)};
-  if (!(sigma.x > 0.0 && sigma.x < col_pitch_m_ && sigma.y > 0.0 && sigma.y < row_pitch_m_))
-    return;  // the taxels do not tell: the centre of mass does
-  fit_ = found;
-  if (misfit > kRoundChiSquared) return;
-  contact.position = {origin_.x + taxel_radius_m_ * found.patch.x, origin_.y + taxel_radius_m_ * found.patch.y};
-  contact.sigma_position_m = sigma;
-  const double fitted_radius = taxel_radius_m_ * std::exp(found.patch.log_radius);
-  contact.area_m2 = std::numbers::pi * fitted_radius * fitted_radius;
+std::optional<ContactGauge::Place> ContactGauge::fit(std::span<const std::uint32_t> taxels, const Patch& start,
+                                                     PatchProfile profile) {
+  const PatchProfile second = profile == PatchProfile::hertz ? PatchProfile::flat : PatchProfile::hertz;
+  const PatchFit one = fit_patch(fit_taxels_, profile, start, prior_);
+  const PatchFit other = fit_patch(fit_taxels_, second, one.patch, prior_);
+  const PatchFit& better = one.chi_squared <= other.chi_squared ? one : other;
+  const PatchFit mean =
+      taxels.size() <= kSmall ? mean_over_radii(fit_taxels_, better, prior_) : mean_of_profiles(one, other);
+  const PlaneVector sigma{taxel_radius_m_ * std::sqrt(mean.variance_x), taxel_radius_m_ * std::sqrt(mean.variance_y)};
+  if (!(sigma.x > 0.0 && sigma.x < col_pitch_m_ && sigma.y > 0.0 && sigma.y < row_pitch_m_)) return {};
+  fit_ = better;
+  if (better.misfit > kRoundMisfit) return {};
+  return Place{{origin_.x + taxel_radius_m_ * mean.patch.x, origin_.y + taxel_radius_m_ * mean.patch.y},
+               sigma,
+               taxel_radius_m_ * std::exp(mean.patch.log_radius)};
 }
 
 }  // namespace dermis::fusion

@@ -24,8 +24,8 @@ class ContactGauge {
   explicit ContactGauge(const ArrayDescription& array);
 
   /// `taxels`: those of the area, by falling force; at least one. Other taxels from `pressed_sigma` standard deviations
-  /// on belong to other contacts. `expected`, or null: where to begin the search for the patch, which is faster, and
-  /// leads to the same one. Of the result id, phase, onset and velocity are left.
+  /// on belong to other contacts. `expected`, or null: where to begin the search for a patch on many taxels, which is
+  /// faster, and leads to the same one. Of the result id, phase, onset and velocity are left.
   [[nodiscard]] Contact measure(const ForceFrame& force, std::span<const std::uint32_t> taxels, double pressed_sigma,
                                 const ExpectedContact* expected);
 
@@ -38,14 +38,23 @@ class ContactGauge {
   [[nodiscard]] std::size_t part(const ForceFrame& force, std::span<std::uint32_t> taxels);
 
  private:
+  struct Place {
+    PlaneVector position;  // [m]
+    PlaneVector sigma;     // [m]
+    double radius_m = 0.0;
+  };
+
   void sum_forces(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
   void find_moments(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
-  void fit(const ForceFrame& force, std::span<const std::uint32_t> taxels, const ExpectedContact* expected,
-           Contact& contact);
+  [[nodiscard]] std::optional<Place> place(const ForceFrame& force, std::span<const std::uint32_t> taxels,
+                                           const Contact& contact, const ExpectedContact* expected);
+  /// Empty where the taxels do not tell.
+  [[nodiscard]] std::optional<Place> fit(std::span<const std::uint32_t> taxels, const Patch& start,
+                                         PatchProfile profile);
   [[nodiscard]] Patch start_at(PlaneVector place, double radius_m, double newtons) const;
   [[nodiscard]] double reach(std::span<const std::uint32_t> taxels, PlaneVector place) const;
-  /// False where it cannot: at the edge, beside a taxel without force, or on more than a block of 2 x 2 taxels.
-  [[nodiscard]] bool look_up(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
+  /// Empty at the edge, beside a taxel without force, and on more than a block of 2 x 2 taxels.
+  [[nodiscard]] std::optional<Place> look_up(const ForceFrame& force, std::span<const std::uint32_t> taxels) const;
   void gather(const ForceFrame& force, std::span<const std::uint32_t> taxels);
   void add_taxel(const ForceFrame& force, std::uint32_t taxel);
   [[nodiscard]] bool is_explained(const ForceFrame& force, std::uint32_t taxel) const;

@@ -2,46 +2,31 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <span>
 
-#include "fusion/patch_response.hpp"
+#include "fusion/patch_equations.hpp"
 
 namespace dermis::fusion {
-
-/// What one taxel says about a patch; lengths in radii of the taxel.
-struct FitTaxel {
-  float x = 0.0F;
-  float y = 0.0F;
-  float newtons = 0.0F;
-  float weight = 0.0F;  ///< 1 / standard deviation [1/N], the mismatch of the model included.
-};
-
-/// A round patch of pressure; lengths in radii of the taxel.
-struct Patch {
-  float x = 0.0F;
-  float y = 0.0F;
-  float log_radius = 0.0F;
-  float newtons = 0.0F;  ///< In all, between the taxels too.
-};
 
 struct PatchFit {
   Patch patch;
   PatchProfile profile = PatchProfile::hertz;
-  float variance_x = 0.0F;
-  float variance_y = 0.0F;
+  float variance_x = 0.0F;   ///< Times misfit.
+  float variance_y = 0.0F;   ///< Times misfit.
   float chi_squared = 0.0F;  ///< Of the residuals and the prior.
-};
-
-/// What is known of a radius before anything is measured: normal in its logarithm.
-struct RadiusPrior {
-  float log_radius = 0.0F;
-  float sigma = 1.0F;
+  float misfit = 1.0F;       ///< Chi squared per degree of freedom, at least 1.
 };
 
 /// The most likely patch, by Levenberg and Marquardt's method from `start`, whose force may be far off.
 [[nodiscard]] PatchFit fit_patch(std::span<const FitTaxel> taxels, PatchProfile profile, const Patch& start,
                                  const RadiusPrior& prior) noexcept;
+
+/// `most_likely` with the mean place and radius of all patches of its profile, each by its likelihood, and the variance
+/// over them: few taxels are explained nearly as well by larger and smaller patches at other places.
+[[nodiscard]] PatchFit mean_over_radii(std::span<const FitTaxel> taxels, const PatchFit& most_likely,
+                                       const RadiusPrior& prior) noexcept;
+
+/// The better of both with the mean place and radius of both, each by its likelihood, and the variance over both.
+[[nodiscard]] PatchFit mean_of_profiles(const PatchFit& one, const PatchFit& other) noexcept;
 
 }  // namespace dermis::fusion

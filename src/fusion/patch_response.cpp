@@ -50,6 +50,7 @@ const PatchResponse& PatchResponse::of(PatchProfile profile) {
 PatchResponse::PatchResponse(PatchProfile profile) : knots_(kRadii * kDistances) {
   for (std::size_t i = 0; i < kRadii; ++i) {
     const double radius = kLeastRadius * std::exp(static_cast<double>(i) / kKnotsPerLogRadius);
+    reaches_.push_back(static_cast<float>(radius) + 1.0F + 1.0F / kKnotsPerDistance);
     for (std::size_t k = 0; k < kDistances; ++k) {
       const double distance = std::max(1e-6, static_cast<double>(k) / kKnotsPerDistance);
       if (distance < radius + 1.0) knots_[i * kDistances + k][3] = static_cast<float>(share(profile, distance, radius));

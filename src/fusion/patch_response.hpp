@@ -43,6 +43,9 @@ class PatchResponse {
       return {low_[knot].data(), low_[knot + kDistances].data(), place - static_cast<float>(knot)};
     }
 
+    /// Beyond this distance a taxel has no share.
+    [[nodiscard]] float reach() const noexcept { return reach_; }
+
     /// Share of the upper row.
     [[nodiscard]] float up() const noexcept { return up_; }
 
@@ -58,6 +61,7 @@ class PatchResponse {
     friend class PatchResponse;
     const std::array<float, 4>* low_ = nullptr;
     float up_ = 0.0F;
+    float reach_ = 0.0F;
   };
 
   /// `log_radius` is clamped to the table.
@@ -69,6 +73,7 @@ class PatchResponse {
     Row row;
     row.low_ = knots_.data() + knot * kDistances;
     row.up_ = place - static_cast<float>(knot);
+    row.reach_ = reaches_[knot + 1];
     return row;
   }
 
@@ -82,6 +87,7 @@ class PatchResponse {
   void differentiate();
 
   std::vector<std::array<float, 4>> knots_;  // [kRadii, kDistances]
+  std::vector<float> reaches_;               // [kRadii]: of a patch's radius and a taxel's, rounded up to a knot
 };
 
 }  // namespace dermis::fusion

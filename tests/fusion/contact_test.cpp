@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "support/allocation_guard.hpp"
@@ -93,7 +94,7 @@ TEST(ContactTracker, places_contacts_within_the_error_it_states) {
     double diameter_m;
     double median_m;
   };
-  for (const Bound bound : {Bound{0.008, 3.0e-3}, Bound{0.015, 0.9e-3}, Bound{0.025, 0.3e-3}}) {
+  for (const Bound bound : {Bound{0.008, 3.0e-3}, Bound{0.015, 0.5e-3}, Bound{0.025, 0.3e-3}}) {
     Touch touch;
     std::vector<double> errors;
     std::size_t within_two_sigma = 0;
@@ -110,7 +111,7 @@ TEST(ContactTracker, places_contacts_within_the_error_it_states) {
     ASSERT_GE(errors.size(), 90U) << bound.diameter_m;
     std::sort(errors.begin(), errors.end());
     EXPECT_LT(errors[errors.size() / 2], bound.median_m) << bound.diameter_m;
-    EXPECT_GE(within_two_sigma, errors.size() * 8 / 10) << bound.diameter_m;
+    EXPECT_GE(within_two_sigma, errors.size() * 9 / 10) << bound.diameter_m;
   }
 }
 
@@ -118,6 +119,23 @@ TEST(ContactTracker, tells_touching_contacts_apart) {
   Touch touch;
   EXPECT_EQ(
       touch.frame({round_patch(0.050, 0.050, 0.024, 10.0), round_patch(0.077, 0.051, 0.020, 5.0)}).contacts.size(), 2U);
+}
+
+TEST(ContactTracker, an_elongated_contact_is_one) {
+  Touch touch;
+  int ones = 0;
+  for (int k = 0; k < 100; ++k) {
+    PressurePatch patch = round_patch(touch.random.uniform(0.04, 0.11), touch.random.uniform(0.04, 0.11), 0.036, 30.0);
+    patch.other_half_axis_m = 0.010;
+    patch.angle_rad = touch.random.uniform(-1.5, 1.5);
+    ContactTracker tracker(touch.array);
+    tracker.process(touch.forces({patch}), touch.report);
+    if (touch.report.contacts.size() != 1) continue;
+    ++ones;
+    const double off = std::remainder(touch.report.contacts[0].angle_rad - patch.angle_rad, std::numbers::pi);
+    EXPECT_LT(std::abs(off), 0.2);
+  }
+  EXPECT_GE(ones, 80);
 }
 
 TEST(ContactTracker, follows_a_contact_from_onset_to_release) {
