@@ -55,6 +55,8 @@ def processor_seconds(pid):
 
 def watch(url, seconds, viewers):
     """What each viewer has seen when the time is over."""
+    if not (ROOT / "tests/npm/node_modules/@foxglove").exists():
+        sys.exit("the viewers' packages are missing: run scripts/setup test")
     command = ["node", ROOT / "scripts/suit_viewer.mjs", url, str(seconds)]
     started = [subprocess.Popen(command, stdout=subprocess.PIPE) for _ in range(viewers)]
     return [json.loads(viewer.communicate(timeout=seconds + 60)[0]) for viewer in started]
