@@ -56,7 +56,7 @@ class ContactTracker::Implementation {
     report.status = force.status;
     report.contacts.reserve(2 * options.most_contacts);
     find_held_taxels(force.time);
-    areas_.find(force, options.release_share * options.onset_sigma, held_);
+    areas_.find(force, pressed_sigma(), held_);
     found_.clear();
     for (const std::span<std::uint32_t> taxels : areas_.areas()) add(force, taxels);
     keep_strongest();
@@ -71,6 +71,9 @@ class ContactTracker::Implementation {
  private:
   static constexpr double kReachPitches = 2.0;
   static constexpr double kPitchesApart = 1.7;
+
+  /// From so many standard deviations on a taxel is pressed.
+  [[nodiscard]] double pressed_sigma() const { return options.release_share * options.onset_sigma; }
 
   void find_held_taxels(Nanos time) {
     tracks_.predict(time, expected_);
@@ -88,8 +91,7 @@ class ContactTracker::Implementation {
   void add(const ForceFrame& force, std::span<std::uint32_t> taxels) {
     FoundContact found;
     found.peak = taxels.front();
-    found.contact =
-        gauge_.measure(force, taxels, options.release_share * options.onset_sigma, expected_at(taxels.front()));
+    found.contact = gauge_.measure(force, taxels, pressed_sigma(), expected_at(taxels.front()));
     found.profile = gauge_.profile();
     const std::size_t own = gauge_.part(force, taxels);
     if (own < taxels.size() && own > 0 && can_go_on(force, taxels.subspan(own)) && is_top(force, taxels, taxels[own]) &&
@@ -106,9 +108,8 @@ class ContactTracker::Implementation {
   /// The patches of two contacts do not overlap; those found on the parts of an elongated one do, near each other.
   [[nodiscard]] bool are_apart(const ForceFrame& force, std::span<const std::uint32_t> one,
                                std::span<const std::uint32_t> other) {
-    const double pressed_sigma = options.release_share * options.onset_sigma;
-    const Contact a = gauge_.measure(force, one, pressed_sigma, nullptr);
-    const Contact b = gauge_.measure(force, other, pressed_sigma, nullptr);
+    const Contact a = gauge_.measure(force, one, pressed_sigma(), nullptr);
+    const Contact b = gauge_.measure(force, other, pressed_sigma(), nullptr);
     const double distance = std::hypot(a.position.x - b.position.x, a.position.y - b.position.y);
     return distance >= kPitchesApart * std::max(row_pitch_m_, col_pitch_m_) ||
            distance >= std::sqrt(a.area_m2 / std::numbers::pi) + std::sqrt(b.area_m2 / std::numbers::pi);

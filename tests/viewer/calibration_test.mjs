@@ -4,30 +4,14 @@
 import assert from "node:assert/strict";
 import { readdirSync, writeFileSync } from "node:fs";
 import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage, readCsv, WAIT_MS } from "./harness.mjs";
-
-const ARRAY = `[array]
-name = "palm"
-rows = 2
-cols = 3
-pitch_mm = [10.0, 10.0]
-taxel_area_mm2 = 38.48
-
-[readout]
-circuit = "divider"
-drive_ohm = 20.0
-load_ohm = 200.0
-adc_bits = 12
-adc_reference_v = 5.0
-supply_v = 5.0
-`;
+import { arrayToml, assertUnhurt, becomes, Bench, openBrowser, openPage, readCsv, WAIT_MS } from "./harness.mjs";
 
 let bench;
 let browser;
 
 before(async () => {
   bench = new Bench(process.argv[2]);
-  writeFileSync(bench.path("palm.toml"), ARRAY);
+  writeFileSync(bench.path("palm.toml"), arrayToml("palm", 2, 3));
   browser = await openBrowser();
 });
 

@@ -13,10 +13,12 @@ const { chromium } = createRequire(new URL("../npm/package.json", import.meta.ur
 
 export const WAIT_MS = 60_000;
 
-const ARRAY = `[array]
-name = "small"
-rows = 4
-cols = 5
+/** An array.toml. */
+export function arrayToml(name, rows, cols) {
+  return `[array]
+name = "${name}"
+rows = ${rows}
+cols = ${cols}
 pitch_mm = [10.0, 10.0]
 taxel_area_mm2 = 38.48
 
@@ -28,6 +30,7 @@ adc_bits = 12
 adc_reference_v = 5.0
 supply_v = 5.0
 `;
+}
 
 /** The rows of a CSV file as objects by column. */
 export function readCsv(path) {
@@ -53,7 +56,7 @@ export class Bench {
   constructor(binary) {
     this.binary = resolve(binary);
     this.folder = mkdtempSync(join(tmpdir(), "dermis-viewer-"));
-    writeFileSync(this.path("array.toml"), ARRAY);
+    writeFileSync(this.path("array.toml"), arrayToml("small", 4, 5));
     const array = ["--array", this.path("array.toml")];
     this.run("simulate", ...array, "--scene", "calibration", "--out", this.path("calibration"));
     this.run("simulate", ...array, "--scene", "multitouch", "--frames", "200", "--seed", "2", "--out", this.path("contacts"));
