@@ -10,16 +10,16 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/store/safetensors.hpp"
+#include "dermis/files/safetensors.hpp"
 
 namespace dermis::calibration {
 namespace {
 
+using files::SafetensorsFile;
+using files::Tensor;
 using network::NetworkShape;
 using network::TrainingAlgorithm;
 using network::TrainingState;
-using store::SafetensorsFile;
-using store::Tensor;
 
 constexpr const char* kFormat = "dermis training checkpoint 1";
 
@@ -140,12 +140,12 @@ Result<TrainingState<Real>> from_file(const SafetensorsFile& file, const Network
 
 template <std::floating_point Real>
 Status write_training_checkpoint(const std::string& path, const TrainingState<Real>& state) {
-  return store::write_safetensors(path, to_file(state));
+  return files::write_safetensors(path, to_file(state));
 }
 
 template <std::floating_point Real>
 Result<TrainingState<Real>> read_training_checkpoint(const std::string& path, const NetworkShape& shape) {
-  const Result<SafetensorsFile> file = store::read_safetensors(path);
+  const Result<SafetensorsFile> file = files::read_safetensors(path);
   if (!file) return file.error();
   Result<TrainingState<Real>> state = from_file<Real>(*file, shape);
   if (!state) return bad_input(path + ": " + state.error().message);

@@ -12,22 +12,22 @@
 #include <vector>
 
 #include "dermis/core/random.hpp"
+#include "dermis/files/safetensors.hpp"
 #include "dermis/network/initialisation.hpp"
-#include "dermis/store/safetensors.hpp"
-#include "store/mutations.hpp"
-#include "store/temporary_folder.hpp"
+#include "support/mutations.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace dermis::calibration {
 namespace {
 
+using files::SafetensorsFile;
 using network::Activation;
 using network::NetworkShape;
 using network::Samples;
 using network::TrainingAlgorithm;
 using network::TrainingOptions;
 using network::TrainingState;
-using store::SafetensorsFile;
-using store::TemporaryFolder;
+using support::TemporaryFolder;
 
 const NetworkShape kShape{2, {{3, Activation::log_sigmoid}, {1, Activation::linear}}};
 
@@ -114,9 +114,9 @@ std::string error_after(const std::function<void(SafetensorsFile&)>& change) {
   train_to(state, 5);
   const std::string path = folder.file("c");
   EXPECT_TRUE(write_training_checkpoint(path, state));
-  SafetensorsFile file = *store::read_safetensors(path);
+  SafetensorsFile file = *files::read_safetensors(path);
   change(file);
-  EXPECT_TRUE(store::write_safetensors(path, file));
+  EXPECT_TRUE(files::write_safetensors(path, file));
   const std::string message = error_of(path);
   return message.starts_with(path + ": ") ? message.substr(path.size() + 2) : message;
 }
@@ -136,9 +136,9 @@ TEST(TrainingCheckpoint, refuses_files_that_are_something_else) {
   const TemporaryFolder folder;
   const std::string path = folder.file("c");
   EXPECT_NE(error_of(path).find(path), std::string::npos) << error_of(path);
-  store::write_bytes(path, "parameters\n");
+  support::write_bytes(path, "parameters\n");
   EXPECT_TRUE(error_of(path).starts_with(path + ": ")) << error_of(path);
-  ASSERT_TRUE(store::write_safetensors(path, {}));
+  ASSERT_TRUE(files::write_safetensors(path, {}));
   EXPECT_EQ(error_of(path), path + ": is not a dermis training checkpoint of version 1");
   EXPECT_EQ(error_after([](auto& f) { f.metadata["format"] = "dermis training checkpoint 2"; }),
             "is not a dermis training checkpoint of version 1");
@@ -176,11 +176,11 @@ TEST(TrainingCheckpoint, a_damaged_file_is_read_or_refused_in_one_line_and_what_
   TrainingState<float> state = fresh_state<float>(TrainingAlgorithm::adaptive_rate);
   train_to(state, 5);
   ASSERT_TRUE(write_training_checkpoint(good, state));
-  const std::string bytes = store::read_bytes(good);
+  const std::string bytes = support::read_bytes(good);
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     const std::string path = folder.file(std::to_string(seed));  // a new one each: overwriting waits for the disk
-    store::write_bytes(path, store::mutated(bytes, seed));
+    support::write_bytes(path, support::mutated(bytes, seed));
     Result<TrainingState<float>> read = read_training_checkpoint<float>(path, kShape);
     if (read) {
       train_to(*read, std::min<std::uint64_t>(read->epoch, 100) + 3);
@@ -192,7 +192,7 @@ TEST(TrainingCheckpoint, a_damaged_file_is_read_or_refused_in_one_line_and_what_
   }
   for (std::size_t size = 0; size < bytes.size(); size += 13) {
     const std::string path = folder.file("cut" + std::to_string(size));
-    store::write_bytes(path, bytes.substr(0, size));
+    support::write_bytes(path, bytes.substr(0, size));
     EXPECT_FALSE(read_training_checkpoint<float>(path, kShape)) << "cut to " << size;
   }
 }
