@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct NamedCircuit {
   bool real_amplifiers = false;
   bool resistive_lines = false;
 };
+
+inline void PrintTo(const NamedCircuit& circuit, std::ostream* out) {
+  *out << circuit.name;
+}
 
 inline std::vector<NamedCircuit> all_circuits() {
   using enum Circuit;
