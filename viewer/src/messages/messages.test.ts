@@ -6,7 +6,7 @@ import { CalibrationHint, CalibrationStage, readCalibrationState } from "./calib
 import { CdrReader } from "./cdr_reader";
 import { ContactPhase, ContactsFrame, readContacts, readContactsArray } from "./contacts";
 import { emptyGrid, type PointsFrame, readCounts, readGrid, readPoints, TaxelStatus } from "./grids";
-import { readHealth, readStatistics } from "./statistics";
+import { DiagnosticLevel, readHealth, readStatistics } from "./statistics";
 import { constants, type Definition, definitions, full, sample, simpleFields, written } from "./test_messages";
 
 const header = { stamp: { sec: 1234, nanosec: 500000000 }, frame_id: "suit" };
@@ -173,6 +173,7 @@ describe("the .msg files", () => {
     expect(CalibrationStage).toEqual(constants("dermis_msgs/msg/CalibrationState"));
     expect(CalibrationHint).toEqual(constants("dermis_msgs/msg/CalibrationHint"));
     expect(ContactPhase).toEqual(constants("dermis_msgs/msg/Contact"));
+    expect(DiagnosticLevel).toEqual(constants("diagnostic_msgs/msg/DiagnosticStatus"));
     expect(TaxelStatus).toEqual(constants("dermis_msgs/msg/TaxelStatus"));
   });
 

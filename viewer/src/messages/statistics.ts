@@ -2,6 +2,9 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { CdrReader } from "./cdr_reader";
 
+/** The levels of diagnostic_msgs/DiagnosticStatus.msg. */
+export const DiagnosticLevel = { ok: 0, warn: 1, error: 2, stale: 3 } as const;
+
 const MOST_ARRAYS = 4096;
 const MOST_VALUES = 65536;
 const reader = new CdrReader();
