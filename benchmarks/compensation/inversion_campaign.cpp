@@ -7,10 +7,10 @@
 #include <fmt/core.h>
 
 int main() {
-  using namespace dermis::support;
-  for (const NamedCircuit& circuit : all_circuits()) {
+  namespace support = dermis::support;
+  for (const support::NamedCircuit& circuit : support::all_circuits()) {
     for (const std::size_t size : {2U, 4U, 8U, 12U, 16U, 32U}) {
-      const Campaign campaign = campaign_of(circuit, size, size, size < 32 ? 100 : 5);
+      const support::Campaign campaign = support::campaign_of(circuit, size, size, size < 32 ? 100 : 5);
       fmt::print("{:<46} {:>2}x{:<2} returned {:>3}, two solutions {:>2}, failed {:>2}, largest error {:.1e}\n",
                  circuit.name, size, size, campaign.returned, campaign.ambiguous, campaign.failed, campaign.worst);
       std::fflush(stdout);

@@ -89,8 +89,8 @@ struct Size {
   std::size_t cols;
 };
 
-void PrintTo(const Size& size, std::ostream* out) {
-  *out << size.rows << 'x' << size.cols;
+std::ostream& operator<<(std::ostream& out, const Size& size) {
+  return out << size.rows << 'x' << size.cols;
 }
 
 class DividerOfSize : public testing::TestWithParam<Size> {};

@@ -48,7 +48,7 @@ Keys required_keys(const std::string& circuit) {
 
 Result<ArrayDescription> read(const Keys& keys) {
   std::string text;
-  for (const auto& [key, value] : keys) text += key + " = " + value + "\n";
+  for (const auto& [key, value] : keys) text.append(key).append(" = ").append(value).append("\n");
   return array_from_toml(text, "array.toml");
 }
 

@@ -51,8 +51,8 @@ struct CircuitKind {
   bool has_real_amplifiers = false;
 };
 
-void PrintTo(const CircuitKind& kind, std::ostream* out) {
-  *out << kind.name;
+std::ostream& operator<<(std::ostream& out, const CircuitKind& kind) {
+  return out << kind.name;
 }
 
 constexpr std::array kCircuitKinds{

@@ -22,8 +22,8 @@ struct NamedCircuit {
   bool resistive_lines = false;
 };
 
-inline void PrintTo(const NamedCircuit& circuit, std::ostream* out) {
-  *out << circuit.name;
+inline std::ostream& operator<<(std::ostream& out, const NamedCircuit& circuit) {
+  return out << circuit.name;
 }
 
 inline std::vector<NamedCircuit> all_circuits() {
