@@ -183,7 +183,7 @@ void GroundedRows::keep() noexcept {
   best_explained_ = state_.explained;
 }
 
-/// From the start, the first steps halved (A.5, alpha = 0.5), the others mixed.
+/// From the start, the first steps halved (docs/derivations.md, below (4)), the others mixed.
 double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept {
   for (std::size_t k = 0; k < log_siemens_.size(); ++k) {
     log_siemens_[k] = std::log(std::max(state_.estimate[k], kLeastSiemens));

@@ -13,14 +13,14 @@ namespace dermis::compensation {
 
 /// Circuits whose idle rows are grounded through their drivers and whose columns end in resistors RL to ground, all of
 /// them at once or only the one that is read (IdleColumns). With y_kj the current into the load of column j while row k
-/// is driven, over the supply [S], formula (1) of research/literature.md A.2 reads
+/// is driven, over the supply [S], formula (1) of docs/derivations.md reads
 ///
 ///   y = D S^-1 G diag(w),   S = A - G diag(eta) G^T,   D = diag(1/Rd),   A = D + diag(G 1)
 ///   all loaded:  eta_j = RL_j w_j,         w_j = 1 / (1 + RL_j sum_i G_ij)
 ///   one loaded:  eta_j = 1 / sum_i G_ij,   w_j = (1 - sum_i G_ij Rd_i y_ij / sum_i G_ij) / (1 + RL_j sum_i G_ij)
 ///
 /// (one loaded: T_kj = D_k K_jk / (1 + K_jj/RL_j), K the resistances of the unloaded circuit) and G is the fixed point
-/// of (4) of A.5, which inverts no matrix and, written with Rd, also holds for ideal drivers:
+/// of (4), which inverts no matrix and, written with Rd, also holds for ideal drivers:
 ///
 ///   (a)  a = 1 + Rd . G 1
 ///   (b)  Z = S D^-1 y = diag(a) y - G diag(eta) G^T diag(Rd) y

@@ -14,7 +14,7 @@
 namespace dermis::compensation {
 
 /// Any readout circuit, by Newton's method with the exact Jacobian J of CircuitModel (formula (5) of
-/// research/literature.md A.5).
+/// docs/derivations.md).
 ///
 /// Both the readings and the taxels are taken on the scale x(g) = asinh(g / 2 g_n): the logarithm of a conductance
 /// above the noise of its reading g_n, proportional to it below, and 0 at 0 S. A reading I_ds (current over the supply)
@@ -36,7 +36,7 @@ namespace dermis::compensation {
 /// textbook estimate then gives the array on the idle one's side of the fold, det(J) > 0.
 ///
 /// Floating lines read every taxel through all others. What noise becomes there is in the nature of the circuit: at
-/// 16x16 the relative noise of a reading grows by 12 to 104 (rms, two terminals; A.6), of a single one by thousands.
+/// 16x16 the relative noise of a reading grows by 25 to 104 (rms, two terminals), of a single one by thousands.
 class NewtonInversion final : public CrosstalkInversion {
  public:
   /// `model` is of `array`.

@@ -10,7 +10,7 @@
 namespace dermis::compensation {
 
 /// What a wrong supply does: all readings of a frame are wrong by one factor, 1 + d. Differentiating formula (1) of
-/// research/literature.md A.2, for ideal drivers exactly and for others nearly,
+/// docs/derivations.md, for ideal drivers exactly and for others nearly,
 ///
 ///   d ln G_ij = (1 + Rd_i sum_k G_ik) (1 + Rl_j sum_k G_kj) d        (without the second factor at virtual ground)
 ///

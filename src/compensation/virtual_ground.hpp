@@ -9,7 +9,7 @@
 
 namespace dermis::compensation {
 
-/// Columns at virtual ground, resistive row drivers: closed form, formula (2) of research/literature.md A.3.
+/// Columns at virtual ground, resistive row drivers: closed form, formula (2) of docs/derivations.md.
 ///
 ///   y_kj = ratio_kj / load_ohm_j,   Y_k = sum_j y_kj,   G_kj = y_kj / (1 - drive_ohm_k Y_k)
 ///

@@ -21,7 +21,7 @@ std::span<std::uint8_t> write_grid(const GridPlace& place, std::span<const GridF
   for (const GridField& field : fields) {
     writer.write_text(field.name);
     writer.write(field.offset);
-    writer.write(field.type);
+    writer.write(static_cast<std::uint8_t>(field.type));
   }
   return writer.write_bytes(place.shape.taxel_count() * cell_bytes);
 }

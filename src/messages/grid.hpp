@@ -14,15 +14,15 @@
 
 namespace dermis::messages {
 
+/// foxglove_msgs/PackedElementField.
+enum class PackedElementType : std::uint8_t { unknown, uint8, int8, uint16, int16, uint32, int32, float32, float64 };
+
 /// foxglove_msgs/PackedElementField of a cell.
 struct GridField {
   const char* name;
   std::uint32_t offset;
-  std::uint8_t type;
+  PackedElementType type;
 };
-
-inline constexpr std::uint8_t kUint8Field = 1;
-inline constexpr std::uint8_t kFloat32Field = 7;
 
 /// What a grid is of: when, how large, where.
 struct GridPlace {

@@ -10,6 +10,7 @@
 #include "dermis/messages/cdr.hpp"
 #include "messages/grid.hpp"
 #include "messages/header.hpp"
+#include "messages/point_field.hpp"
 
 namespace dermis::messages {
 namespace {
@@ -18,20 +19,18 @@ namespace {
 constexpr std::size_t kSigmaOffset = 4;
 constexpr std::size_t kCellStatusOffset = 8;
 constexpr std::size_t kCellBytes = 9;
-constexpr std::array<GridField, 3> kConductanceFields{GridField{"siemens", 0, kFloat32Field},
-                                                      {"sigma_siemens", kSigmaOffset, kFloat32Field},
-                                                      {"status", kCellStatusOffset, kUint8Field}};
+constexpr std::array<GridField, 3> kConductanceFields{GridField{"siemens", 0, PackedElementType::float32},
+                                                      {"sigma_siemens", kSigmaOffset, PackedElementType::float32},
+                                                      {"status", kCellStatusOffset, PackedElementType::uint8}};
 
-// sensor_msgs/PointField; a point is padded to a multiple of its floats.
-constexpr std::uint8_t kPointUint8 = 2;
-constexpr std::uint8_t kPointFloat32 = 7;
+// A point is padded to a multiple of its floats.
 constexpr std::size_t kPointStatusOffset = 16;
 constexpr std::size_t kPointBytes = 20;
-constexpr std::array<GridField, 5> kPointFields{GridField{"x", 0, kPointFloat32},
-                                                {"y", 4, kPointFloat32},
-                                                {"z", 8, kPointFloat32},
-                                                {"newtons", 12, kPointFloat32},
-                                                {"status", kPointStatusOffset, kPointUint8}};
+constexpr std::array<PointField, 5> kPointFields{PointField{"x", 0, PointFieldType::float32},
+                                                 {"y", 4, PointFieldType::float32},
+                                                 {"z", 8, PointFieldType::float32},
+                                                 {"newtons", 12, PointFieldType::float32},
+                                                 {"status", kPointStatusOffset, PointFieldType::uint8}};
 
 void write_bool(CdrWriter& writer, bool value) {
   writer.write(static_cast<std::uint8_t>(value ? 1 : 0));
@@ -101,10 +100,10 @@ void encode_points(std::span<const TaxelPoint> points, Nanos time, std::string_v
   write_count(writer, 1);
   write_count(writer, points.size());
   write_count(writer, kPointFields.size());
-  for (const GridField& field : kPointFields) {
+  for (const PointField& field : kPointFields) {
     writer.write_text(field.name);
     writer.write(field.offset);
-    writer.write(field.type);
+    writer.write(static_cast<std::uint8_t>(field.type));
     write_count(writer, 1);
   }
   write_bool(writer, false);  // little-endian
@@ -158,7 +157,7 @@ void encode_calibration_state(const CalibrationState& state, std::string_view fr
   writer.write(state.median_relative_error);
   const std::span<std::uint8_t> presses = writer.write_bytes(state.taxel_presses.size());
   std::copy(state.taxel_presses.begin(), state.taxel_presses.end(), presses.begin());
-  writer.write(state.hint);
+  writer.write(static_cast<std::uint8_t>(state.hint));
   writer.write(state.pressed_taxel.value_or(std::numeric_limits<std::uint32_t>::max()));
   writer.write(state.unpressed_relative_error);
 }

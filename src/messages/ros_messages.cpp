@@ -62,15 +62,15 @@ void read_floats(std::span<const std::uint8_t> row, bool big_endian, std::span<f
 constexpr std::size_t kSigmaOffset = 4;
 constexpr std::size_t kStatusOffset = 8;
 constexpr std::size_t kCellBytes = 9;
-constexpr std::array<GridField, 3> kGridFields{GridField{"newtons", 0, kFloat32Field},
-                                               {"sigma_newtons", kSigmaOffset, kFloat32Field},
-                                               {"status", kStatusOffset, kUint8Field}};
+constexpr std::array<GridField, 3> kGridFields{GridField{"newtons", 0, PackedElementType::float32},
+                                               {"sigma_newtons", kSigmaOffset, PackedElementType::float32},
+                                               {"status", kStatusOffset, PackedElementType::uint8}};
 
 bool read_grid_fields(CdrReader& reader) {
   bool expected = reader.read<std::uint32_t>() == kGridFields.size();
   for (const GridField& field : kGridFields) {
     expected = expected && reader.read_text() == field.name && reader.read<std::uint32_t>() == field.offset &&
-               reader.read<std::uint8_t>() == field.type;
+               reader.read<std::uint8_t>() == static_cast<std::uint8_t>(field.type);
   }
   return expected;
 }

@@ -19,6 +19,7 @@
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "support/shared_data.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -189,8 +190,8 @@ std::vector<Press> dsa_presses(const std::filesystem::path& folder) {
 }
 
 TEST(Calibrate, weighs_the_real_presses_it_has_not_seen) {
-  const std::filesystem::path folder = std::filesystem::path(DERMIS_SHARED_DATA) / "dsa_weights";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
+  const std::filesystem::path folder = support::shared_data("dsa_weights");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << support::not_checked(folder);
   ArrayDescription array;
   array.rows = 13;
   array.cols = 6;

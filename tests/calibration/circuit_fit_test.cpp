@@ -15,6 +15,7 @@
 #include "dermis/core/parallel.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "support/shared_data.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -244,8 +245,8 @@ void add_frame(const std::vector<float>& counts, RemoteReadings& readings) {
 }
 
 TEST(CircuitFit, shows_why_the_ghosts_of_a_real_hand_cannot_be_solved) {
-  const std::filesystem::path folder = std::filesystem::path(DERMIS_SHARED_DATA) / "dsa_recordings";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not here";
+  const std::filesystem::path folder = support::shared_data("dsa_recordings");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << support::not_checked(folder);
   struct Case {
     const char* file;
     double ratio;

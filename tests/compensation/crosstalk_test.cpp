@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -87,6 +88,10 @@ struct Size {
   std::size_t rows;
   std::size_t cols;
 };
+
+std::ostream& operator<<(std::ostream& out, const Size& size) {
+  return out << size.rows << 'x' << size.cols;
+}
 
 class DividerOfSize : public testing::TestWithParam<Size> {};
 
@@ -172,9 +177,7 @@ TEST_P(DividerOfSize, transimpedance_comes_back_to_rounding) {
 INSTANTIATE_TEST_SUITE_P(CrosstalkInversion, DividerOfSize,
                          testing::Values(Size{1, 1}, Size{2, 3}, Size{8, 8}, Size{16, 16}, Size{12, 10}, Size{32, 32},
                                          Size{1, 9}, Size{9, 1}),
-                         [](const auto& info) {
-                           return std::to_string(info.param.rows) + "x" + std::to_string(info.param.cols);
-                         });
+                         testing::PrintToStringParamName());
 
 TEST(CrosstalkInversion, one_taxel_is_the_divider_formula) {
   // T = RL / (Rd + 1/G + RL), so G = T / (RL (1 - T) - Rd T); below 0 there is no conductance.

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <string>
@@ -20,10 +19,14 @@
 #include "support/allocation_guard.hpp"
 #include "support/circuits.hpp"
 #include "support/dense_solve.hpp"
+#include "support/inversion_campaign.hpp"
 
 namespace dermis::compensation {
 namespace {
 
+using support::campaign_of;
+using support::distance;
+using support::model_ratios;
 using support::NamedCircuit;
 using support::random_array;
 using support::random_siemens;
@@ -39,90 +42,10 @@ std::unique_ptr<CrosstalkInversion> inversion_for(const ArrayDescription& array,
   return std::move(*inversion);
 }
 
-std::vector<double> model_ratios(const ArrayDescription& array, const std::vector<double>& siemens) {
-  auto model = CircuitModel::create(array);
-  model->solve(siemens);
-  return {model->ratio().begin(), model->ratio().end()};
-}
-
 std::vector<double> simulated_ratios(const ArrayDescription& array, const std::vector<double>& siemens) {
   std::vector<double> ratio(siemens.size());
   simulation::ReadoutCircuit::create(array)->ratios(siemens, ratio);
   return ratio;
-}
-
-/// Largest relative difference.
-double distance(const std::vector<double>& values, const std::vector<double>& expected) {
-  double largest = 0.0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    largest = std::fmax(largest, std::abs(values[k] / expected[k] - 1.0));
-  }
-  return largest;
-}
-
-/// The sign of det(d ratio / d siemens), by Gauss elimination with pivoting.
-int orientation(const ArrayDescription& array, const std::vector<double>& siemens) {
-  const std::size_t size = siemens.size();
-  std::vector<double> matrix(size * size);
-  auto model = CircuitModel::create(array);
-  model->solve(siemens);
-  model->taxel_jacobian(matrix);
-  int sign = 1;
-  for (std::size_t k = 0; k < size; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < size; ++i) {
-      if (std::abs(matrix[i * size + k]) > std::abs(matrix[pivot * size + k])) pivot = i;
-    }
-    if (pivot != k) {
-      sign = -sign;
-      for (std::size_t j = k; j < size; ++j) std::swap(matrix[k * size + j], matrix[pivot * size + j]);
-    }
-    if (matrix[k * size + k] < 0.0) sign = -sign;
-    for (std::size_t i = k + 1; i < size; ++i) {
-      const double factor = matrix[i * size + k] / matrix[k * size + k];
-      for (std::size_t j = k; j < size; ++j) matrix[i * size + j] -= factor * matrix[k * size + j];
-    }
-  }
-  return sign;
-}
-
-struct Campaign {
-  int returned = 0;   // arrays whose every taxel came back to 1e-8
-  int ambiguous = 0;  // beyond a fold of the readings: another array explains them too, and that was found
-  int failed = 0;
-  double worst = 0.0;  // relative error of a taxel that came back
-};
-
-void try_array(const ArrayDescription& array, Random& random, Campaign& campaign) {
-  const auto siemens = random_siemens(array, random);
-  const auto ratio = model_ratios(array, siemens);
-  std::vector<double> inverted(siemens.size());
-  const bool solved = inversion_for(array, {0.0})->invert(ratio, inverted).solved;
-  const double error = distance(inverted, siemens);
-  if (solved && error <= 1e-8) {
-    ++campaign.returned;
-    campaign.worst = std::max(campaign.worst, error);
-  } else if (solved && orientation(array, siemens) < 0) {
-    ++campaign.ambiguous;
-  } else {
-    ++campaign.failed;
-    std::printf("  %zux%zu: solved %d, error %.1e, readings off by %.1e\n", array.rows, array.cols, solved, error,
-                distance(model_ratios(array, inverted), ratio));
-  }
-}
-
-Campaign campaign_of(const NamedCircuit& circuit, std::size_t rows, std::size_t cols, int arrays) {
-  Campaign campaign;
-  for (int seed = 1; seed <= arrays; ++seed) {
-    Random random(static_cast<std::uint64_t>(seed));
-    try_array(random_array(circuit, rows, cols, random), random, campaign);
-  }
-  return campaign;
-}
-
-void print(const NamedCircuit& circuit, std::size_t rows, std::size_t cols, const Campaign& campaign) {
-  std::printf("%-46s %2zux%-2zu returned %3d, two solutions %2d, failed %2d, largest error %.1e\n",
-              circuit.name.c_str(), rows, cols, campaign.returned, campaign.ambiguous, campaign.failed, campaign.worst);
 }
 
 TEST_P(EveryInversion, returns_every_taxel) {
@@ -323,13 +246,6 @@ TEST(LargeInversion, floating_rows_and_resistive_lines_come_back) {
       EXPECT_EQ(campaign_of(circuit, 64, 64, 1).failed, 0);
     }
   }
-}
-
-TEST_P(EveryInversion, DISABLED_campaign) {
-  for (const std::size_t size : {2U, 4U, 8U, 12U, 16U}) {
-    print(GetParam(), size, size, campaign_of(GetParam(), size, size, 100));
-  }
-  print(GetParam(), 32, 32, campaign_of(GetParam(), 32, 32, 5));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "dermis/core/random.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "support/allocation_guard.hpp"
+#include "support/shared_data.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -306,7 +308,7 @@ TEST(LineFaultMonitor, TellsAnOpenRowFromOneShortedToGround) {
 }
 
 /// Counts of a frames.csv without a supply: time, temperature, then the taxels.
-std::vector<std::vector<double>> read_counts(const std::string& path) {
+std::vector<std::vector<double>> read_counts(const std::filesystem::path& path) {
   std::ifstream file(path);
   std::vector<std::vector<double>> frames;
   std::string line;
@@ -323,12 +325,13 @@ std::vector<std::vector<double>> read_counts(const std::string& path) {
 /// Hour-long recordings of six vendor modules that warm up unloaded (13 x 6 and 14 x 6 taxels, circuit unknown). The
 /// unloaded readings are those of the first frames, as a calibration would take them.
 TEST(LineFaultMonitor, FindsNothingOnRealModulesThatWarmUp) {
+  const std::filesystem::path folder = support::shared_data("dsa_recordings");
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << support::not_checked(folder);
   constexpr std::size_t kCalibrationFrames = 50;
   for (int module = 0; module < 6; ++module) {
     SCOPED_TRACE(testing::Message() << "module " << module);
-    const auto frames = read_counts(std::string(DERMIS_SHARED_DATA) + "/dsa_recordings/unloaded_warmup_m" +
-                                    std::to_string(module) + ".csv");
-    if (frames.empty()) GTEST_SKIP() << "no recordings here";
+    const auto frames = read_counts(folder / ("unloaded_warmup_m" + std::to_string(module) + ".csv"));
+    ASSERT_FALSE(frames.empty());
     ArrayDescription array;
     array.cols = 6;
     array.rows = frames[0].size() / array.cols;

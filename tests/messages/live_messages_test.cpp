@@ -10,25 +10,38 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "dermis/messages/cdr.hpp"
+#include "messages/read_by_definition.hpp"
 #include "support/allocation_guard.hpp"
 
-// tests/stream/npm_client_test.mjs reads the same messages with a reader that is not ours, by their definitions.
+// tests/stream/npm_client_test.mjs reads the same messages with a reader that is not ours.
 namespace dermis::messages {
 namespace {
 
+using nlohmann::json;
+
 constexpr Nanos kTime = std::chrono::seconds(1'790'000'000) + std::chrono::nanoseconds(123);
 
-void expect_header(CdrReader& reader, const std::string& frame_id) {
-  EXPECT_EQ(reader.read<std::int32_t>(), 1'790'000'000);
-  EXPECT_EQ(reader.read<std::uint32_t>(), 123U);
-  EXPECT_EQ(reader.read_text(), frame_id);
+json stamp() {
+  return {{"sec", 1'790'000'000}, {"nanosec", 123}};
 }
 
-TEST(LiveMessages, TypesNameAllThatTheyUse) {
+json header() {
+  return {{"stamp", stamp()}, {"frame_id", "suit"}};
+}
+
+json vector(double x, double y, double z) {
+  return {{"x", x}, {"y", y}, {"z", z}};
+}
+
+json point_field(const char* name, int offset, int datatype) {
+  return {{"name", name}, {"offset", offset}, {"datatype", datatype}, {"count", 1}};
+}
+
+TEST(LiveMessages, types_name_all_that_they_use) {
   for (const MessageType* type : {&point_cloud_type(), &contacts_type(), &statistics_type(), &calibration_state_type(),
                                   &diagnostics_type(), &transforms_type()}) {
     EXPECT_NE(type->definition.find("MSG: std_msgs/Header"), std::string::npos) << type->name;
@@ -36,142 +49,188 @@ TEST(LiveMessages, TypesNameAllThatTheyUse) {
   }
 }
 
-TEST(LiveMessages, PointsAreTwentyBytesEach) {
+TEST(LiveMessages, points_are_twenty_bytes_each) {
   const std::vector<TaxelPoint> points = {{1.0F, 2.0F, 3.0F, 4.0F, TaxelStatus::ok},
                                           {5.0F, 6.0F, 7.0F, 8.0F, TaxelStatus::line_fault}};
   std::vector<std::uint8_t> message;
   encode_points(points, kTime, "suit", message);
-  CdrReader reader(message);
-  expect_header(reader, "suit");
-  EXPECT_EQ(reader.read<std::uint32_t>(), 1U);
-  EXPECT_EQ(reader.read<std::uint32_t>(), 2U);
-  const auto fields = reader.read<std::uint32_t>();
-  for (std::uint32_t field = 0; field < fields; ++field) {
-    EXPECT_FALSE(reader.read_text().empty());
-    EXPECT_EQ(reader.read<std::uint32_t>(), 4 * field);
-    EXPECT_EQ(reader.read<std::uint8_t>(), field < 4 ? 7 : 2);
-    EXPECT_EQ(reader.read<std::uint32_t>(), 1U);
-  }
-  EXPECT_EQ(reader.read<std::uint8_t>(), 0U);
-  EXPECT_EQ(reader.read<std::uint32_t>(), 20U);
-  EXPECT_EQ(reader.read<std::uint32_t>(), 40U);
-  const auto data = reader.read_bytes();
+  json cloud = read_by_definition(point_cloud_type(), message);
+  const auto data = cloud["data"].get<std::vector<std::uint8_t>>();
+  cloud.erase("data");
+  EXPECT_EQ(cloud, json({{"header", header()},
+                         {"height", 1},
+                         {"width", 2},
+                         {"fields",
+                          {point_field("x", 0, 7), point_field("y", 4, 7), point_field("z", 8, 7),
+                           point_field("newtons", 12, 7), point_field("status", 16, 2)}},
+                         {"is_bigendian", false},
+                         {"point_step", 20},
+                         {"row_step", 40},
+                         {"is_dense", false}}));
   ASSERT_EQ(data.size(), 40U);
   float newtons = 0.0F;
   std::memcpy(&newtons, data.data() + 20 + 12, sizeof(newtons));
   EXPECT_EQ(newtons, 8.0F);
-  EXPECT_EQ(data[20 + 16], static_cast<std::uint8_t>(TaxelStatus::line_fault));
-  EXPECT_EQ(reader.read<std::uint8_t>(), 0U) << "forces may be NaN";
-  EXPECT_TRUE(reader.good());
+  EXPECT_EQ(data[20 + 16], 4U);
 }
 
-TEST(LiveMessages, ContactsStandInThePlaneAndInTheSuit) {
+TEST(LiveMessages, contacts_stand_in_the_plane_and_in_the_suit) {
   ContactReport report;
   report.time = kTime;
   report.total_force_n = 7.0;
   report.sigma_total_n = 0.1;
+  const Contact in_plane{9,
+                         ContactPhase::release,
+                         kTime,
+                         {0.01, 0.02},
+                         {0.03, 0.04},
+                         {0.05, 0.06},
+                         1.5,
+                         0.25,
+                         3e-4,
+                         5e4,
+                         4e4,
+                         6e-3,
+                         2e-3,
+                         0.5,
+                         5};
   SuitContact contact;
-  contact.contact.id = 9;
-  contact.contact.phase = ContactPhase::release;
-  contact.contact.onset = kTime;
-  contact.contact.position = {0.01, 0.02};
-  contact.contact.taxels = 5;
+  contact.contact = in_plane;
   contact.place.position = {1.0, 2.0, 3.0};
+  contact.place.normal = {0.0, 1.0, 0.0};
   contact.velocity = {0.1, 0.2, 0.3};
   const std::vector<SuitContact> contacts = {contact};
   std::vector<std::uint8_t> message;
   encode_contacts({"chest", report, contacts, Vector3{4.0, 5.0, 6.0}}, "suit", message);
-  CdrReader reader(message);
-  expect_header(reader, "suit");
-  EXPECT_EQ(reader.read_text(), "chest");
-  for (const double expected : {7.0, 0.1}) EXPECT_EQ(reader.read<double>(), expected);
-  EXPECT_EQ(reader.read<std::uint8_t>(), 1U);
-  for (const double expected : {4.0, 5.0, 6.0}) EXPECT_EQ(reader.read<double>(), expected);
-  EXPECT_EQ(reader.read<std::uint32_t>(), 1U);
-  EXPECT_EQ(reader.read<std::uint32_t>(), 9U);
-  EXPECT_EQ(reader.read<std::uint8_t>(), 2U);
-  EXPECT_EQ(reader.read<std::int32_t>(), 1'790'000'000);
-  EXPECT_EQ(reader.read<std::uint32_t>(), 123U);
-  for (const double expected : {0.01, 0.02}) EXPECT_EQ(reader.read<double>(), expected);
-  for (int skipped = 0; skipped < 12; ++skipped) static_cast<void>(reader.read<double>());
-  EXPECT_EQ(reader.read<std::uint32_t>(), 5U);
-  for (const double expected : {1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.1, 0.2, 0.3})
-    EXPECT_EQ(reader.read<double>(), expected);
-  EXPECT_TRUE(reader.good());
+  const json expected_contact = {{"id", 9},
+                                 {"phase", 2},
+                                 {"onset", stamp()},
+                                 {"x", 0.01},
+                                 {"y", 0.02},
+                                 {"sigma_x", 0.03},
+                                 {"sigma_y", 0.04},
+                                 {"velocity_x", 0.05},
+                                 {"velocity_y", 0.06},
+                                 {"force_n", 1.5},
+                                 {"sigma_force_n", 0.25},
+                                 {"area_m2", 3e-4},
+                                 {"peak_pressure_pa", 5e4},
+                                 {"mean_pressure_pa", 4e4},
+                                 {"major_axis_m", 6e-3},
+                                 {"minor_axis_m", 2e-3},
+                                 {"angle_rad", 0.5},
+                                 {"taxels", 5},
+                                 {"position", vector(1.0, 2.0, 3.0)},
+                                 {"normal", vector(0.0, 1.0, 0.0)},
+                                 {"velocity", vector(0.1, 0.2, 0.3)}};
+  EXPECT_EQ(read_by_definition(contacts_type(), message), json({{"header", header()},
+                                                                {"array", "chest"},
+                                                                {"total_force_n", 7.0},
+                                                                {"sigma_total_n", 0.1},
+                                                                {"has_centre_of_pressure", true},
+                                                                {"centre_of_pressure", vector(4.0, 5.0, 6.0)},
+                                                                {"contacts", json::array({expected_contact})}}));
+  encode_contacts({"chest", report, {}, {}}, "suit", message);
+  EXPECT_EQ(read_by_definition(contacts_type(), message)["has_centre_of_pressure"], false);
 }
 
-TEST(LiveMessages, WhatIsNotKnownOfACalibrationIsTold) {
+TEST(LiveMessages, a_calibration_state_has_all_of_its_fields) {
   CalibrationState state;
   state.time = kTime;
   state.array = "hand";
   state.stage = CalibrationState::Stage::pressing;
+  state.message = "Press r1c0";
+  state.taxel = 8;
+  state.weight_n = 5.0;
+  state.reading = 1.75;
+  state.hold_share = 0.5;
+  state.presses_done = 3;
+  state.presses_total = 12;
+  state.median_relative_error = 0.04;
   state.taxel_presses = {1, 0, 2};
-  state.hint = 4;
+  state.hint = CalibrationState::Hint::other_taxel;
+  state.pressed_taxel = 7;
+  state.unpressed_relative_error = 0.09;
   std::vector<std::uint8_t> message;
   encode_calibration_state(state, "suit", message);
-  CdrReader reader(message);
-  expect_header(reader, "suit");
-  EXPECT_EQ(reader.read_text(), "hand");
-  EXPECT_EQ(reader.read<std::uint8_t>(), 2U);
-  EXPECT_EQ(reader.read_text(), "");
-  EXPECT_EQ(reader.read<std::uint32_t>(), 0U);
-  for (const double expected : {0.0, 1.0, 0.0}) EXPECT_EQ(reader.read<double>(), expected);
-  for (int skipped = 0; skipped < 2; ++skipped) static_cast<void>(reader.read<std::uint32_t>());
-  EXPECT_TRUE(std::isnan(reader.read<double>()));
-  EXPECT_EQ(reader.read_bytes().size(), 3U);
-  EXPECT_EQ(reader.read<std::uint8_t>(), 4U);
-  EXPECT_EQ(reader.read<std::uint32_t>(), 4'294'967'295U);
-  EXPECT_TRUE(std::isnan(reader.read<double>()));
-  EXPECT_TRUE(reader.good());
+  EXPECT_EQ(read_by_definition(calibration_state_type(), message), json({{"header", header()},
+                                                                         {"array", "hand"},
+                                                                         {"stage", 2},
+                                                                         {"message", "Press r1c0"},
+                                                                         {"taxel", 8},
+                                                                         {"weight_n", 5.0},
+                                                                         {"reading", 1.75},
+                                                                         {"hold_share", 0.5},
+                                                                         {"presses_done", 3},
+                                                                         {"presses_total", 12},
+                                                                         {"median_relative_error", 0.04},
+                                                                         {"taxel_presses", {1, 0, 2}},
+                                                                         {"hint", 4},
+                                                                         {"pressed_taxel", 7},
+                                                                         {"unpressed_relative_error", 0.09}}));
 }
 
-TEST(LiveMessages, StatisticsHealthAndTransformsReadBack) {
+TEST(LiveMessages, what_is_not_known_of_a_calibration_is_told) {
   std::vector<std::uint8_t> message;
+  encode_calibration_state({}, "suit", message);
+  const json state = read_by_definition(calibration_state_type(), message);
+  EXPECT_TRUE(std::isnan(state["median_relative_error"].get<double>()));
+  EXPECT_EQ(state["pressed_taxel"], 4'294'967'295U);
+  EXPECT_TRUE(std::isnan(state["unpressed_relative_error"].get<double>()));
+}
+
+TEST(LiveMessages, statistics_have_all_of_their_fields) {
   Statistics statistics;
   statistics.time = kTime;
-  statistics.arrays.resize(2);
-  statistics.arrays[1].name = "b";
+  statistics.arrays = {{"chest", true, "the port is gone", 1, 2, 3, 4, 999.5, 2e-5, 1.5e-5, 6e-5, 31.5, 5.02}};
   statistics.recording = true;
   statistics.recording_file = "r.mcap";
   statistics.recording_frames = 1ULL << 40U;
   statistics.clients = 3;
+  statistics.client_drops = 5;
+  std::vector<std::uint8_t> message;
   encode_statistics(statistics, "suit", message);
-  CdrReader reader(message);
-  expect_header(reader, "suit");
-  EXPECT_EQ(reader.read<std::uint32_t>(), 2U);
-  for (int array = 0; array < 2; ++array) {
-    EXPECT_EQ(reader.read_text(), array == 1 ? "b" : "");
-    EXPECT_EQ(reader.read<std::uint8_t>(), 0U);
-    EXPECT_EQ(reader.read_text(), "");
-    for (int skipped = 0; skipped < 4; ++skipped) EXPECT_EQ(reader.read<std::uint64_t>(), 0U);
-    for (int skipped = 0; skipped < 6; ++skipped) static_cast<void>(reader.read<double>());
-  }
-  EXPECT_EQ(reader.read<std::uint8_t>(), 1U);
-  EXPECT_EQ(reader.read_text(), "r.mcap");
-  EXPECT_EQ(reader.read<std::uint64_t>(), 1ULL << 40U);
-  EXPECT_EQ(reader.read<std::uint32_t>(), 3U);
-  EXPECT_TRUE(reader.good());
+  EXPECT_EQ(read_by_definition(statistics_type(), message), json({{"header", header()},
+                                                                  {"arrays",
+                                                                   {{{"name", "chest"},
+                                                                     {"ended", true},
+                                                                     {"error", "the port is gone"},
+                                                                     {"frames", 1},
+                                                                     {"rejected", 2},
+                                                                     {"lost", 3},
+                                                                     {"damaged", 4},
+                                                                     {"rate_hz", 999.5},
+                                                                     {"jitter_s", 2e-5},
+                                                                     {"latency_p50_s", 1.5e-5},
+                                                                     {"latency_p99_s", 6e-5},
+                                                                     {"temperature_celsius", 31.5},
+                                                                     {"supply_v", 5.02}}}},
+                                                                  {"recording", true},
+                                                                  {"recording_file", "r.mcap"},
+                                                                  {"recording_frames", 1ULL << 40U},
+                                                                  {"clients", 3},
+                                                                  {"client_drops", 5}}));
+}
 
+TEST(LiveMessages, diagnoses_and_transforms_read_back) {
   const std::vector<Diagnosis> diagnoses = {
       {Diagnosis::Level::error, "chest", "gone", "skin", {{"row 3", "silent_row"}}}};
+  std::vector<std::uint8_t> message;
   encode_diagnostics(diagnoses, kTime, "suit", message);
-  CdrReader health(message);
-  expect_header(health, "suit");
-  EXPECT_EQ(health.read<std::uint32_t>(), 1U);
-  EXPECT_EQ(health.read<std::uint8_t>(), 2U);
-  for (const char* expected : {"chest", "gone", "skin"}) EXPECT_EQ(health.read_text(), expected);
-  EXPECT_EQ(health.read<std::uint32_t>(), 1U);
-  for (const char* expected : {"row 3", "silent_row"}) EXPECT_EQ(health.read_text(), expected);
-  EXPECT_TRUE(health.good());
+  const json value = {{"key", "row 3"}, {"value", "silent_row"}};
+  const json status = {
+      {"level", 2}, {"name", "chest"}, {"message", "gone"}, {"hardware_id", "skin"}, {"values", json::array({value})}};
+  EXPECT_EQ(read_by_definition(diagnostics_type(), message),
+            json({{"header", header()}, {"status", json::array({status})}}));
 
-  const std::vector<Transform> transforms = {{"suit", "chest", {{1.0, 2.0, 3.0}, {0.0, 0.0, 1.0, 0.0}}}};
+  const std::vector<Transform> transforms = {{"suit", "chest", {{1.0, 2.0, 3.0}, {0.1, 0.2, 0.3, 0.4}}}};
   encode_transforms(transforms, kTime, message);
-  CdrReader transform(message);
-  EXPECT_EQ(transform.read<std::uint32_t>(), 1U);
-  expect_header(transform, "suit");
-  EXPECT_EQ(transform.read_text(), "chest");
-  for (const double expected : {1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 0.0}) EXPECT_EQ(transform.read<double>(), expected);
-  EXPECT_TRUE(transform.good());
+  const Quaternion& turn = transforms[0].parent_from_child.rotation;
+  const json rotation = {{"x", turn.x}, {"y", turn.y}, {"z", turn.z}, {"w", turn.w}};
+  const json transform = {{"header", header()},
+                          {"child_frame_id", "chest"},
+                          {"transform", {{"translation", vector(1.0, 2.0, 3.0)}, {"rotation", rotation}}}};
+  EXPECT_EQ(read_by_definition(transforms_type(), message), json({{"transforms", json::array({transform})}}));
 }
 
 TEST(LiveMessages, ConductanceIsAGridLikeForce) {

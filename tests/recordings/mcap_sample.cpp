@@ -54,7 +54,7 @@ Json frame_json(const RawFrame& frame) {
   return json;
 }
 
-RawFrame support::random_frame(Random& random, int number) {
+RawFrame random_frame(Random& random, int number) {
   RawFrame frame;
   const Nanos arrival(1'760'000'000'000'000'000 + number * 1'000'000LL);
   frame.time = arrival - Nanos(static_cast<std::int64_t>(random.below(500'000)));
@@ -98,7 +98,7 @@ bool write_sample(const std::string& folder, McapCompression compression, const 
   Random random(7);
   expected = Json::array();
   for (int i = 0; i < 300; ++i) {
-    const RawFrame frame = support::random_frame(random, i);
+    const RawFrame frame = random_frame(random, i);
     const ForceFrame forces = random_forces(random, frame);
     expected.push_back(frame_json(frame));
     if (i % 3 == 0) {

@@ -8,7 +8,6 @@
 
 #include "dermis/core/random.hpp"
 #include "support/mutations.hpp"
-#include "support/simd_targets.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::recordings {
@@ -106,14 +105,6 @@ TEST(Mcap, WhatIsWrittenReadsBack) {
     EXPECT_EQ((*reader)->metadata()[0], (McapMetadata{"about", {{"key", "value"}, {"other", ""}}}));
     EXPECT_EQ((*reader)->compressions(), std::vector<McapCompression>{compression});
   }
-}
-
-TEST(Mcap, ChecksumsDoNotDependOnTheInstructionSet) {
-  const std::string bytes = small_file(McapCompression::none);
-  support::for_each_simd_target([&] {
-    EXPECT_EQ(small_file(McapCompression::none), bytes);
-    EXPECT_FALSE(content_of(bytes).error);
-  });
 }
 
 TEST(Mcap, AFileThatIsCutReadsUpToItsLastWholeRecord) {

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
+#include <ostream>
 #include <random>
 #include <sstream>
 #include <string>
@@ -49,6 +50,10 @@ struct CircuitKind {
   IdleColumns idle_columns = IdleColumns::loaded;
   bool has_real_amplifiers = false;
 };
+
+std::ostream& operator<<(std::ostream& out, const CircuitKind& kind) {
+  return out << kind.name;
+}
 
 constexpr std::array kCircuitKinds{
     CircuitKind{"divider", Circuit::divider},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ struct NamedCircuit {
   bool real_amplifiers = false;
   bool resistive_lines = false;
 };
+
+inline std::ostream& operator<<(std::ostream& out, const NamedCircuit& circuit) {
+  return out << circuit.name;
+}
 
 inline std::vector<NamedCircuit> all_circuits() {
   using enum Circuit;

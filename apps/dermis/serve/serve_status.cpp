@@ -64,11 +64,41 @@ messages::Diagnosis diagnose(const std::string& name, const pipeline::Model& mod
   return diagnosis;
 }
 
+messages::CalibrationState::Stage stage_of(calibration::GuideStage stage) {
+  using calibration::GuideStage;
+  using Stage = messages::CalibrationState::Stage;
+  switch (stage) {
+    case GuideStage::none: return Stage::none;
+    case GuideStage::unloaded: return Stage::unloaded;
+    case GuideStage::pressing: return Stage::pressing;
+    case GuideStage::fitting: return Stage::fitting;
+    case GuideStage::done: return Stage::done;
+    case GuideStage::failed: return Stage::failed;
+  }
+  return Stage::none;
+}
+
+messages::CalibrationState::Hint hint_of(calibration::GuideHint hint) {
+  using calibration::GuideHint;
+  using Hint = messages::CalibrationState::Hint;
+  switch (hint) {
+    case GuideHint::none: return Hint::none;
+    case GuideHint::press: return Hint::press;
+    case GuideHint::hold: return Hint::hold;
+    case GuideHint::release: return Hint::release;
+    case GuideHint::other_taxel: return Hint::other_taxel;
+    case GuideHint::unsteady: return Hint::unsteady;
+    case GuideHint::too_short: return Hint::too_short;
+    case GuideHint::several: return Hint::several;
+  }
+  return Hint::none;
+}
+
 messages::CalibrationState state_of(CalibrationProgress progress) {
   messages::CalibrationState state;
   calibration::GuideState& guide = progress.state;
   state.array = std::move(progress.array);
-  state.stage = static_cast<messages::CalibrationState::Stage>(guide.stage);
+  state.stage = stage_of(guide.stage);
   state.message = std::move(guide.message);
   state.taxel = static_cast<std::uint32_t>(guide.taxel);
   state.weight_n = guide.weight_n;
@@ -78,7 +108,7 @@ messages::CalibrationState state_of(CalibrationProgress progress) {
   state.presses_total = static_cast<std::uint32_t>(guide.presses_total);
   state.median_relative_error = guide.median_relative_error.value_or(kUnknown);
   state.taxel_presses = std::move(guide.taxel_presses);
-  state.hint = static_cast<std::uint8_t>(guide.hint);
+  state.hint = hint_of(guide.hint);
   if (guide.pressed_taxel) state.pressed_taxel = static_cast<std::uint32_t>(*guide.pressed_taxel);
   state.unpressed_relative_error = guide.unpressed_relative_error.value_or(kUnknown);
   return state;

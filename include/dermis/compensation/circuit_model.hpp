@@ -15,7 +15,7 @@ namespace dermis::compensation {
 /// node voltages while line k is driven and w the response of the reading j to a current into each node (adjoint), a
 /// conductance g between the nodes a and b moves the reading by
 ///
-///   d T_kj / d g = -(w_a - w_b) (u_a - u_b)            formula (5) of research/literature.md A.5
+///   d T_kj / d g = -(w_a - w_b) (u_a - u_b)            formula (5) of docs/derivations.md
 ///
 /// Potentials are found by star-mesh elimination, without a subtraction: readings are right to a few roundings however
 /// far apart the conductances are. Readings stand at their taxel's row-major index. Not thread-safe: one per thread.

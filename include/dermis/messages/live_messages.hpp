@@ -84,6 +84,7 @@ void encode_statistics(const Statistics& statistics, std::string_view frame_id, 
 /// dermis_msgs/msg/CalibrationState.
 struct CalibrationState {
   enum class Stage : std::uint8_t { none, unloaded, pressing, fitting, done, failed };
+  enum class Hint : std::uint8_t { none, press, hold, release, other_taxel, unsteady, too_short, several };
   Nanos time{};
   std::string array;
   Stage stage = Stage::none;
@@ -96,7 +97,7 @@ struct CalibrationState {
   std::uint32_t presses_total = 0;
   double median_relative_error = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::uint8_t> taxel_presses;
-  std::uint8_t hint = 0;
+  Hint hint = Hint::none;
   std::optional<std::uint32_t> pressed_taxel{};
   double unpressed_relative_error = std::numeric_limits<double>::quiet_NaN();
 };

@@ -9,32 +9,12 @@ export const CalibrationHint = { none: 0, press: 1, hold: 2, release: 3, otherTa
 
 const NO_TAXEL = 4294967295;
 
-/** dermis_msgs/msg/CalibrationState; docs/stream.md tells what the fields mean. */
-export interface CalibrationState {
-  stampS: number;
-  array: string;
-  stage: number;
-  message: string;
-  taxel: number;
-  weightN: number;
-  reading: number;
-  holdShare: number;
-  pressesDone: number;
-  pressesTotal: number;
-  medianRelativeError: number;
-  taxelPresses: Uint8Array;
-  hint: number;
-  /** -1: none. */
-  pressedTaxel: number;
-  unpressedRelativeError: number;
-}
-
 const reader = new CdrReader();
 
-export function readCalibrationState(message: DataView): CalibrationState {
-  reader.begin(message);
-  const state = {
-    stampS: reader.header(),
+/** dermis_msgs/CalibrationState.msg; `pressedTaxel` is -1 where none is. */
+export function readCalibrationState(message: DataView) {
+  return {
+    stampS: reader.begin(message).header(),
     array: reader.text(),
     stage: reader.uint8(),
     message: reader.text(),
@@ -45,16 +25,21 @@ export function readCalibrationState(message: DataView): CalibrationState {
     pressesDone: reader.uint32(),
     pressesTotal: reader.uint32(),
     medianRelativeError: reader.float64(),
-  };
-  const { begin, length } = reader.bytes();
-  const taxelPresses = new Uint8Array(message.buffer, message.byteOffset + begin, length);
-  const hint = reader.uint8();
-  const pressedTaxel = reader.uint32();
-  return {
-    ...state,
-    taxelPresses,
-    hint,
-    pressedTaxel: pressedTaxel === NO_TAXEL ? -1 : pressedTaxel,
+    taxelPresses: readBytes(message),
+    hint: reader.uint8(),
+    pressedTaxel: readTaxel(),
     unpressedRelativeError: reader.float64(),
   };
+}
+
+export type CalibrationState = ReturnType<typeof readCalibrationState>;
+
+function readBytes(message: DataView): Uint8Array {
+  const { begin, length } = reader.bytes();
+  return new Uint8Array(message.buffer, message.byteOffset + begin, length);
+}
+
+function readTaxel(): number {
+  const taxel = reader.uint32();
+  return taxel === NO_TAXEL ? -1 : taxel;
 }

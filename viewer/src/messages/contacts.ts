@@ -4,7 +4,7 @@ import { CdrReader } from "./cdr_reader";
 
 export const ContactPhase = { onset: 0, held: 1, release: 2 } as const;
 
-/** dermis_msgs/msg/Contact; docs/stream.md tells what the fields mean. SI units. */
+/** dermis_msgs/Contact.msg without `velocity`. */
 export class Contact {
   id = 0;
   phase = 0;
@@ -28,7 +28,7 @@ export class Contact {
   readonly normal = new Float64Array(3);
 }
 
-/** dermis_msgs/msg/Contacts: of one frame of one array. `contacts` is longer than `count` where there were more before. */
+/** dermis_msgs/Contacts.msg: of one frame of one array. `contacts` is longer than `count` where there were more before. */
 export class ContactsFrame {
   stampS = 0;
   totalForceN = 0;

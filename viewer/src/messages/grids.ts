@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { CdrReader } from "./cdr_reader";
 
-/** status of a taxel, as docs/stream.md numbers them. */
+/** dermis_msgs/TaxelStatus.msg. */
 export const TaxelStatus = { ok: 0, saturated: 1, aboveRange: 2, dead: 3, lineFault: 4, invalid: 5 } as const;
 
 /** Values of all taxels, row-major. Read again and again into the same arrays. */

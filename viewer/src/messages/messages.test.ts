@@ -1,40 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { describe, expect, it } from "vitest";
-import { readCalibrationState } from "./calibration_state";
+import { ros2humble } from "@foxglove/rosmsg-msgs-common";
+import { CalibrationHint, CalibrationStage, readCalibrationState } from "./calibration_state";
 import { CdrReader } from "./cdr_reader";
-import { ContactsFrame, readContacts, readContactsArray } from "./contacts";
-import { emptyGrid, type PointsFrame, readCounts, readGrid, readPoints } from "./grids";
-import { readHealth, readStatistics } from "./statistics";
-import { written } from "./test_messages";
+import { ContactPhase, ContactsFrame, readContacts, readContactsArray } from "./contacts";
+import { emptyGrid, type PointsFrame, readCounts, readGrid, readPoints, TaxelStatus } from "./grids";
+import { DiagnosticLevel, readHealth, readStatistics } from "./statistics";
+import { constants, type Definition, definitions, full, sample, simpleFields, written } from "./test_messages";
 
 const header = { stamp: { sec: 1234, nanosec: 500000000 }, frame_id: "suit" };
 const zero = { x: 0, y: 0, z: 0 };
 
-function contact(id: number): object {
-  return {
-    id,
-    phase: 1,
-    onset: { sec: 1230, nanosec: 250000000 },
-    x: 0.0125,
-    y: 0.031,
-    sigma_x: 0.0002,
-    sigma_y: 0.0003,
-    velocity_x: 0.1,
-    velocity_y: -0.2,
-    force_n: 12.5,
-    sigma_force_n: 0.25,
-    area_m2: 4e-4,
-    peak_pressure_pa: 52000,
-    mean_pressure_pa: 31000,
-    major_axis_m: 0.006,
-    minor_axis_m: 0.004,
-    angle_rad: 0.7,
-    taxels: 9,
-    position: { x: 0.1, y: 0.2, z: 0.3 },
-    normal: { x: 0, y: 0, z: 1 },
-    velocity: zero,
-  };
+function contact(id: number): Record<string, unknown> {
+  return { ...sample("dermis_msgs/msg/Contact"), id };
 }
 
 function contacts(array: string, ids: number[]): DataView {
@@ -56,28 +35,11 @@ describe("contacts", () => {
     expect(frame).toMatchObject({ stampS: 1234.5, totalForceN: 25, sigmaTotalN: 0.5, hasCentreOfPressure: true, count: 2 });
     expect([...frame.centreOfPressure]).toEqual([1, 2, 3]);
     const [, second] = frame.contacts;
-    expect(second).toMatchObject({
-      id: 9,
-      phase: 1,
-      onsetS: 1230.25,
-      x: 0.0125,
-      y: 0.031,
-      sigmaX: 0.0002,
-      sigmaY: 0.0003,
-      velocityX: 0.1,
-      velocityY: -0.2,
-      forceN: 12.5,
-      sigmaForceN: 0.25,
-      areaM2: 4e-4,
-      peakPressurePa: 52000,
-      meanPressurePa: 31000,
-      majorAxisM: 0.006,
-      minorAxisM: 0.004,
-      angleRad: 0.7,
-      taxels: 9,
-    });
-    expect([...second!.position]).toEqual([0.1, 0.2, 0.3]);
-    expect([...second!.normal]).toEqual([0, 0, 1]);
+    const { position, normal, onset, velocity: _, ...rest } = contact(9);
+    expect(second).toMatchObject(simpleFields(rest));
+    expect(second!.onsetS).toBe((onset as { sec: number }).sec + 0.25);
+    expect([...second!.position]).toEqual(Object.values(position as object));
+    expect([...second!.normal]).toEqual(Object.values(normal as object));
   });
 
   it("are told apart by array without reading the rest", () => {
@@ -178,46 +140,12 @@ describe("points", () => {
 
 describe("statistics, health and calibration", () => {
   it("read as they were written", () => {
-    const array = {
-      name: "chest",
-      ended: false,
-      error: "the port is gone",
-      frames: 5000000000n,
-      rejected: 1n,
-      lost: 2n,
-      damaged: 3n,
-      rate_hz: 999.5,
-      jitter_s: 2e-5,
-      latency_p50_s: 1.5e-5,
-      latency_p99_s: 6e-5,
-      temperature_celsius: NaN,
-      supply_v: 5.02,
-    };
-    const statistics = { header, arrays: [array], recording: true, recording_file: "a.mcap", recording_frames: 17n, clients: 2, client_drops: 4n };
-    expect(readStatistics(written("dermis_msgs/msg/Statistics", statistics))).toEqual({
+    const statistics = sample("dermis_msgs/msg/Statistics");
+    const [array] = statistics["arrays"] as [Record<string, unknown>];
+    expect(readStatistics(written("dermis_msgs/msg/Statistics", { ...statistics, header }))).toEqual({
+      ...simpleFields(statistics),
       stampS: 1234.5,
-      arrays: [
-        {
-          name: "chest",
-          ended: false,
-          error: "the port is gone",
-          frames: 5000000000,
-          rejected: 1,
-          lost: 2,
-          damaged: 3,
-          rateHz: 999.5,
-          jitterS: 2e-5,
-          latencyP50S: 1.5e-5,
-          latencyP99S: 6e-5,
-          temperatureCelsius: NaN,
-          supplyV: 5.02,
-        },
-      ],
-      recording: true,
-      recordingFile: "a.mcap",
-      recordingFrames: 17,
-      clients: 2,
-      clientDrops: 4,
+      arrays: [simpleFields(array)],
     });
   });
 
@@ -229,24 +157,34 @@ describe("statistics, health and calibration", () => {
   });
 
   it("guide a calibration", () => {
-    const state = {
-      header,
-      array: "palm",
-      stage: 2,
-      message: "Press r1c0",
-      taxel: 8,
-      weight_n: 5,
-      reading: 1.75,
-      hold_share: 0.5,
-      presses_done: 3,
-      presses_total: 12,
-      median_relative_error: NaN,
-      taxel_presses: new Uint8Array([1, 0, 2]),
-    };
-    const read = readCalibrationState(written("dermis_msgs/msg/CalibrationState", state));
-    expect(read).toMatchObject({ array: "palm", stage: 2, message: "Press r1c0", taxel: 8, weightN: 5, reading: 1.75, holdShare: 0.5 });
-    expect(read).toMatchObject({ pressesDone: 3, pressesTotal: 12, medianRelativeError: NaN });
-    expect([...read.taxelPresses]).toEqual([1, 0, 2]);
+    const state = sample("dermis_msgs/msg/CalibrationState");
+    expect(readCalibrationState(written("dermis_msgs/msg/CalibrationState", { ...state, header }))).toEqual({
+      ...simpleFields(state),
+      stampS: 1234.5,
+      taxelPresses: state["taxel_presses"],
+    });
+    const alone = { ...state, header, pressed_taxel: 4294967295 };
+    expect(readCalibrationState(written("dermis_msgs/msg/CalibrationState", alone)).pressedTaxel).toBe(-1);
+  });
+});
+
+describe("the .msg files", () => {
+  it("number what the viewer tells apart", () => {
+    expect(CalibrationStage).toEqual(constants("dermis_msgs/msg/CalibrationState"));
+    expect(CalibrationHint).toEqual(constants("dermis_msgs/msg/CalibrationHint"));
+    expect(ContactPhase).toEqual(constants("dermis_msgs/msg/Contact"));
+    expect(DiagnosticLevel).toEqual(constants("diagnostic_msgs/msg/DiagnosticStatus"));
+    expect(TaxelStatus).toEqual(constants("dermis_msgs/msg/TaxelStatus"));
+  });
+
+  it("of ROS are those of ROS", () => {
+    const fields = ({ definitions: all }: Definition): string[] => all.map(({ name, type, isArray }) => `${type} ${name} ${isArray === true}`);
+    const ros = Object.entries(ros2humble as Record<string, Definition>).filter(([name]) => definitions.has(full(name)));
+    expect(ros.length).toBeGreaterThan(10);
+    for (const [name, theirs] of ros) {
+      const ours = fields(definitions.get(full(name))!).map((field) => field.replace(/^byte /, "uint8 "));
+      expect(ours, name).toEqual(fields(theirs).map((field) => field.replace("/msg/", "/").replace(/^byte /, "uint8 ")));
+    }
   });
 });
 

@@ -2,41 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { CdrReader } from "./cdr_reader";
 
-/** dermis_msgs/msg/ArrayStatistics; NaN: not known. */
-export interface ArrayStatistics {
-  name: string;
-  ended: boolean;
-  error: string;
-  frames: number;
-  rejected: number;
-  lost: number;
-  damaged: number;
-  rateHz: number;
-  jitterS: number;
-  latencyP50S: number;
-  latencyP99S: number;
-  temperatureCelsius: number;
-  supplyV: number;
-}
-
-/** dermis_msgs/msg/Statistics. */
-export interface Statistics {
-  stampS: number;
-  arrays: ArrayStatistics[];
-  recording: boolean;
-  recordingFile: string;
-  recordingFrames: number;
-  clients: number;
-  clientDrops: number;
-}
-
-/** diagnostic_msgs/msg/DiagnosticStatus. */
-export interface HealthStatus {
-  level: number;
-  name: string;
-  message: string;
-  values: { key: string; value: string }[];
-}
+/** The levels of diagnostic_msgs/DiagnosticStatus.msg. */
+export const DiagnosticLevel = { ok: 0, warn: 1, error: 2, stale: 3 } as const;
 
 const MOST_ARRAYS = 4096;
 const MOST_VALUES = 65536;
@@ -48,7 +15,8 @@ function readMany<T>(most: number, readOne: () => T): T[] {
   return Array.from({ length: count }, readOne);
 }
 
-export function readStatistics(message: DataView): Statistics {
+/** dermis_msgs/Statistics.msg. */
+export function readStatistics(message: DataView) {
   return {
     stampS: reader.begin(message).header(),
     arrays: readMany(MOST_ARRAYS, readArrayStatistics),
@@ -60,7 +28,9 @@ export function readStatistics(message: DataView): Statistics {
   };
 }
 
-function readArrayStatistics(): ArrayStatistics {
+export type Statistics = ReturnType<typeof readStatistics>;
+
+function readArrayStatistics() {
   return {
     name: reader.text(),
     ended: reader.bool(),
@@ -78,8 +48,10 @@ function readArrayStatistics(): ArrayStatistics {
   };
 }
 
-/** diagnostic_msgs/msg/DiagnosticArray. */
-export function readHealth(message: DataView): HealthStatus[] {
+export type ArrayStatistics = ReturnType<typeof readArrayStatistics>;
+
+/** diagnostic_msgs/DiagnosticArray.msg: `status`, without the identifiers of the hardware. */
+export function readHealth(message: DataView) {
   reader.begin(message).header();
   return readMany(MOST_ARRAYS, () => {
     const level = reader.uint8();
@@ -90,3 +62,5 @@ export function readHealth(message: DataView): HealthStatus[] {
     return { level, name, message: text, values };
   });
 }
+
+export type HealthStatus = ReturnType<typeof readHealth>[number];

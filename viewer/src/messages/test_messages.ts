@@ -1,55 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { readFileSync } from "node:fs";
+import { readdirSync, readFileSync } from "node:fs";
+import { fileURLToPath } from "node:url";
 import { parse } from "@foxglove/rosmsg";
-import { ros2humble } from "@foxglove/rosmsg-msgs-common";
 import { MessageWriter } from "@foxglove/rosmsg2-serialization";
 
-/** Messages for the tests, written by a library that is not ours from the definitions of docs/stream.md. */
+/** Messages for the tests, written by a library that is not ours from the .msg files that the server is built from. */
 
-type Definition = ReturnType<typeof parse>[number];
+export type Definition = ReturnType<typeof parse>[number];
 
-const GRID: Definition[] = parse(
-  `builtin_interfaces/Time timestamp
-string frame_id
-geometry_msgs/Pose pose
-uint32 column_count
-foxglove_msgs/Vector2 cell_size
-uint32 row_stride
-uint32 cell_stride
-foxglove_msgs/PackedElementField[] fields
-uint8[] data
-${"=".repeat(80)}
-MSG: foxglove_msgs/Vector2
-float64 x
-float64 y
-${"=".repeat(80)}
-MSG: foxglove_msgs/PackedElementField
-string name
-uint32 offset
-uint8 type`,
-  { ros2: true, skipTypeFixup: true },
-).map((definition) => (definition.name === undefined ? { ...definition, name: "foxglove_msgs/msg/Grid" } : definition));
+const FOLDER = fileURLToPath(new URL("../../../src/messages/msg/", import.meta.url));
 
-function documented(): Definition[] {
-  const page = readFileSync(new URL("../../../docs/stream.md", import.meta.url), "utf8");
-  const block = page.split("```").find((part) => part.includes("# dermis_msgs/msg/Contacts"))!;
-  return block
-    .split(/^# (?=dermis_msgs\/msg\/)/m)
-    .slice(1)
-    .map((text) => {
-      const [name, ...lines] = text.split("\n");
-      return { ...parse(lines.join("\n"), { ros2: true, skipTypeFixup: true })[0]!, name: name!.trim() };
-    });
-}
+/** By "package/msg/Type". */
+export const definitions = new Map<string, Definition>(
+  (readdirSync(FOLDER, { recursive: true }) as string[]).filter((file) => file.endsWith(".msg")).map((file) => {
+    const name = full(file.slice(0, -".msg".length));
+    return [name, { ...parse(readFileSync(FOLDER + file, "utf8"), { ros2: true, skipTypeFixup: true })[0]!, name }];
+  }),
+);
 
-const definitions = new Map<string, Definition>();
-for (const [name, definition] of Object.entries(ros2humble)) definitions.set(full(name), definition as Definition);
-for (const definition of [...GRID, ...documented()]) definitions.set(full(definition.name!), definition);
-
-function full(name: string): string {
+export function full(name: string): string {
   const [module, type] = [name.split("/")[0]!, name.split("/").at(-1)!];
   return `${module}/msg/${type}`;
+}
+
+export function camelCase(name: string): string {
+  return name.toLowerCase().replace(/_([a-z])/g, (_, letter: string) => letter.toUpperCase());
+}
+
+/** The constants of a type as an object of TypeScript has them. */
+export function constants(name: string): Record<string, unknown> {
+  const constant = definitions.get(name)!.definitions.filter((field) => field.isConstant === true);
+  return Object.fromEntries(constant.map((field) => [camelCase(field.name), field.value]));
 }
 
 /** The definition of a type and of all that it is made of, the type itself first. */
@@ -57,7 +39,7 @@ function closure(name: string, found = new Map<string, Definition>()): Definitio
   const definition = definitions.get(name);
   if (definition === undefined) throw new Error(`no definition of ${name}`);
   const complete = definition.definitions.map((field) => (field.isComplex === true ? { ...field, type: full(field.type) } : field));
-  found.set(name, { ...definition, name, definitions: complete });
+  found.set(name, { ...definition, definitions: complete });
   for (const field of complete) if (field.isComplex === true && !found.has(field.type)) closure(field.type, found);
   return [...found.values()];
 }
@@ -67,4 +49,25 @@ export function written(name: string, message: object): DataView {
   const { name: _, ...unnamed } = root!;
   const bytes = new MessageWriter([unnamed, ...others]).writeMessage(message);
   return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+}
+
+/** A message whose numbers and texts all differ; one of each sequence. */
+export function sample(name: string, next = { value: 1 }): Record<string, unknown> {
+  const one = (field: Definition["definitions"][number]): unknown => {
+    if (field.isComplex === true) return sample(full(field.type), next);
+    if (field.type === "bool") return true;
+    const value = ++next.value;
+    if (field.type === "time") return { sec: value, nanosec: 250000000 };
+    if (field.type === "string") return `text ${value}`;
+    return field.type === "uint64" ? BigInt(value) : value;
+  };
+  const sequence = (field: Definition["definitions"][number]): unknown => (field.type === "uint8" ? new Uint8Array([++next.value]) : [one(field)]);
+  const fields = definitions.get(name)!.definitions.filter((field) => field.isConstant !== true);
+  return Object.fromEntries(fields.map((field) => [field.name, field.isArray === true ? sequence(field) : one(field)]));
+}
+
+/** The numbers, flags and texts of a message as an object of TypeScript has them. */
+export function simpleFields(message: Record<string, unknown>): Record<string, unknown> {
+  const simple = Object.entries(message).filter(([, value]) => typeof value !== "object");
+  return Object.fromEntries(simple.map(([name, value]) => [camelCase(name), typeof value === "bigint" ? Number(value) : value]));
 }

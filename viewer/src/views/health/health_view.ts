@@ -2,12 +2,13 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setData, setText } from "../../dom";
 import { count, engineering, fixed } from "../../format";
-import type { ArrayStatistics, HealthStatus, Statistics } from "../../messages/statistics";
+import { type ArrayStatistics, DiagnosticLevel, type HealthStatus, type Statistics } from "../../messages/statistics";
 import type { View, ViewContext, ViewFactory } from "../../view";
 
 const HEADS = ["Array", "State", "Rate", "Jitter", "Frames", "Lost", "Damaged", "Rejected", "Latency p50", "p99", "Temperature", "Supply"];
-const LEVELS = ["good", "warn", "bad", "warn"] as const;
-const LEVEL_WORDS = ["well", "warning", "error", "no news"] as const;
+const { ok, warn, error, stale } = DiagnosticLevel;
+const LEVELS: Record<number, string> = { [ok]: "good", [warn]: "warn", [error]: "bad", [stale]: "warn" };
+const LEVEL_WORDS: Record<number, string> = { [ok]: "well", [warn]: "warning", [error]: "error", [stale]: "no news" };
 const PERIOD_MS = 500;
 
 function time(seconds: number): string {

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""Usage: generate.py MSG_FOLDER OUT.cpp: writes the types of messages (ros_messages.hpp, live_messages.hpp) from their
+.msg files, and the assertions that the enumerations of C++ are those of the files."""
+
+import pathlib
+import re
+import sys
+
+FUNCTIONS = {
+    "image_type": "sensor_msgs/Image",
+    "temperature_type": "sensor_msgs/Temperature",
+    "grid_type": "foxglove_msgs/Grid",
+    "acquisition_type": "dermis_msgs/Acquisition",
+    "frame_status_type": "dermis_msgs/FrameStatus",
+    "point_cloud_type": "sensor_msgs/PointCloud2",
+    "contacts_type": "dermis_msgs/Contacts",
+    "statistics_type": "dermis_msgs/Statistics",
+    "calibration_state_type": "dermis_msgs/CalibrationState",
+    "diagnostics_type": "diagnostic_msgs/DiagnosticArray",
+    "transforms_type": "tf2_msgs/TFMessage",
+}
+
+# Whose constants are the enumerators, in lower case.
+ENUMERATIONS = {
+    "dermis_msgs/CalibrationHint": "CalibrationState::Hint",
+    "dermis_msgs/CalibrationState": "CalibrationState::Stage",
+    "dermis_msgs/Contact": "ContactPhase",
+    "dermis_msgs/FrameStatus": "FrameStatus",
+    "dermis_msgs/TaxelStatus": "TaxelStatus",
+    "diagnostic_msgs/DiagnosticStatus": "Diagnosis::Level",
+    "foxglove_msgs/PackedElementField": "PackedElementType",
+    "sensor_msgs/PointField": "PointFieldType",
+}
+SPELLED_OUT = {"warn": "warning"}
+UNNAMED = {"FrameStatus": ["FrameStatus::ok"]}  # no flag
+
+CONSTANT = re.compile(r"^(?:uint8|byte) ([A-Z]\w*)=(\d+)", re.MULTILINE)
+MEMBER_TYPE = re.compile(r"^(\w+/\w+)", re.MULTILINE)
+
+
+def with_dependencies(name, texts):
+    """The names of the type and of all that it is made of: depth first, types of ROS before ours."""
+    found = []
+
+    def visit(used):
+        if used in found:
+            return
+        found.append(used)
+        for member in MEMBER_TYPE.findall(texts[used]):
+            visit(member)
+
+    visit(name)
+    return found[:1] + sorted(found[1:], key=lambda used: used.startswith("dermis_msgs/"))
+
+
+def definition(name, texts):
+    first, *others = with_dependencies(name, texts)
+    return texts[first] + "".join(f"{'=' * 80}\nMSG: {other}\n{texts[other]}" for other in others)
+
+
+def function(name, message, texts):
+    return f"""const MessageType& {name}() {{
+  static const MessageType kType{{"{message.replace('/', '/msg/')}", R"({definition(message, texts)})"}};
+  return kType;
+}}
+"""
+
+
+def assertions(message, enumeration, texts):
+    """The values are the same, and (by -Wswitch) no enumerator lacks its constant."""
+    constants = [(name.lower(), value) for name, value in CONSTANT.findall(texts[message])]
+    enumerators = [(f"{enumeration}::{SPELLED_OUT.get(name, name)}", value) for name, value in constants]
+    cases = [name for name, _ in enumerators] + UNNAMED.get(enumeration, [])
+    return "\n".join([
+        f"// {message}.msg",
+        *(f"static_assert({name} == {enumeration}{{{value}}});" for name, value in enumerators),
+        f"[[maybe_unused]] constexpr void assert_all_are_there({enumeration} value) {{",
+        "  switch (value) {",
+        *(f"    case {case}:" for case in cases),
+        "      break;",
+        "  }",
+        "}",
+        "",
+    ])
+
+
+def source(texts):
+    parts = [assertions(*item, texts) for item in ENUMERATIONS.items()]
+    functions = [function(*item, texts) for item in FUNCTIONS.items()]
+    return f"""// Written by src/messages/generate.py.
+#include "dermis/core/contacts.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/messages/live_messages.hpp"
+#include "dermis/messages/ros_messages.hpp"
+#include "messages/grid.hpp"
+#include "messages/point_field.hpp"
+
+namespace dermis::messages {{
+namespace {{
+
+{chr(10).join(parts)}
+}}  // namespace
+
+{chr(10).join(functions)}
+}}  // namespace dermis::messages
+"""
+
+
+if __name__ == "__main__":
+    folder, out = map(pathlib.Path, sys.argv[1:])
+    files = {path.relative_to(folder).with_suffix("").as_posix(): path.read_text() for path in folder.glob("*/*.msg")}
+    out.write_text(source(files))
