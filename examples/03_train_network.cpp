@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <vector>
 
-#include "dermis/network/feed_forward.hpp"
-#include "dermis/network/initialisation.hpp"
-#include "dermis/network/peaks.hpp"
-#include "dermis/network/training.hpp"
+#include "dermis/paper/feed_forward.hpp"
+#include "dermis/paper/initialisation.hpp"
+#include "dermis/paper/peaks.hpp"
+#include "dermis/paper/training.hpp"
 
 int main() {
-  using namespace dermis::network;  // NOLINT(google-build-using-namespace)
+  using namespace dermis::paper;  // NOLINT(google-build-using-namespace)
   const PeaksSamples known = peaks_samples();
   const Samples<double> samples{PeaksSamples::kCount, known.inputs, known.targets, {}};
   const NetworkShape shape{2, {{20, Activation::log_sigmoid}, {1, Activation::linear}}};

@@ -11,14 +11,14 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
-#include "dermis/calibration/bank_training.hpp"
 #include "dermis/core/version.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/content_hash.hpp"
 #include "dermis/files/loads_csv.hpp"
+#include "dermis/paper/bank_training.hpp"
+#include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "dermis/pipeline/paper_bank_file.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "progress.hpp"
 #include "seconds.hpp"
@@ -26,9 +26,9 @@
 namespace dermis::app {
 namespace {
 
-using calibration::BankTrainingReport;
 using calibration::Calibration;
 using calibration::CalibrationReport;
+using paper::BankTrainingReport;
 
 using Clock = std::chrono::steady_clock;
 
@@ -168,10 +168,10 @@ Status check_writable(const std::string& path) {
 
 Result<BankTrainingReport> train_bank(const CalibrateOptions& options, const calibration::SampleDatabase& database,
                                       Progress& progress) {
-  Result<calibration::TrainedBank> trained = calibration::train_paper_bank(
-      database, calibration::kBankSteps, kBankSeed, [&](double share) { progress.show("bank", share); });
+  Result<paper::TrainedBank> trained = paper::train_paper_bank(database, paper::kBankSteps, kBankSeed,
+                                                               [&](double share) { progress.show("bank", share); });
   if (!trained) return trained.error();
-  if (Status written = pipeline::write_paper_bank(options.bank, trained->bank); !written) return written.error();
+  if (Status written = paper::write_paper_bank(options.bank, trained->bank); !written) return written.error();
   return std::move(trained->report);
 }
 
@@ -200,7 +200,7 @@ Status calibrate(const CalibrateOptions& options) {
   const double circuit_s = seconds_since(start);
   progress.show("circuit", 1.0);
   if (!options.bank.empty()) {
-    if (Status checked = calibration::check_bank_samples(*database); !checked) return checked;
+    if (Status checked = paper::check_bank_samples(*database); !checked) return checked;
   }
   Result<Calibration> calibration =
       calibration::calibrate(*database, [&](const std::string& stage, double share) { progress.show(stage, share); });

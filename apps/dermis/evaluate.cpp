@@ -8,8 +8,8 @@
 #include "commands.hpp"
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/files/loads_csv.hpp"
+#include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "dermis/pipeline/paper_bank_file.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/report/evaluation_report.hpp"
 
@@ -70,9 +70,9 @@ Status evaluate(const EvaluateOptions& options) {
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = files::read_loads(options.loads, model->array, frames->size());
   if (!loads) return loads.error();
-  std::optional<fusion::PaperBank> bank;
+  std::optional<paper::PaperBank> bank;
   if (!options.bank.empty()) {
-    Result<fusion::PaperBank> read = pipeline::read_paper_bank(options.bank);
+    Result<paper::PaperBank> read = paper::read_paper_bank(options.bank);
     if (!read) return read.error();
     bank = std::move(*read);
   }

@@ -35,11 +35,11 @@ struct Errors {
 /// All estimators on one frame.
 class EstimatorRow {
  public:
-  EstimatorRow(const pipeline::Model& model, pipeline::Pipeline pipeline, fusion::PaperBank* bank)
-      : model_(model), pipeline_(std::move(pipeline)), bank_(bank), reading_(model.array.taxel_count()) {
+  EstimatorRow(const pipeline::Model& model, pipeline::Pipeline pipeline, FurtherEstimator* further)
+      : model_(model), pipeline_(std::move(pipeline)), further_(further), reading_(model.array.taxel_count()) {
     names_.emplace_back("dermis");
     for (const fusion::LookUpTables& tables : model.baselines) names_.push_back(tables.name);
-    if (bank != nullptr) names_.emplace_back(kPaperBankName);
+    if (further != nullptr) names_.push_back(further->name());
     newtons_.assign(names_.size(), std::vector<float>(model.array.taxel_count()));
   }
 
@@ -54,7 +54,9 @@ class EstimatorRow {
       const bool bare = tables.signal == fusion::LookUpSignal::reading;
       tables.estimate(bare ? reading_ : pipeline_.conductance().siemens, raw.temperature_celsius, newtons_[k + 1]);
     }
-    if (bank_ != nullptr) bank_->estimate(pipeline_.conditioned().ratio, raw.temperature_celsius, newtons_.back());
+    if (further_ != nullptr) {
+      further_->estimate(pipeline_.conditioned().ratio, raw.temperature_celsius, newtons_.back());
+    }
     return true;
   }
 
@@ -69,7 +71,7 @@ class EstimatorRow {
  private:
   const pipeline::Model& model_;
   pipeline::Pipeline pipeline_;
-  fusion::PaperBank* bank_;
+  FurtherEstimator* further_;
   ForceFrame force_;
   std::vector<std::string> names_;  // [estimators]
   std::vector<double> reading_;
@@ -367,18 +369,18 @@ ErrorSummary summarise(std::vector<double> errors) {
 }
 
 Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFrame> frames, std::span<const Load> loads,
-                            fusion::PaperBank* bank) {
+                            FurtherEstimator* further) {
   if (Status checked = check_loads(model.array, frames.size(), loads); !checked) return checked.error();
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
-  if (bank != nullptr && bank->taxel_count() != model.array.taxel_count()) {
-    return bad_input(fmt::format("the paper's bank is for {} taxels, the model for {}", bank->taxel_count(),
+  if (further != nullptr && further->taxel_count() != model.array.taxel_count()) {
+    return bad_input(fmt::format("{} is for {} taxels, the model for {}", further->name(), further->taxel_count(),
                                  model.array.taxel_count()));
   }
 
   Evaluation evaluation;
   evaluation.array = model.array;
-  EstimatorRow row(model, std::move(*pipeline), bank);
+  EstimatorRow row(model, std::move(*pipeline), further);
   Errors errors(row.names().size());
   ExampleChoice examples;
   const std::vector<std::vector<Load>> loads_of = group_by_frame(loads, frames.size());
@@ -401,6 +403,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   }
   if (evaluation.frames == 0) return bad_input("no labelled frame fits the model's array");
   evaluation.estimators = summarise_estimators(row.names(), evaluation, errors);
+  if (further != nullptr) evaluation.estimators.back().description = further->description();
   evaluation.bound = bound.comparison();
   evaluation.coverage = coverage_of(evaluation.taxels);
   evaluation.examples = std::move(examples).chosen();

@@ -8,8 +8,6 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr double kLeastSpanCelsius = 3.0;      // less is the noise of a sensor, not a temperature coefficient
-constexpr double kGlitches = 0.01;             // share of the samples at either end that does not count
 constexpr double kLeastNoiseCounts = 1.0 / 3;  // quantisation alone gives 1 / sqrt(12)
 constexpr std::size_t kLeastFramesForNoise = 5;
 
@@ -49,7 +47,7 @@ Line fit_line(const std::vector<UnloadedPoint>& points) {
     covariance += (point.siemens - mean_y) * (point.temperature_offset - mean_x) / count;
     variance += std::pow(point.temperature_offset - mean_x, 2) / count;
   }
-  const bool has_slope = 4.0 * variance >= kLeastSpanCelsius * kLeastSpanCelsius;
+  const bool has_slope = 4.0 * variance >= TemperatureSpan::kLeastCelsius * TemperatureSpan::kLeastCelsius;
   const double slope = has_slope ? covariance / variance : 0.0;
   double square = 0.0;
   for (const UnloadedPoint& point : points) {
@@ -59,19 +57,6 @@ Line fit_line(const std::vector<UnloadedPoint>& points) {
 }
 
 }  // namespace
-
-TemperatureSpan temperature_span(const SampleDatabase& database) {
-  std::vector<double> temperatures;
-  for (const Sample& sample : database.samples) {
-    if (!sample.temperature_celsius) return {};
-    temperatures.push_back(*sample.temperature_celsius);
-  }
-  std::sort(temperatures.begin(), temperatures.end());
-  const auto glitches = static_cast<std::size_t>(kGlitches * static_cast<double>(temperatures.size()));
-  const double lowest = temperatures[glitches];
-  const double highest = temperatures[temperatures.size() - 1 - glitches];
-  return {0.5 * (lowest + highest), 0.5 * (highest - lowest), highest - lowest >= kLeastSpanCelsius};
-}
 
 double temperature_offset(const Sample& sample, const TemperatureSpan& span) {
   if (!span.is_input) return 0.0;

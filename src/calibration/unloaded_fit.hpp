@@ -5,17 +5,9 @@
 #include <vector>
 
 #include "dermis/calibration/sample_database.hpp"
+#include "dermis/calibration/temperature_span.hpp"
 
 namespace dermis::calibration {
-
-/// The temperatures of a calibration: its 1st to 99th percentile, so that a glitch of the sensor does not stretch it.
-struct TemperatureSpan {
-  double centre_celsius = 20.0;
-  double half_span_celsius = 0.0;
-  bool is_input = false;  ///< Every sample has a temperature and they differ enough to learn from.
-};
-
-[[nodiscard]] TemperatureSpan temperature_span(const SampleDatabase& database);
 
 /// Sample temperature from the centre [C], clamped to the span; 0 where temperature is not an input.
 [[nodiscard]] double temperature_offset(const Sample& sample, const TemperatureSpan& span);

@@ -4,10 +4,8 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 namespace dermis::network {
 namespace {
@@ -31,23 +29,24 @@ std::span<const double> view(const Dense& dense) {
 }
 
 /// Half the sum of squared residuals.
-class ResidualProblem {
+class ResidualProblem : public LeastSquaresProblem {
  public:
   ResidualProblem(const ResidualFunction& residual_function, std::size_t residual_count, std::size_t parameter_count)
       : residual_function_(residual_function),
         residuals_(static_cast<Eigen::Index>(residual_count)),
         jacobian_(residuals_.size(), static_cast<Eigen::Index>(parameter_count)) {}
 
-  double error(const Vector& point) {
-    residual_function_(view(point), view(residuals_), {});
+  double error(std::span<const double> point) override {
+    residual_function_(point, view(residuals_), {});
     return 0.5 * residuals_.squaredNorm();
   }
 
-  double linearise(const Vector& point, Vector& gradient, Matrix& normal) {
-    residual_function_(view(point), view(residuals_), view(jacobian_));
-    normal.setZero();
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.transpose());
-    gradient.noalias() = jacobian_.transpose() * residuals_;
+  double linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) override {
+    residual_function_(point, view(residuals_), view(jacobian_));
+    Eigen::Map<Matrix> square(normal.data(), jacobian_.cols(), jacobian_.cols());
+    square.setZero();
+    square.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.transpose());
+    Eigen::Map<Vector>(gradient.data(), jacobian_.cols()).noalias() = jacobian_.transpose() * residuals_;
     return 0.5 * residuals_.squaredNorm();
   }
 
@@ -57,30 +56,11 @@ class ResidualProblem {
   Matrix jacobian_;
 };
 
-/// The error of a network over samples.
-class NetworkProblem {
- public:
-  NetworkProblem(FeedForward<double>& network, const PackedSamples<double>& samples)
-      : network_(network), samples_(samples) {}
-
-  double error(const Vector& point) { return network_.error(view(point), samples_); }
-
-  double linearise(const Vector& point, Vector& gradient, Matrix& normal) {
-    return network_.normal_equations(view(point), samples_, view(gradient), view(normal));
-  }
-
- private:
-  FeedForward<double>& network_;
-  const PackedSamples<double>& samples_;
-};
-
-/// The damping loop. Problem: error(point), and linearise(point, gradient, normal), which gives the error, its gradient
-/// and the lower triangle of J^T J.
-template <typename Problem>
+/// The damping loop.
 class DampedDescent {
  public:
-  DampedDescent(Problem problem, std::vector<double>& parameters, const LevenbergMarquardtOptions& options)
-      : problem_(std::move(problem)),
+  DampedDescent(LeastSquaresProblem& problem, std::vector<double>& parameters, const LevenbergMarquardtOptions& options)
+      : problem_(problem),
         parameters_(parameters.data(), static_cast<Eigen::Index>(parameters.size())),
         options_(options),
         point_(parameters_),
@@ -90,7 +70,7 @@ class DampedDescent {
 
   LevenbergMarquardtReport run() {
     LevenbergMarquardtReport report;
-    error_ = problem_.linearise(point_, gradient_, normal_);
+    error_ = linearise();
     report.initial_error = error_;
     std::optional<Stop> stop = stop_at_start();
     while (!stop && report.iterations < options_.max_iterations) {
@@ -120,7 +100,7 @@ class DampedDescent {
 
   std::optional<Stop> iterate() {
     set_trial();
-    const double trial_error = problem_.error(trial_);
+    const double trial_error = problem_.error(view(trial_));
     const double reduction = error_ - trial_error;
     if (!(reduction > 0.0)) {
       damping_ *= kDampingFactor;
@@ -133,9 +113,11 @@ class DampedDescent {
     damping_ = std::max(damping_ / kDampingFactor, kMinDamping);
     if (error_ <= options_.error_goal) return Stop::error_goal;
     if (slow) return Stop::relative_reduction;
-    error_ = problem_.linearise(point_, gradient_, normal_);  // as a call that begins here has it, to the last bit
+    error_ = linearise();  // as a call that begins here has it, to the last bit
     return stop_at_gradient();
   }
+
+  double linearise() { return problem_.linearise(view(point_), view(gradient_), view(normal_)); }
 
   void set_trial() {
     damped_ = normal_;
@@ -145,7 +127,7 @@ class DampedDescent {
     trial_ = point_ - factors_.solve(gradient_);
   }
 
-  Problem problem_;
+  LeastSquaresProblem& problem_;
   Eigen::Map<Vector> parameters_;
   const LevenbergMarquardtOptions& options_;
   Vector point_;
@@ -162,14 +144,13 @@ class DampedDescent {
 
 LevenbergMarquardtReport minimise(const ResidualFunction& residual_function, std::size_t residual_count,
                                   std::vector<double>& parameters, const LevenbergMarquardtOptions& options) {
-  return DampedDescent(ResidualProblem(residual_function, residual_count, parameters.size()), parameters, options)
-      .run();
+  ResidualProblem problem(residual_function, residual_count, parameters.size());
+  return minimise(problem, parameters, options);
 }
 
-LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamples<double>& samples,
-                                  std::vector<double>& parameters, const LevenbergMarquardtOptions& options) {
-  assert(parameters.size() == network.shape().parameter_count());
-  return DampedDescent(NetworkProblem(network, samples), parameters, options).run();
+LevenbergMarquardtReport minimise(LeastSquaresProblem& problem, std::vector<double>& parameters,
+                                  const LevenbergMarquardtOptions& options) {
+  return DampedDescent(problem, parameters, options).run();
 }
 
 double FittedResidual::as_noise() const noexcept {

@@ -8,9 +8,10 @@
 #include <map>
 #include <utility>
 
+#include "dermis/report/estimator_table.hpp"
 #include "dermis/report/plot.hpp"
+#include "dermis/report/wording.hpp"
 #include "report/figures.hpp"
-#include "report/wording.hpp"
 
 namespace dermis::report {
 namespace {
@@ -204,17 +205,6 @@ Figure calibration_figure(const calibration::Evaluation& evaluation) {
   }
   figure.caption += missing_sentences(evaluation, samples);
   return figure;
-}
-
-double share_within(const calibration::Evaluation& evaluation, std::size_t estimator, double tolerance) {
-  std::size_t judged = 0;
-  std::size_t within = 0;
-  for (const auto& taxel : evaluation.taxels) {
-    if (taxel.true_newtons < calibration::kJudgedNewtons) continue;
-    ++judged;
-    if (std::abs(static_cast<double>(taxel.newtons[estimator]) / taxel.true_newtons - 1.0) <= tolerance) ++within;
-  }
-  return judged == 0 ? kMissing : static_cast<double>(within) / static_cast<double>(judged);
 }
 
 }  // namespace dermis::report

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "report/canvas.hpp"
+#include "dermis/report/canvas.hpp"
 
 #include <fmt/format.h>
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "dermis/report/plot.hpp"
+#include "dermis/report/wording.hpp"
 #include "report/figures.hpp"
-#include "report/wording.hpp"
 
 namespace dermis::report {
 namespace {

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/report/files.hpp"
+#include "dermis/report/page.hpp"
 #include "report/evaluation_sections.hpp"
 #include "report/figures.hpp"
-#include "report/files.hpp"
-#include "report/page.hpp"
 
 namespace dermis::report {
 namespace {

@@ -5,7 +5,7 @@
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "report/page.hpp"
+#include "dermis/report/page.hpp"
 
 namespace dermis::report {
 
@@ -15,12 +15,6 @@ void add_summary(Page& page, const calibration::Evaluation& evaluation);
 /// Errors of all estimators side by side, what each of them is, and the heading of the figures that follow. Nothing
 /// where nothing was judged.
 void add_estimators(Page& page, const calibration::Evaluation& evaluation, const pipeline::Model& model);
-
-/// The table alone; without rows where nothing was judged.
-[[nodiscard]] Table estimator_table(const calibration::Evaluation& evaluation);
-
-/// How to read the table, and what each estimator is.
-void add_legend(Page& page, const calibration::Evaluation& evaluation, const pipeline::Model& model);
 
 void add_array(Page& page, const ArrayDescription& array);
 void add_provenance(Page& page, const pipeline::Model& model);

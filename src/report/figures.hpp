@@ -2,23 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <cstddef>
-#include <string>
 #include <vector>
 
 #include "dermis/calibration/evaluation.hpp"
-#include "dermis/report/svg.hpp"
+#include "dermis/report/page.hpp"
 
 namespace dermis::report {
-
-/// One numbered figure of the report.
-struct Figure {
-  std::string file;  ///< "error_vs_force.svg"
-  std::string title;
-  std::string caption;  ///< Plain text; where there are no panels, why.
-  std::vector<Drawing> panels;
-  std::size_t columns = 1;  ///< Panels beside each other, where there is room.
-};
 
 /// What the estimators give against the known loads, as the paper's Fig. 11 to 13: a panel for each level of force,
 /// where the loads have a few levels, or else a panel for each estimator.
@@ -33,11 +22,5 @@ struct Figure {
 
 /// Tactile images of the example frames.
 [[nodiscard]] std::vector<Figure> tactile_figures(const calibration::Evaluation& evaluation);
-
-/// Share of the judged taxels whose relative error is within `tolerance`; [0, 1], or NaN where none is judged.
-[[nodiscard]] double share_within(const calibration::Evaluation& evaluation, std::size_t estimator, double tolerance);
-
-/// The relative error that the paper claims.
-inline constexpr double kPaperTolerance = 0.05;
 
 }  // namespace dermis::report

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "report/files.hpp"
+#include "dermis/report/files.hpp"
 
 #include <filesystem>
 #include <system_error>

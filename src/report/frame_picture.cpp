@@ -10,8 +10,8 @@
 #include <iterator>
 #include <numbers>
 
+#include "dermis/report/canvas.hpp"
 #include "dermis/report/heat_map.hpp"
-#include "report/canvas.hpp"
 #include "report/raster.hpp"
 
 namespace dermis::report {

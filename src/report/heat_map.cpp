@@ -11,7 +11,7 @@
 #include <map>
 #include <numbers>
 
-#include "report/canvas.hpp"
+#include "dermis/report/canvas.hpp"
 
 namespace dermis::report {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "report/page.hpp"
+#include "dermis/report/page.hpp"
 
 #include <fmt/format.h>
 
 #include <iterator>
 
-#include "report/canvas.hpp"
+#include "dermis/report/canvas.hpp"
 
 namespace dermis::report {
 namespace {

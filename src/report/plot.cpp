@@ -10,7 +10,7 @@
 #include <limits>
 #include <utility>
 
-#include "report/canvas.hpp"
+#include "dermis/report/canvas.hpp"
 
 namespace dermis::report {
 namespace {

@@ -8,7 +8,7 @@
 #include <cassert>
 #include <iterator>
 
-#include "report/canvas.hpp"
+#include "dermis/report/canvas.hpp"
 
 namespace dermis::report {
 namespace {

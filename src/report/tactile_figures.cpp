@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "dermis/report/tactile_image.hpp"
+#include "dermis/report/wording.hpp"
 #include "report/figures.hpp"
-#include "report/wording.hpp"
 
 namespace dermis::report {
 namespace {

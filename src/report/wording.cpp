@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "report/wording.hpp"
+#include "dermis/report/wording.hpp"
 
 #include <fmt/format.h>
 

@@ -61,6 +61,13 @@ class Rules(unittest.TestCase):
         self.write("apps/dermis/main.cpp", SPDX + '#include "fusion/table.hpp"\n')
         self.expect("private to the module fusion")
 
+    def test_kernels_are_shared_with_the_modules_whose_row_names_theirs(self):
+        self.write("src/fusion/table-inl.hpp", HEADER)
+        self.write("apps/dermis/main.cpp", SPDX + '#include "fusion/table-inl.hpp"\n')
+        self.expect()
+        self.write("src/simulation/scene.cpp", SPDX + '#include "fusion/table-inl.hpp"\n')
+        self.expect("src/simulation/scene.cpp: fusion/table-inl.hpp is private to the module fusion")
+
     def test_a_module_that_is_not_in_the_table(self):
         self.write("src/utils/text.cpp", SPDX)
         self.expect("utils is not in the table")

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -250,52 +251,44 @@ TEST(LevenbergMarquardt, the_observer_sees_each_iteration_and_the_parameters_so_
   EXPECT_DOUBLE_EQ(report.final_error, half_square(rosenbrock, 2, parameters));
 }
 
-TEST(LevenbergMarquardt, a_network_follows_the_path_of_its_residual_function) {
-  const NetworkShape shape{2, {{4, Activation::log_sigmoid}, {2, Activation::linear}}};
-  Random random(11);
-  std::vector<double> inputs(60);
-  std::vector<double> targets(60);
-  std::vector<double> weights(30);
-  std::vector<double> start(shape.parameter_count());
-  for (double& value : inputs) value = random.normal();
-  for (double& value : targets) value = random.normal();
-  for (double& value : weights) value = random.uniform(0.1, 2.0);
-  for (double& value : start) value = random.normal();
+/// The linear problem by its normal equations, without a Jacobian.
+class NormalEquations : public LeastSquaresProblem {
+ public:
+  explicit NormalEquations(const LinearProblem& linear) : linear_(linear) {}
 
-  FeedForward<double> network(shape);
-  // Residuals sqrt(w) (o - t), their Jacobian by differences of order 4: about 10 digits.
-  const auto residuals = [&](std::span<const double> p, std::span<double> r) {
-    network.evaluate(p, inputs, r);
-    for (std::size_t k = 0; k < r.size(); ++k) r[k] = std::sqrt(weights[k / 2]) * (r[k] - targets[k]);
-  };
-  const ResidualFunction function = [&](std::span<const double> p, std::span<double> r, std::span<double> jacobian) {
-    residuals(p, r);
-    if (jacobian.empty()) return;
-    std::vector<double> moved(p.begin(), p.end());
-    std::vector<double> at(r.size());
-    for (std::size_t k = 0; k < p.size(); ++k) {
-      for (std::size_t i = 0; i < r.size(); ++i) jacobian[i * p.size() + k] = 0.0;
-      for (const double steps : {-2.0, -1.0, 1.0, 2.0}) {
-        constexpr double kStep = 1e-3;
-        moved[k] = p[k] + steps * kStep;
-        residuals(moved, at);
-        const double share = (std::abs(steps) == 1.0 ? 8.0 : -1.0) * (steps > 0.0 ? 1.0 : -1.0) / (12.0 * kStep);
-        for (std::size_t i = 0; i < r.size(); ++i) jacobian[i * p.size() + k] += share * at[i];
+  double error(std::span<const double> point) override {
+    return half_square(linear_.residual(), linear_.rows, {point.begin(), point.end()});
+  }
+
+  double linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) override {
+    const std::size_t cols = linear_.cols;
+    const std::vector<double> p(point.begin(), point.end());
+    std::fill(gradient.begin(), gradient.end(), 0.0);
+    std::fill(normal.begin(), normal.end(), std::numeric_limits<double>::quiet_NaN());
+    for (std::size_t k = 0; k < cols; ++k) std::fill_n(&normal[k * cols], k + 1, 0.0);
+    for (std::size_t i = 0; i < linear_.rows; ++i) {
+      const double* const row = &linear_.design[i * cols];
+      for (std::size_t k = 0; k < cols; ++k) {
+        gradient[k] += row[k] * linear_.residual_at(p, i);
+        for (std::size_t l = 0; l <= k; ++l) normal[k * cols + l] += row[k] * row[l];
       }
-      moved[k] = p[k];
     }
-  };
+    return error(point);
+  }
 
-  const LevenbergMarquardtOptions options{.max_iterations = 8};
-  std::vector<double> by_residuals = start;
-  const auto expected = minimise(function, 60, by_residuals, options);
-  std::vector<double> by_network = start;
-  const PackedSamples<double> samples(shape, {30, inputs, targets, weights});
-  const auto report = minimise(network, samples, by_network, options);
-  EXPECT_NEAR(report.initial_error / expected.initial_error, 1.0, 1e-12);
-  EXPECT_NEAR(report.final_error / expected.final_error, 1.0, 1e-6);
-  EXPECT_LT(report.final_error, 0.8 * report.initial_error);
-  for (std::size_t k = 0; k < start.size(); ++k) EXPECT_NEAR(by_network[k], by_residuals[k], 1e-5) << "parameter " << k;
+ private:
+  const LinearProblem& linear_;
+};
+
+TEST(LevenbergMarquardt, a_problem_without_a_jacobian_follows_the_path_of_its_residuals) {
+  const LinearProblem linear(20, 4, 7);
+  NormalEquations problem(linear);
+  std::vector<double> parameters(4, 1.0);
+  std::vector<double> expected(4, 1.0);
+  const LevenbergMarquardtOptions options{.max_iterations = 3};
+  const auto report = minimise(problem, parameters, options);
+  EXPECT_DOUBLE_EQ(report.final_error, minimise(linear.residual(), 20, expected, options).final_error);
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(parameters[k], expected[k], 1e-12);
 }
 
 struct GoldenFit {

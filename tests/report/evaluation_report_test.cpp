@@ -151,20 +151,6 @@ TEST_F(ReportTest, MarksTheBestEvenWhereItIsABaseline) {
   EXPECT_TRUE(says("best other: 0.010 %"));
 }
 
-TEST_F(ReportTest, DescribesThePapersBankAfterTheBaselines) {
-  calibration::Evaluation evaluation = sample_evaluation(4, 4, 20);
-  write(evaluation);
-  EXPECT_FALSE(says("N-N-N-1"));
-  evaluation.estimators.emplace_back().name = "paper_bank";
-  for (auto& taxel : evaluation.taxels) taxel.newtons.push_back(1.0F);
-  summarise_sample(evaluation);
-  write(evaluation);
-  const std::size_t bank =
-      page_.find("<th>paper_bank</th><td>the paper&#39;s bank: one N-N-N-1 network a taxel, N = 16,");
-  ASSERT_NE(bank, std::string::npos);
-  EXPECT_GT(bank, page_.find("<th>crosstalk_lookup</th>"));
-}
-
 TEST_F(ReportTest, EscapesNames) {
   calibration::Evaluation evaluation = sample_evaluation(4, 4, 20);
   evaluation.array.name = "</style><script>\xff";

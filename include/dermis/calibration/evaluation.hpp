@@ -11,7 +11,6 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/core/result.hpp"
-#include "dermis/fusion/paper_bank.hpp"
 #include "dermis/pipeline/model.hpp"
 
 namespace dermis::calibration {
@@ -19,8 +18,19 @@ namespace dermis::calibration {
 /// Taxels are judged by relative error from this true force on [N].
 inline constexpr double kJudgedNewtons = 1.0;
 
-/// The name of the paper's bank among the estimators.
-inline constexpr const char* kPaperBankName = "paper_bank";
+/// An estimator from outside that is judged beside dermis and the baselines.
+class FurtherEstimator {
+ public:
+  virtual ~FurtherEstimator() = default;
+
+  [[nodiscard]] virtual std::string name() const = 0;
+  [[nodiscard]] virtual std::string description() const = 0;  ///< For the legend of a report.
+  [[nodiscard]] virtual std::size_t taxel_count() const noexcept = 0;
+
+  /// ratio = reading / supply [taxels] -> newtons [taxels].
+  virtual void estimate(std::span<const double> ratio, std::optional<double> temperature_celsius,
+                        std::span<float> newtons) = 0;
+};
 
 /// Percentiles of a set of errors; all empty where nothing was judged.
 struct ErrorSummary {
@@ -53,7 +63,8 @@ struct BoundComparison {
 
 /// How one estimator did on all frames.
 struct EstimatorResult {
-  std::string name;                    ///< "dermis" first, then the baselines, then kPaperBankName.
+  std::string name;                    ///< "dermis" first, then the baselines, then a further estimator.
+  std::string description;             ///< Of a further estimator; of the others the model tells.
   ErrorSummary relative_error;         ///< |estimate / truth - 1| of taxels of at least kJudgedNewtons; dimensionless.
   ErrorSummary ghost_n;                ///< Force on unloaded taxels that give one [N].
   std::size_t totals_judged = 0;       ///< `force` loads over several taxels.
@@ -118,11 +129,11 @@ struct Evaluation {
   std::vector<TactileExample> examples;      ///< A few loaded frames with known taxel forces.
 };
 
-/// Runs the model and its baselines on frames whose loads are known, and the paper's bank where there is one, as the
-/// last estimator. Unlabelled frames pass through the pipeline but are not judged. Errors: frames or a bank that do not
-/// fit the model's array, no labelled frame, loads given as pressure without a taxel area.
+/// Runs the model and its baselines on frames whose loads are known, and a further estimator where there is one, as the
+/// last. Unlabelled frames pass through the pipeline but are not judged. Errors: frames or an estimator that do not fit
+/// the model's array, no labelled frame, loads given as pressure without a taxel area.
 [[nodiscard]] Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFrame> frames,
-                                          std::span<const Load> loads, fusion::PaperBank* bank = nullptr);
+                                          std::span<const Load> loads, FurtherEstimator* further = nullptr);
 
 /// The result as in `dermis evaluate --json` (docs/command-line.md).
 [[nodiscard]] std::string to_json(const Evaluation& evaluation);

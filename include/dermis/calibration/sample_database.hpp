@@ -27,7 +27,7 @@ struct Sample {
   std::size_t frame = 0;  ///< Index in the recording.
   std::optional<double> temperature_celsius;
   std::vector<double> reading;       ///< Bare readings [taxels], counts / full scale, for the baselines.
-  std::vector<double> ratio;         ///< Reading / supply [taxels], for the paper's bank.
+  std::vector<double> ratio;         ///< Reading / supply [taxels], for further estimators.
   double sigma_ratio = 0.0;          ///< Standard deviation of every ratio for the array's adc_noise_counts.
   std::vector<double> siemens;       ///< Conductances [taxels].
   std::vector<float> known_newtons;  ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.

@@ -8,14 +8,27 @@
 #include <span>
 #include <vector>
 
-#include "dermis/network/feed_forward.hpp"
-
 namespace dermis::network {
 
 /// Fills `residuals` [m] and, where it is not empty, `jacobian` [m, n] (row-major, d residual / d parameter) at
 /// `parameters` [n].
 using ResidualFunction =
     std::function<void(std::span<const double> parameters, std::span<double> residuals, std::span<double> jacobian)>;
+
+/// A sum of squares of any kind, for those that need not store their Jacobian J.
+class LeastSquaresProblem {
+ public:
+  LeastSquaresProblem() = default;
+  LeastSquaresProblem(const LeastSquaresProblem&) = delete;
+  LeastSquaresProblem& operator=(const LeastSquaresProblem&) = delete;
+  virtual ~LeastSquaresProblem() = default;
+
+  /// Half the sum of squares at `point` [n].
+  virtual double error(std::span<const double> point) = 0;
+
+  /// The same, its gradient in `gradient` [n] and J^T J in `normal` [n, n], of which only the lower triangle is read.
+  virtual double linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) = 0;
+};
 
 /// Called after each iteration with its number from 1, the error of the best point so far, which is what the parameters
 /// being minimised then hold, and the damping of the next: with it as initial_damping and from these parameters,
@@ -58,10 +71,9 @@ struct LevenbergMarquardtReport {
 LevenbergMarquardtReport minimise(const ResidualFunction& residual_function, std::size_t residual_count,
                                   std::vector<double>& parameters, const LevenbergMarquardtOptions& options = {});
 
-/// The same for the weighted error of a network over samples, eq. (6): Hagan and Menhaj 1994. The Jacobian is never
-/// stored. `parameters` [network.shape().parameter_count()].
-LevenbergMarquardtReport minimise(FeedForward<double>& network, const PackedSamples<double>& samples,
-                                  std::vector<double>& parameters, const LevenbergMarquardtOptions& options = {});
+/// The same for any problem of least squares.
+LevenbergMarquardtReport minimise(LeastSquaresProblem& problem, std::vector<double>& parameters,
+                                  const LevenbergMarquardtOptions& options = {});
 
 /// A residual of a fit, and how much of its own datum the fit has made its own.
 struct FittedResidual {

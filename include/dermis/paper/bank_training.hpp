@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "dermis/calibration/sample_database.hpp"
+#include "dermis/core/random.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/paper/paper_bank.hpp"
+
+namespace dermis::paper {
+
+/// Where the training of the bank starts.
+enum class BankStart {
+  structured,     ///< The paper's, eq. (7) to (15).
+  nguyen_widrow,  ///< Random, spread over the range of the inputs.
+  xavier,         ///< Random, scaled by the number of connections.
+};
+
+/// Whether the paper's bank can be trained on these samples. Errors: no sample tells a force on a single taxel; an
+/// array whose bank would have more than kMostUnknowns.
+[[nodiscard]] Status check_bank_samples(const calibration::SampleDatabase& database);
+
+/// The training of the paper's bank on a sample database: Fig. 9 for all networks at once, in mini-batches.
+///
+/// A network's own presses are a few of very many samples (14 of 3,584 where every taxel is pressed alone), so half of
+/// each batch is drawn from the samples that load its taxel and half from those that do not; and squared errors are
+/// weighted as relative ones down to a force of half the heaviest, and evenly below. Samples that do not tell the
+/// force of a taxel are left out for its network. Deterministic by seed.
+class BankTraining {
+ public:
+  /// Errors: no sample tells a force on a single taxel; more unknowns than kMostUnknowns.
+  [[nodiscard]] static Result<BankTraining> create(const calibration::SampleDatabase& database, std::uint64_t seed);
+
+  /// Sets all parameters anew; before the first step.
+  void start(BankStart start);
+  /// One step of every network; the mean of their errors before it: half a weighted mean square, eq. (6), in units of
+  /// the outputs.
+  double step(const BankStep& step);
+
+  [[nodiscard]] PaperBank& bank() noexcept { return bank_; }
+
+  /// Taxels that no sample loads.
+  [[nodiscard]] std::vector<std::size_t> never_loaded() const;
+
+ private:
+  BankTraining(const calibration::SampleDatabase& database, PaperBank bank, std::uint64_t seed);
+  void fill_patterns(const calibration::SampleDatabase& database);
+  [[nodiscard]] std::vector<float> start_parameters(BankStart start, std::uint64_t seed) const;
+  void draw_batch();
+
+  /// What one network may draw from.
+  struct Choice {
+    std::vector<std::uint32_t> loaded;    // samples that load its taxel
+    std::vector<std::uint32_t> unloaded;  // samples that do not
+    Random random;
+  };
+
+  PaperBank bank_;
+  std::size_t rows_;
+  std::size_t cols_;
+  std::uint64_t seed_;
+  std::vector<Choice> choices_;  // [networks]
+  std::vector<float> inputs_;    // [samples, inputs]
+  std::vector<float> targets_;   // [samples, networks]
+  std::vector<float> weights_;   // [samples, networks]; 0 where the force is unknown
+  std::vector<std::uint32_t> chosen_;
+  std::vector<float> chosen_weights_;
+  std::vector<float> errors_;
+};
+
+/// How a bank was trained.
+struct BankTrainingReport {
+  std::size_t unknowns = 0;
+  std::size_t steps = 0;
+  std::vector<double> curve;                   ///< Error of each step, as BankTraining::step gives it.
+  std::vector<std::size_t> never_loaded;       ///< Taxels that no sample loads: their networks know of no force.
+  std::vector<std::size_t> constant_readings;  ///< Taxels whose reading is the same in all samples.
+};
+
+struct TrainedBank {
+  PaperBank bank;
+  BankTrainingReport report;
+};
+
+/// Steps that bring a bank to the paper's 5 %.
+inline constexpr std::size_t kBankSteps = 6000;
+
+/// From the paper's start, Adam with a rate that falls along a cosine. `progress` is told the share that is done.
+/// Errors: those of BankTraining::create; the training diverges.
+[[nodiscard]] Result<TrainedBank> train_paper_bank(const calibration::SampleDatabase& database, std::size_t steps,
+                                                   std::uint64_t seed,
+                                                   const std::function<void(double share)>& progress = {});
+
+}  // namespace dermis::paper

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+
+#include "dermis/core/result.hpp"
+#include "dermis/paper/paper_bank.hpp"
+
+namespace dermis::paper {
+
+/// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it; 135 MB for 16 x 16 taxels.
+[[nodiscard]] Status write_paper_bank(const std::string& path, const PaperBank& bank);
+
+/// A bank read is complete and all its numbers are finite, or an error that names the file.
+[[nodiscard]] Result<PaperBank> read_paper_bank(const std::string& path);
+
+}  // namespace dermis::paper

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <span>
+
+#include "dermis/core/result.hpp"
+
+namespace dermis::paper {
+
+/// Patterns to learn from (p = 1 ... P of the paper). A view: what it shows must outlive it.
+template <std::floating_point Real>
+struct Samples {
+  std::size_t count = 0;          ///< P
+  std::span<const Real> inputs;   ///< [count, network inputs], row-major.
+  std::span<const Real> targets;  ///< t_pk, [count, network outputs], row-major.
+  std::span<const Real> weights;  ///< Of each pattern's squared error, >= 0, [count]; empty: all 1.
+};
+
+/// Whether samples can be trained on: sizes that fit `inputs` and `outputs`, at least one pattern, all values finite,
+/// weights not negative and not all 0. The error names the first bad pattern.
+template <std::floating_point Real>
+[[nodiscard]] Status check_samples(const Samples<Real>& samples, std::size_t inputs, std::size_t outputs);
+
+}  // namespace dermis::paper

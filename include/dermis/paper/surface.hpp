@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "dermis/report/plot.hpp"
+#include "dermis/report/svg.hpp"
+
+namespace dermis::paper {
+
+/// A signed function of two variables as a surface in space, seen as MATLAB's mesh() shows it: from azimuth -37.5 and
+/// elevation 30 degrees, in parallel projection. Colours are those of diverging_colour() over the height.
+struct Surface {
+  std::string title;
+  report::Axis x;  ///< Linear axes; the samples are spread evenly over x and y.
+  report::Axis y;
+  report::Axis z;
+  std::size_t rows = 2;        ///< >= 2, along y.
+  std::size_t cols = 2;        ///< >= 2, along x.
+  std::vector<double> values;  ///< [rows, cols]; facets with a corner that is not finite are left out.
+};
+
+[[nodiscard]] report::Drawing surface(const Surface& surface);
+
+}  // namespace dermis::paper

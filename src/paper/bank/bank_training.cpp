@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/paper/bank_training.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "dermis/calibration/temperature_span.hpp"
+#include "dermis/core/parallel.hpp"
+#include "dermis/paper/initialisation.hpp"
+#include "dermis/paper/structured_start.hpp"
+
+namespace dermis::paper {
+
+using calibration::Sample;
+using calibration::SampleDatabase;
+
+namespace {
+
+constexpr std::size_t kBatch = 16;       // larger ones converge in as many steps
+constexpr double kRelativeDownTo = 0.5;  // of the heaviest force
+constexpr double kRateOfSum = 2.0;       // of N connections together in a step: more breaks up the paper's start
+constexpr double kHighestRate = 0.05;
+constexpr double kLowestRate = 1e-5;
+constexpr float kSecondDecay = 0.97F;  // 0.999 takes twice the steps
+
+/// Of each taxel over all samples; a taxel that never changes gets a range of 1.
+std::vector<PaperBank::Range> ratio_ranges(const SampleDatabase& database) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::vector<PaperBank::Range> ranges(database.array.taxel_count(), {kInfinity, -kInfinity});
+  for (const Sample& sample : database.samples) {
+    for (std::size_t taxel = 0; taxel < ranges.size(); ++taxel) {
+      ranges[taxel].low = std::min(ranges[taxel].low, sample.ratio[taxel]);
+      ranges[taxel].high = std::max(ranges[taxel].high, sample.ratio[taxel]);
+    }
+  }
+  for (PaperBank::Range& range : ranges) {
+    if (!(range.low < range.high)) range.high = range.low + 1.0;
+  }
+  return ranges;
+}
+
+std::vector<std::size_t> constant_readings(const SampleDatabase& database) {
+  std::vector<std::size_t> taxels;
+  for (std::size_t taxel = 0; taxel < database.array.taxel_count(); ++taxel) {
+    const double first = database.samples.front().ratio[taxel];
+    const bool is_constant = std::all_of(database.samples.begin(), database.samples.end(),
+                                         [&](const Sample& sample) { return sample.ratio[taxel] == first; });
+    if (is_constant) taxels.push_back(taxel);
+  }
+  return taxels;
+}
+
+double heaviest_force(const SampleDatabase& database) {
+  double heaviest = 0.0;
+  for (const Sample& sample : database.samples) {
+    for (const float newtons : sample.known_newtons) {
+      if (newtons > heaviest) heaviest = newtons;
+    }
+  }
+  return heaviest;
+}
+
+std::optional<PaperBank::Range> temperature_range(const SampleDatabase& database) {
+  const calibration::TemperatureSpan span = calibration::temperature_span(database);
+  if (!span.is_input) return std::nullopt;
+  return PaperBank::Range{span.centre_celsius - span.half_span_celsius, span.centre_celsius + span.half_span_celsius};
+}
+
+/// The paper's start knows no temperature: an input more in the first layer, of `inputs` neurons, with weights of 0.
+std::vector<float> with_further_input(const std::vector<float>& parameters, std::size_t inputs) {
+  std::vector<float> widened;
+  widened.reserve(parameters.size() + inputs);
+  const auto rest = parameters.begin() + static_cast<std::ptrdiff_t>(inputs * inputs);
+  for (auto row = parameters.begin(); row != rest; row += static_cast<std::ptrdiff_t>(inputs)) {
+    widened.insert(widened.end(), row, row + static_cast<std::ptrdiff_t>(inputs));
+    widened.push_back(0.0F);
+  }
+  widened.insert(widened.end(), rest, parameters.end());
+  return widened;
+}
+
+}  // namespace
+
+Status check_bank_samples(const SampleDatabase& database) {
+  if (heaviest_force(database) <= 0.0) {
+    return bad_input("the paper's bank needs loads on single taxels; these loads tell only totals or none");
+  }
+  const std::size_t unknowns = paper_bank_unknowns(database.array.taxel_count());
+  if (unknowns > kMostUnknowns) {
+    return bad_input(
+        fmt::format("the paper's bank of {} taxels has {} unknowns, more than the {} it may have: its size "
+                    "rises with the third power of the taxels",
+                    database.array.taxel_count(), unknowns, kMostUnknowns));
+  }
+  return Done{};
+}
+
+Result<BankTraining> BankTraining::create(const SampleDatabase& database, std::uint64_t seed) {
+  if (Status checked = check_bank_samples(database); !checked) return checked.error();
+  return BankTraining(database,
+                      PaperBank(ratio_ranges(database), temperature_range(database), heaviest_force(database)), seed);
+}
+
+BankTraining::BankTraining(const SampleDatabase& database, PaperBank bank, std::uint64_t seed)
+    : bank_(std::move(bank)),
+      rows_(database.array.rows),
+      cols_(database.array.cols),
+      seed_(seed),
+      chosen_(bank_.taxel_count() * kBatch),
+      chosen_weights_(bank_.taxel_count() * kBatch),
+      errors_(bank_.taxel_count()) {
+  fill_patterns(database);
+}
+
+void BankTraining::fill_patterns(const SampleDatabase& database) {
+  const std::size_t networks = bank_.taxel_count();
+  const std::size_t width = bank_.networks().shape().inputs;
+  const double floor_n = kRelativeDownTo * bank_.heaviest_newtons();
+  inputs_.resize(database.samples.size() * width);
+  targets_.resize(database.samples.size() * networks);
+  weights_.resize(targets_.size());
+  choices_.assign(networks, {{}, {}, Random(0)});
+  for (std::size_t p = 0; p < database.samples.size(); ++p) {
+    const Sample& sample = database.samples[p];
+    bank_.normalise(sample.ratio, sample.temperature_celsius, std::span(inputs_).subspan(p * width, width));
+    for (std::size_t taxel = 0; taxel < networks; ++taxel) {
+      const double newtons = sample.known_newtons[taxel];
+      if (std::isnan(newtons)) continue;
+      targets_[p * networks + taxel] = bank_.target(newtons);
+      const double relative = floor_n / std::max(newtons, floor_n);
+      weights_[p * networks + taxel] = static_cast<float>(relative * relative);
+      Choice& choice = choices_[taxel];
+      (newtons > 0.0 ? choice.loaded : choice.unloaded).push_back(static_cast<std::uint32_t>(p));
+    }
+  }
+}
+
+void BankTraining::start(BankStart start) {
+  parallel_for(bank_.taxel_count(), [&](std::size_t taxel) {
+    Random random = Random::stream(seed_, taxel);
+    bank_.networks().set_parameters(taxel, start_parameters(start, random.bits()));
+    choices_[taxel].random = random;
+  });
+}
+
+std::vector<float> BankTraining::start_parameters(BankStart start, std::uint64_t seed) const {
+  const NetworkShape& shape = bank_.networks().shape();
+  if (start == BankStart::xavier) return xavier_start<float>(shape, seed);
+  if (start == BankStart::nguyen_widrow) {
+    return nguyen_widrow_start<float>(shape, std::vector<InputRange>(shape.inputs, {0.0, 1.0}), seed);
+  }
+  StructuredStart grid;
+  grid.rows = rows_;
+  grid.cols = cols_;
+  grid.seed = seed;
+  std::vector<float> parameters = structured_start<float>(grid);
+  return bank_.celsius() ? with_further_input(parameters, bank_.taxel_count()) : parameters;
+}
+
+void BankTraining::draw_batch() {
+  const std::size_t networks = choices_.size();
+  for (std::size_t taxel = 0; taxel < networks; ++taxel) {
+    Choice& choice = choices_[taxel];
+    for (std::size_t k = 0; k < kBatch; ++k) {
+      const bool want_loaded = (k < kBatch / 2 && !choice.loaded.empty()) || choice.unloaded.empty();
+      const std::vector<std::uint32_t>& from = want_loaded ? choice.loaded : choice.unloaded;
+      if (from.empty()) break;  // no sample tells of this taxel: its chosen weights stay 0
+      const std::uint32_t sample = from[choice.random.below(from.size())];
+      chosen_[taxel * kBatch + k] = sample;
+      chosen_weights_[taxel * kBatch + k] = weights_[sample * networks + taxel];
+    }
+  }
+}
+
+std::vector<std::size_t> BankTraining::never_loaded() const {
+  std::vector<std::size_t> taxels;
+  for (std::size_t taxel = 0; taxel < choices_.size(); ++taxel) {
+    if (choices_[taxel].loaded.empty()) taxels.push_back(taxel);
+  }
+  return taxels;
+}
+
+double BankTraining::step(const BankStep& step) {
+  draw_batch();
+  bank_.networks().train_step({kBatch, inputs_, targets_, chosen_, chosen_weights_}, step, errors_);
+  return std::accumulate(errors_.begin(), errors_.end(), 0.0) / static_cast<double>(errors_.size());
+}
+
+Result<TrainedBank> train_paper_bank(const SampleDatabase& database, std::size_t steps, std::uint64_t seed,
+                                     const std::function<void(double)>& progress) {
+  Result<BankTraining> training = BankTraining::create(database, seed);
+  if (!training) return training.error();
+  training->start(BankStart::structured);
+  const double highest_rate = std::min(kRateOfSum / static_cast<double>(database.array.taxel_count()), kHighestRate);
+  BankTrainingReport report{
+      training->bank().networks().parameter_count(), steps, {}, training->never_loaded(), constant_readings(database)};
+  for (std::size_t k = 0; k < steps; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(steps);
+    BankStep step;
+    step.rule = BankStep::Rule::adam;
+    step.second_decay = kSecondDecay;
+    step.rate = static_cast<float>(kLowestRate +
+                                   (highest_rate - kLowestRate) * 0.5 * (1.0 + std::cos(std::numbers::pi * share)));
+    report.curve.push_back(training->step(step));
+    if (!std::isfinite(report.curve.back())) return failed("the training of the paper's bank diverged");
+    if (progress) progress(static_cast<double>(k + 1) / static_cast<double>(steps));
+  }
+  return TrainedBank{std::move(training->bank()), std::move(report)};
+}
+
+}  // namespace dermis::paper

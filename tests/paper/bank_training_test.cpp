@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/paper/bank_training.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "calibration/simulated.hpp"
+#include "dermis/calibration/calibrate.hpp"
+#include "dermis/calibration/evaluation.hpp"
+
+namespace dermis::paper {
+namespace {
+
+using calibration::record;
+using calibration::Recording;
+using calibration::reference_array;
+using calibration::Sample;
+using calibration::SampleDatabase;
+
+SampleDatabase database_of(const ArrayDescription& array, const char* scene) {
+  const Recording recording = record(array, scene, 1);
+  return calibration::build_sample_database(array, recording.frames, recording.loads).value();
+}
+
+std::vector<float> parameters_of(const PaperBank& bank, std::size_t network) {
+  std::vector<float> parameters(bank.networks().shape().parameter_count());
+  bank.networks().parameters(network, parameters);
+  return parameters;
+}
+
+TEST(BankTraining, normalises_the_database_to_the_unit_interval) {
+  const SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
+  BankTraining training = BankTraining::create(database, 1).value();
+  std::vector<float> least(16, 2.0F);
+  std::vector<float> greatest(16, -1.0F);
+  std::vector<float> inputs(16);
+  for (const Sample& sample : database.samples) {
+    training.bank().normalise(sample.ratio, sample.temperature_celsius, inputs);
+    for (std::size_t k = 0; k < 16; ++k) {
+      least[k] = std::min(least[k], inputs[k]);
+      greatest[k] = std::max(greatest[k], inputs[k]);
+    }
+  }
+  EXPECT_EQ(least, std::vector<float>(16, 0.0F));
+  EXPECT_EQ(greatest, std::vector<float>(16, 1.0F));
+  EXPECT_EQ(training.bank().heaviest_newtons(), 50.0);
+}
+
+TEST(BankTraining, temperature_is_an_input_where_the_calibration_spans_some) {
+  EXPECT_FALSE(BankTraining::create(database_of(reference_array(4, 4), "paper_calibration"), 1)->bank().celsius());
+  EXPECT_TRUE(BankTraining::create(database_of(reference_array(4, 4), "calibration"), 1)->bank().celsius());
+}
+
+TEST(BankTraining, every_start_lowers_its_error_under_gradient_descent) {
+  const SampleDatabase database = database_of(reference_array(4, 4), "calibration");
+  BankTraining training = BankTraining::create(database, 1).value();
+  for (const BankStart start : {BankStart::structured, BankStart::nguyen_widrow, BankStart::xavier}) {
+    training.start(start);
+    double first = 0.0;
+    double last = 0.0;
+    for (int k = 0; k < 400; ++k) {
+      BankStep step;
+      step.rate = 2.0F;
+      const double error = training.step(step);
+      if (k < 40) first += error;
+      if (k >= 360) last += error;
+    }
+    EXPECT_LT(last, 0.9 * first) << static_cast<int>(start);
+  }
+}
+
+TEST(BankTraining, the_same_seed_gives_the_same_bank_and_another_seed_another) {
+  const SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
+  const TrainedBank trained = train_paper_bank(database, 5, 1).value();
+  EXPECT_EQ(parameters_of(train_paper_bank(database, 5, 1)->bank, 3), parameters_of(trained.bank, 3));
+  EXPECT_NE(parameters_of(train_paper_bank(database, 5, 2)->bank, 3), parameters_of(trained.bank, 3));
+}
+
+TEST(BankTraining, reaches_the_papers_five_percent_on_its_points) {
+  const ArrayDescription array = reference_array(5, 4);
+  const SampleDatabase database = database_of(array, "paper_calibration");
+  TrainedBank trained = train_paper_bank(database, 5000, 1).value();
+  EXPECT_EQ(trained.report.unknowns, paper_bank_unknowns(20));
+  const Recording presses = record(array, "paper_calibration", 1);
+  const calibration::Calibration calibrated = calibration::calibrate(array, presses.frames, presses.loads).value();
+  const Recording points = record(array, "paper", 3);
+  const calibration::Evaluation evaluation =
+      calibration::evaluate(calibrated.model, points.frames, points.loads, &trained.bank).value();
+  EXPECT_EQ(evaluation.estimators.back().name, kPaperBankName);
+  EXPECT_EQ(evaluation.estimators.back().relative_error.count, 48U);
+  EXPECT_LE(evaluation.estimators.back().relative_error.max, 0.05);
+}
+
+TEST(BankTraining, leaves_out_what_the_samples_do_not_tell) {
+  SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
+  for (Sample& sample : database.samples) sample.known_newtons[6] = std::numeric_limits<float>::quiet_NaN();
+  BankTraining training = BankTraining::create(database, 1).value();
+  training.start(BankStart::structured);
+  const std::vector<float> start = parameters_of(training.bank(), 6);
+  EXPECT_TRUE(std::isfinite(training.step({})));
+  EXPECT_EQ(parameters_of(training.bank(), 6), start);
+}
+
+TEST(BankTraining, says_which_taxels_were_never_loaded_and_which_never_change) {
+  SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
+  for (Sample& sample : database.samples) {
+    sample.ratio[3] = 0.25;
+    if (sample.known_newtons[6] > 0.0F) sample.known_newtons[6] = std::numeric_limits<float>::quiet_NaN();
+  }
+  const BankTrainingReport report = train_paper_bank(database, 2, 1)->report;
+  EXPECT_EQ(report.never_loaded, std::vector<std::size_t>{6});
+  EXPECT_EQ(report.constant_readings, std::vector<std::size_t>{3});
+}
+
+TEST(BankTraining, refuses_loads_that_tell_no_taxel_of_its_own) {
+  SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
+  for (Sample& sample : database.samples) {
+    for (float& newtons : sample.known_newtons) newtons = newtons > 0.0F ? std::nanf("") : newtons;
+  }
+  const Result<BankTraining> refused = BankTraining::create(database, 1);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("single taxels"), std::string::npos);
+}
+
+TEST(BankTraining, refuses_an_array_whose_bank_would_not_fit_into_memory) {
+  SampleDatabase database = database_of(reference_array(4, 4), "paper_calibration");
+  database.array = reference_array(64, 64);
+  const Result<BankTraining> refused = BankTraining::create(database, 1);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("4096 taxels"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dermis::paper
