@@ -66,7 +66,7 @@ double heaviest_force(const SampleDatabase& database) {
 }
 
 std::optional<PaperBank::Range> temperature_range(const SampleDatabase& database) {
-  const TemperatureSpan span = temperature_span(database);
+  const SampleTemperatures span = temperature_span(database);
   if (!span.is_input) return std::nullopt;
   return PaperBank::Range{span.centre_celsius - span.half_span_celsius, span.centre_celsius + span.half_span_celsius};
 }

@@ -32,7 +32,7 @@ double signal_of(const Sample& sample, std::size_t taxel, fusion::LookUpSignal s
 
 /// The loaded points of a taxel and those of frames without any load, sorted by force.
 std::vector<Point> known_points(const SampleDatabase& database, std::size_t taxel, fusion::LookUpSignal signal,
-                                const TemperatureSpan& span) {
+                                const SampleTemperatures& span) {
   std::vector<Point> points;
   for (const Sample& sample : database.samples) {
     const double newtons = sample.known_newtons[taxel];
@@ -124,7 +124,7 @@ std::vector<Knot> table_of_levels(std::vector<Point>& points, double coefficient
 /// slope and the temperature coefficient in common.
 class SharedLine {
  public:
-  SharedLine(const SampleDatabase& database, fusion::LookUpSignal signal, const TemperatureSpan& span,
+  SharedLine(const SampleDatabase& database, fusion::LookUpSignal signal, const SampleTemperatures& span,
              bool with_temperature)
       : unloaded_(database.array.taxel_count()), highest_(database.array.taxel_count()) {
     find_range(database, signal);
@@ -154,7 +154,7 @@ class SharedLine {
   }
 
   /// Least squares of total = a * s + b * s dT over all totals, s the sum of the signals above the unloaded ones.
-  void fit(const SampleDatabase& database, fusion::LookUpSignal signal, const TemperatureSpan& span,
+  void fit(const SampleDatabase& database, fusion::LookUpSignal signal, const SampleTemperatures& span,
            bool with_temperature) {
     double ss = 0.0;
     double st = 0.0;
@@ -191,7 +191,7 @@ class SharedLine {
 
 fusion::LookUpTables make_tables(const SampleDatabase& database, const char* name, fusion::LookUpSignal signal,
                                  bool with_temperature) {
-  const TemperatureSpan span = temperature_span(database);
+  const SampleTemperatures span = temperature_span(database);
   const SharedLine shared(database, signal, span, with_temperature);
   const std::size_t taxels = database.array.taxel_count();
   fusion::LookUpTables tables;

@@ -8,11 +8,13 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "calibration/shared_training.hpp"
 #include "calibration/taxel_training.hpp"
 #include "calibration/unloaded_fit.hpp"
 #include "dermis/core/parallel.hpp"
+#include "dermis/core/quantile.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -29,7 +31,7 @@ constexpr double kDetectable = 3.0;             // in standard deviations of the
 
 /// What the samples say about each taxel.
 struct Evidence {
-  TemperatureSpan span;
+  SampleTemperatures span;
   UnloadedFit unloaded;
   std::vector<std::vector<TaxelPoint>> points;  ///< Known forces above zero [taxels].
   std::vector<bool> dead;                       ///< [taxels]
@@ -112,10 +114,7 @@ fusion::ForceNetworks make_networks(const network::PerceptronShape& shape, const
   const std::size_t taxels = evidence.points.size();
   fusion::ForceNetworks networks;
   networks.shape = shape;
-  networks.temperature_centre_celsius = evidence.span.centre_celsius;
-  networks.temperature_half_span_celsius = evidence.span.half_span_celsius;
-  networks.offset_siemens = evidence.unloaded.offset_siemens;
-  networks.offset_per_celsius = evidence.unloaded.offset_per_celsius;
+  networks.unloaded = evidence.unloaded.law;
   networks.reference_siemens.assign(taxels, 1.0F);
   networks.heaviest_siemens.assign(taxels, 1.0F);
   networks.heaviest_newtons.assign(taxels, std::numeric_limits<float>::infinity());
@@ -172,8 +171,7 @@ void report_fit(const std::vector<std::size_t>& own, const std::vector<ForceNetw
     report.worst_taxel = own[k];
   }
   if (errors.empty()) return;
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-  report.median_fit_error = errors[errors.size() / 2];
+  report.median_fit_error = upper_median(std::move(errors));
 }
 
 std::vector<TestedLoad> tested_presses(const std::vector<std::size_t>& own, const std::vector<ForceNetwork>& networks,

@@ -54,7 +54,7 @@ struct RawLoad {
 
 class LoadCollector {
  public:
-  LoadCollector(const SampleDatabase& database, const TemperatureSpan& span, const UnloadedFit& unloaded,
+  LoadCollector(const SampleDatabase& database, const SampleTemperatures& span, const UnloadedFit& unloaded,
                 const std::vector<bool>& dead)
       : database_(database), span_(span), unloaded_(unloaded), dead_(dead), presses_(dead.size()) {
     for (std::size_t k = 0; k < database.samples.size(); ++k) {
@@ -113,7 +113,7 @@ class LoadCollector {
   }
 
   const SampleDatabase& database_;
-  const TemperatureSpan& span_;
+  const SampleTemperatures& span_;
   const UnloadedFit& unloaded_;
   const std::vector<bool>& dead_;
   std::vector<std::vector<Press>> presses_;  // [taxels]
@@ -354,7 +354,7 @@ std::vector<TestedLoad> tested_loads(const std::vector<RawLoad>& raw, const Shar
 
 }  // namespace
 
-SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan& span, const UnloadedFit& unloaded,
+SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatures& span, const UnloadedFit& unloaded,
                            const std::vector<bool>& dead) {
   const LoadCollector collector(database, span, unloaded, dead);
   const std::vector<RawLoad> loads = collector.loads(kMostShares);

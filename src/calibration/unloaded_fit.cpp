@@ -20,7 +20,7 @@ struct UnloadedPoint {
 };
 
 std::vector<UnloadedPoint> unloaded_points(const SampleDatabase& database, std::size_t taxel,
-                                           const TemperatureSpan& span) {
+                                           const SampleTemperatures& span) {
   std::vector<UnloadedPoint> points;
   for (const Sample& sample : database.samples) {
     if (!sample.unloaded || sample.known_newtons[taxel] != 0.0F) continue;
@@ -60,7 +60,7 @@ Line fit_line(const std::vector<UnloadedPoint>& points) {
 
 }  // namespace
 
-TemperatureSpan temperature_span(const SampleDatabase& database) {
+SampleTemperatures temperature_span(const SampleDatabase& database) {
   std::vector<double> temperatures;
   for (const Sample& sample : database.samples) {
     if (!sample.temperature_celsius) return {};
@@ -70,30 +70,31 @@ TemperatureSpan temperature_span(const SampleDatabase& database) {
   const auto glitches = static_cast<std::size_t>(kGlitches * static_cast<double>(temperatures.size()));
   const double lowest = temperatures[glitches];
   const double highest = temperatures[temperatures.size() - 1 - glitches];
-  return {0.5 * (lowest + highest), 0.5 * (highest - lowest), highest - lowest >= kLeastSpanCelsius};
+  return {{0.5 * (lowest + highest), 0.5 * (highest - lowest)}, highest - lowest >= kLeastSpanCelsius};
 }
 
-double temperature_offset(const Sample& sample, const TemperatureSpan& span) {
-  if (!span.is_input) return 0.0;
-  return std::clamp(*sample.temperature_celsius - span.centre_celsius, -span.half_span_celsius, span.half_span_celsius);
+double temperature_offset(const Sample& sample, const SampleTemperatures& span) {
+  return span.is_input ? span.offset(*sample.temperature_celsius) : 0.0;
 }
 
-double normalised_temperature(const Sample& sample, const TemperatureSpan& span) {
+double normalised_temperature(const Sample& sample, const SampleTemperatures& span) {
   return span.is_input ? temperature_offset(sample, span) / span.half_span_celsius : 0.0;
 }
 
-UnloadedFit fit_unloaded(const SampleDatabase& database, const TemperatureSpan& span) {
+UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& span) {
   const std::size_t taxels = database.array.taxel_count();
   const double least_noise = kLeastNoiseCounts * database.siemens_per_count;
-  UnloadedFit fit{std::vector<double>(taxels), std::vector<double>(taxels), std::vector<double>(taxels),
-                  std::vector<double>(taxels, least_noise), std::vector<bool>(taxels)};
+  UnloadedFit fit{{std::vector<double>(taxels), std::vector<double>(taxels), span},
+                  std::vector<double>(taxels),
+                  std::vector<double>(taxels, least_noise),
+                  std::vector<bool>(taxels)};
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     const std::vector<UnloadedPoint> points = unloaded_points(database, taxel, span);
     fit.is_stuck[taxel] = points.empty();
     if (points.empty()) continue;
     const Line line = fit_line(points);
-    fit.offset_siemens[taxel] = line.level;
-    fit.offset_per_celsius[taxel] = line.slope;
+    fit.law.offset_siemens[taxel] = line.level;
+    fit.law.per_celsius[taxel] = line.slope;
     fit.noise_siemens[taxel] =
         points.size() < kLeastFramesForNoise ? 3.0 * least_noise : std::max(least_noise, line.deviation);
     const double fitted = line.slope == 0.0 ? 1.0 : 2.0;  // numbers of the line
