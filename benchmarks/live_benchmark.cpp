@@ -24,8 +24,8 @@
 #include <vector>
 
 #include "dermis/live/live_suit.hpp"
+#include "dermis/recordings/suit_recording.hpp"
 #include "dermis/simulation/simulator.hpp"
-#include "dermis/store/suit_recording.hpp"
 #include "rows.hpp"
 #include "support/reference_array.hpp"
 
@@ -151,13 +151,13 @@ class Latencies {
 };
 
 /// Writes all frames with their forces, as `dermis serve --record` does.
-std::unique_ptr<store::SuitRecordingWriter> open_recording(const std::string& path, const Settings& settings) {
-  std::vector<store::RecordedArray> recorded(settings.arrays);
+std::unique_ptr<recordings::SuitRecordingWriter> open_recording(const std::string& path, const Settings& settings) {
+  std::vector<recordings::RecordedArray> recorded(settings.arrays);
   for (std::size_t k = 0; k < settings.arrays; ++k) {
     recorded[k].name = fmt::format("array{}", k);
     recorded[k].shape = {kLines, kLines};
   }
-  auto writer = store::SuitRecordingWriter::create(path, std::move(recorded));
+  auto writer = recordings::SuitRecordingWriter::create(path, std::move(recorded));
   if (!writer) std::abort();
   return *std::move(writer);
 }
@@ -187,7 +187,7 @@ struct Outcome {
 };
 
 Outcome run(const Settings& settings, const std::vector<Frames>& scenes, const std::string& recording) {
-  std::unique_ptr<store::SuitRecordingWriter> writer;
+  std::unique_ptr<recordings::SuitRecordingWriter> writer;
   if (!recording.empty()) writer = open_recording(recording, settings);
   Latencies latencies(settings);
   std::atomic<bool> is_written = true;

@@ -6,9 +6,9 @@
 #include <cstdio>
 #include <numeric>
 
+#include "dermis/files/frames_csv.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/pipeline/pipeline.hpp"
-#include "dermis/store/frames_csv.hpp"
 
 namespace {
 
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   auto pipeline = dermis::pipeline::Pipeline::create(*model);
   if (!pipeline) return fail(pipeline.error());
   const auto source =
-      dermis::store::FramesCsvReader::open(argv[2], dermis::FrameShape{model->array.rows, model->array.cols});
+      dermis::files::FramesCsvReader::open(argv[2], dermis::FrameShape{model->array.rows, model->array.cols});
   if (!source) return fail(source.error());
 
   dermis::RawFrame raw;      // counts, with the temperature and the supply where they are known

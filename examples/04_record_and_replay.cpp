@@ -12,8 +12,8 @@
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/pipeline/pipeline.hpp"
-#include "dermis/store/frame_files.hpp"
-#include "dermis/store/recording.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/recording.hpp"
 
 namespace {
 
@@ -70,19 +70,19 @@ Status run(const std::string& model_path, const std::string& frames_path, const 
   const auto model = dermis::pipeline::read_model(model_path);
   if (!model) return model.error();
   const FrameShape shape{model->array.rows, model->array.cols};
-  const auto frames = dermis::store::open_frames(frames_path, {.shape = shape});
+  const auto frames = dermis::recordings::open_frames(frames_path, {.shape = shape});
   if (!frames) return frames.error();
   const std::string sent = recording_path + ".bytes";
   if (Status done = send(**frames, shape, sent); !done) return done;
 
   const auto device = dermis::acquisition::open_device("file:" + sent + "?protocol=dermis", {.shape = shape});
   if (!device) return device.error();
-  const auto recording = dermis::store::RecordingWriter::create(recording_path, shape);
+  const auto recording = dermis::recordings::RecordingWriter::create(recording_path, shape);
   if (!recording) return recording.error();
   const auto live = forces_of(*model, **device, recording->get());
   if (!live) return live.error();
 
-  const auto replay = dermis::store::open_frames(recording_path);
+  const auto replay = dermis::recordings::open_frames(recording_path);
   if (!replay) return replay.error();
   const auto replayed = forces_of(*model, **replay, nullptr);
   if (!replayed) return replayed.error();

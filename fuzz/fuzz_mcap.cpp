@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "check_error.hpp"
-#include "dermis/store/recording.hpp"
+#include "dermis/recordings/recording.hpp"
 
 namespace {
 
@@ -15,7 +15,7 @@ std::unique_ptr<std::istringstream> stream_of(const std::uint8_t* data, std::siz
 
 /// All arrays, to the end and from the middle again.
 void read_suit(const std::uint8_t* data, std::size_t size) {
-  const auto suit = dermis::store::SuitRecordingReader::open(stream_of(data, size), "fuzz");
+  const auto suit = dermis::recordings::SuitRecordingReader::open(stream_of(data, size), "fuzz");
   if (!suit) return;
   dermis::RawFrame frame;
   std::size_t array = 0;
@@ -35,7 +35,7 @@ void read_suit(const std::uint8_t* data, std::size_t size) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const auto recording = dermis::store::RecordingReader::open(stream_of(data, size), "fuzz");
+  const auto recording = dermis::recordings::RecordingReader::open(stream_of(data, size), "fuzz");
   if (!recording) dermis::fuzz::check_error(recording.error());
   dermis::RawFrame frame;
   while (recording) {
@@ -45,7 +45,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (frame.counts.size() != (*recording)->shape()->taxel_count()) std::abort();
   }
   read_suit(data, size);
-  const auto recovery = dermis::store::recover_recording(stream_of(data, size), "fuzz", "/dev/null");
+  const auto recovery = dermis::recordings::recover_recording(stream_of(data, size), "fuzz", "/dev/null");
   if (!recovery) dermis::fuzz::check_error(recovery.error());
   return 0;
 }

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "dermis/store/array_toml.hpp"
-#include "dermis/store/frame_files.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "frame_output.hpp"
 #include "open_source.hpp"
 
@@ -62,11 +62,11 @@ void ArrayView::take_array(const ArrayDescription& array) {
 /// By the model, else by what the file says of itself.
 void ArrayView::describe(const std::string& from) {
   if (model_) return take_array(model_->array);
-  const store::FrameNotes notes = notes_of_source(from);
+  const recordings::FrameNotes notes = notes_of_source(from);
   name_ = notes.name;
   if (name_.empty()) name_ = is_live(from) ? from : std::filesystem::path(from).filename().string();
   if (notes.array_toml.empty()) return;
-  const Result<ArrayDescription> array = store::array_from_toml(notes.array_toml, from);
+  const Result<ArrayDescription> array = files::array_from_toml(notes.array_toml, from);
   if (array) take_array(*array);
 }
 

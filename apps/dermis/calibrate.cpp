@@ -13,13 +13,13 @@
 #include "commands.hpp"
 #include "dermis/calibration/bank_training.hpp"
 #include "dermis/core/version.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/atomic_file.hpp"
+#include "dermis/files/content_hash.hpp"
+#include "dermis/files/loads_csv.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/pipeline/paper_bank_file.hpp"
-#include "dermis/store/array_toml.hpp"
-#include "dermis/store/atomic_file.hpp"
-#include "dermis/store/content_hash.hpp"
-#include "dermis/store/frame_files.hpp"
-#include "dermis/store/loads_csv.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "progress.hpp"
 #include "seconds.hpp"
 
@@ -52,7 +52,7 @@ struct CalibrateOptions {
 Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::string>& provenance) {
   for (const auto& [key, path] : {std::pair{"array hash", &options.array}, std::pair{"frames hash", &options.frames},
                                   std::pair{"loads hash", &options.loads}}) {
-    const Result<std::string> hash = store::content_hash(*path);
+    const Result<std::string> hash = files::content_hash(*path);
     if (!hash) return hash.error();
     provenance[key] = *hash;
   }
@@ -161,7 +161,7 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
 Status check_writable(const std::string& path) {
   const bool is_special = std::filesystem::exists(path) && !std::filesystem::is_regular_file(path);
   if (is_special) return Done{};
-  const Result<store::AtomicFile> writable = store::AtomicFile::create(path);
+  const Result<files::AtomicFile> writable = files::AtomicFile::create(path);
   if (!writable) return writable.error();
   return Done{};
 }
@@ -178,7 +178,7 @@ Result<BankTrainingReport> train_bank(const CalibrateOptions& options, const cal
 Status calibrate(const CalibrateOptions& options) {
   const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
   if (!settle) return settle.error();
-  const Result<ArrayDescription> array = store::read_array(options.array);
+  const Result<ArrayDescription> array = files::read_array(options.array);
   if (!array) return array.error();
   if (Status writable = check_writable(options.out); !writable) return writable;
   if (!options.bank.empty()) {
@@ -186,9 +186,9 @@ Status calibrate(const CalibrateOptions& options) {
   }
   auto start = Clock::now();
   const Result<std::vector<RawFrame>> frames =
-      store::read_frames(options.frames, {.shape = FrameShape{array->rows, array->cols}});
+      recordings::read_frames(options.frames, {.shape = FrameShape{array->rows, array->cols}});
   if (!frames) return frames.error();
-  const Result<std::vector<Load>> loads = store::read_loads(options.loads, *array, frames->size());
+  const Result<std::vector<Load>> loads = files::read_loads(options.loads, *array, frames->size());
   if (!loads) return loads.error();
   const double read_s = seconds_since(start);
 

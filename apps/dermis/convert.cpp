@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/store/array_toml.hpp"
-#include "dermis/store/frame_files.hpp"
-#include "dermis/store/recording.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/recording.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
 
-using store::FrameFormat;
+using recordings::FrameFormat;
 
 struct ConvertOptions {
   std::string in;
@@ -44,7 +44,7 @@ struct Extras {
 };
 
 /// What a conversion leaves out.
-std::vector<std::string> left_out(const Extras& extras, bool has_forces, const store::FrameNotes& notes,
+std::vector<std::string> left_out(const Extras& extras, bool has_forces, const recordings::FrameNotes& notes,
                                   FrameFormat format) {
   std::vector<std::string> names;
   const bool holds_all = format == FrameFormat::mcap || format == FrameFormat::hdf5;
@@ -59,31 +59,31 @@ std::vector<std::string> left_out(const Extras& extras, bool has_forces, const s
 }
 
 Result<bool> holds_forces(const std::string& path) {
-  const store::RecordingPlace place = store::recording_place(path);
-  if (const auto format = store::frame_format(place.path); !format || *format != FrameFormat::mcap) return false;
-  const Result<store::RecordingInfo> info = store::recording_info(place.path);
+  const recordings::RecordingPlace place = recordings::recording_place(path);
+  if (const auto format = recordings::frame_format(place.path); !format || *format != FrameFormat::mcap) return false;
+  const Result<recordings::RecordingInfo> info = recordings::recording_info(place.path);
   if (!info) return info.error();
   if (!info->complete) {
     fmt::print(stderr, "{}: was not written to its end; the frames that are there are converted\n", path);
   }
-  for (const store::RecordingTopic& topic : info->topics) {
+  for (const recordings::RecordingTopic& topic : info->topics) {
     if (topic.type == messages::grid_type().name && topic.messages > 0) return true;
   }
   return false;
 }
 
-Result<store::FrameNotes> notes_of(const ConvertOptions& options, const std::optional<ArrayDescription>& array) {
-  Result<store::FrameNotes> notes = store::read_frame_notes(options.in);
+Result<recordings::FrameNotes> notes_of(const ConvertOptions& options, const std::optional<ArrayDescription>& array) {
+  Result<recordings::FrameNotes> notes = recordings::read_frame_notes(options.in);
   if (!notes || !array) return notes;
   notes->name = array->name;
-  notes->array_toml = store::array_to_toml(*array);
+  notes->array_toml = files::array_to_toml(*array);
   return notes;
 }
 
 Status check(const ConvertOptions& options) {
-  const Result<FrameFormat> in = store::frame_format(store::recording_place(options.in).path);
+  const Result<FrameFormat> in = recordings::frame_format(recordings::recording_place(options.in).path);
   if (!in) return in.error();
-  const Result<FrameFormat> out = store::frame_format(options.out);
+  const Result<FrameFormat> out = recordings::frame_format(options.out);
   if (!out) return out.error();
   if (options.rate_hz && *in != FrameFormat::npy) {
     return bad_input(fmt::format("--rate: '{}' has times of its own; leave --rate out", options.in));
@@ -112,7 +112,7 @@ Result<std::optional<FrameShape>> wanted_shape(const ConvertOptions& options,
 
 Result<std::optional<ArrayDescription>> read_array(const ConvertOptions& options) {
   if (options.array.empty()) return std::optional<ArrayDescription>();
-  Result<ArrayDescription> array = store::read_array(options.array);
+  Result<ArrayDescription> array = files::read_array(options.array);
   if (!array) return array.error();
   return std::optional(std::move(*array));
 }
@@ -138,9 +138,9 @@ Status convert(const ConvertOptions& options) {
   const Result<std::optional<FrameShape>> wanted = wanted_shape(options, *array);
   if (!wanted) return wanted.error();
   const Result<std::unique_ptr<FrameSource>> source =
-      store::open_frames(options.in, {.shape = *wanted, .rate_hz = options.rate_hz});
+      recordings::open_frames(options.in, {.shape = *wanted, .rate_hz = options.rate_hz});
   if (!source) return source.error();
-  const Result<store::FrameNotes> notes = notes_of(options, *array);
+  const Result<recordings::FrameNotes> notes = notes_of(options, *array);
   if (!notes) return notes.error();
   const Result<bool> has_forces = holds_forces(options.in);
   if (!has_forces) return has_forces.error();
@@ -150,12 +150,12 @@ Status convert(const ConvertOptions& options) {
   if (!has_frame) return has_frame.error();
   const std::optional<FrameShape> shape = (*source)->shape();
   if (!shape) return bad_input(options.in + ": has no frames, so that their shape is not known");
-  const Result<std::unique_ptr<FrameSink>> sink = store::create_frames(options.out, *shape, *notes);
+  const Result<std::unique_ptr<FrameSink>> sink = recordings::create_frames(options.out, *shape, *notes);
   if (!sink) return sink.error();
   Extras extras;
   extras.is_timed = !options.rate_hz;
   if (Status copied = copy(**source, frame, *has_frame, **sink, extras); !copied) return copied;
-  const std::vector<std::string> names = left_out(extras, *has_forces, *notes, *store::frame_format(options.out));
+  const std::vector<std::string> names = left_out(extras, *has_forces, *notes, *recordings::frame_format(options.out));
   if (!names.empty()) fmt::print(stderr, "{}: left out: {}\n", options.out, fmt::join(names, ", "));
   return Done{};
 }

@@ -7,11 +7,11 @@
 
 #include "commands.hpp"
 #include "dermis/calibration/evaluation.hpp"
+#include "dermis/files/loads_csv.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/pipeline/paper_bank_file.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "dermis/report/evaluation_report.hpp"
-#include "dermis/store/frame_files.hpp"
-#include "dermis/store/loads_csv.hpp"
 
 namespace dermis::app {
 namespace {
@@ -66,9 +66,9 @@ Status evaluate(const EvaluateOptions& options) {
   const Result<pipeline::Model> model = pipeline::read_model(options.model);
   if (!model) return model.error();
   const Result<std::vector<RawFrame>> frames =
-      store::read_frames(options.frames, {.shape = FrameShape{model->array.rows, model->array.cols}});
+      recordings::read_frames(options.frames, {.shape = FrameShape{model->array.rows, model->array.cols}});
   if (!frames) return frames.error();
-  const Result<std::vector<Load>> loads = store::read_loads(options.loads, model->array, frames->size());
+  const Result<std::vector<Load>> loads = files::read_loads(options.loads, model->array, frames->size());
   if (!loads) return loads.error();
   std::optional<fusion::PaperBank> bank;
   if (!options.bank.empty()) {

@@ -10,12 +10,12 @@
 #include <optional>
 #include <utility>
 
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/content_hash.hpp"
+#include "dermis/files/forces_csv.hpp"
 #include "dermis/pipeline/pipeline.hpp"
-#include "dermis/store/array_toml.hpp"
-#include "dermis/store/content_hash.hpp"
-#include "dermis/store/forces_csv.hpp"
-#include "dermis/store/frame_files.hpp"
-#include "dermis/store/recording.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/recording.hpp"
 #include "open_source.hpp"
 
 namespace dermis::app {
@@ -24,7 +24,7 @@ namespace {
 /// Frames into a recording, each with its forces.
 class RecordingWithForces final : public FrameSink {
  public:
-  RecordingWithForces(pipeline::Pipeline pipeline, std::unique_ptr<store::RecordingWriter> recording)
+  RecordingWithForces(pipeline::Pipeline pipeline, std::unique_ptr<recordings::RecordingWriter> recording)
       : pipeline_(std::move(pipeline)), recording_(std::move(recording)) {}
 
   Status write(const RawFrame& frame) override {
@@ -35,13 +35,13 @@ class RecordingWithForces final : public FrameSink {
 
  private:
   pipeline::Pipeline pipeline_;
-  std::unique_ptr<store::RecordingWriter> recording_;
+  std::unique_ptr<recordings::RecordingWriter> recording_;
   ForceFrame force_;
 };
 
 class ForcesOnly final : public FrameSink {
  public:
-  ForcesOnly(pipeline::Pipeline pipeline, store::ForcesCsvWriter forces)
+  ForcesOnly(pipeline::Pipeline pipeline, files::ForcesCsvWriter forces)
       : pipeline_(std::move(pipeline)), forces_(std::move(forces)) {}
 
   Status write(const RawFrame& frame) override {
@@ -52,18 +52,18 @@ class ForcesOnly final : public FrameSink {
 
  private:
   pipeline::Pipeline pipeline_;
-  store::ForcesCsvWriter forces_;
+  files::ForcesCsvWriter forces_;
   ForceFrame force_;
 };
 
-Result<store::FrameNotes> notes_of(const FrameOutput& output) {
-  store::FrameNotes notes = output.notes;
+Result<recordings::FrameNotes> notes_of(const FrameOutput& output) {
+  recordings::FrameNotes notes = output.notes;
   if (output.array != nullptr) {
     notes.name = output.array->name;
-    notes.array_toml = store::array_to_toml(*output.array);
+    notes.array_toml = files::array_to_toml(*output.array);
   }
   if (output.model != nullptr) {
-    const Result<std::string> hash = store::content_hash(output.model_path);
+    const Result<std::string> hash = files::content_hash(output.model_path);
     if (!hash) return hash.error();
     notes.model_hash = *hash;
   }
@@ -72,8 +72,8 @@ Result<store::FrameNotes> notes_of(const FrameOutput& output) {
 
 /// A recording that is whole at each moment, whatever happens to the process.
 Result<std::unique_ptr<FrameSink>> create_live_recording(const FrameOutput& output, const FrameShape& shape,
-                                                         const store::FrameNotes& notes) {
-  store::RecordingOptions options;
+                                                         const recordings::FrameNotes& notes) {
+  recordings::RecordingOptions options;
   if (!notes.name.empty()) options.name = notes.name;
   options.array_toml = notes.array_toml;
   options.model_hash = notes.model_hash;
@@ -84,8 +84,8 @@ Result<std::unique_ptr<FrameSink>> create_live_recording(const FrameOutput& outp
     if (!created) return created.error();
     pipeline.emplace(std::move(*created));
   }
-  Result<std::unique_ptr<store::RecordingWriter>> recording =
-      store::RecordingWriter::create(output.path, shape, options);
+  Result<std::unique_ptr<recordings::RecordingWriter>> recording =
+      recordings::RecordingWriter::create(output.path, shape, options);
   if (!recording) return recording.error();
   if (!pipeline) return std::unique_ptr<FrameSink>(std::move(*recording));
   return std::unique_ptr<FrameSink>(std::make_unique<RecordingWithForces>(std::move(*pipeline), std::move(*recording)));
@@ -93,16 +93,16 @@ Result<std::unique_ptr<FrameSink>> create_live_recording(const FrameOutput& outp
 
 }  // namespace
 
-store::FrameNotes notes_of_source(const std::string& from) {
+recordings::FrameNotes notes_of_source(const std::string& from) {
   if (is_live(from)) return {};
-  const Result<store::FrameNotes> notes = store::read_frame_notes(from);
-  return notes ? *notes : store::FrameNotes{};
+  const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(from);
+  return notes ? *notes : recordings::FrameNotes{};
 }
 
 Status check_output(const FrameOutput& output) {
-  const Result<store::FrameFormat> format = store::frame_format(output.path);
+  const Result<recordings::FrameFormat> format = recordings::frame_format(output.path);
   if (!format) return format.error();
-  if (output.model != nullptr && *format != store::FrameFormat::mcap) {
+  if (output.model != nullptr && *format != recordings::FrameFormat::mcap) {
     return bad_input("'" + output.path + "': has no place for forces; a recording has: end it in .mcap");
   }
   if (::access(output.path.c_str(), F_OK) == 0) return Done{};
@@ -113,19 +113,19 @@ Status check_output(const FrameOutput& output) {
 
 Result<std::unique_ptr<FrameSink>> create_recording(const FrameOutput& output, const FrameShape& shape) {
   if (const Status possible = check_output(output); !possible) return possible.error();
-  const Result<store::FrameNotes> notes = notes_of(output);
+  const Result<recordings::FrameNotes> notes = notes_of(output);
   if (!notes) return notes.error();
-  if (*store::frame_format(output.path) == store::FrameFormat::mcap) {
+  if (*recordings::frame_format(output.path) == recordings::FrameFormat::mcap) {
     return create_live_recording(output, shape, *notes);
   }
-  return store::create_frames(output.path, shape, *notes);
+  return recordings::create_frames(output.path, shape, *notes);
 }
 
 Result<std::unique_ptr<FrameSink>> create_forces(const FrameOutput& output) {
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*output.model);
   if (!pipeline) return pipeline.error();
-  Result<store::ForcesCsvWriter> forces =
-      store::ForcesCsvWriter::create(output.path, output.model->array.rows, output.model->array.cols);
+  Result<files::ForcesCsvWriter> forces =
+      files::ForcesCsvWriter::create(output.path, output.model->array.rows, output.model->array.cols);
   if (!forces) return forces.error();
   return std::unique_ptr<FrameSink>(std::make_unique<ForcesOnly>(std::move(*pipeline), std::move(*forces)));
 }

@@ -10,7 +10,7 @@
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "dermis/store/frame_files.hpp"
+#include "dermis/recordings/frame_files.hpp"
 
 namespace dermis::app {
 
@@ -20,11 +20,11 @@ struct FrameOutput {
   const ArrayDescription* array = nullptr;  ///< Goes into a recording.
   const pipeline::Model* model = nullptr;   ///< Not null: the forces are computed and written as well, and
   std::string model_path;                   ///< where the model is from.
-  store::FrameNotes notes;                  ///< What the source says, where array and model do not.
+  recordings::FrameNotes notes;             ///< What the source says, where array and model do not.
 };
 
 /// What a file of frames says of them; nothing of a device.
-[[nodiscard]] store::FrameNotes notes_of_source(const std::string& from);
+[[nodiscard]] recordings::FrameNotes notes_of_source(const std::string& from);
 
 /// What create_recording() would find wrong with the path whatever the frames are: to be told before a device is waited
 /// for.

@@ -13,8 +13,8 @@
 
 #include "array_view.hpp"
 #include "commands.hpp"
+#include "dermis/files/atomic_file.hpp"
 #include "dermis/report/frame_picture.hpp"
-#include "dermis/store/atomic_file.hpp"
 #include "seconds.hpp"
 #include "stop_flag.hpp"
 
@@ -165,7 +165,7 @@ Status image(const ImageOptions& options) {
     pictures.push_back(picture_of(**view, *found));
   }
   set_scale(options, **view, pictures);
-  Result<store::AtomicFile> file = store::AtomicFile::create(options.out);
+  Result<files::AtomicFile> file = files::AtomicFile::create(options.out);
   if (!file) return file.error();
   file->write(bytes_of(options, pictures));
   return file->commit();

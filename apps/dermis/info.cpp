@@ -13,13 +13,13 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "dermis/store/frame_files.hpp"
-#include "dermis/store/recording.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/recording.hpp"
 
 namespace dermis::app {
 namespace {
 
-using store::FrameFormat;
+using recordings::FrameFormat;
 
 /// Before 2000, a time is no clock time but counted from an origin of its own: that of a simulation.
 constexpr Nanos kEarliestClock = std::chrono::sys_days(std::chrono::year(2000) / 1 / 1).time_since_epoch();
@@ -40,15 +40,15 @@ struct Info {
   std::optional<std::uint64_t> lost;
   bool complete = true;
   std::optional<std::pair<double, double>> temperature_celsius;  ///< Lowest and highest.
-  store::FrameNotes notes;
+  recordings::FrameNotes notes;
   std::string compression;
   std::string software;
-  std::vector<store::RecordedArrayInfo> arrays;  ///< Where there are several.
-  std::vector<store::RecordingTopic> topics;
+  std::vector<recordings::RecordedArrayInfo> arrays;  ///< Where there are several.
+  std::vector<recordings::RecordingTopic> topics;
 };
 
 Result<Info> info_of_recording(const std::string& path) {
-  Result<store::RecordingInfo> recording = store::recording_info(path);
+  Result<recordings::RecordingInfo> recording = recordings::recording_info(path);
   if (!recording) return recording.error();
   Info info;
   info.frames = recording->frames;
@@ -59,7 +59,7 @@ Result<Info> info_of_recording(const std::string& path) {
   if (recording->arrays.size() > 1) {
     info.arrays = std::move(recording->arrays);
   } else {
-    const store::RecordedArrayInfo& array = recording->arrays.front();
+    const recordings::RecordedArrayInfo& array = recording->arrays.front();
     info.shape = array.shape;
     info.notes = {array.name, array.array_toml, array.model_hash};
   }
@@ -83,9 +83,9 @@ void take(const RawFrame& frame, Info& info) {
 Result<Info> info_of_frames(const std::string& path, FrameFormat format) {
   const bool is_timed = format != FrameFormat::npy;
   const Result<std::unique_ptr<FrameSource>> source =
-      store::open_frames(path, {.rate_hz = is_timed ? std::nullopt : std::optional(1e3)});
+      recordings::open_frames(path, {.rate_hz = is_timed ? std::nullopt : std::optional(1e3)});
   if (!source) return source.error();
-  Result<store::FrameNotes> notes = store::read_frame_notes(path);
+  Result<recordings::FrameNotes> notes = recordings::read_frame_notes(path);
   if (!notes) return notes.error();
   Info info;
   info.notes = std::move(*notes);
@@ -105,7 +105,7 @@ Result<Info> info_of_frames(const std::string& path, FrameFormat format) {
 }
 
 Result<Info> info_of(const std::string& path) {
-  const Result<FrameFormat> format = store::recognise_frames(path);
+  const Result<FrameFormat> format = recordings::recognise_frames(path);
   if (!format) return format.error();
   Result<Info> info = *format == FrameFormat::mcap ? info_of_recording(path) : info_of_frames(path, *format);
   if (!info) return info;
@@ -146,7 +146,7 @@ Json or_null(const std::string& text) {
   return text.empty() ? Json(nullptr) : Json(text);
 }
 
-Json array_json(const store::RecordedArrayInfo& array) {
+Json array_json(const recordings::RecordedArrayInfo& array) {
   return {{"name", array.name},
           {"rows", array.shape ? Json(array.shape->rows) : Json(nullptr)},
           {"cols", array.shape ? Json(array.shape->cols) : Json(nullptr)},
@@ -176,8 +176,8 @@ void print_json(const std::string& file, const Info& info) {
                {"software", or_null(info.software)},
                {"arrays", Json::array()},
                {"topics", Json::array()}};
-  for (const store::RecordedArrayInfo& array : info.arrays) json["arrays"].push_back(array_json(array));
-  for (const store::RecordingTopic& topic : info.topics) {
+  for (const recordings::RecordedArrayInfo& array : info.arrays) json["arrays"].push_back(array_json(array));
+  for (const recordings::RecordingTopic& topic : info.topics) {
     json["topics"].push_back({{"name", topic.name}, {"type", topic.type}, {"messages", topic.messages}});
   }
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
@@ -188,7 +188,7 @@ void print_line(const char* what, const std::string& value) {
 }
 
 /// "chest  16x16  1000 frames, 0 lost (with its description), model fnv1a64:..."
-std::string array_text(const store::RecordedArrayInfo& array) {
+std::string array_text(const recordings::RecordedArrayInfo& array) {
   std::string text = array.name;
   if (array.shape) text += fmt::format("  {}x{}", array.shape->rows, array.shape->cols);
   text += fmt::format("  {} frames, {} lost", array.frames, array.lost);
@@ -211,11 +211,11 @@ void print_text(const Info& info) {
     print_line("temperature",
                fmt::format("{:.2f} to {:.2f} C", info.temperature_celsius->first, info.temperature_celsius->second));
   }
-  for (const store::RecordedArrayInfo& array : info.arrays) print_line("array", array_text(array));
+  for (const recordings::RecordedArrayInfo& array : info.arrays) print_line("array", array_text(array));
   print_line("array", info.notes.name + (info.notes.array_toml.empty() ? "" : " (with its description)"));
   print_line("model", info.notes.model_hash);
   print_line("software", info.software);
-  for (const store::RecordingTopic& topic : info.topics) {
+  for (const recordings::RecordingTopic& topic : info.topics) {
     fmt::print("{:<14}{}  {}  {} messages\n", "topic", topic.name, topic.type, topic.messages);
   }
 }

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "dermis/calibration/uncalibrated_model.hpp"
-#include "dermis/store/array_toml.hpp"
+#include "dermis/files/array_toml.hpp"
 
 namespace dermis::app {
 
@@ -16,7 +16,7 @@ Result<ModelOrArray> read_model_or_array(const std::string& path) {
     ArrayDescription array = model->array;
     return ModelOrArray{*std::move(model), std::move(array)};
   }
-  Result<ArrayDescription> array = store::read_array(path);
+  Result<ArrayDescription> array = files::read_array(path);
   if (!array) return array.error();
   return ModelOrArray{calibration::uncalibrated_model(*array), *std::move(array)};
 }

@@ -9,7 +9,7 @@
 
 #include "dermis/acquisition/device_source.hpp"
 #include "dermis/acquisition/source_uri.hpp"
-#include "dermis/store/frame_files.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "live_line.hpp"
 #include "simulated_device.hpp"
 #include "stop_flag.hpp"
@@ -26,7 +26,7 @@ std::optional<FrameShape> shape_of(const ArrayDescription* array) {
 
 Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const ArrayDescription* array) {
   const std::optional<FrameShape> shape = shape_of(array);
-  if (!acquisition::is_source_uri(from)) return store::open_frames(from, {.shape = shape});
+  if (!acquisition::is_source_uri(from)) return recordings::open_frames(from, {.shape = shape});
   const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
   if (!uri) return uri.error();
   if (uri->transport == acquisition::Transport::simulation) {

@@ -8,8 +8,8 @@
 
 #include "commands.hpp"
 #include "dermis/acquisition/recorder.hpp"
+#include "dermis/files/array_toml.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "dermis/store/array_toml.hpp"
 #include "frame_output.hpp"
 #include "live_line.hpp"
 #include "open_source.hpp"
@@ -37,7 +37,7 @@ struct Known {
 Result<Known> read_known(const RecordOptions& options) {
   Known known;
   if (!options.array.empty()) {
-    Result<ArrayDescription> array = store::read_array(options.array);
+    Result<ArrayDescription> array = files::read_array(options.array);
     if (!array) return array.error();
     known.array = std::move(*array);
   }

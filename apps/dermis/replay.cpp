@@ -6,7 +6,7 @@
 
 #include "commands.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "dermis/store/frame_files.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "frame_output.hpp"
 #include "open_source.hpp"
 #include "pacer.hpp"
@@ -23,9 +23,9 @@ struct ReplayOptions {
 };
 
 Result<std::unique_ptr<FrameSink>> create_sink(const FrameOutput& output, const FrameShape& shape) {
-  const Result<store::FrameFormat> format = store::frame_format(output.path);
+  const Result<recordings::FrameFormat> format = recordings::frame_format(output.path);
   if (!format) return format.error();
-  const bool is_table = *format == store::FrameFormat::csv;
+  const bool is_table = *format == recordings::FrameFormat::csv;
   return output.model != nullptr && is_table ? create_forces(output) : create_recording(output, shape);
 }
 

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "commands.hpp"
+#include "dermis/files/forces_csv.hpp"
+#include "dermis/files/frames_csv.hpp"
 #include "dermis/preprocessing/phase.hpp"
-#include "dermis/store/forces_csv.hpp"
-#include "dermis/store/frames_csv.hpp"
 #include "live_line.hpp"
 #include "open_source.hpp"
 #include "seconds.hpp"
@@ -30,7 +30,7 @@ struct RunOptions {
 
 /// Line of a table, number of a frame of anything else.
 std::string place_of(const std::string& in, const FrameSource& source, std::size_t frame) {
-  const auto* table = dynamic_cast<const store::FramesCsvReader*>(&source);
+  const auto* table = dynamic_cast<const files::FramesCsvReader*>(&source);
   return table != nullptr ? fmt::format("{}:{}", in, table->line()) : fmt::format("{}: frame {}", in, frame);
 }
 
@@ -38,12 +38,12 @@ std::string place_of(const std::string& in, const FrameSource& source, std::size
 class ForceTables {
  public:
   static Result<ForceTables> create(const RunOptions& options, const ArrayDescription& array) {
-    Result<store::ForcesCsvWriter> forces = store::ForcesCsvWriter::create(options.out, array.rows, array.cols);
+    Result<files::ForcesCsvWriter> forces = files::ForcesCsvWriter::create(options.out, array.rows, array.cols);
     if (!forces) return forces.error();
     ForceTables tables(std::move(*forces));
     if (options.sigma.empty()) return tables;
-    Result<store::ForcesCsvWriter> sigmas =
-        store::ForcesCsvWriter::create(options.sigma, array.rows, array.cols, store::ForceColumn::sigma_newtons);
+    Result<files::ForcesCsvWriter> sigmas =
+        files::ForcesCsvWriter::create(options.sigma, array.rows, array.cols, files::ForceColumn::sigma_newtons);
     if (!sigmas) return sigmas.error();
     tables.sigmas_.emplace(std::move(*sigmas));
     return tables;
@@ -59,10 +59,10 @@ class ForceTables {
   }
 
  private:
-  explicit ForceTables(store::ForcesCsvWriter forces) : forces_(std::move(forces)) {}
+  explicit ForceTables(files::ForcesCsvWriter forces) : forces_(std::move(forces)) {}
 
-  store::ForcesCsvWriter forces_;
-  std::optional<store::ForcesCsvWriter> sigmas_;
+  files::ForcesCsvWriter forces_;
+  std::optional<files::ForcesCsvWriter> sigmas_;
 };
 
 /// Frames whose forces are not what a user expects.

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/atomic_file.hpp"
+#include "dermis/files/frames_csv.hpp"
+#include "dermis/files/loads_csv.hpp"
 #include "dermis/simulation/simulator.hpp"
-#include "dermis/store/array_toml.hpp"
-#include "dermis/store/atomic_file.hpp"
-#include "dermis/store/frames_csv.hpp"
-#include "dermis/store/loads_csv.hpp"
 #include "progress.hpp"
 
 namespace dermis::app {
@@ -55,9 +55,9 @@ struct Truth {
 
   [[nodiscard]] Status write(const std::filesystem::path& folder, const ArrayDescription& array,
                              bool has_contacts) const {
-    if (Status written = store::write_loads((folder / "loads.csv").string(), array, loads); !written) return written;
+    if (Status written = files::write_loads((folder / "loads.csv").string(), array, loads); !written) return written;
     if (!has_contacts) return Done{};
-    Result<store::AtomicFile> file = store::AtomicFile::create((folder / "contacts.csv").string());
+    Result<files::AtomicFile> file = files::AtomicFile::create((folder / "contacts.csv").string());
     if (!file) return file.error();
     file->write(contacts);
     return file->commit();
@@ -65,7 +65,7 @@ struct Truth {
 };
 
 Status simulate(const SimulateOptions& options) {
-  const Result<ArrayDescription> array = store::read_array(options.array);
+  const Result<ArrayDescription> array = files::read_array(options.array);
   if (!array) return array.error();
   if (array->has_unknown_circuit()) {
     return bad_input(options.array +
@@ -78,8 +78,8 @@ Status simulate(const SimulateOptions& options) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return failed(fmt::format("cannot create the folder '{}': {}", options.out, error.message()));
-  const Result<std::unique_ptr<store::FramesCsvWriter>> frames =
-      store::FramesCsvWriter::create((folder / "frames.csv").string(), FrameShape{array->rows, array->cols});
+  const Result<std::unique_ptr<files::FramesCsvWriter>> frames =
+      files::FramesCsvWriter::create((folder / "frames.csv").string(), FrameShape{array->rows, array->cols});
   if (!frames) return frames.error();
 
   Progress progress;

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "contact_loop.hpp"
+#include "dermis/files/array_toml.hpp"
 #include "dermis/simulation/simulator.hpp"
-#include "dermis/store/array_toml.hpp"
 #include "pacer.hpp"
 #include "rehearsal.hpp"
 
@@ -43,7 +43,7 @@ ArrayDescription reference_array(const FrameShape& shape) {
 Result<ArrayDescription> array_of(const acquisition::SourceUri& uri, const ArrayDescription* given) {
   Result<ArrayDescription> array = reference_array(uri.array_shape.value_or(FrameShape{16, 16}));
   if (!uri.array.empty()) {
-    array = store::read_array(uri.array);
+    array = files::read_array(uri.array);
     if (!array) return array;
   } else if (given != nullptr) {
     const bool agrees = !uri.array_shape || *uri.array_shape == FrameShape{given->rows, given->cols};

@@ -11,7 +11,7 @@
 #include <mutex>
 #include <utility>
 
-#include "dermis/store/recording.hpp"
+#include "dermis/recordings/recording.hpp"
 
 namespace dermis::live {
 namespace {
@@ -63,7 +63,7 @@ void Track::count(const RawFrame& frame) {
 
 class Playback::Implementation {
  public:
-  Implementation(std::unique_ptr<store::SuitRecordingReader> reader, std::vector<store::RecordedArray> arrays,
+  Implementation(std::unique_ptr<recordings::SuitRecordingReader> reader, std::vector<recordings::RecordedArray> arrays,
                  std::vector<std::optional<std::size_t>> track_of_array, Nanos start, Nanos end)
       : arrays(std::move(arrays)),
         start(start),
@@ -73,7 +73,7 @@ class Playback::Implementation {
         tracks_(this->arrays.size()),
         position_(start) {}
 
-  const std::vector<store::RecordedArray> arrays;
+  const std::vector<recordings::RecordedArray> arrays;
   const Nanos start;
   const Nanos end;
 
@@ -97,7 +97,7 @@ class Playback::Implementation {
   void wake_all();
 
   mutable std::mutex mutex_;  ///< Of all that follows.
-  std::unique_ptr<store::SuitRecordingReader> reader_;
+  std::unique_ptr<recordings::SuitRecordingReader> reader_;
   std::vector<std::optional<std::size_t>> track_of_array_;
   std::vector<Track> tracks_;
   Status read_status_ = Done{};
@@ -276,18 +276,18 @@ Playback::Playback(std::shared_ptr<Implementation> implementation) : implementat
 Playback::~Playback() = default;
 
 Result<std::unique_ptr<Playback>> Playback::open(const std::string& path) {
-  const store::RecordingPlace place = store::recording_place(path);
-  const Result<store::RecordingInfo> info = store::recording_info(place.path);
+  const recordings::RecordingPlace place = recordings::recording_place(path);
+  const Result<recordings::RecordingInfo> info = recordings::recording_info(place.path);
   if (!info) return info.error();
   if (info->frames == 0) return bad_input(place.path + ": has no frame to play");
-  Result<std::unique_ptr<store::SuitRecordingReader>> reader = store::SuitRecordingReader::open(place.path);
+  Result<std::unique_ptr<recordings::SuitRecordingReader>> reader = recordings::SuitRecordingReader::open(place.path);
   if (!reader) return reader.error();
-  std::vector<store::RecordedArray> arrays = (*reader)->arrays();
+  std::vector<recordings::RecordedArray> arrays = (*reader)->arrays();
   std::vector<std::optional<std::size_t>> tracks(arrays.size());
   if (place.array.empty()) {
     for (std::size_t i = 0; i < arrays.size(); ++i) tracks[i] = i;
   } else {
-    const Result<std::size_t> chosen = store::find_array(arrays, place.path, place.array);
+    const Result<std::size_t> chosen = recordings::find_array(arrays, place.path, place.array);
     if (!chosen) return chosen.error();
     (*reader)->read_only(*chosen);
     tracks[*chosen] = 0;
@@ -298,7 +298,7 @@ Result<std::unique_ptr<Playback>> Playback::open(const std::string& path) {
       *std::move(reader), std::move(arrays), std::move(tracks), info->start_utc, end)));
 }
 
-const std::vector<store::RecordedArray>& Playback::arrays() const noexcept {
+const std::vector<recordings::RecordedArray>& Playback::arrays() const noexcept {
   return implementation_->arrays;
 }
 

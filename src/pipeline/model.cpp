@@ -8,15 +8,15 @@
 #include <optional>
 #include <span>
 
-#include "dermis/store/array_toml.hpp"
-#include "dermis/store/safetensors.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/safetensors.hpp"
 
 namespace dermis::pipeline {
 namespace {
 
+using files::SafetensorsFile;
 using fusion::ForceNetworks;
 using fusion::LookUpTables;
-using store::SafetensorsFile;
 
 constexpr const char* kFormat = "dermis model 2";
 constexpr const char* kFormatWithoutSigma = "dermis model 1";
@@ -160,18 +160,18 @@ Status write_model(const std::string& path, const Model& model) {
   if (!is_consistent(model)) return failed("cannot write '" + path + "': the model holds values out of range");
   SafetensorsFile file;
   file.metadata["format"] = kFormat;
-  file.metadata["array"] = store::array_to_toml(model.array);
+  file.metadata["array"] = files::array_to_toml(model.array);
   for (const auto& [key, text] : model.provenance) file.metadata[kProvenancePrefix + key] = text;
   put_networks(file, model.networks);
   file.metadata["baselines"] = std::to_string(model.baselines.size());
   for (std::size_t index = 0; index < model.baselines.size(); ++index) {
     put_baseline(file, index, model.baselines[index]);
   }
-  return store::write_safetensors(path, file);
+  return files::write_safetensors(path, file);
 }
 
 Result<Model> read_model(const std::string& path) {
-  const Result<SafetensorsFile> file = store::read_safetensors(path);
+  const Result<SafetensorsFile> file = files::read_safetensors(path);
   if (!file) return file.error();
   if (metadata(*file, "format") == kFormatWithoutSigma) {
     return bad_input(path + ": is of an older dermis that did not know how sure its forces are; write it again with " +
@@ -181,7 +181,7 @@ Result<Model> read_model(const std::string& path) {
     return bad_input(path + ": is not a dermis model; write one with 'dermis calibrate'");
   }
   Model model;
-  Result<ArrayDescription> array = store::array_from_toml(metadata(*file, "array"), path + ": array");
+  Result<ArrayDescription> array = files::array_from_toml(metadata(*file, "array"), path + ": array");
   if (!array) return array.error();
   model.array = std::move(*array);
 

@@ -9,13 +9,13 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/store/safetensors.hpp"
+#include "dermis/files/safetensors.hpp"
 
 namespace dermis::pipeline {
 namespace {
 
+using files::SafetensorsFile;
 using fusion::PaperBank;
-using store::SafetensorsFile;
 
 constexpr const char* kFormat = "dermis paper bank 1";
 
@@ -90,11 +90,11 @@ Status write_paper_bank(const std::string& path, const PaperBank& bank) {
     bank.networks().parameters(taxel, std::span(values).subspan(taxel * parameters, parameters));
   }
   file.tensors["parameters"] = {{taxels, parameters}, std::move(values)};
-  return store::write_safetensors(path, file);
+  return files::write_safetensors(path, file);
 }
 
 Result<PaperBank> read_paper_bank(const std::string& path) {
-  const Result<SafetensorsFile> file = store::read_safetensors(path);
+  const Result<SafetensorsFile> file = files::read_safetensors(path);
   if (!file) return file.error();
   const auto format = file->metadata.find("format");
   if (format == file->metadata.end() || format->second != kFormat) {

@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <system_error>
 
-#include "dermis/store/atomic_file.hpp"
+#include "dermis/files/atomic_file.hpp"
 
 namespace dermis::report {
 namespace {
 
 Status write_file(const std::filesystem::path& path, const std::string& text) {
-  Result<store::AtomicFile> file = store::AtomicFile::create(path.string());
+  Result<files::AtomicFile> file = files::AtomicFile::create(path.string());
   if (!file) return file.error();
   file->write(text);
   return file->commit();

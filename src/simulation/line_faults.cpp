@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-#include "dermis/core/config_table.hpp"
+#include "dermis/files/config_table.hpp"
 
 namespace dermis::simulation {
 namespace {
@@ -267,7 +267,7 @@ Status LineFaults::validate(const ArrayDescription& array) const {
   return Done{};
 }
 
-void read_line_faults(ConfigFile& file, LineFaults& faults) {
+void read_line_faults(files::ConfigFile& file, LineFaults& faults) {
   file.counts("faults.open_rows", faults.open_rows);
   file.counts("faults.open_columns", faults.open_columns);
   file.counts("faults.grounded_rows", faults.grounded_rows);

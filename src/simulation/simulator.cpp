@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "dermis/core/config_table.hpp"
+#include "dermis/files/config_table.hpp"
 
 namespace dermis::simulation {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t kRubberNoiseStream = std::numeric_limits<std::uint64_t>::max() - 1;
 constexpr std::uint64_t kInstrumentStream = std::numeric_limits<std::uint64_t>::max() - 2;
 
-void read_rubber(ConfigFile& file, RubberOptions& rubber) {
+void read_rubber(files::ConfigFile& file, RubberOptions& rubber) {
   if (file.contains("rubber.carbon_percent")) {
     int carbon_percent = 10;
     file.integer("rubber.carbon_percent", carbon_percent);
@@ -42,7 +42,7 @@ void read_rubber(ConfigFile& file, RubberOptions& rubber) {
   file.number("rubber.mechanical_spread", rubber.mechanical_spread);
 }
 
-void read_environment(ConfigFile& file, EnvironmentOptions& environment) {
+void read_environment(files::ConfigFile& file, EnvironmentOptions& environment) {
   file.number("environment.supply_variation", environment.supply_variation);
   file.number("environment.temperature_noise_celsius", environment.temperature_noise_celsius);
   file.number("environment.supply_noise", environment.supply_noise);
@@ -57,7 +57,7 @@ Status SimulationOptions::validate() const {
 }
 
 Result<SimulationOptions> read_simulation_options(const std::string& path) {
-  Result<ConfigFile> file = ConfigFile::read(path);
+  Result<files::ConfigFile> file = files::ConfigFile::read(path);
   if (!file) return file.error();
   SimulationOptions options;
   read_rubber(*file, options.rubber);

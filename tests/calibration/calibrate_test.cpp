@@ -18,7 +18,7 @@
 #include "dermis/core/parallel.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
-#include "dermis/store/frame_files.hpp"
+#include "dermis/recordings/frame_files.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -168,7 +168,7 @@ std::vector<Press> dsa_presses(const std::filesystem::path& folder) {
     for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
     if (cells.at(6) != "0") continue;  // outlier
     const auto frames =
-        store::read_frames((folder / "presses" / (cells[0] + ".csv")).string(), {.shape = FrameShape{13, 6}});
+        recordings::read_frames((folder / "presses" / (cells[0] + ".csv")).string(), {.shape = FrameShape{13, 6}});
     EXPECT_TRUE(frames) << frames.error().message;
     Press press;
     press.newtons = std::stod(cells[2]) * 9.80665e-3;

@@ -14,7 +14,7 @@
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/core/parallel.hpp"
 #include "dermis/core/random.hpp"
-#include "dermis/store/frame_files.hpp"
+#include "dermis/recordings/frame_files.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -253,7 +253,8 @@ TEST(CircuitFit, shows_why_the_ghosts_of_a_real_hand_cannot_be_solved) {
   };
   for (const Case& c : {Case{"ghosting_m1.csv", 11.7, 0.93}, Case{"ghosting_m5.csv", 7.1, 0.75}}) {
     SCOPED_TRACE(c.file);
-    const auto frames = store::read_frames((folder / c.file).string(), {.shape = FrameShape{kHandRows, kHandCols}});
+    const auto frames =
+        recordings::read_frames((folder / c.file).string(), {.shape = FrameShape{kHandRows, kHandCols}});
     ASSERT_TRUE(frames) << frames.error().message;
     RemoteReadings readings;
     for (const RawFrame& frame : *frames) add_frame(frame.counts, readings);

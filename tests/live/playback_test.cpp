@@ -8,14 +8,14 @@
 #include <limits>
 #include <thread>
 
-#include "store/random_frames.hpp"
-#include "store/temporary_folder.hpp"
+#include "support/random_frames.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace dermis::live {
 namespace {
 
-using store::RecordedArray;
-using store::TemporaryFolder;
+using recordings::RecordedArray;
+using support::TemporaryFolder;
 
 constexpr Nanos kStart{1'760'000'000'000'000'000};
 constexpr Nanos kInterval{10'000'000};
@@ -26,14 +26,14 @@ std::vector<RecordedArray> arrays() {
 
 /// Both arrays a frame each 10 ms, 'back' from `back_from` on.
 void record(const std::string& path, std::size_t frames, std::size_t back_from = 0) {
-  const auto writer = store::SuitRecordingWriter::create(path, arrays());
+  const auto writer = recordings::SuitRecordingWriter::create(path, arrays());
   ASSERT_TRUE(writer);
   Random random(1);
   for (std::size_t i = 0; i < frames; ++i) {
     for (const std::size_t array : {std::size_t{0}, std::size_t{1}}) {
       if (array == 1 && i < back_from) continue;
       const std::size_t taxels = arrays()[array].shape.taxel_count();
-      RawFrame frame = store::random_frame(random, taxels, store::RandomCounts::whole);
+      RawFrame frame = support::random_frame(random, taxels, support::RandomCounts::whole);
       frame.time = kStart + static_cast<std::int64_t>(i) * kInterval;
       frame.counts[0] = static_cast<float>(i);
       ASSERT_TRUE((*writer)->write(array, frame));
@@ -191,10 +191,10 @@ TEST(Playback, OfNoFrameIsRefused) {
 TEST(Playback, ADamagedRecordingGivesItsErrorToAllSources) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 35'000);  // two chunks
-  std::string bytes = store::read_bytes(folder.file("rec.mcap"));
+  std::string bytes = support::read_bytes(folder.file("rec.mcap"));
   const std::size_t place = bytes.size() * 19 / 20;
   for (std::size_t i = place; i < place + 2000; ++i) bytes[i] = 'x';
-  store::write_bytes(folder.file("rec.mcap"), bytes);
+  support::write_bytes(folder.file("rec.mcap"), bytes);
   const auto playback = opened(folder.file("rec.mcap"));
   playback->control({.speed = 10'000.0});
   std::vector<std::jthread> threads;

@@ -17,15 +17,15 @@
 #include <vector>
 
 #include "dermis/core/random.hpp"
-#include "dermis/store/safetensors.hpp"
-#include "store/temporary_folder.hpp"
+#include "dermis/files/safetensors.hpp"
 #include "support/hand_made_model.hpp"
 #include "support/random_networks.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace dermis::pipeline {
 namespace {
 
-using store::TemporaryFolder;
+using support::TemporaryFolder;
 
 fusion::LookUpTables make_baseline(std::size_t taxels, const char* name, fusion::LookUpSignal signal) {
   fusion::LookUpTables tables;
@@ -135,17 +135,17 @@ void expect_refused(const std::string& path, const std::string& mention = {}) {
 }
 
 /// The file of make_model(), changed by `damage`.
-void write_damaged(const std::string& path, const std::function<void(store::SafetensorsFile&)>& damage) {
+void write_damaged(const std::string& path, const std::function<void(files::SafetensorsFile&)>& damage) {
   ASSERT_TRUE(write_model(path, make_model()));
-  auto file = store::read_safetensors(path);
+  auto file = files::read_safetensors(path);
   ASSERT_TRUE(file);
   damage(*file);
-  ASSERT_TRUE(store::write_safetensors(path, *file));
+  ASSERT_TRUE(files::write_safetensors(path, *file));
 }
 
 std::vector<std::string> tensor_names(const std::string& path) {
   std::vector<std::string> names;
-  const auto file = store::read_safetensors(path);
+  const auto file = files::read_safetensors(path);
   for (const auto& [name, tensor] : file->tensors) names.push_back(name);
   return names;
 }
@@ -266,7 +266,7 @@ TEST(Model, every_tensor_must_have_its_shape_and_type) {
   for (const std::string& name : tensor_names(folder.file("m"))) {
     SCOPED_TRACE(name);
     write_damaged(folder.file("m"), [&](auto& file) {
-      store::Tensor& tensor = file.tensors[name];
+      files::Tensor& tensor = file.tensors[name];
       std::visit([](auto& values) { values.pop_back(); }, tensor.values);
       tensor.shape = {std::visit([](auto& values) { return values.size(); }, tensor.values)};
     });
@@ -274,7 +274,7 @@ TEST(Model, every_tensor_must_have_its_shape_and_type) {
     write_damaged(folder.file("m"), [&](auto& file) { file.tensors[name].shape.push_back(1); });
     expect_refused(folder.file("m"), name);
     write_damaged(folder.file("m"), [&](auto& file) {
-      store::Tensor& tensor = file.tensors[name];
+      files::Tensor& tensor = file.tensors[name];
       const std::size_t size = std::visit([](auto& values) { return values.size(); }, tensor.values);
       tensor.values = std::vector<std::int64_t>(size, 1);
     });

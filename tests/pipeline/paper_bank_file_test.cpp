@@ -7,14 +7,14 @@
 #include <limits>
 
 #include "dermis/core/random.hpp"
-#include "dermis/store/safetensors.hpp"
-#include "store/temporary_folder.hpp"
+#include "dermis/files/safetensors.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace dermis::pipeline {
 namespace {
 
 using fusion::PaperBank;
-using store::TemporaryFolder;
+using support::TemporaryFolder;
 
 PaperBank random_bank(std::size_t taxels, std::optional<PaperBank::Range> celsius) {
   Random random(5);
@@ -65,9 +65,9 @@ template <typename Change>
 void expect_refused(const char* place, Change change) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_paper_bank(folder.file("bank"), random_bank(4, PaperBank::Range{0.0, 50.0})));
-  store::SafetensorsFile file = store::read_safetensors(folder.file("bank")).value();
+  files::SafetensorsFile file = files::read_safetensors(folder.file("bank")).value();
   change(file);
-  ASSERT_TRUE(store::write_safetensors(folder.file("bank"), file));
+  ASSERT_TRUE(files::write_safetensors(folder.file("bank"), file));
   const Result<PaperBank> read = read_paper_bank(folder.file("bank"));
   ASSERT_FALSE(read) << place;
   EXPECT_EQ(read.error().kind, ErrorKind::bad_input);
@@ -76,7 +76,7 @@ void expect_refused(const char* place, Change change) {
 }
 
 TEST(PaperBankFile, refuses_what_is_missing_or_out_of_range) {
-  using store::SafetensorsFile;
+  using files::SafetensorsFile;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const auto doubles = [](SafetensorsFile& file, const char* name) -> std::vector<double>& {
     return std::get<std::vector<double>>(file.tensors.at(name).values);
@@ -100,7 +100,7 @@ TEST(PaperBankFile, refuses_what_is_missing_or_out_of_range) {
 TEST(PaperBankFile, a_damaged_file_is_refused_or_read_as_a_sound_bank) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_paper_bank(folder.file("bank"), random_bank(3, PaperBank::Range{0.0, 50.0})));
-  const std::string whole = store::read_bytes(folder.file("bank"));
+  const std::string whole = support::read_bytes(folder.file("bank"));
   constexpr std::uint64_t kSeed = 11;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   Random random(kSeed);
@@ -110,7 +110,7 @@ TEST(PaperBankFile, a_damaged_file_is_refused_or_read_as_a_sound_bank) {
     for (std::uint64_t flips = random.below(4); flips > 0 && !bytes.empty(); --flips) {
       bytes[random.below(bytes.size())] = static_cast<char>(random.below(256));
     }
-    store::write_bytes(folder.file("damaged"), bytes);
+    support::write_bytes(folder.file("damaged"), bytes);
     Result<PaperBank> read = read_paper_bank(folder.file("damaged"));
     if (!read) continue;
     EXPECT_GT(read->heaviest_newtons(), 0.0);
@@ -122,7 +122,7 @@ TEST(PaperBankFile, a_damaged_file_is_refused_or_read_as_a_sound_bank) {
 TEST(PaperBankFile, refuses_a_file_that_is_not_there_or_no_safetensors) {
   const TemporaryFolder folder;
   EXPECT_FALSE(read_paper_bank(folder.file("absent")));
-  store::write_bytes(folder.file("text"), "hello");
+  support::write_bytes(folder.file("text"), "hello");
   EXPECT_FALSE(read_paper_bank(folder.file("text")));
 }
 

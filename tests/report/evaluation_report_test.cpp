@@ -10,7 +10,7 @@
 
 #include "report/sample_evaluation.hpp"
 #include "report/well_formed.hpp"
-#include "store/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace dermis::report {
 namespace {
@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string read(const fs::path& path) {
-  return store::read_bytes(path.string());
+  return support::read_bytes(path.string());
 }
 
 class ReportTest : public testing::Test {
@@ -40,7 +40,7 @@ class ReportTest : public testing::Test {
 
   [[nodiscard]] bool says(std::string_view words) const { return page_.find(words) != std::string::npos; }
 
-  store::TemporaryFolder folder_;
+  support::TemporaryFolder folder_;
   fs::path directory_ = folder_.file("report");  // not there yet
   std::string page_;
 };

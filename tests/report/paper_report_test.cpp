@@ -12,7 +12,7 @@
 
 #include "report/sample_reproduction.hpp"
 #include "report/well_formed.hpp"
-#include "store/temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace dermis::report {
 namespace {
@@ -23,7 +23,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::string read(const fs::path& path) {
-  return store::read_bytes(path.string());
+  return support::read_bytes(path.string());
 }
 
 class PaperReportTest : public testing::Test {
@@ -46,7 +46,7 @@ class PaperReportTest : public testing::Test {
     return page_.substr(start, page_.find('<', start) - start);
   }
 
-  store::TemporaryFolder folder_;
+  support::TemporaryFolder folder_;
   fs::path directory_ = folder_.file("report");  // not there yet
   std::string page_;
 };

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "dermis/core/config_table.hpp"
 #include "dermis/core/random.hpp"
+#include "dermis/files/config_table.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 
 namespace dermis::simulation {
@@ -261,8 +261,9 @@ TEST(LineFaults, RefusesLinesThatTheArrayDoesNotHave) {
 }
 
 TEST(LineFaults, AreReadFromToml) {
-  ConfigFile file =
-      ConfigFile::parse("[faults]\nopen_rows = [3, 4]\ndead_taxels = [\"r1c1\"]\nfrom_frame = 20\n", "f").value();
+  files::ConfigFile file =
+      files::ConfigFile::parse("[faults]\nopen_rows = [3, 4]\ndead_taxels = [\"r1c1\"]\nfrom_frame = 20\n", "f")
+          .value();
   LineFaults faults;
   EXPECT_FALSE(faults.any());
   read_line_faults(file, faults);

@@ -14,15 +14,15 @@
 #include "circuit/known_circuit.hpp"
 #include "commands.hpp"
 #include "dermis/compensation/crosstalk.hpp"
+#include "dermis/files/taxel_tables_csv.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
-#include "dermis/store/taxel_tables_csv.hpp"
 
 namespace dermis::app {
 namespace {
 
-using store::TableValues;
-using store::TaxelTablesReader;
-using store::TaxelTablesWriter;
+using files::TableValues;
+using files::TaxelTablesReader;
+using files::TaxelTablesWriter;
 
 struct ForwardOptions {
   std::string array;

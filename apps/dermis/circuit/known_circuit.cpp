@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "circuit/known_circuit.hpp"
 
-#include "dermis/store/array_toml.hpp"
+#include "dermis/files/array_toml.hpp"
 
 namespace dermis::app {
 
 Result<ArrayDescription> read_known_circuit(const std::string& path) {
-  Result<ArrayDescription> array = store::read_array(path);
+  Result<ArrayDescription> array = files::read_array(path);
   if (!array) return array;
   if (array->readout.circuit == Circuit::none) {
     return bad_input(path + ": circuit = \"none\" has nothing to compute; name the circuit and its resistances");

@@ -11,8 +11,8 @@
 #include <system_error>
 
 #include "commands.hpp"
+#include "dermis/files/atomic_file.hpp"
 #include "dermis/report/paper_report.hpp"
-#include "dermis/store/atomic_file.hpp"
 #include "paper/bank_reproduction.hpp"
 #include "paper/peaks_reproduction.hpp"
 #include "progress.hpp"
@@ -105,7 +105,7 @@ Status check_folder(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);
   if (error) return failed("cannot make the directory '" + directory + "': " + error.message());
-  const Result<store::AtomicFile> writable = store::AtomicFile::create(directory + "/index.html");
+  const Result<files::AtomicFile> writable = files::AtomicFile::create(directory + "/index.html");
   if (!writable) return writable.error();
   return Done{};
 }

@@ -12,9 +12,9 @@
 #include <utility>
 
 #include "dermis/calibration/plan_request.hpp"
-#include "dermis/store/array_toml.hpp"
-#include "dermis/store/frames_csv.hpp"
-#include "dermis/store/loads_csv.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/frames_csv.hpp"
+#include "dermis/files/loads_csv.hpp"
 #include "rehearsal.hpp"
 
 namespace dermis::app {
@@ -37,7 +37,7 @@ Result<std::string> answer(const Status& status) {
 }
 
 Status write_frames(const std::string& path, const ArrayDescription& array, const std::vector<RawFrame>& frames) {
-  auto writer = store::FramesCsvWriter::create(path, {array.rows, array.cols});
+  auto writer = files::FramesCsvWriter::create(path, {array.rows, array.cols});
   if (!writer) return writer.error();
   for (const RawFrame& frame : frames) {
     if (Status written = (*writer)->write(frame); !written) return written;
@@ -47,9 +47,9 @@ Status write_frames(const std::string& path, const ArrayDescription& array, cons
 
 /// What `dermis calibrate` needs to make the model again, or a better one.
 Status write_data(const std::string& path, const ArrayDescription& array, const GuidedData& data) {
-  if (Status written = store::write_array(path + ".array.toml", array); !written) return written;
+  if (Status written = files::write_array(path + ".array.toml", array); !written) return written;
   if (Status written = write_frames(path + ".frames.csv", array, data.frames); !written) return written;
-  return store::write_loads(path + ".loads.csv", array, data.loads);
+  return files::write_loads(path + ".loads.csv", array, data.loads);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include <span>
 #include <utility>
 
-#include "dermis/store/array_toml.hpp"
-#include "dermis/store/content_hash.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/content_hash.hpp"
 #include "live_line.hpp"
 #include "pacer.hpp"
 #include "stop_flag.hpp"
@@ -154,18 +154,18 @@ Status ServeSession::run() {
   return recorder_.end();
 }
 
-std::vector<store::RecordedArray> ServeSession::recorded_arrays() const {
-  std::vector<store::RecordedArray> recorded;
+std::vector<recordings::RecordedArray> ServeSession::recorded_arrays() const {
+  std::vector<recordings::RecordedArray> recorded;
   for (std::size_t k = 0; k < suit_.arrays.size(); ++k) {
     const ServedArray& array = suit_.arrays[k];
     const std::shared_ptr<const pipeline::Model> model = this->model(k);
     const ArrayDescription& description = model->array;
-    store::RecordedArray& one = recorded.emplace_back();
+    recordings::RecordedArray& one = recorded.emplace_back();
     one.name = array.name;
     one.shape = {description.rows, description.cols};
-    one.array_toml = store::array_to_toml(description);
+    one.array_toml = files::array_to_toml(description);
     one.pitch = {description.row_pitch_m, description.col_pitch_m};
-    const Result<std::string> hash = store::content_hash(array.model_path);
+    const Result<std::string> hash = files::content_hash(array.model_path);
     if (hash && !replaced_models_[k]) one.model_hash = *hash;
   }
   return recorded;

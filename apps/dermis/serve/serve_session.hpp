@@ -61,7 +61,7 @@ class ServeSession {
   [[nodiscard]] Status set_tare(const std::string& name, bool value);
   [[nodiscard]] Status switch_recording(bool on);
   [[nodiscard]] std::string next_recording() const;
-  [[nodiscard]] std::vector<store::RecordedArray> recorded_arrays() const;
+  [[nodiscard]] std::vector<recordings::RecordedArray> recorded_arrays() const;
   [[nodiscard]] Status use_model(std::size_t array, std::shared_ptr<const pipeline::Model> model);
   [[nodiscard]] std::optional<stream::Playback> playback();
 

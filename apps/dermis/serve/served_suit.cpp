@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "dermis/acquisition/source_uri.hpp"
-#include "dermis/store/frame_files.hpp"
-#include "dermis/store/suit_toml.hpp"
+#include "dermis/files/suit_toml.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "model_or_array.hpp"
 #include "open_source.hpp"
 
@@ -57,7 +57,7 @@ class Models {
 
 /// As suit.toml tells, or one flat array.
 Result<SuitDescription> describe(const SuitPlace& place) {
-  if (!place.suit.empty()) return store::read_suit(place.suit);
+  if (!place.suit.empty()) return files::read_suit(place.suit);
   SuitArray array;
   array.from = place.from;
   array.model = place.model;
@@ -106,9 +106,9 @@ Result<std::unique_ptr<FrameSource>> open_live_source(const std::string& from, c
 Status open_playback(const std::string& from, ServedSuit& suit) {
   Result<std::unique_ptr<live::Playback>> playback = live::Playback::open(from);
   if (!playback) return playback.error();
-  const std::vector<store::RecordedArray>& recorded = (*playback)->arrays();
+  const std::vector<recordings::RecordedArray>& recorded = (*playback)->arrays();
   for (const ServedArray& array : suit.arrays) {
-    const auto same = [&](const store::RecordedArray& other) { return topic_name(other.name) == array.name; };
+    const auto same = [&](const recordings::RecordedArray& other) { return topic_name(other.name) == array.name; };
     auto found = std::find_if(recorded.begin(), recorded.end(), same);
     if (found == recorded.end() && suit.arrays.size() == 1 && recorded.size() == 1) found = recorded.begin();
     if (found == recorded.end()) return bad_input(fmt::format("'{}': holds no array '{}'", from, array.name));

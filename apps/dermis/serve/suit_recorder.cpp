@@ -12,11 +12,12 @@ SuitRecorder::~SuitRecorder() {
   static_cast<void>(end());
 }
 
-Status SuitRecorder::begin(const std::string& path, const std::vector<store::RecordedArray>& arrays) {
+Status SuitRecorder::begin(const std::string& path, const std::vector<recordings::RecordedArray>& arrays) {
   const std::lock_guard switching(switch_mutex_);
   if (recording_) return bad_input("a recording goes on: " + this->path());
   await_closing();
-  Result<std::unique_ptr<store::SuitRecordingWriter>> writer = store::SuitRecordingWriter::create(path, arrays);
+  Result<std::unique_ptr<recordings::SuitRecordingWriter>> writer =
+      recordings::SuitRecordingWriter::create(path, arrays);
   if (!writer) return writer.error();
   const std::unique_lock lock(writer_mutex_);
   writer_ = *std::move(writer);
@@ -35,7 +36,7 @@ void SuitRecorder::stop() {
 }
 
 /// A recording that failed is told so here, too: once, and by a thread that nobody waits for.
-void SuitRecorder::close(store::SuitRecordingWriter& writer) {
+void SuitRecorder::close(recordings::SuitRecordingWriter& writer) {
   outcome_ = writer.commit();
   if (!outcome_) failed_(outcome_.error().message);
 }

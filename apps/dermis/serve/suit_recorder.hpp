@@ -15,7 +15,7 @@
 
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
-#include "dermis/store/suit_recording.hpp"
+#include "dermis/recordings/suit_recording.hpp"
 
 namespace dermis::app {
 
@@ -32,7 +32,7 @@ class SuitRecorder {
   ~SuitRecorder();
 
   /// Fails where the file cannot be made, or a recording goes on.
-  [[nodiscard]] Status begin(const std::string& path, const std::vector<store::RecordedArray>& arrays);
+  [[nodiscard]] Status begin(const std::string& path, const std::vector<recordings::RecordedArray>& arrays);
   /// Takes no more frames; the file is closed in the background.
   void stop();
   /// stop(), and waits for it; the outcome of the recording. Done where there is none.
@@ -47,7 +47,7 @@ class SuitRecorder {
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_.load(); }
 
  private:
-  void close(store::SuitRecordingWriter& writer);
+  void close(recordings::SuitRecordingWriter& writer);
   void await_closing();
 
   const std::function<void(const std::string&)> failed_;
@@ -57,7 +57,7 @@ class SuitRecorder {
   Status outcome_ = Done{};  // Of closing_, once it has ended.
 
   mutable std::shared_mutex writer_mutex_;  // Of what follows; shared by those who write.
-  std::unique_ptr<store::SuitRecordingWriter> writer_;
+  std::unique_ptr<recordings::SuitRecordingWriter> writer_;
   std::thread closing_;
   std::string path_;
 };

@@ -12,7 +12,7 @@
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
-#include "dermis/store/suit_recording.hpp"
+#include "dermis/recordings/suit_recording.hpp"
 
 namespace dermis::live {
 
@@ -42,7 +42,7 @@ class Playback {
   ~Playback();
 
   /// Those that are played.
-  [[nodiscard]] const std::vector<store::RecordedArray>& arrays() const noexcept;
+  [[nodiscard]] const std::vector<recordings::RecordedArray>& arrays() const noexcept;
   [[nodiscard]] Nanos start() const noexcept;  ///< Time of the first and of
   [[nodiscard]] Nanos end() const noexcept;    ///< the last frame.
 

@@ -11,7 +11,7 @@
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/result.hpp"
 
-namespace dermis {
+namespace dermis::files {
 class ConfigFile;
 }
 
@@ -45,7 +45,7 @@ struct LineFaults {
 };
 
 /// Reads the table [faults]; keys are the field names.
-void read_line_faults(ConfigFile& file, LineFaults& faults);
+void read_line_faults(files::ConfigFile& file, LineFaults& faults);
 
 /// Readings of an array with faults, [rows, cols] over the supply, `frame` frames after the first of the recording:
 /// Kirchhoff's current law at every line, each scan a system of its own. Shorts have no resistance. Conventions as in

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/files/atomic_file.hpp"
+
+namespace dermis::files {
+
+/// What a forces.csv holds of each taxel.
+enum class ForceColumn {
+  newtons,        ///< ForceFrame::newtons
+  sigma_newtons,  ///< ForceFrame::sigma_newtons
+};
+
+/// Writes forces.csv (docs/file-formats.md), or a file of the same shape with the standard deviations: numbers with the
+/// shortest digits that read back as the same number, `nan` where no force is given, `inf` for a standard deviation
+/// that has no bound. Not thread-safe.
+class ForcesCsvWriter {
+ public:
+  [[nodiscard]] static Result<ForcesCsvWriter> create(const std::string& path, std::size_t rows, std::size_t cols,
+                                                      ForceColumn column = ForceColumn::newtons);
+
+  /// Appends a frame of rows * cols forces. Returns the first write error as soon as it is known.
+  [[nodiscard]] Status write(const ForceFrame& frame);
+  /// Puts the complete file in its place; without it, nothing is left behind.
+  [[nodiscard]] Status commit();
+
+ private:
+  ForcesCsvWriter(AtomicFile file, std::size_t taxel_count, ForceColumn column);
+
+  AtomicFile file_;
+  [[maybe_unused]] std::size_t taxel_count_;  ///< What write() asserts.
+  ForceColumn column_;
+  std::string line_;
+};
+
+}  // namespace dermis::files

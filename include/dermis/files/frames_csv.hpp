@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/core/frame_sink.hpp"
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/files/atomic_file.hpp"
+
+namespace dermis::files {
+
+/// The optional columns of frames.csv; time_s and the taxels are always there.
+struct FramesCsvColumns {
+  bool temperature_celsius = true;
+  bool supply_v = true;
+};
+
+/// Reads frames.csv (docs/file-formats.md) frame by frame: the memory is that of one line, at most 32 MiB.
+/// Counts may be fractional, nan or inf: whether a reading can be used is for preprocessing to say. An empty cell of
+/// temperature_celsius or supply_v is no value. Errors name the line and the column. Not thread-safe.
+class FramesCsvReader final : public FrameSource {
+ public:
+  /// Opens the file and checks its header: against an array of that shape, or, where none is given, against the shape
+  /// that its last column names (1x1 ... 1024x1024).
+  [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(const std::string& path,
+                                                                     std::optional<FrameShape> shape = {});
+  /// The same from a stream; `name` stands for the path in messages.
+  [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(std::unique_ptr<std::istream> in,
+                                                                     const std::string& name,
+                                                                     std::optional<FrameShape> shape = {});
+  ~FramesCsvReader() override;
+
+  [[nodiscard]] Result<bool> next(RawFrame& frame) override;
+  [[nodiscard]] std::optional<FrameShape> shape() const override;
+
+  /// Line of the last frame, from 1 for the header.
+  [[nodiscard]] std::size_t line() const noexcept;
+
+ private:
+  struct State;
+  explicit FramesCsvReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Writes frames.csv: exact times, shortest digits that read back as the same number; of what the acquisition knows of
+/// a frame, it keeps nothing. Without commit(), nothing is left behind. Not thread-safe.
+class FramesCsvWriter final : public FrameSink {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<FramesCsvWriter>> create(const std::string& path, FrameShape shape,
+                                                                       const FramesCsvColumns& columns = {});
+
+  /// Appends a frame of `shape`; values of columns that are not in the file are dropped.
+  [[nodiscard]] Status write(const RawFrame& frame) override;
+  [[nodiscard]] Status commit() override;
+
+ private:
+  FramesCsvWriter(AtomicFile file, std::size_t taxel_count, const FramesCsvColumns& columns);
+
+  AtomicFile file_;
+  [[maybe_unused]] std::size_t taxel_count_;  ///< What write() asserts.
+  FramesCsvColumns columns_;
+  std::string line_;
+};
+
+}  // namespace dermis::files

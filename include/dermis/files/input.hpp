@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <memory>
+#include <string>
+
+#include "dermis/core/result.hpp"
+
+namespace dermis::files {
+
+/// A path that cannot be opened is bad input; what fails later is a failure.
+[[nodiscard]] Result<std::unique_ptr<std::istream>> open_input(const std::string& path);
+
+/// To be called right after a stream went bad.
+[[nodiscard]] Error read_failure(const std::string& name);
+
+/// All bytes of a file, at most max_bytes.
+[[nodiscard]] Result<std::string> read_file(const std::string& path, std::size_t max_bytes);
+
+}  // namespace dermis::files

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <string>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::files {
+
+/// Reads loads.csv (docs/file-formats.md) in the order of its lines. Errors name the line: a taxel or a frame that does
+/// not exist (frames are 0 ... frame_count - 1), a negative value, a pressure without taxel_area_m2, two loads of one
+/// frame that share a taxel.
+[[nodiscard]] Result<std::vector<Load>> read_loads(const std::string& path, const ArrayDescription& array,
+                                                   std::size_t frame_count);
+/// The same from a stream; `name` stands for the path in messages.
+[[nodiscard]] Result<std::vector<Load>> read_loads(std::istream& in, const std::string& name,
+                                                   const ArrayDescription& array, std::size_t frame_count);
+
+/// Writes loads.csv.
+[[nodiscard]] Status write_loads(const std::string& path, const ArrayDescription& array,
+                                 const std::vector<Load>& loads);
+
+}  // namespace dermis::files

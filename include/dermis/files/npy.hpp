@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <istream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "dermis/core/frame_sink.hpp"
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+/// Counts as an array of NumPy (numpy.lib.format, versions 1.0 to 3.0). A .npy file holds no times.
+namespace dermis::files {
+
+struct NpyInput {
+  double rate_hz = 0.0;               ///< Frames a second, > 0: frame k is at k / rate_hz.
+  std::optional<FrameShape> shape{};  ///< That the frames must have; needed for arrays of two dimensions.
+};
+
+/// Reads (frames, rows, cols), or (frames, rows * cols) of a given shape: whole numbers of 8 to 64 bits or floats of 32
+/// or 64 bits, of either byte order, in C order. Fails on whole numbers that a float does not hold exactly. The memory
+/// is that of one frame. Not thread-safe.
+class NpyReader final : public FrameSource {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<NpyReader>> open(const std::string& path, const NpyInput& input);
+  /// The same from a stream; `name` stands for the path in messages.
+  [[nodiscard]] static Result<std::unique_ptr<NpyReader>> open(std::unique_ptr<std::istream> in,
+                                                               const std::string& name, const NpyInput& input);
+  ~NpyReader() override;
+
+  [[nodiscard]] Result<bool> next(RawFrame& frame) override;
+  [[nodiscard]] std::optional<FrameShape> shape() const override;
+
+ private:
+  struct State;
+  explicit NpyReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Writes the counts of frames as (frames, rows, cols): as u16, or as f32 where one of them needs it (then the frames
+/// before are rewritten). Nothing else of a frame is kept. Without commit(), nothing is left behind. Not thread-safe.
+class NpyWriter final : public FrameSink {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<NpyWriter>> create(const std::string& path, FrameShape shape);
+  ~NpyWriter() override;
+
+  [[nodiscard]] Status write(const RawFrame& frame) override;
+  [[nodiscard]] Status commit() override;
+
+ private:
+  struct State;
+  explicit NpyWriter(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace dermis::files

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+
+namespace dermis::files {
+
+/// A dense row-major array. `values` holds as many elements as the product of `shape` (1 for an empty shape); its type
+/// is the type in the file: F32, F64, U8 or I64.
+struct Tensor {
+  std::vector<std::size_t> shape;
+  std::variant<std::vector<float>, std::vector<double>, std::vector<std::uint8_t>, std::vector<std::int64_t>> values;
+
+  bool operator==(const Tensor&) const = default;
+};
+
+/// The content of a safetensors file (https://huggingface.co/docs/safetensors): named tensors and a map of texts.
+struct SafetensorsFile {
+  std::map<std::string, std::string> metadata;
+  std::map<std::string, Tensor> tensors;
+
+  /// The elements of a tensor that must be there with this shape and element type (float, double, std::uint8_t or
+  /// std::int64_t). They live as long as the tensor. Errors name the tensor, without a path.
+  template <typename T>
+  [[nodiscard]] Result<std::span<const T>> view(const std::string& name, const std::vector<std::size_t>& shape) const;
+
+  bool operator==(const SafetensorsFile&) const = default;
+};
+
+/// Reads a file of at most 1 GiB with a header of at most 4 MiB. The tensors must fill the file without gap or overlap.
+[[nodiscard]] Result<SafetensorsFile> read_safetensors(const std::string& path);
+/// The same from memory; `name` stands for the path in messages.
+[[nodiscard]] Result<SafetensorsFile> safetensors_from_bytes(std::string_view bytes, const std::string& name);
+
+/// Writes the file atomically. The same content gives the same bytes; tensors are aligned to their element size.
+[[nodiscard]] Status write_safetensors(const std::string& path, const SafetensorsFile& file);
+
+}  // namespace dermis::files

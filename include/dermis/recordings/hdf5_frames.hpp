@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "dermis/core/frame_sink.hpp"
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+/// Frames as HDF5 (docs/file-formats.md), readable by h5py: counts (N, rows, cols), time_s and one dataset of N values
+/// for each further member of RawFrame.
+namespace dermis::recordings {
+
+/// What a file of frames says of all of them; empty where it says nothing.
+struct FrameNotes {
+  std::string name;        ///< Of the array.
+  std::string array_toml;  ///< The array's description, as array.toml.
+  std::string model_hash;  ///< content_hash() of the model that the array was used with.
+
+  bool operator==(const FrameNotes&) const = default;
+};
+
+/// Reads a file of Hdf5FramesWriter: every RawFrame has the bits that were written. Also reads files that hold only
+/// counts (N, rows, cols) of any numbers, and time_s or time_ns. The memory is that of some chunks, at most 200 MiB.
+/// Errors name the dataset and the frame. Not thread-safe.
+class Hdf5FramesReader final : public FrameSource {
+ public:
+  /// Fails where the frames do not have the shape, if one is given.
+  [[nodiscard]] static Result<std::unique_ptr<Hdf5FramesReader>> open(const std::string& path,
+                                                                      std::optional<FrameShape> shape = {});
+  ~Hdf5FramesReader() override;
+
+  [[nodiscard]] Result<bool> next(RawFrame& frame) override;
+  [[nodiscard]] std::optional<FrameShape> shape() const override;
+  [[nodiscard]] SourceStatistics statistics() const override;
+  [[nodiscard]] const FrameNotes& notes() const noexcept;
+
+ private:
+  struct State;
+  explicit Hdf5FramesReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Writes frames with all that is known of them; counts as u16, or as f32 from the first frame on that u16 cannot hold
+/// (then the frames before are rewritten). Without commit(), nothing is left behind. The memory is that of one chunk,
+/// about 1 MiB. Not thread-safe.
+class Hdf5FramesWriter final : public FrameSink {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<Hdf5FramesWriter>> create(const std::string& path, FrameShape shape,
+                                                                        const FrameNotes& notes = {});
+  ~Hdf5FramesWriter() override;
+
+  [[nodiscard]] Status write(const RawFrame& frame) override;
+  [[nodiscard]] Status commit() override;
+
+ private:
+  struct State;
+  explicit Hdf5FramesWriter(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace dermis::recordings

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <istream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+
+/// MCAP files (https://mcap.dev/spec): messages of several topics with their schemas, in compressed chunks.
+namespace dermis::recordings {
+
+enum class McapCompression : std::uint8_t { none, lz4, zstd };
+
+/// "", "lz4" or "zstd", as in the files.
+[[nodiscard]] const char* to_string(McapCompression compression) noexcept;
+
+/// One topic.
+struct McapChannel {
+  std::string topic;
+  std::string encoding;         ///< Of the messages: "cdr".
+  std::string schema_name;      ///< "sensor_msgs/msg/Image"; empty where the topic has no schema.
+  std::string schema_encoding;  ///< "ros2msg".
+  std::string schema;
+
+  bool operator==(const McapChannel&) const = default;
+};
+
+/// One message; times in nanoseconds since 1970.
+struct McapMessage {
+  std::uint16_t channel = 0;  ///< What McapWriter::add_channel() or the file calls it.
+  std::uint32_t sequence = 0;
+  std::uint64_t log_time = 0;
+  std::uint64_t publish_time = 0;
+  std::span<const std::uint8_t> data;
+};
+
+struct McapAttachment {
+  std::string name;
+  std::string media_type;
+  std::string data;
+
+  bool operator==(const McapAttachment&) const = default;
+};
+
+struct McapMetadata {
+  std::string name;
+  std::map<std::string, std::string> values;
+
+  bool operator==(const McapMetadata&) const = default;
+};
+
+/// Writes an MCAP file of the profile "ros2". The file lies beside its place until appear() or finish(). What was
+/// written with close_chunk() can be read whatever happens then to the process. The first write error is kept: the file
+/// is cut back to the last whole record, all that follows is dropped, and finish() adds the index if it has room.
+/// Memory: two chunks and those that wait, and about 150 bytes for each chunk written (and 10 for each
+/// topic in it). Not thread-safe.
+class McapWriter {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path, McapCompression compression);
+  /// Without finish(), a file that has appeared stays, without its index; else nothing is left.
+  ~McapWriter();
+  McapWriter(const McapWriter&) = delete;
+  McapWriter& operator=(const McapWriter&) = delete;
+
+  [[nodiscard]] std::uint16_t add_channel(const McapChannel& channel);
+  void add_attachment(const McapAttachment& attachment);
+  void add_metadata(const McapMetadata& metadata);
+  /// Appends to the open chunk.
+  void add_message(const McapMessage& message);
+  /// Size of the open chunk, before it is compressed.
+  [[nodiscard]] std::size_t chunk_bytes() const noexcept;
+
+  /// Writes all that was added so far to the file.
+  [[nodiscard]] Status close_chunk();
+  /// What was added so far becomes a chunk that waits in memory for write_sealed().
+  void seal_chunk();
+  /// Writes the first chunk that waits. May be called by another thread, by one at a time, while this one adds and
+  /// seals.
+  [[nodiscard]] Status write_sealed();
+  /// Puts the file in its place, where it grows on.
+  [[nodiscard]] Status appear();
+  /// Waits until what close_chunk() wrote is on the disk. May be called by another thread while this one writes.
+  [[nodiscard]] Status synchronise();
+  /// Writes the open chunk and the index, and puts the file in its place. To be called once.
+  [[nodiscard]] Status finish();
+
+ private:
+  struct State;
+  explicit McapWriter(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// What the summary of a file says.
+struct McapStatistics {
+  std::uint64_t messages = 0;
+  std::uint32_t chunks = 0;
+  std::uint64_t first_log_time = 0;
+  std::uint64_t last_log_time = 0;
+  std::map<std::uint16_t, std::uint64_t> channel_messages;
+};
+
+/// Reads the messages of an MCAP file, in the order of the file; by the times of its chunks where those are indexed and
+/// stand in another order. A file that ends too early is read up to its last whole record. All CRCs are verified.
+/// Errors name the byte. Memory: one chunk; chunks and messages may have up to 64 MiB. Not thread-safe.
+class McapReader {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<McapReader>> open(const std::string& path);
+  /// The same from a stream that can seek; `name` stands for the path in messages.
+  [[nodiscard]] static Result<std::unique_ptr<McapReader>> open(std::unique_ptr<std::istream> in,
+                                                                const std::string& name);
+  ~McapReader();
+  McapReader(const McapReader&) = delete;
+  McapReader& operator=(const McapReader&) = delete;
+
+  /// The file was written to its end.
+  [[nodiscard]] bool complete() const noexcept;
+  /// Empty without summary.
+  [[nodiscard]] const std::optional<McapStatistics>& statistics() const noexcept;
+
+  /// Fills `message`, whose data are valid until the next call. Returns false at the end of the file.
+  [[nodiscard]] Result<bool> next(McapMessage& message);
+
+  /// Chunks are read in the order of the file, whatever their times say. To be called before next().
+  void read_as_written();
+  /// next() goes on with a message from which all of this log time and later ones are still to come, and few earlier
+  /// ones: the first of a chunk where chunks are indexed, else the first of the file.
+  void seek(std::uint64_t log_time);
+
+  /// What was read so far of channels, attachments and metadata: of a file with an index, all of them. Attachments
+  /// above 16 MiB are left out.
+  [[nodiscard]] const std::map<std::uint16_t, McapChannel>& channels() const noexcept;
+  [[nodiscard]] const std::vector<McapAttachment>& attachments() const noexcept;
+  [[nodiscard]] const std::vector<McapMetadata>& metadata() const noexcept;
+
+  /// Compressions of the chunks read or indexed so far.
+  [[nodiscard]] const std::vector<McapCompression>& compressions() const noexcept;
+
+ private:
+  struct State;
+  explicit McapReader(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace dermis::recordings

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/messages/ros_messages.hpp"
+#include "dermis/recordings/mcap.hpp"
+
+/// Recordings of several arrays in one MCAP file (docs/recordings.md).
+namespace dermis::recordings {
+
+/// An array of a recording.
+struct RecordedArray {
+  std::string name = "array";  ///< Topics are /<name>/raw, ... with '_' for what a topic cannot have.
+  FrameShape shape{};
+  std::string array_toml{};  ///< Description of the array, as array.toml; empty: none.
+  std::string model_hash{};  ///< content_hash() of the model that gave the forces; empty: none.
+  messages::Pitch pitch{};   ///< For the forces.
+};
+
+struct SuitRecordingOptions {
+  McapCompression compression = McapCompression::lz4;
+  bool live = true;  ///< As RecordingOptions::live.
+};
+
+/// Writes a recording of one or more arrays, as RecordingWriter does for one. Frames stand in the file in the order of
+/// write(); the log times of each array rise. Thread-safe: each array may have a thread of its own that writes.
+class SuitRecordingWriter {
+ public:
+  /// Fails where the topics of two arrays would have the same names.
+  [[nodiscard]] static Result<std::unique_ptr<SuitRecordingWriter>> create(const std::string& path,
+                                                                           std::vector<RecordedArray> arrays,
+                                                                           const SuitRecordingOptions& options = {});
+  SuitRecordingWriter(const SuitRecordingWriter&) = delete;
+  SuitRecordingWriter& operator=(const SuitRecordingWriter&) = delete;
+  /// Without commit(), what was written of a live recording stays, without index.
+  ~SuitRecordingWriter();
+
+  /// `array` is its place in the list of create().
+  [[nodiscard]] Status write(std::size_t array, const RawFrame& frame);
+  /// A frame with its forces.
+  [[nodiscard]] Status write(std::size_t array, const RawFrame& frame, const ForceFrame& force);
+  /// To be called once, when no write() is under way or follows.
+  [[nodiscard]] Status commit();
+
+ private:
+  class Implementation;
+  explicit SuitRecordingWriter(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// The array of a name, or the only one where the name is empty; else an error that lists the names. `path` stands for
+/// the recording in messages.
+[[nodiscard]] Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const std::string& path,
+                                             const std::string& name);
+
+/// Reads every RawFrame of all arrays of a recording, in the order of the file. Of other MCAP files there is one array:
+/// the first topic of images (RecordingReader). Not thread-safe.
+class SuitRecordingReader {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<SuitRecordingReader>> open(const std::string& path);
+  /// The same from a stream that can seek; `name` stands for the path in messages.
+  [[nodiscard]] static Result<std::unique_ptr<SuitRecordingReader>> open(std::unique_ptr<std::istream> in,
+                                                                         const std::string& name);
+  SuitRecordingReader(const SuitRecordingReader&) = delete;
+  SuitRecordingReader& operator=(const SuitRecordingReader&) = delete;
+  ~SuitRecordingReader();
+
+  /// As far as the file says; names may be empty, and so may the shape of an array without frames.
+  [[nodiscard]] const std::vector<RecordedArray>& arrays() const noexcept;
+
+  /// From now on, next() leaves out the frames of the others.
+  void read_only(std::size_t array);
+  /// Fills `frame` with the next frame, reusing its buffers, and `array` with the place of its array in arrays().
+  /// Returns false at the end.
+  [[nodiscard]] Result<bool> next(std::size_t& array, RawFrame& frame);
+  /// next() goes on with the first frames of this log time or later ones: the time of the frame (docs/recordings.md).
+  /// A recording that has no index is read from its beginning.
+  void seek(Nanos time);
+
+  /// The recording was written to its end.
+  [[nodiscard]] bool complete() const noexcept;
+
+ private:
+  class Implementation;
+  explicit SuitRecordingReader(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::recordings

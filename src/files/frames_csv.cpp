@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/files/frames_csv.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/files/input.hpp"
+#include "dermis/files/taxel_text.hpp"
+#include "dermis/files/text.hpp"
+#include "files/csv_reader.hpp"
+
+namespace dermis::files {
+namespace {
+
+enum class Column { time, temperature, supply };
+
+constexpr std::array<const char*, 3> kColumnNames{"time_s", "temperature_celsius", "supply_v"};
+constexpr std::size_t kMaxColumns = kMaxLines * kMaxLines + kColumnNames.size();
+
+const char* name_of(Column column) {
+  return kColumnNames[static_cast<std::size_t>(column)];
+}
+
+std::optional<Column> column_named(std::string_view name) {
+  const auto* const found = std::find(kColumnNames.begin(), kColumnNames.end(), name);
+  if (found == kColumnNames.end()) return std::nullopt;
+  return static_cast<Column>(found - kColumnNames.begin());
+}
+
+using Cells = std::vector<std::string_view>;
+
+/// What the taxels of a header are held against: the array's shape, or the one that its last column names.
+struct Expected {
+  FrameShape shape;
+  const char* authority;
+};
+
+bool are_taxels_in_order(const Cells& cells, std::size_t first, FrameShape shape) {
+  if (cells.size() - first != shape.taxel_count()) return false;
+  for (std::size_t i = 0; i < shape.taxel_count(); ++i) {
+    if (cells[first + i] != taxel_name(i / shape.cols, i % shape.cols)) return false;
+  }
+  return true;
+}
+
+/// Why the cells from `first` on are not the taxels of the array.
+std::string taxel_mistake(const Cells& cells, std::size_t first, const Expected& expected) {
+  const FrameShape shape = expected.shape;
+  const std::string claim = std::string(expected.authority) + " " + size_text(shape);
+  if (const std::optional<TaxelPlace> last = parse_taxel(cells.back())) {
+    const bool is_grid = last->row < cells.size() && last->col < cells.size();
+    const FrameShape other{last->row + 1, last->col + 1};
+    if (is_grid && other != shape && are_taxels_in_order(cells, first, other)) {
+      return "has " + size_text(other) + " taxels, " + claim;
+    }
+  }
+  for (std::size_t i = 0; i < shape.taxel_count(); ++i) {
+    const std::string name = taxel_name(i / shape.cols, i % shape.cols);
+    const std::string_view cell = first + i < cells.size() ? cells[first + i] : "";
+    if (cell == name) continue;
+    if (!cell.empty() && !parse_taxel(cell) && !column_named(cell)) {
+      return "unknown column " + in_quotes(cell) + "; expected " + name;
+    }
+    const bool is_absent = std::find(cells.begin(), cells.end(), name) == cells.end();
+    if (is_absent) return std::string("column ").append(name).append(" is missing; ").append(claim);
+    return "column " + in_quotes(cell) + " stands where " + name +
+           " is expected; write the taxels row by row, after all other columns";
+  }
+  return "unknown column " + in_quotes(cells[first + shape.taxel_count()]) + " after the last taxel of a " +
+         size_text(shape) + " array; remove it";
+}
+
+/// The shape of which the last column is the last taxel.
+Result<Expected> learn_shape(const Cells& cells) {
+  const std::optional<TaxelPlace> last = parse_taxel(cells.back());
+  if (!last) {
+    return bad_input("its last column is " + in_quotes(cells.back()) + ", not a taxel; the header ends with r0c0,...");
+  }
+  if (last->row >= kMaxLines || last->col >= kMaxLines) {
+    return bad_input("its last column is " + in_quotes(cells.back()) + "; at most 1024x1024 taxels can be read");
+  }
+  return Expected{{last->row + 1, last->col + 1}, "its last column says"};
+}
+
+/// The columns before the taxels, or what is wrong with the header.
+Result<std::vector<Column>> parse_columns(const Cells& cells) {
+  std::vector<Column> columns;
+  for (const std::string_view cell : cells) {
+    const std::optional<Column> column = column_named(cell);
+    if (!column) break;
+    if (std::find(columns.begin(), columns.end(), *column) != columns.end()) {
+      return bad_input("column " + in_quotes(cell) + " stands twice; remove one");
+    }
+    columns.push_back(*column);
+  }
+  if (std::find(cells.begin(), cells.end(), name_of(Column::time)) == cells.end()) {
+    return bad_input("column time_s is missing; the header begins with time_s");
+  }
+  const std::size_t first = columns.size();
+  if (first < cells.size() && cells[first] != taxel_name(0, 0) && !parse_taxel(cells[first])) {
+    return bad_input("unknown column " + in_quotes(cells[first]) +
+                     "; before r0c0 stand time_s, temperature_celsius and supply_v");
+  }
+  return columns;
+}
+
+struct Header {
+  std::vector<Column> columns;  ///< Before the taxels.
+  FrameShape shape;
+};
+
+Result<Header> parse_header(const Cells& cells, std::optional<FrameShape> shape) {
+  Result<std::vector<Column>> columns = parse_columns(cells);
+  if (!columns) return columns.error();
+  const Result<Expected> expected = shape ? Expected{*shape, "the array is"} : learn_shape(cells);
+  if (!expected) return expected.error();
+  if (!are_taxels_in_order(cells, columns->size(), expected->shape)) {
+    return bad_input(taxel_mistake(cells, columns->size(), *expected));
+  }
+  return Header{*std::move(columns), expected->shape};
+}
+
+}  // namespace
+
+struct FramesCsvReader::State {
+  std::unique_ptr<std::istream> in;
+  CsvReader csv;
+  Header header;
+
+  Status read_header(std::optional<FrameShape> shape);
+  std::optional<Error> read_value(Column column, std::string_view cell, RawFrame& frame) const;
+  Status read_frame(std::string_view line, RawFrame& frame) const;
+  Error count_error(std::size_t taxel, std::string_view cell) const;
+};
+
+Status FramesCsvReader::State::read_header(std::optional<FrameShape> shape) {
+  std::string_view line;
+  const Result<bool> got_line = csv.next_line(line);
+  if (!got_line) return got_line.error();
+  if (!*got_line) return csv.error("is empty; expected a header time_s,r0c0,...");
+  if (count_cells(line) > kMaxColumns) {
+    return csv.error("has " + std::to_string(count_cells(line)) + " columns; at most 1024x1024 taxels can be read");
+  }
+  if (count_cells(line) == 1 && line.find(';') != std::string_view::npos) {
+    return csv.error("has semicolons between its values; write commas");
+  }
+  Result<Header> parsed = parse_header(split_cells(line), shape);
+  if (!parsed) return csv.error(parsed.error().message);
+  header = *std::move(parsed);
+  return Done{};
+}
+
+std::optional<Error> FramesCsvReader::State::read_value(Column column, std::string_view cell, RawFrame& frame) const {
+  if (column == Column::time) {
+    if (parse_seconds(cell, frame.time)) return std::nullopt;
+    return csv.error("column time_s: " + in_quotes(cell) + " is not a time; write seconds of at most 9e9");
+  }
+  std::optional<double>& target = column == Column::supply ? frame.supply_v : frame.temperature_celsius;
+  if (cell.empty()) {
+    target.reset();
+    return std::nullopt;
+  }
+  double value = 0.0;
+  if (!parse_number(cell, value)) {
+    return csv.error(std::string("column ") + name_of(column) + ": " + in_quotes(cell) +
+                     " is not a number; leave the cell empty where there is no value");
+  }
+  target = value;
+  return std::nullopt;
+}
+
+Status FramesCsvReader::State::read_frame(std::string_view line, RawFrame& frame) const {
+  const std::size_t taxel_count = header.shape.taxel_count();
+  const std::size_t header_size = header.columns.size() + taxel_count;
+  if (const std::size_t size = count_cells(line); size != header_size) {
+    return csv.error("has " + std::to_string(size) + " values, the header " + std::to_string(header_size));
+  }
+  frame.temperature_celsius.reset();
+  frame.supply_v.reset();
+  frame.counts.resize(taxel_count);
+  CsvCells cells(line);
+  std::string_view cell;
+  for (const Column column : header.columns) {
+    static_cast<void>(cells.next(cell));
+    if (std::optional<Error> mistake = read_value(column, cell, frame)) return *std::move(mistake);
+  }
+  for (std::size_t taxel = 0; taxel < taxel_count; ++taxel) {
+    static_cast<void>(cells.next(cell));
+    if (!parse_number(cell, frame.counts[taxel])) return count_error(taxel, cell);
+  }
+  return Done{};
+}
+
+Error FramesCsvReader::State::count_error(std::size_t taxel, std::string_view cell) const {
+  const std::string place = "column " + taxel_name(taxel / header.shape.cols, taxel % header.shape.cols);
+  const std::string what = cell.empty() ? " is empty" : ": " + in_quotes(cell) + " is not a number";
+  return csv.error(place + what + "; write nan where a reading is missing");
+}
+
+FramesCsvReader::FramesCsvReader(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+FramesCsvReader::~FramesCsvReader() = default;
+
+Result<std::unique_ptr<FramesCsvReader>> FramesCsvReader::open(const std::string& path,
+                                                               std::optional<FrameShape> shape) {
+  Result<std::unique_ptr<std::istream>> in = open_input(path);
+  if (!in) return in.error();
+  return open(*std::move(in), path, shape);
+}
+
+Result<std::unique_ptr<FramesCsvReader>> FramesCsvReader::open(std::unique_ptr<std::istream> in,
+                                                               const std::string& name,
+                                                               std::optional<FrameShape> shape) {
+  assert(!shape || shape->taxel_count() > 0);
+  std::istream& stream = *in;
+  auto state = std::make_unique<State>(State{std::move(in), CsvReader(stream, name), {}});
+  if (const Status header = state->read_header(shape); !header) return header.error();
+  return std::unique_ptr<FramesCsvReader>(new FramesCsvReader(std::move(state)));
+}
+
+Result<bool> FramesCsvReader::next(RawFrame& frame) {
+  std::string_view line;
+  Result<bool> got_line = state_->csv.next_line(line);
+  if (!got_line || !*got_line) return got_line;
+  frame.acquisition = {};
+  if (const Status read = state_->read_frame(line, frame); !read) return read.error();
+  return true;
+}
+
+std::optional<FrameShape> FramesCsvReader::shape() const {
+  return state_->header.shape;
+}
+
+std::size_t FramesCsvReader::line() const noexcept {
+  return state_->csv.line_number();
+}
+
+FramesCsvWriter::FramesCsvWriter(AtomicFile file, std::size_t taxel_count, const FramesCsvColumns& columns)
+    : file_(std::move(file)), taxel_count_(taxel_count), columns_(columns) {}
+
+Result<std::unique_ptr<FramesCsvWriter>> FramesCsvWriter::create(const std::string& path, FrameShape shape,
+                                                                 const FramesCsvColumns& columns) {
+  Result<AtomicFile> file = AtomicFile::create(path);
+  if (!file) return file.error();
+  std::string header = name_of(Column::time);
+  if (columns.temperature_celsius) header.append(",").append(name_of(Column::temperature));
+  if (columns.supply_v) header.append(",").append(name_of(Column::supply));
+  append_taxel_names(header, shape.rows, shape.cols);
+  file->write(header + "\n");
+  return std::unique_ptr<FramesCsvWriter>(new FramesCsvWriter(*std::move(file), shape.taxel_count(), columns));
+}
+
+Status FramesCsvWriter::write(const RawFrame& frame) {
+  assert(frame.counts.size() == taxel_count_);
+  line_.clear();
+  append_seconds(line_, frame.time);
+  const auto append_optional = [this](const std::optional<double>& value) {
+    line_ += ',';
+    if (value) append_number(line_, *value);
+  };
+  if (columns_.temperature_celsius) append_optional(frame.temperature_celsius);
+  if (columns_.supply_v) append_optional(frame.supply_v);
+  for (const float count : frame.counts) {
+    line_ += ',';
+    append_number(line_, count);
+  }
+  line_ += '\n';
+  file_.write(line_);
+  return file_.status();
+}
+
+Status FramesCsvWriter::commit() {
+  return file_.commit();
+}
+
+}  // namespace dermis::files

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "recordings/growing_file.hpp"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <utility>
+
+#include "dermis/files/output_place.hpp"
+
+namespace dermis::recordings {
+
+Result<GrowingFile> GrowingFile::create(const std::string& path) {
+  Result<files::OutputPlace> place = files::open_output(path);
+  if (!place) return place.error();
+  return GrowingFile(std::move(place->target), std::move(place->temporary), place->descriptor);
+}
+
+GrowingFile::GrowingFile(std::string target, std::string temporary, int descriptor)
+    : target_(std::move(target)), temporary_(std::move(temporary)), descriptor_(descriptor) {}
+
+GrowingFile::GrowingFile(GrowingFile&& other) noexcept
+    : target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      size_(other.size_) {}
+
+GrowingFile::~GrowingFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) std::remove(temporary_.c_str());
+}
+
+Status GrowingFile::append(std::span<const std::uint8_t> bytes) {
+  if (const int error_number = files::write_all(descriptor_, std::as_bytes(bytes)); error_number != 0) {
+    cut_back();
+    return files::cannot_write(target_, error_number);
+  }
+  size_ += bytes.size();
+  return Done{};
+}
+
+/// To the last whole record. A pipe cannot be: its reader sees a cut file.
+void GrowingFile::cut_back() const {
+  const auto end = static_cast<off_t>(size_);
+  if (::ftruncate(descriptor_, end) == 0) static_cast<void>(::lseek(descriptor_, end, SEEK_SET));
+}
+
+Status GrowingFile::appear() {
+  if (has_appeared()) return Done{};
+  // Else a power failure can leave neither the earlier file nor this one.
+  const bool replaces = ::access(target_.c_str(), F_OK) == 0;
+  if (replaces && ::fdatasync(descriptor_) != 0) return files::cannot_write(target_, errno);
+  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) return files::cannot_write(target_, errno);
+  temporary_.clear();
+  return Done{};
+}
+
+Status GrowingFile::synchronise() const {
+  const bool cannot_be = ::fdatasync(descriptor_) != 0 && errno != EINVAL && errno != EROFS;  // a pipe or a terminal
+  if (cannot_be) return files::cannot_write(target_, errno);
+  files::synchronise_folder_of(target_);
+  return Done{};
+}
+
+Status GrowingFile::close() {
+  const int descriptor = std::exchange(descriptor_, -1);
+  if (::close(descriptor) != 0) return files::cannot_write(target_, errno);
+  files::synchronise_folder_of(target_);
+  return Done{};
+}
+
+}  // namespace dermis::recordings

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "dermis/core/result.hpp"
+
+namespace dermis::recordings {
+
+/// A file that grows record by record. It lies beside its place until appear().
+class GrowingFile {
+ public:
+  [[nodiscard]] static Result<GrowingFile> create(const std::string& path);
+
+  GrowingFile(GrowingFile&& other) noexcept;
+  GrowingFile& operator=(GrowingFile&&) = delete;
+  /// Removes a file that has not appeared.
+  ~GrowingFile();
+
+  /// Appends all of the bytes, or none and says why.
+  [[nodiscard]] Status append(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+  /// Puts the file in its place; nothing where it is there already. A file that it replaces is gone only when the bytes
+  /// of this one are on the disk.
+  [[nodiscard]] Status appear();
+  [[nodiscard]] bool has_appeared() const noexcept { return temporary_.empty(); }
+
+  /// Waits until the bytes appended so far, and the name of the file, are on the disk. May be called while another
+  /// thread appends.
+  [[nodiscard]] Status synchronise() const;
+  /// The name is on the disk then; the bytes are where synchronise() came before.
+  [[nodiscard]] Status close();
+
+ private:
+  GrowingFile(std::string target, std::string temporary, int descriptor);
+  void cut_back() const;
+
+  std::string target_;
+  std::string temporary_;  ///< Empty where the file is in its place.
+  int descriptor_;
+  std::uint64_t size_ = 0;
+};
+
+}  // namespace dermis::recordings

@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <algorithm>
+#include <cassert>
+#include <cstring>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "dermis/core/version.hpp"
+#include "dermis/recordings/mcap.hpp"
+#include "recordings/compression.hpp"
+#include "recordings/crc32.hpp"
+#include "recordings/growing_file.hpp"
+#include "recordings/mcap_bytes.hpp"
+
+namespace dermis::recordings {
+namespace {
+
+struct WrittenChannel {
+  McapChannel description;
+  std::uint16_t schema_id = 0;
+};
+
+/// An attachment or metadata, and where they stand among the records of a batch.
+struct PlacedRecord {
+  Opcode opcode{};
+  std::size_t offset = 0;
+  std::size_t bytes = 0;
+  Bytes rest;  ///< Of its index, behind place and length.
+};
+
+/// What goes to the file at once.
+struct Batch {
+  Bytes records;                     ///< Whole ones, before the chunk.
+  std::vector<PlacedRecord> placed;  ///< Of them, those that have an index.
+  Bytes chunk;                       ///< The records in it.
+  std::uint64_t first_time = 0;
+  std::uint64_t last_time = 0;
+  std::vector<Bytes> indexes;  ///< Of each channel from 1 on: time and place of each of its messages in the chunk.
+
+  [[nodiscard]] bool is_empty() const { return records.empty() && chunk.empty(); }
+  /// With as much room.
+  [[nodiscard]] Batch empty_like() const {
+    Batch batch;
+    batch.chunk.reserve(chunk.capacity());
+    batch.indexes.resize(indexes.size());
+    for (std::size_t i = 0; i < indexes.size(); ++i) batch.indexes[i].reserve(indexes[i].capacity());
+    return batch;
+  }
+  void clear() {
+    records.clear();
+    placed.clear();
+    chunk.clear();
+    for (Bytes& index : indexes) index.clear();
+  }
+};
+
+/// Records of the summary that tell of what is in the file. What is of bytes that could not be written is cut off.
+struct IndexRecords {
+  Bytes bytes;
+  std::uint32_t count = 0;
+  std::size_t written_bytes = 0;
+  std::uint32_t written_count = 0;
+
+  void keep() {
+    written_bytes = bytes.size();
+    written_count = count;
+  }
+  void cut() {
+    bytes.resize(written_bytes);
+    count = written_count;
+  }
+};
+
+void append_map(Bytes& bytes, const std::map<std::string, std::string>& values) {
+  const LengthBefore<std::uint32_t> length(bytes);
+  for (const auto& [key, value] : values) {
+    append_text(bytes, key);
+    append_text(bytes, value);
+  }
+}
+
+void append_schema(Bytes& bytes, std::uint16_t id, const McapChannel& channel) {
+  const Record record(bytes, Opcode::schema);
+  append_number(bytes, id);
+  append_text(bytes, channel.schema_name);
+  append_text(bytes, channel.schema_encoding);
+  append_text(bytes, channel.schema);
+}
+
+void append_channel(Bytes& bytes, std::uint16_t id, const WrittenChannel& channel) {
+  const Record record(bytes, Opcode::channel);
+  append_number(bytes, id);
+  append_number(bytes, channel.schema_id);
+  append_text(bytes, channel.description.topic);
+  append_text(bytes, channel.description.encoding);
+  append_map(bytes, {});
+}
+
+bool has_same_schema(const McapChannel& a, const McapChannel& b) {
+  return a.schema_name == b.schema_name && a.schema_encoding == b.schema_encoding && a.schema == b.schema;
+}
+
+}  // namespace
+
+const char* to_string(McapCompression compression) noexcept {
+  switch (compression) {
+    case McapCompression::none: return "";
+    case McapCompression::lz4: return "lz4";
+    case McapCompression::zstd: return "zstd";
+  }
+  return "";
+}
+
+struct McapWriter::State {
+  State(GrowingFile growing_file, McapCompression chunk_compression)
+      : file(std::move(growing_file)), compression(chunk_compression), compressor(chunk_compression) {}
+
+  // Of the thread that adds.
+  Batch open;
+  std::vector<WrittenChannel> channels;  ///< Of the numbers 1, 2, ...
+  std::vector<McapChannel> schemas;      ///< Of the numbers 1, 2, ...
+
+  std::mutex mutex;  ///< Of the batches between the threads.
+  std::vector<Batch> sealed;
+  std::vector<Batch> spare;
+
+  // Of the thread that writes.
+  Batch writing;
+  GrowingFile file;
+  McapCompression compression;
+  Compressor compressor;
+  std::optional<Error> first_error;
+  std::uint32_t data_crc = 0;
+  Bytes pending;  ///< Whole records that are not yet in the file.
+  IndexRecords chunk_indexes;
+  IndexRecords attachment_indexes;
+  IndexRecords metadata_indexes;
+  std::vector<std::uint64_t> channel_messages;  ///< In the file, of each channel from 1 on.
+  std::uint64_t first_time = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t last_time = 0;
+
+  void begin();
+  [[nodiscard]] std::uint64_t place() const { return file.size() + pending.size(); }
+  [[nodiscard]] std::uint16_t schema_id(const McapChannel& channel);
+  void seal();
+  [[nodiscard]] bool take_sealed();
+  void write(const Batch& batch);
+  void append_placed_indexes(const Batch& batch);
+  [[nodiscard]] std::uint64_t append_chunk(const Batch& batch);
+  void end_chunk(const Batch& batch);
+  void append_message_indexes(const Batch& batch, Bytes& places);
+  void keep_indexes(const Batch& batch);
+  void cut_indexes();
+  [[nodiscard]] Bytes end_of_file() const;
+  void append_statistics(Bytes& bytes) const;
+  [[nodiscard]] Status status() const;
+};
+
+void McapWriter::State::begin() {
+  append_characters(open.records, kMcapMagic);
+  const Record header(open.records, Opcode::header);
+  append_text(open.records, "ros2");
+  append_text(open.records, "dermis " DERMIS_VERSION);
+}
+
+std::uint16_t McapWriter::State::schema_id(const McapChannel& channel) {
+  if (channel.schema_name.empty()) return 0;
+  const auto found = std::find_if(schemas.begin(), schemas.end(),
+                                  [&](const McapChannel& schema) { return has_same_schema(schema, channel); });
+  const auto id = static_cast<std::uint16_t>(found - schemas.begin() + 1);
+  if (found == schemas.end()) {
+    schemas.push_back(channel);
+    append_schema(open.records, id, channel);
+  }
+  return id;
+}
+
+/// What was added waits to be written.
+void McapWriter::State::seal() {
+  if (open.is_empty()) return;
+  const std::scoped_lock lock(mutex);
+  sealed.push_back(std::move(open));
+  if (spare.empty()) {
+    open = sealed.back().empty_like();
+  } else {
+    open = std::move(spare.back());
+    spare.pop_back();
+  }
+}
+
+/// The next batch to be written, in the place of the last; returns false where none waits.
+bool McapWriter::State::take_sealed() {
+  const std::scoped_lock lock(mutex);
+  if (sealed.empty()) return false;
+  writing.clear();
+  if (writing.chunk.capacity() > 0) spare.push_back(std::move(writing));
+  writing = std::move(sealed.front());
+  sealed.erase(sealed.begin());
+  return true;
+}
+
+/// Compresses the chunk behind the pending records; returns its compressed size.
+std::uint64_t McapWriter::State::append_chunk(const Batch& batch) {
+  const Record record(pending, Opcode::chunk);
+  append_number(pending, batch.first_time);
+  append_number(pending, batch.last_time);
+  append_number(pending, std::uint64_t{batch.chunk.size()});
+  append_number(pending, crc32(0, batch.chunk));
+  append_text(pending, to_string(compression));
+  const LengthBefore<std::uint64_t> length(pending);
+  const std::size_t begin = pending.size();
+  compressor.append(batch.chunk, pending);
+  return pending.size() - begin;
+}
+
+/// Appends the chunk and its indexes to the pending records and to the summary.
+void McapWriter::State::end_chunk(const Batch& batch) {
+  const std::uint64_t chunk_place = place();
+  const std::uint64_t compressed_bytes = append_chunk(batch);
+  const std::uint64_t chunk_end = place();
+  Bytes& index = chunk_indexes.bytes;
+  const Record record(index, Opcode::chunk_index);
+  append_number(index, batch.first_time);
+  append_number(index, batch.last_time);
+  append_number(index, chunk_place);
+  append_number(index, chunk_end - chunk_place);
+  append_message_indexes(batch, index);
+  append_number(index, place() - chunk_end);
+  append_text(index, to_string(compression));
+  append_number(index, compressed_bytes);
+  append_number(index, std::uint64_t{batch.chunk.size()});
+  ++chunk_indexes.count;
+}
+
+void McapWriter::State::append_message_indexes(const Batch& batch, Bytes& places) {
+  const LengthBefore<std::uint32_t> length(places);
+  for (std::size_t i = 0; i < batch.indexes.size(); ++i) {
+    const Bytes& entries = batch.indexes[i];
+    if (entries.empty()) continue;
+    const auto id = static_cast<std::uint16_t>(i + 1);
+    append_number(places, id);
+    append_number(places, place());
+    const Record record(pending, Opcode::message_index);
+    append_number(pending, id);
+    append_number(pending, static_cast<std::uint32_t>(entries.size()));
+    append_bytes(pending, entries);
+  }
+}
+
+void McapWriter::State::append_placed_indexes(const Batch& batch) {
+  for (const PlacedRecord& placed : batch.placed) {
+    const bool is_attachment = placed.opcode == Opcode::attachment_index;
+    IndexRecords& indexes = is_attachment ? attachment_indexes : metadata_indexes;
+    const Record record(indexes.bytes, placed.opcode);
+    append_number(indexes.bytes, place() + placed.offset);
+    append_number(indexes.bytes, std::uint64_t{placed.bytes});
+    append_bytes(indexes.bytes, placed.rest);
+    ++indexes.count;
+  }
+}
+
+/// Whole records go to the file, or none.
+void McapWriter::State::write(const Batch& batch) {
+  if (first_error) return;
+  append_placed_indexes(batch);
+  append_bytes(pending, batch.records);
+  if (!batch.chunk.empty()) end_chunk(batch);
+  if (const Status written = file.append(pending); !written) first_error = written.error();
+  if (first_error) {
+    cut_indexes();
+  } else {
+    data_crc = crc32(data_crc, pending);
+    keep_indexes(batch);
+  }
+  pending.clear();
+}
+
+void McapWriter::State::keep_indexes(const Batch& batch) {
+  for (IndexRecords* records : {&chunk_indexes, &attachment_indexes, &metadata_indexes}) records->keep();
+  constexpr std::size_t kEntryBytes = 16;
+  if (channel_messages.size() < batch.indexes.size()) channel_messages.resize(batch.indexes.size());
+  for (std::size_t i = 0; i < batch.indexes.size(); ++i) channel_messages[i] += batch.indexes[i].size() / kEntryBytes;
+  if (batch.chunk.empty()) return;
+  first_time = std::min(first_time, batch.first_time);
+  last_time = std::max(last_time, batch.last_time);
+}
+
+void McapWriter::State::cut_indexes() {
+  for (IndexRecords* records : {&chunk_indexes, &attachment_indexes, &metadata_indexes}) records->cut();
+}
+
+void McapWriter::State::append_statistics(Bytes& bytes) const {
+  constexpr std::size_t kEntryBytes = 2 + 8;
+  std::uint64_t messages = 0;
+  for (const std::uint64_t count : channel_messages) messages += count;
+  const Record record(bytes, Opcode::statistics);
+  append_number(bytes, messages);
+  append_number(bytes, static_cast<std::uint16_t>(schemas.size()));
+  append_number(bytes, static_cast<std::uint32_t>(channels.size()));
+  append_number(bytes, attachment_indexes.count);
+  append_number(bytes, metadata_indexes.count);
+  append_number(bytes, chunk_indexes.count);
+  append_number(bytes, messages == 0 ? 0 : first_time);
+  append_number(bytes, last_time);
+  append_number(bytes, static_cast<std::uint32_t>(kEntryBytes * channels.size()));
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    append_number(bytes, static_cast<std::uint16_t>(i + 1));
+    append_number(bytes, i < channel_messages.size() ? channel_messages[i] : 0);
+  }
+}
+
+/// Data end, summary, summary offsets and footer.
+Bytes McapWriter::State::end_of_file() const {
+  Bytes bytes;
+  {
+    const Record data_end(bytes, Opcode::data_end);
+    append_number(bytes, data_crc);
+  }
+  const std::size_t summary = bytes.size();
+  Bytes offsets;
+  const auto append_group = [&](Opcode opcode, const auto& append_records) {
+    const std::size_t begin = bytes.size();
+    append_records();
+    if (bytes.size() == begin) return;
+    const Record offset(offsets, Opcode::summary_offset);
+    append_number(offsets, static_cast<std::uint8_t>(opcode));
+    append_number(offsets, file.size() + begin);
+    append_number(offsets, std::uint64_t{bytes.size() - begin});
+  };
+  append_group(Opcode::schema, [&] {
+    for (std::size_t i = 0; i < schemas.size(); ++i)
+      append_schema(bytes, static_cast<std::uint16_t>(i + 1), schemas[i]);
+  });
+  append_group(Opcode::channel, [&] {
+    for (std::size_t i = 0; i < channels.size(); ++i) {
+      append_channel(bytes, static_cast<std::uint16_t>(i + 1), channels[i]);
+    }
+  });
+  append_group(Opcode::statistics, [&] { append_statistics(bytes); });
+  append_group(Opcode::chunk_index, [&] { append_bytes(bytes, chunk_indexes.bytes); });
+  append_group(Opcode::attachment_index, [&] { append_bytes(bytes, attachment_indexes.bytes); });
+  append_group(Opcode::metadata_index, [&] { append_bytes(bytes, metadata_indexes.bytes); });
+  const std::uint64_t offsets_place = file.size() + bytes.size();
+  append_bytes(bytes, offsets);
+  {
+    const Record footer(bytes, Opcode::footer);
+    append_number(bytes, file.size() + summary);
+    append_number(bytes, offsets_place);
+    // The checksum counts the length of the footer, which is not yet there.
+    const std::uint64_t footer_length = kFooterBytes;
+    std::memcpy(bytes.data() + bytes.size() - 24, &footer_length, sizeof(footer_length));
+    append_number(bytes, crc32(0, ByteView(bytes).subspan(summary)));
+  }
+  append_characters(bytes, kMcapMagic);
+  return bytes;
+}
+
+Status McapWriter::State::status() const {
+  if (first_error) return *first_error;
+  return Done{};
+}
+
+McapWriter::McapWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+McapWriter::~McapWriter() = default;
+
+Result<std::unique_ptr<McapWriter>> McapWriter::create(const std::string& path, McapCompression compression) {
+  Result<GrowingFile> file = GrowingFile::create(path);
+  if (!file) return file.error();
+  auto state = std::make_unique<State>(*std::move(file), compression);
+  state->begin();
+  return std::unique_ptr<McapWriter>(new McapWriter(std::move(state)));
+}
+
+std::uint16_t McapWriter::add_channel(const McapChannel& channel) {
+  assert(state_->channels.size() < std::numeric_limits<std::uint16_t>::max());
+  WrittenChannel added;
+  added.description = channel;
+  added.schema_id = state_->schema_id(channel);
+  state_->channels.push_back(std::move(added));
+  const auto id = static_cast<std::uint16_t>(state_->channels.size());
+  append_channel(state_->open.records, id, state_->channels.back());
+  return id;
+}
+
+void McapWriter::add_attachment(const McapAttachment& attachment) {
+  Bytes& bytes = state_->open.records;
+  PlacedRecord placed{Opcode::attachment_index, bytes.size(), 0, {}};
+  {
+    const Record record(bytes, Opcode::attachment);
+    const std::size_t begin = bytes.size();
+    append_number(bytes, std::uint64_t{0});  // log time
+    append_number(bytes, std::uint64_t{0});  // create time
+    append_text(bytes, attachment.name);
+    append_text(bytes, attachment.media_type);
+    append_number(bytes, std::uint64_t{attachment.data.size()});
+    append_characters(bytes, attachment.data);
+    append_number(bytes, crc32(0, ByteView(bytes).subspan(begin)));
+  }
+  placed.bytes = bytes.size() - placed.offset;
+  append_number(placed.rest, std::uint64_t{0});  // log time
+  append_number(placed.rest, std::uint64_t{0});  // create time
+  append_number(placed.rest, std::uint64_t{attachment.data.size()});
+  append_text(placed.rest, attachment.name);
+  append_text(placed.rest, attachment.media_type);
+  state_->open.placed.push_back(std::move(placed));
+}
+
+void McapWriter::add_metadata(const McapMetadata& metadata) {
+  Bytes& bytes = state_->open.records;
+  PlacedRecord placed{Opcode::metadata_index, bytes.size(), 0, {}};
+  {
+    const Record record(bytes, Opcode::metadata);
+    append_text(bytes, metadata.name);
+    append_map(bytes, metadata.values);
+  }
+  placed.bytes = bytes.size() - placed.offset;
+  append_text(placed.rest, metadata.name);
+  state_->open.placed.push_back(std::move(placed));
+}
+
+void McapWriter::add_message(const McapMessage& message) {
+  assert(message.channel >= 1 && message.channel <= state_->channels.size());
+  Batch& open = state_->open;
+  Bytes& chunk = open.chunk;
+  if (chunk.empty()) open.first_time = open.last_time = message.log_time;
+  open.first_time = std::min(open.first_time, message.log_time);
+  open.last_time = std::max(open.last_time, message.log_time);
+  if (open.indexes.size() < state_->channels.size()) open.indexes.resize(state_->channels.size());
+  Bytes& index = open.indexes[message.channel - 1U];
+  append_number(index, message.log_time);
+  append_number(index, std::uint64_t{chunk.size()});
+  const Record record(chunk, Opcode::message);
+  append_number(chunk, message.channel);
+  append_number(chunk, message.sequence);
+  append_number(chunk, message.log_time);
+  append_number(chunk, message.publish_time);
+  append_bytes(chunk, message.data);
+}
+
+std::size_t McapWriter::chunk_bytes() const noexcept {
+  return state_->open.chunk.size();
+}
+
+Status McapWriter::close_chunk() {
+  seal_chunk();
+  while (state_->take_sealed()) state_->write(state_->writing);
+  return state_->status();
+}
+
+void McapWriter::seal_chunk() {
+  state_->seal();
+}
+
+Status McapWriter::write_sealed() {
+  if (state_->take_sealed()) state_->write(state_->writing);
+  return state_->status();
+}
+
+Status McapWriter::appear() {
+  if (!state_->first_error) {
+    if (const Status appeared = state_->file.appear(); !appeared) state_->first_error = appeared.error();
+  }
+  return state_->status();
+}
+
+Status McapWriter::synchronise() {
+  return state_->file.synchronise();
+}
+
+Status McapWriter::finish() {
+  static_cast<void>(close_chunk());
+  const Status ended = state_->file.append(state_->end_of_file());
+  const bool nothing_to_keep = state_->first_error && !state_->file.has_appeared();
+  if (nothing_to_keep) return state_->status();
+  for (const Status& step : {ended, state_->file.synchronise(), state_->file.appear(), state_->file.close()}) {
+    if (!step && !state_->first_error) state_->first_error = step.error();
+  }
+  return state_->status();
+}
+
+}  // namespace dermis::recordings

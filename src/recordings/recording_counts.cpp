@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "recordings/recording_counts.hpp"
+
+#include "dermis/messages/ros_messages.hpp"
+#include "recordings/recording_description.hpp"
+
+namespace dermis::recordings {
+
+void RecordingCounts::take(const McapMessage& message, const McapChannel& channel) {
+  ++messages_[message.channel];
+  const std::string folder(topic_folder(channel.topic));
+  if (channel.schema_name == messages::acquisition_type().name && messages::decode_acquisition(message.data, frame_)) {
+    lost_[folder] += frame_.acquisition.lost_before;
+  }
+  if (channel.schema_name != messages::image_type().name) return;
+  if (!first_folder_) first_folder_ = folder;
+  const auto [place, is_new] = images_.try_emplace(folder);
+  Images& images = place->second;
+  if (is_new) {
+    images.channel = message.channel;
+    images.counts.first_log_time = message.log_time;
+    if (const Result<FrameShape> decoded = messages::decode_image(message.data, frame_)) images.counts.shape = *decoded;
+  }
+  if (images.channel != message.channel) return;
+  images.counts.last_log_time = message.log_time;
+  ++images.counts.frames;
+}
+
+FrameCounts RecordingCounts::in_folder(const std::string& folder) const {
+  FrameCounts counts;
+  if (const auto found = images_.find(folder); found != images_.end()) counts = found->second.counts;
+  if (const auto found = lost_.find(folder); found != lost_.end()) counts.lost = found->second;
+  return counts;
+}
+
+FrameCounts RecordingCounts::first() const {
+  FrameCounts counts = first_folder_ ? in_folder(*first_folder_) : FrameCounts{};
+  counts.lost = 0;
+  for (const auto& [folder, lost] : lost_) counts.lost += lost;
+  return counts;
+}
+
+}  // namespace dermis::recordings

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/recordings/mcap.hpp"
+
+namespace dermis::recordings {
+
+/// The frames of one topic of images.
+struct FrameCounts {
+  std::uint64_t frames = 0;
+  std::uint64_t lost = 0;
+  std::optional<FrameShape> shape;
+  std::uint64_t first_log_time = 0;
+  std::uint64_t last_log_time = 0;
+};
+
+/// What is counted while the messages of a file go by.
+class RecordingCounts {
+ public:
+  void take(const McapMessage& message, const McapChannel& channel);
+
+  [[nodiscard]] const std::map<std::uint16_t, std::uint64_t>& messages() const noexcept { return messages_; }
+  /// Of the images in a folder of topics.
+  [[nodiscard]] FrameCounts in_folder(const std::string& folder) const;
+  /// Of the first topic of images; losses are those of all topics.
+  [[nodiscard]] FrameCounts first() const;
+
+ private:
+  struct Images {
+    std::uint16_t channel = 0;
+    FrameCounts counts;
+  };
+
+  std::map<std::uint16_t, std::uint64_t> messages_;
+  std::map<std::string, Images> images_;       ///< By folder.
+  std::map<std::string, std::uint64_t> lost_;  ///< By folder.
+  std::optional<std::string> first_folder_;
+  RawFrame frame_;  ///< What was decoded last.
+};
+
+}  // namespace dermis::recordings

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/recordings/mcap.hpp"
+
+namespace dermis::recordings {
+
+/// What a recording says of an array; empty what it does not say.
+struct RecordingDescription {
+  std::string name;
+  std::string folder;  ///< "/chest/", of its topics
+  std::optional<FrameShape> shape;
+  std::string array_toml;
+  std::string model_hash;
+  std::string software;
+};
+
+/// Of each array that is described in what was read so far; at most 4096, each name once.
+[[nodiscard]] std::vector<RecordingDescription> descriptions_of(const McapReader& mcap);
+
+/// "/left/raw" -> "/left/"
+[[nodiscard]] std::string_view topic_folder(std::string_view topic);
+
+/// The value of a key, or an empty one.
+[[nodiscard]] std::string value_of(const std::map<std::string, std::string>& values, const char* key);
+
+}  // namespace dermis::recordings

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "dermis/core/version.hpp"
+#include "dermis/files/text.hpp"
+#include "dermis/recordings/suit_recording.hpp"
+#include "recordings/recording_format.hpp"
+
+namespace dermis::recordings {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// A chunk ends at the earlier of these.
+constexpr std::chrono::milliseconds kChunkTime{50};
+constexpr std::size_t kChunkBytes = std::size_t{1} << 20U;
+constexpr std::size_t kSuitChunkBytes = std::size_t{8} << 20U;  ///< Each chunk has an index of each topic.
+
+constexpr std::size_t kMostWaitingBytes = std::size_t{64} << 20U;  ///< For a disk that stalls; then write() waits.
+
+constexpr std::chrono::seconds kSynchronisePeriod{1};
+
+/// Declared in the file with its first message.
+struct Topic {
+  const char* name;
+  const messages::MessageType& type;
+  std::optional<std::uint16_t> channel{};
+  std::vector<std::uint8_t> message{};  ///< Of the frame that is being written.
+  bool is_in_frame = false;
+};
+
+/// An array at work.
+struct WrittenArray {
+  RecordedArray description;
+  std::string frame_id;
+  // In the order of the file. The image comes last: a frame whose image is there is whole.
+  Topic temperature{"temperature", messages::temperature_type()};
+  Topic acquisition{"acquisition", messages::acquisition_type()};
+  Topic force_status{"force_status", messages::frame_status_type()};
+  Topic force{"force", messages::grid_type()};
+  Topic raw{"raw", messages::image_type()};
+  std::uint64_t frames = 0;
+  std::uint64_t lost = 0;
+  std::uint64_t log_time = 0;
+};
+
+/// Not of the arrival by UTC, which leaps when that clock is set.
+std::uint64_t log_time_of(const RawFrame& frame) {
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(frame.time.count(), 0));
+}
+
+void encode(WrittenArray& array, const RawFrame& frame, const ForceFrame* force_frame) {
+  array.log_time = std::max(array.log_time, log_time_of(frame));
+  array.lost += frame.acquisition.lost_before;
+  array.temperature.is_in_frame = frame.temperature_celsius.has_value();
+  if (frame.temperature_celsius) {
+    messages::encode_temperature(*frame.temperature_celsius, frame.time, array.frame_id, array.temperature.message);
+  }
+  messages::encode_acquisition(frame, array.acquisition.message);
+  array.acquisition.is_in_frame = true;
+  array.force_status.is_in_frame = array.force.is_in_frame = force_frame != nullptr;
+  if (force_frame != nullptr) {
+    const RecordedArray& description = array.description;
+    messages::encode_frame_status(*force_frame, array.force_status.message);
+    messages::encode_grid(*force_frame, description.shape, description.pitch, array.frame_id, array.force.message);
+  }
+  messages::encode_image(frame, array.description.shape, array.frame_id, array.raw.message);
+  array.raw.is_in_frame = true;
+}
+
+Status check_topics(const std::vector<RecordedArray>& arrays) {
+  for (std::size_t i = 0; i < arrays.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (topic_part(arrays[i].name) != topic_part(arrays[k].name)) continue;
+      return bad_input("the arrays " + files::in_quotes(arrays[k].name) + " and " + files::in_quotes(arrays[i].name) +
+                       " of a recording would have the same topics; give one another name");
+    }
+  }
+  return Done{};
+}
+
+}  // namespace
+
+class SuitRecordingWriter::Implementation {
+ public:
+  Implementation(std::unique_ptr<McapWriter> mcap, std::vector<RecordedArray> arrays, bool live);
+  ~Implementation();
+
+  [[nodiscard]] Status write(std::size_t array, const RawFrame& frame, const ForceFrame* force_frame);
+  [[nodiscard]] Status commit();
+
+ private:
+  void describe(const WrittenArray& array);
+  void add(WrittenArray& array);
+  void seal_chunk();
+  void write_chunks(const std::stop_token& stop);
+  [[nodiscard]] Status write_sealed();
+  void synchronise(const std::stop_token& stop);
+  void stop_threads();
+
+  std::unique_ptr<McapWriter> mcap_;
+  std::vector<WrittenArray> arrays_;  ///< Each of the thread that writes its frames.
+  bool live_;
+  std::size_t chunk_bytes_;
+
+  std::mutex mutex_;  ///< Of what is added to mcap_, and of the next three.
+  Status status_ = Done{};
+  Clock::time_point chunk_due_ = Clock::time_point::max();
+  std::size_t waiting_chunks_ = 0;
+  std::condition_variable_any work_;
+  std::condition_variable_any room_;
+  std::condition_variable_any stopping_;
+  std::mutex stopping_mutex_;
+  std::jthread writer_;        ///< Writes chunks, and ends those that no frame ends.
+  std::jthread synchroniser_;  ///< Has the disk keep what is in the file.
+};
+
+SuitRecordingWriter::Implementation::Implementation(std::unique_ptr<McapWriter> mcap, std::vector<RecordedArray> arrays,
+                                                    bool live)
+    : mcap_(std::move(mcap)), live_(live), chunk_bytes_(arrays.size() == 1 ? kChunkBytes : kSuitChunkBytes) {
+  for (RecordedArray& array : arrays) {
+    WrittenArray written;
+    written.frame_id = topic_part(array.name);
+    written.description = std::move(array);
+    arrays_.push_back(std::move(written));
+  }
+  for (const WrittenArray& array : arrays_) describe(array);
+  writer_ = std::jthread([this](const std::stop_token& stop) { write_chunks(stop); });
+  synchroniser_ = std::jthread([this](const std::stop_token& stop) { synchronise(stop); });
+}
+
+SuitRecordingWriter::Implementation::~Implementation() {
+  stop_threads();
+  if (!status_ || (chunk_due_ == Clock::time_point::max() && waiting_chunks_ == 0)) return;
+  seal_chunk();
+  for (; waiting_chunks_ > 0; --waiting_chunks_) static_cast<void>(write_sealed());
+}
+
+void SuitRecordingWriter::Implementation::describe(const WrittenArray& array) {
+  const RecordedArray& description = array.description;
+  mcap_->add_metadata({kRecordingMetadata,
+                       {{"name", description.name},
+                        {"rows", std::to_string(description.shape.rows)},
+                        {"cols", std::to_string(description.shape.cols)},
+                        {"model_hash", description.model_hash},
+                        {"software", "dermis " DERMIS_VERSION}}});
+  if (description.array_toml.empty()) return;
+  const bool is_only_one = arrays_.size() == 1;
+  mcap_->add_attachment({is_only_one ? kArrayAttachment : array_attachment(description.name), "application/toml",
+                         description.array_toml});
+}
+
+/// The messages of the frame go into the chunk.
+void SuitRecordingWriter::Implementation::add(WrittenArray& array) {
+  for (Topic* topic : {&array.temperature, &array.acquisition, &array.force_status, &array.force, &array.raw}) {
+    if (!topic->is_in_frame) continue;
+    if (!topic->channel) {
+      const std::string full_name = "/" + array.frame_id + "/" + topic->name;
+      topic->channel = mcap_->add_channel({full_name, "cdr", topic->type.name, "ros2msg", topic->type.definition});
+    }
+    mcap_->add_message(
+        {*topic->channel, static_cast<std::uint32_t>(array.frames), array.log_time, array.log_time, topic->message});
+  }
+  ++array.frames;
+}
+
+void SuitRecordingWriter::Implementation::seal_chunk() {
+  chunk_due_ = Clock::time_point::max();
+  mcap_->seal_chunk();
+  ++waiting_chunks_;
+}
+
+void SuitRecordingWriter::Implementation::write_chunks(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (status_ && !stop.stop_requested()) {
+    const auto has_work = [this] { return waiting_chunks_ > 0; };
+    if (chunk_due_ == Clock::time_point::max()) {
+      work_.wait(lock, stop, [&] { return has_work() || chunk_due_ != Clock::time_point::max(); });
+    } else {
+      const Clock::time_point due = chunk_due_;
+      work_.wait_until(lock, stop, due, has_work);
+    }
+    if (Clock::now() >= chunk_due_) seal_chunk();
+    if (!has_work()) continue;
+    lock.unlock();
+    const Status written = write_sealed();
+    lock.lock();
+    --waiting_chunks_;
+    if (status_) status_ = written;
+    room_.notify_all();
+  }
+}
+
+Status SuitRecordingWriter::Implementation::write_sealed() {
+  const Status written = mcap_->write_sealed();
+  return written && live_ ? mcap_->appear() : written;
+}
+
+void SuitRecordingWriter::Implementation::synchronise(const std::stop_token& stop) {
+  std::unique_lock lock(stopping_mutex_);
+  while (!stopping_.wait_for(lock, stop, kSynchronisePeriod, [&stop] { return stop.stop_requested(); })) {
+    const Status synchronised = mcap_->synchronise();
+    if (synchronised) continue;
+    const std::scoped_lock frames_lock(mutex_);
+    if (status_) status_ = synchronised;
+    return;
+  }
+}
+
+void SuitRecordingWriter::Implementation::stop_threads() {
+  writer_ = {};
+  synchroniser_ = {};
+}
+
+Status SuitRecordingWriter::Implementation::write(std::size_t index, const RawFrame& frame,
+                                                  const ForceFrame* force_frame) {
+  assert(index < arrays_.size());
+  WrittenArray& array = arrays_[index];
+  assert(frame.counts.size() == array.description.shape.taxel_count());
+  encode(array, frame, force_frame);
+  bool has_work = false;
+  {
+    std::unique_lock lock(mutex_);
+    room_.wait(lock, [this] { return !status_ || waiting_chunks_ < kMostWaitingBytes / chunk_bytes_; });
+    if (!status_) return status_;
+    add(array);
+    has_work = chunk_due_ == Clock::time_point::max();
+    if (has_work) chunk_due_ = Clock::now() + kChunkTime;
+    if (mcap_->chunk_bytes() >= chunk_bytes_) {
+      seal_chunk();
+      has_work = true;
+    }
+  }
+  if (has_work) work_.notify_one();
+  return Done{};
+}
+
+Status SuitRecordingWriter::Implementation::commit() {
+  stop_threads();
+  chunk_due_ = Clock::time_point::max();
+  waiting_chunks_ = 0;
+  for (const WrittenArray& array : arrays_) {
+    McapMetadata totals{kTotalsMetadata,
+                        {{"frames", std::to_string(array.frames)}, {"lost", std::to_string(array.lost)}}};
+    if (arrays_.size() > 1) totals.values["name"] = array.description.name;
+    mcap_->add_metadata(totals);
+  }
+  const Status finished = mcap_->finish();
+  return status_ ? finished : status_;
+}
+
+SuitRecordingWriter::SuitRecordingWriter(std::unique_ptr<Implementation> implementation)
+    : implementation_(std::move(implementation)) {}
+
+SuitRecordingWriter::~SuitRecordingWriter() = default;
+
+Result<std::unique_ptr<SuitRecordingWriter>> SuitRecordingWriter::create(const std::string& path,
+                                                                         std::vector<RecordedArray> arrays,
+                                                                         const SuitRecordingOptions& options) {
+  assert(!arrays.empty());
+  for ([[maybe_unused]] const RecordedArray& array : arrays) assert(array.shape.taxel_count() > 0);
+  if (const Status different = check_topics(arrays); !different) return different.error();
+  Result<std::unique_ptr<McapWriter>> mcap = McapWriter::create(path, options.compression);
+  if (!mcap) return mcap.error();
+  return std::unique_ptr<SuitRecordingWriter>(
+      new SuitRecordingWriter(std::make_unique<Implementation>(*std::move(mcap), std::move(arrays), options.live)));
+}
+
+Status SuitRecordingWriter::write(std::size_t array, const RawFrame& frame) {
+  return implementation_->write(array, frame, nullptr);
+}
+
+Status SuitRecordingWriter::write(std::size_t array, const RawFrame& frame, const ForceFrame& force) {
+  return implementation_->write(array, frame, &force);
+}
+
+Status SuitRecordingWriter::commit() {
+  return implementation_->commit();
+}
+
+}  // namespace dermis::recordings

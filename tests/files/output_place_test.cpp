@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/files/output_place.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "support/temporary_folder.hpp"
+
+namespace dermis::files {
+namespace {
+
+std::span<const std::byte> bytes_of(const std::string& text) {
+  return std::as_bytes(std::span(text));
+}
+
+TEST(OutputPlace, a_new_file_stands_beside_its_target) {
+  const support::TemporaryFolder folder;
+  support::write_bytes(folder.file("out"), "old");
+  const Result<OutputPlace> place = open_output(folder.file("out"));
+  ASSERT_TRUE(place);
+  EXPECT_EQ(write_all(place->descriptor, bytes_of("new")), 0);
+  EXPECT_EQ(write_all(place->descriptor, bytes_of("N"), 0), 0);
+  ::close(place->descriptor);
+  EXPECT_EQ(std::filesystem::path(place->temporary).parent_path(), std::filesystem::path(place->target).parent_path());
+  EXPECT_EQ(support::read_bytes(place->temporary), "New");
+  EXPECT_EQ(support::read_bytes(folder.file("out")), "old");
+}
+
+TEST(OutputPlace, behind_a_link_is_the_file_and_not_the_link) {
+  const support::TemporaryFolder folder;
+  support::write_bytes(folder.file("real"), "old");
+  std::filesystem::create_symlink(folder.file("real"), folder.file("link"));
+  const Result<OutputPlace> place = open_output(folder.file("link"));
+  ASSERT_TRUE(place);
+  ::close(place->descriptor);
+  EXPECT_EQ(place->target, std::filesystem::canonical(folder.file("real")).string());
+}
+
+TEST(OutputPlace, what_is_no_regular_file_is_written_directly) {
+  const Result<OutputPlace> place = open_output("/dev/null");
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->temporary, "");
+  EXPECT_EQ(write_all(place->descriptor, bytes_of("gone")), 0);
+  ::close(place->descriptor);
+}
+
+TEST(OutputPlace, a_place_that_is_not_there_is_named) {
+  const Result<OutputPlace> place = open_output("/nowhere/out");
+  ASSERT_FALSE(place);
+  EXPECT_EQ(place.error().message, "cannot write '/nowhere/out': No such file or directory");
+}
+
+}  // namespace
+}  // namespace dermis::files

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/files/safetensors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstring>
+
+#include "support/mutations.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace dermis::files {
+namespace {
+
+SafetensorsFile example() {
+  SafetensorsFile file;
+  file.metadata = {{"format", "dermis"}, {"note", "two\nlines \"quoted\""}};
+  file.tensors["bytes"] = {{3}, std::vector<std::uint8_t>{1, 2, 255}};
+  file.tensors["weights"] = {{2, 2}, std::vector<float>{1.5F, -2.0F, 0.25F, 4.0F}};
+  file.tensors["scale"] = {{}, std::vector<double>{0.1}};
+  file.tensors["counts"] = {{1, 2}, std::vector<std::int64_t>{-1, 9007199254740993}};
+  file.tensors["none"] = {{0, 5}, std::vector<float>{}};
+  return file;
+}
+
+/// The bytes of a file with this header.
+std::string bytes_with(const std::string& header, const std::string& data) {
+  const std::uint64_t length = header.size();
+  std::string bytes(sizeof(length), '\0');
+  std::memcpy(bytes.data(), &length, sizeof(length));
+  return bytes + header + data;
+}
+
+std::string error_of_bytes(const std::string& bytes) {
+  const Result<SafetensorsFile> file = safetensors_from_bytes(bytes, "m.safetensors");
+  if (file) return "no error";
+  EXPECT_EQ(file.error().kind, ErrorKind::bad_input);
+  return file.error().message;
+}
+
+std::string error_of(const std::string& header, std::size_t data_bytes = 8) {
+  return error_of_bytes(bytes_with(header, std::string(data_bytes, '\0')));
+}
+
+std::string written_bytes(const SafetensorsFile& file) {
+  const support::TemporaryFolder folder;
+  EXPECT_TRUE(write_safetensors(folder.file("m"), file));
+  return support::read_bytes(folder.file("m"));
+}
+
+TEST(Safetensors, reads_back_what_was_written) {
+  const support::TemporaryFolder folder;
+  ASSERT_TRUE(write_safetensors(folder.file("m"), example()));
+  const Result<SafetensorsFile> read = read_safetensors(folder.file("m"));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, example());
+}
+
+TEST(Safetensors, reads_back_an_empty_file) {
+  const Result<SafetensorsFile> read = safetensors_from_bytes(written_bytes({}), "m");
+  ASSERT_TRUE(read);
+  EXPECT_EQ(*read, SafetensorsFile{});
+}
+
+TEST(Safetensors, writes_the_same_bytes_for_the_same_content) {
+  EXPECT_EQ(written_bytes(example()), written_bytes(example()));
+}
+
+TEST(Safetensors, agrees_with_an_independent_reader) {
+  const support::TemporaryFolder folder;
+  ASSERT_TRUE(write_safetensors(folder.file("m"), example()));
+  const std::filesystem::path script = std::filesystem::path(__FILE__).parent_path() / "read_safetensors.py";
+  const std::string command = "/usr/bin/python3 " + script.string() + " " + folder.file("m");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> output(::popen(command.c_str(), "r"), &::pclose);
+  ASSERT_NE(output, nullptr);
+  std::string text(4096, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), output.get()));
+  EXPECT_EQ(text, R"({"metadata":{"format":"dermis","note":"two\nlines \"quoted\""},"tensors":{)"
+                  R"("bytes":{"dtype":"U8","shape":[3],"values":[1,2,255]},)"
+                  R"("counts":{"dtype":"I64","shape":[1,2],"values":[-1,9007199254740993]},)"
+                  R"("none":{"dtype":"F32","shape":[0,5],"values":[]},)"
+                  R"("scale":{"dtype":"F64","shape":[],"values":[0.1]},)"
+                  R"("weights":{"dtype":"F32","shape":[2,2],"values":[1.5,-2.0,0.25,4.0]}}})"
+                  "\n");
+}
+
+TEST(Safetensors, gives_a_view_of_a_tensor_of_the_expected_shape_and_type) {
+  const SafetensorsFile file = example();
+  const auto weights = file.view<float>("weights", {2, 2});
+  ASSERT_TRUE(weights);
+  EXPECT_EQ((*weights)[1], -2.0F);
+  const auto missing = file.view<float>("bias", {2});
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().message, "tensor 'bias' is missing");
+  const auto other_shape = file.view<float>("weights", {4});
+  ASSERT_FALSE(other_shape);
+  EXPECT_EQ(other_shape.error().message, "tensor 'weights' is F32 [2, 2], expected F32 [4]");
+  const auto other_type = file.view<double>("weights", {2, 2});
+  ASSERT_FALSE(other_type);
+  EXPECT_EQ(other_type.error().message, "tensor 'weights' is F32 [2, 2], expected F64 [2, 2]");
+}
+
+TEST(Safetensors, refuses_every_file_cut_short) {
+  const std::string bytes = written_bytes(example());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const std::string message = error_of_bytes(bytes.substr(0, size));
+    EXPECT_TRUE(message.starts_with("m.safetensors: is cut short: ")) << size << ": " << message;
+  }
+}
+
+TEST(Safetensors, says_where_a_file_is_cut_short) {
+  EXPECT_EQ(error_of_bytes("1234"), "m.safetensors: is cut short: has 4 bytes, fewer than the length of a header");
+  EXPECT_EQ(error_of_bytes(bytes_with("{     }", "").substr(0, 13)),
+            "m.safetensors: is cut short: its header has 7 bytes, the file only 5 after the length");
+  EXPECT_EQ(error_of(R"({"x":{"dtype":"F64","shape":[2],"data_offsets":[0,16]}})"),
+            "m.safetensors: is cut short: tensor 'x' ends at byte 16 of the data, which has 8");
+}
+
+TEST(Safetensors, refuses_a_huge_header) {
+  EXPECT_EQ(error_of_bytes(std::string(100, '\x7F')),
+            "m.safetensors: has a header of 9187201950435737471 bytes, at most 4194304 can be read; it is no "
+            "safetensors file or is damaged");
+}
+
+TEST(Safetensors, refuses_a_header_that_is_no_object) {
+  EXPECT_EQ(error_of("{x"), "m.safetensors: its header is not JSON; it is no safetensors file or is damaged");
+  EXPECT_EQ(error_of("\"\xFF\""), "m.safetensors: its header is not JSON; it is no safetensors file or is damaged");
+  EXPECT_EQ(error_of("[1]"), "m.safetensors: its header is not a JSON object");
+  EXPECT_EQ(error_of(std::string(100'000, '[')), "m.safetensors: its header is nested too deeply");
+  EXPECT_EQ(error_of(R"({"x":[[{"y":1}]]})"), "m.safetensors: its header is nested too deeply");
+}
+
+TEST(Safetensors, refuses_names_that_stand_twice) {
+  EXPECT_EQ(error_of(R"({"x":1,"x":2})"), "m.safetensors: its header names 'x' twice");
+  EXPECT_EQ(error_of(R"({"__metadata__":{"a":"1","a":"2"}})"), "m.safetensors: its header names 'a' twice");
+  EXPECT_TRUE(safetensors_from_bytes(bytes_with(R"({"a":{"dtype":"U8","shape":[1],"data_offsets":[0,1]},)"
+                                                R"("b":{"dtype":"U8","shape":[1],"data_offsets":[1,2]}})",
+                                                "ab"),
+                                     "m"));
+}
+
+TEST(Safetensors, refuses_metadata_that_is_no_text) {
+  EXPECT_EQ(error_of(R"({"__metadata__":[]})"), "m.safetensors: __metadata__ is not an object");
+  EXPECT_EQ(error_of(R"({"__metadata__":{"a":1}})"), "m.safetensors: __metadata__ 'a' is not a text");
+}
+
+TEST(Safetensors, refuses_an_incomplete_entry) {
+  EXPECT_EQ(error_of(R"({"x":1})"), "m.safetensors: tensor 'x' is not described by an object");
+  EXPECT_EQ(error_of(R"({"x":{}})"), "m.safetensors: tensor 'x' has no dtype");
+  EXPECT_EQ(error_of(R"({"x":{"dtype":"BF16"}})"),
+            "m.safetensors: tensor 'x' has type 'BF16'; F32, F64, U8 and I64 can be read");
+  for (const std::string shape : {"null", "[-1]", "[1.5]", "[\"1\"]", "[18446744073709551616]"}) {
+    EXPECT_EQ(error_of(R"({"x":{"dtype":"F32","shape":)" + shape + "}}"),
+              "m.safetensors: tensor 'x' has no shape of whole numbers");
+  }
+  for (const std::string offsets : {"null", "[0]", "[8,0]", "[0,4,8]"}) {
+    EXPECT_EQ(error_of(R"({"x":{"dtype":"F32","shape":[2],"data_offsets":)" + offsets + "}}"),
+              "m.safetensors: tensor 'x' has no data_offsets [begin, end]");
+  }
+}
+
+TEST(Safetensors, refuses_a_shape_that_does_not_fit_its_bytes) {
+  EXPECT_EQ(error_of(R"({"x":{"dtype":"F32","shape":[3],"data_offsets":[0,8]}})"),
+            "m.safetensors: tensor 'x' has 8 bytes, which do not fit F32 [3]");
+  EXPECT_EQ(error_of(R"({"x":{"dtype":"F64","shape":[1],"data_offsets":[0,7]}})"),
+            "m.safetensors: tensor 'x' has 7 bytes, which do not fit F64 [1]");
+  EXPECT_EQ(error_of(R"({"x":{"dtype":"F64","shape":[4294967296,4294967296],"data_offsets":[0,0]}})"),
+            "m.safetensors: tensor 'x' has 0 bytes, which do not fit F64 [4294967296, 4294967296]");
+}
+
+TEST(Safetensors, refuses_gaps_overlaps_and_bytes_left_over) {
+  const std::string x = R"({"x":{"dtype":"U8","shape":[4],"data_offsets":[0,4]},)";
+  EXPECT_EQ(error_of(x + R"("y":{"dtype":"U8","shape":[5],"data_offsets":[3,8]}})"),
+            "m.safetensors: tensor 'y' begins at byte 3 of the data, not at 4 where the one before it ends");
+  EXPECT_EQ(error_of(x + R"("y":{"dtype":"U8","shape":[3],"data_offsets":[5,8]}})"),
+            "m.safetensors: tensor 'y' begins at byte 5 of the data, not at 4 where the one before it ends");
+  EXPECT_EQ(error_of(x + R"("y":{"dtype":"U8","shape":[2],"data_offsets":[4,6]}})"),
+            "m.safetensors: has 2 bytes after the last tensor");
+}
+
+TEST(Safetensors, leaves_the_old_file_where_the_new_one_cannot_be_written) {
+  const Status written = write_safetensors("/no/such/folder/m", example());
+  ASSERT_FALSE(written);
+  EXPECT_EQ(written.error().message, "cannot write '/no/such/folder/m': No such file or directory");
+  const Status full = write_safetensors("/dev/full", example());
+  ASSERT_FALSE(full);
+  EXPECT_EQ(full.error().message, "cannot write '/dev/full': No space left on device");
+}
+
+TEST(Safetensors, gives_a_value_or_a_one_line_error_for_mutations) {
+  support::expect_value_or_one_line_error(written_bytes(example()), 5000, [](const std::string& bytes) {
+    return safetensors_from_bytes(bytes, "mutated");
+  });
+}
+
+}  // namespace
+}  // namespace dermis::files

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/files/taxel_text.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dermis::files {
+namespace {
+
+TEST(TaxelText, a_taxel_is_read_by_its_row_and_column) {
+  const std::optional<TaxelPlace> place = parse_taxel("r12c305");
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->row, 12U);
+  EXPECT_EQ(place->col, 305U);
+}
+
+TEST(TaxelText, anything_else_is_no_taxel) {
+  for (const char* text : {"", "r", "r1", "c1", "r1c", "rc1", "r1c2x", "r-1c2", "R1C2", " r1c2"}) {
+    EXPECT_FALSE(parse_taxel(text)) << text;
+  }
+}
+
+TEST(TaxelText, the_names_of_a_header_go_row_by_row) {
+  std::string header = "time_s";
+  append_taxel_names(header, 2, 2);
+  EXPECT_EQ(header, "time_s,r0c0,r0c1,r1c0,r1c1");
+  EXPECT_EQ(size_text({12, 32}), "12x32");
+}
+
+}  // namespace
+}  // namespace dermis::files

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/recordings/mcap.hpp"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "dermis/core/random.hpp"
+#include "support/mutations.hpp"
+#include "support/simd_targets.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace dermis::recordings {
+namespace {
+
+struct Message {
+  std::string topic;
+  std::uint32_t sequence = 0;
+  std::uint64_t log_time = 0;
+  std::vector<std::uint8_t> data;
+
+  bool operator==(const Message&) const = default;
+};
+
+struct Content {
+  std::vector<Message> messages;
+  std::optional<Error> error;
+  bool complete = false;
+};
+
+Content read_content(std::unique_ptr<std::istream> in, const std::string& name) {
+  Content content;
+  const auto reader = McapReader::open(std::move(in), name);
+  if (!reader) {
+    content.error = reader.error();
+    return content;
+  }
+  content.complete = (*reader)->complete();
+  McapMessage message;
+  while (true) {
+    const Result<bool> got_message = (*reader)->next(message);
+    if (!got_message) content.error = got_message.error();
+    if (!got_message || !*got_message) return content;
+    content.messages.push_back({(*reader)->channels().at(message.channel).topic, message.sequence, message.log_time,
+                                std::vector<std::uint8_t>(message.data.begin(), message.data.end())});
+  }
+}
+
+Content content_of(const std::string& bytes) {
+  return read_content(std::make_unique<std::istringstream>(bytes), "mutated");
+}
+
+constexpr McapCompression kAll[] = {McapCompression::none, McapCompression::lz4, McapCompression::zstd};
+
+/// Five chunks of three messages each, an attachment and metadata.
+std::string small_file(McapCompression compression, std::vector<Message>* messages = nullptr) {
+  const support::TemporaryFolder folder;
+  const std::string path = folder.file("small.mcap");
+  const auto writer = McapWriter::create(path, compression);
+  EXPECT_TRUE(writer);
+  (*writer)->add_attachment({"note.txt", "text/plain", "a note"});
+  (*writer)->add_metadata({"about", {{"key", "value"}, {"other", ""}}});
+  const std::uint16_t first = (*writer)->add_channel({"/first", "cdr", "pkg/msg/A", "ros2msg", "uint8 a\n"});
+  const std::uint16_t second = (*writer)->add_channel({"/second", "cdr", "pkg/msg/A", "ros2msg", "uint8 a\n"});
+  Random random(1);
+  for (std::uint32_t i = 0; i < 15; ++i) {
+    Message message{i % 3 == 0 ? "/second" : "/first", i, 1000U + i, {}};
+    for (std::uint64_t k = random.below(40); k > 0; --k) {
+      message.data.push_back(static_cast<std::uint8_t>(random.below(3)));
+    }
+    (*writer)->add_message({i % 3 == 0 ? second : first, i, message.log_time, message.log_time, message.data});
+    if (messages != nullptr) messages->push_back(message);
+    if (i % 3 == 2) {
+      EXPECT_TRUE((*writer)->close_chunk());
+    }
+  }
+  EXPECT_TRUE((*writer)->finish());
+  EXPECT_EQ(folder.file_count(), 1U);
+  return support::read_bytes(path);
+}
+
+TEST(Mcap, WhatIsWrittenReadsBack) {
+  for (const McapCompression compression : kAll) {
+    SCOPED_TRACE(to_string(compression));
+    std::vector<Message> messages;
+    const std::string bytes = small_file(compression, &messages);
+    const Content content = content_of(bytes);
+    EXPECT_FALSE(content.error);
+    EXPECT_TRUE(content.complete);
+    EXPECT_EQ(content.messages, messages);
+
+    const auto reader = McapReader::open(std::make_unique<std::istringstream>(bytes), "small");
+    ASSERT_TRUE(reader);
+    ASSERT_TRUE((*reader)->statistics());
+    EXPECT_EQ((*reader)->statistics()->messages, 15U);
+    EXPECT_EQ((*reader)->statistics()->chunks, 5U);
+    EXPECT_EQ((*reader)->statistics()->first_log_time, 1000U);
+    EXPECT_EQ((*reader)->statistics()->last_log_time, 1014U);
+    EXPECT_EQ((*reader)->statistics()->channel_messages, (std::map<std::uint16_t, std::uint64_t>{{1, 10}, {2, 5}}));
+    ASSERT_EQ((*reader)->channels().size(), 2U);
+    EXPECT_EQ((*reader)->channels().at(2), (McapChannel{"/second", "cdr", "pkg/msg/A", "ros2msg", "uint8 a\n"}));
+    ASSERT_EQ((*reader)->attachments().size(), 1U);
+    EXPECT_EQ((*reader)->attachments()[0], (McapAttachment{"note.txt", "text/plain", "a note"}));
+    ASSERT_EQ((*reader)->metadata().size(), 1U);
+    EXPECT_EQ((*reader)->metadata()[0], (McapMetadata{"about", {{"key", "value"}, {"other", ""}}}));
+    EXPECT_EQ((*reader)->compressions(), std::vector<McapCompression>{compression});
+  }
+}
+
+TEST(Mcap, ChecksumsDoNotDependOnTheInstructionSet) {
+  const std::string bytes = small_file(McapCompression::none);
+  support::for_each_simd_target([&] {
+    EXPECT_EQ(small_file(McapCompression::none), bytes);
+    EXPECT_FALSE(content_of(bytes).error);
+  });
+}
+
+TEST(Mcap, AFileThatIsCutReadsUpToItsLastWholeRecord) {
+  for (const McapCompression compression : kAll) {
+    SCOPED_TRACE(to_string(compression));
+    std::vector<Message> messages;
+    const std::string bytes = small_file(compression, &messages);
+    std::size_t before = 0;
+    for (std::size_t size = 8; size < bytes.size(); ++size) {
+      const Content content = content_of(bytes.substr(0, size));
+      ASSERT_FALSE(content.error) << size << ": " << content.error->message;
+      ASSERT_FALSE(content.complete);
+      const std::size_t count = content.messages.size();
+      ASSERT_TRUE(count >= before && count % 3 == 0);
+      ASSERT_TRUE(std::equal(content.messages.begin(), content.messages.end(), messages.begin()));
+      before = count;
+    }
+    EXPECT_EQ(before, messages.size());
+  }
+}
+
+TEST(Mcap, NoByteThatChangesGoesUnseen) {
+  for (const McapCompression compression : kAll) {
+    SCOPED_TRACE(to_string(compression));
+    std::vector<Message> messages;
+    const std::string bytes = small_file(compression, &messages);
+    for (std::size_t place = 0; place < bytes.size(); ++place) {
+      for (const int flip : {0x01, 0x80, 0xFF}) {
+        std::string damaged = bytes;
+        damaged[place] = static_cast<char>(damaged[place] ^ flip);
+        const Content content = content_of(damaged);
+        // Without its last bytes a file is one that was cut; what it holds was checked on the way.
+        ASSERT_TRUE(content.error || content.messages == messages) << "byte " << place << " flipped by " << flip;
+      }
+    }
+  }
+}
+
+TEST(Mcap, DamagedFilesGiveMessagesOrAOneLineError) {
+  for (const McapCompression compression : kAll) {
+    const std::string bytes = small_file(compression);
+    for (std::uint64_t seed = 0; seed < 3000; ++seed) {
+      const Content content = content_of(support::mutated(bytes, seed));
+      if (!content.error) continue;
+      EXPECT_EQ(content.error->kind, ErrorKind::bad_input) << "seed " << seed;
+      EXPECT_TRUE(content.error->message.starts_with("mutated:")) << content.error->message;
+      EXPECT_EQ(content.error->message.find('\n'), std::string::npos) << "seed " << seed;
+    }
+  }
+}
+
+std::string little_endian(std::uint64_t value, std::size_t bytes) {
+  std::string text;
+  for (; bytes > 0; --bytes, value >>= 8U) text.push_back(static_cast<char>(value));
+  return text;
+}
+
+std::string record_of(char opcode, const std::string& body) {
+  return opcode + little_endian(body.size(), 8) + body;
+}
+
+const std::string kMagic = "\x89MCAP0\r\n";
+
+TEST(Mcap, SizesThatAFileOnlyClaimsTakeNoMemory) {
+  const std::string zstd_frame("\x28\xB5\x2F\xFD\x00\x58\x01\x00\x00", 9);  // of no bytes
+  const std::uint64_t claimed = std::uint64_t{64} << 20U;
+  std::string chunk = little_endian(0, 16) + little_endian(claimed, 8) + little_endian(0, 4) + little_endian(4, 4) +
+                      "zstd" + little_endian(zstd_frame.size(), 8) + zstd_frame;
+  Content content = content_of(kMagic + record_of(6, chunk));
+  ASSERT_TRUE(content.error);
+  EXPECT_NE(content.error->message.find("byte 8: the chunk is damaged"), std::string::npos) << content.error->message;
+
+  chunk.replace(16, 8, little_endian(claimed + 1, 8));
+  content = content_of(kMagic + record_of(6, chunk));
+  ASSERT_TRUE(content.error);
+  EXPECT_NE(content.error->message.find("at most 64 MiB"), std::string::npos) << content.error->message;
+
+  content = content_of(kMagic + std::string(1, 6) + little_endian(~std::uint64_t{0}, 8));
+  EXPECT_FALSE(content.error) << "a record that goes on behind the end of the file is one that was cut";
+  EXPECT_TRUE(content.messages.empty());
+}
+
+TEST(Mcap, OtherFilesAreRefused) {
+  for (const std::string& bytes : {std::string(), std::string("\x89MCAP"), std::string("time_s,r0c0\n0,1\n")}) {
+    const Content content = content_of(bytes);
+    ASSERT_TRUE(content.error);
+    EXPECT_EQ(content.error->message, "mutated: is no MCAP file: it begins with other bytes");
+  }
+  const auto absent = McapReader::open("/nowhere/rec.mcap");
+  ASSERT_FALSE(absent);
+  EXPECT_EQ(absent.error().kind, ErrorKind::bad_input);
+}
+
+TEST(Mcap, UnknownCompressionsAndChannelsAreNamed) {
+  const std::string chunk = little_endian(0, 16) + little_endian(0, 8) + little_endian(0, 4) + little_endian(3, 4) +
+                            "bz2" + little_endian(0, 8);
+  const Content bz2 = content_of(kMagic + record_of(6, chunk));
+  ASSERT_TRUE(bz2.error);
+  EXPECT_NE(bz2.error->message.find("'bz2'"), std::string::npos) << bz2.error->message;
+
+  const Content unknown = content_of(kMagic + record_of(5, little_endian(7, 2) + little_endian(0, 20)));
+  ASSERT_TRUE(unknown.error);
+  EXPECT_NE(unknown.error->message.find("channel 7"), std::string::npos) << unknown.error->message;
+}
+
+TEST(Mcap, TheFileAppearsWhenItIsToldTo) {
+  const support::TemporaryFolder folder;
+  const std::string path = folder.file("rec.mcap");
+  support::write_bytes(path, "what was there");
+  {
+    const auto writer = McapWriter::create(path, McapCompression::lz4);
+    ASSERT_TRUE(writer);
+    ASSERT_TRUE((*writer)->close_chunk());
+    EXPECT_EQ(support::read_bytes(path), "what was there");
+  }
+  EXPECT_EQ(support::read_bytes(path), "what was there");
+  EXPECT_EQ(folder.file_count(), 1U);
+  {
+    const auto writer = McapWriter::create(path, McapCompression::lz4);
+    ASSERT_TRUE(writer);
+    ASSERT_TRUE((*writer)->close_chunk());
+    ASSERT_TRUE((*writer)->appear());
+    EXPECT_TRUE((*writer)->synchronise());
+    EXPECT_TRUE(support::read_bytes(path).starts_with(kMagic));
+  }
+  EXPECT_TRUE(support::read_bytes(path).starts_with(kMagic));
+  EXPECT_EQ(folder.file_count(), 1U);
+}
+
+TEST(Mcap, AFolderThatIsNotThereIsNamed) {
+  const auto writer = McapWriter::create("/nowhere/rec.mcap", McapCompression::none);
+  ASSERT_FALSE(writer);
+  EXPECT_NE(writer.error().message.find("/nowhere/rec.mcap"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dermis::recordings
