@@ -11,7 +11,7 @@
 #include <numeric>
 #include <utility>
 
-#include "calibration/unloaded_fit.hpp"
+#include "dermis/calibration/sample_temperatures.hpp"
 #include "dermis/core/parallel.hpp"
 #include "dermis/network/initialisation.hpp"
 #include "dermis/network/structured_start.hpp"
@@ -66,8 +66,9 @@ double heaviest_force(const SampleDatabase& database) {
 }
 
 std::optional<PaperBank::Range> temperature_range(const SampleDatabase& database) {
-  const SampleTemperatures span = temperature_span(database);
-  if (!span.is_input) return std::nullopt;
+  const SampleTemperatures temperatures = sample_temperatures(database);
+  if (!temperatures.is_input) return std::nullopt;
+  const TemperatureSpan& span = temperatures.span;
   return PaperBank::Range{span.centre_celsius - span.half_span_celsius, span.centre_celsius + span.half_span_celsius};
 }
 

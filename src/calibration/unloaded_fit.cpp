@@ -8,8 +8,6 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr double kLeastSpanCelsius = 3.0;      // less is the noise of a sensor, not a temperature coefficient
-constexpr double kGlitches = 0.01;             // share of the samples at either end that does not count
 constexpr double kLeastNoiseCounts = 1.0 / 3;  // quantisation alone gives 1 / sqrt(12)
 constexpr std::size_t kLeastFramesForNoise = 5;
 
@@ -20,11 +18,11 @@ struct UnloadedPoint {
 };
 
 std::vector<UnloadedPoint> unloaded_points(const SampleDatabase& database, std::size_t taxel,
-                                           const SampleTemperatures& span) {
+                                           const SampleTemperatures& temperatures) {
   std::vector<UnloadedPoint> points;
   for (const Sample& sample : database.samples) {
     if (!sample.unloaded || sample.known_newtons[taxel] != 0.0F) continue;
-    points.push_back({sample.siemens[taxel], temperature_offset(sample, span)});
+    points.push_back({sample.siemens[taxel], temperature_offset(sample, temperatures)});
   }
   return points;
 }
@@ -49,7 +47,7 @@ Line fit_line(const std::vector<UnloadedPoint>& points) {
     covariance += (point.siemens - mean_y) * (point.temperature_offset - mean_x) / count;
     variance += std::pow(point.temperature_offset - mean_x, 2) / count;
   }
-  const bool has_slope = 4.0 * variance >= kLeastSpanCelsius * kLeastSpanCelsius;
+  const bool has_slope = 4.0 * variance >= std::pow(SampleTemperatures::kLeastSpanCelsius, 2);
   const double slope = has_slope ? covariance / variance : 0.0;
   double square = 0.0;
   for (const UnloadedPoint& point : points) {
@@ -60,36 +58,23 @@ Line fit_line(const std::vector<UnloadedPoint>& points) {
 
 }  // namespace
 
-SampleTemperatures temperature_span(const SampleDatabase& database) {
-  std::vector<double> temperatures;
-  for (const Sample& sample : database.samples) {
-    if (!sample.temperature_celsius) return {};
-    temperatures.push_back(*sample.temperature_celsius);
-  }
-  std::sort(temperatures.begin(), temperatures.end());
-  const auto glitches = static_cast<std::size_t>(kGlitches * static_cast<double>(temperatures.size()));
-  const double lowest = temperatures[glitches];
-  const double highest = temperatures[temperatures.size() - 1 - glitches];
-  return {{0.5 * (lowest + highest), 0.5 * (highest - lowest)}, highest - lowest >= kLeastSpanCelsius};
+double temperature_offset(const Sample& sample, const SampleTemperatures& temperatures) {
+  return temperatures.is_input ? temperatures.span.offset(*sample.temperature_celsius) : 0.0;
 }
 
-double temperature_offset(const Sample& sample, const SampleTemperatures& span) {
-  return span.is_input ? span.offset(*sample.temperature_celsius) : 0.0;
+double normalised_temperature(const Sample& sample, const SampleTemperatures& temperatures) {
+  return temperatures.is_input ? temperature_offset(sample, temperatures) / temperatures.span.half_span_celsius : 0.0;
 }
 
-double normalised_temperature(const Sample& sample, const SampleTemperatures& span) {
-  return span.is_input ? temperature_offset(sample, span) / span.half_span_celsius : 0.0;
-}
-
-UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& span) {
+UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& temperatures) {
   const std::size_t taxels = database.array.taxel_count();
   const double least_noise = kLeastNoiseCounts * database.siemens_per_count;
-  UnloadedFit fit{{std::vector<double>(taxels), std::vector<double>(taxels), span},
+  UnloadedFit fit{{std::vector<double>(taxels), std::vector<double>(taxels), temperatures.span},
                   std::vector<double>(taxels),
                   std::vector<double>(taxels, least_noise),
                   std::vector<bool>(taxels)};
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    const std::vector<UnloadedPoint> points = unloaded_points(database, taxel, span);
+    const std::vector<UnloadedPoint> points = unloaded_points(database, taxel, temperatures);
     fit.is_stuck[taxel] = points.empty();
     if (points.empty()) continue;
     const Line line = fit_line(points);

@@ -5,22 +5,16 @@
 #include <vector>
 
 #include "dermis/calibration/sample_database.hpp"
+#include "dermis/calibration/sample_temperatures.hpp"
 #include "dermis/core/unloaded_law.hpp"
 
 namespace dermis::calibration {
 
-/// The temperatures of a calibration: its 1st to 99th percentile, so that a glitch of the sensor does not stretch it.
-struct SampleTemperatures : TemperatureSpan {
-  bool is_input = false;  ///< Every sample has a temperature and they differ enough to learn from.
-};
-
-[[nodiscard]] SampleTemperatures temperature_span(const SampleDatabase& database);
-
 /// Sample temperature from the centre [C], clamped to the span; 0 where temperature is not an input.
-[[nodiscard]] double temperature_offset(const Sample& sample, const SampleTemperatures& span);
+[[nodiscard]] double temperature_offset(const Sample& sample, const SampleTemperatures& temperatures);
 
 /// The same as an input of a network, in [-1, 1].
-[[nodiscard]] double normalised_temperature(const Sample& sample, const SampleTemperatures& span);
+[[nodiscard]] double normalised_temperature(const Sample& sample, const SampleTemperatures& temperatures);
 
 /// Unloaded conductance of every taxel and the noise of one frame about it.
 struct UnloadedFit {
@@ -31,12 +25,12 @@ struct UnloadedFit {
 };
 
 /// Least squares over the frames in which nothing presses anywhere, at least one.
-[[nodiscard]] UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& span);
+[[nodiscard]] UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& temperatures);
 
 /// Conductance of a taxel above its unloaded value [S].
 [[nodiscard]] inline double excess_siemens(const Sample& sample, std::size_t taxel, const UnloadedFit& unloaded,
-                                           const SampleTemperatures& span) {
-  return unloaded.law.excess(taxel, sample.siemens[taxel], temperature_offset(sample, span));
+                                           const SampleTemperatures& temperatures) {
+  return unloaded.law.excess(taxel, sample.siemens[taxel], temperature_offset(sample, temperatures));
 }
 
 }  // namespace dermis::calibration
