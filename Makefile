@@ -24,6 +24,7 @@ test: setup
 
 sanitize: setup
 	scripts/setup test
+	scripts/setup fuzz
 	cmake --preset asan
 	cmake --build --preset asan
 	ctest --preset asan

@@ -312,7 +312,7 @@ TEST(ArrayToml, writes_no_invalid_array) {
 TEST(ArrayToml, gives_a_value_or_a_one_line_error_for_mutations) {
   for (const char* const text : {kComplete, kAmplifiers, kFlexitac}) {
     support::expect_value_or_one_line_error(
-        text, 3000, [](const std::string& support::mutated) { return array_from_toml(support::mutated, "mutated"); });
+        text, 3000, [](const std::string& mutated) { return array_from_toml(mutated, "mutated"); });
   }
 }
 

@@ -24,7 +24,7 @@ std::string message_after(const std::string& text, const std::function<void(Conf
   return status.error().message;
 }
 
-std::string recordings::parse_message(const std::string& text) {
+std::string parse_message(const std::string& text) {
   return message_after(text, [](ConfigFile&) {});
 }
 
@@ -184,7 +184,7 @@ TEST(ConfigFile, refuses_an_unknown_key_with_the_nearest_known) {
 }
 
 TEST(ConfigFile, names_the_first_unknown_key_of_the_file) {
-  EXPECT_EQ(recordings::parse_message("zz = 1\naa = 2\n"), "c.toml:1: unknown key 'zz'");
+  EXPECT_EQ(parse_message("zz = 1\naa = 2\n"), "c.toml:1: unknown key 'zz'");
 }
 
 TEST(ConfigFile, reports_an_unknown_key_before_a_missing_one) {
@@ -203,23 +203,23 @@ TEST(ConfigFile, keeps_the_first_error) {
 }
 
 TEST(ConfigFile, names_line_and_column_of_a_syntax_error) {
-  const std::string message = recordings::parse_message("a = 1\nb = = 2\n");
+  const std::string message = parse_message("a = 1\nb = = 2\n");
   EXPECT_TRUE(message.starts_with("c.toml:2:5: ")) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos);
-  EXPECT_TRUE(recordings::parse_message("a = 1\na = 2\n").starts_with("c.toml:2:"));
+  EXPECT_TRUE(parse_message("a = 1\na = 2\n").starts_with("c.toml:2:"));
 }
 
 TEST(ConfigFile, keeps_messages_on_one_line) {
-  EXPECT_EQ(recordings::parse_message("\"a\\nb\" = 1"), "c.toml:1: unknown key 'a?b'");
+  EXPECT_EQ(parse_message("\"a\\nb\" = 1"), "c.toml:1: unknown key 'a?b'");
 }
 
 TEST(ConfigFile, refuses_keys_that_are_too_deep) {
   std::string deep = "a";
   for (int i = 0; i < 100'000; ++i) deep += ".a";
-  EXPECT_EQ(recordings::parse_message("\n" + deep + " = 1"), "c.toml:2: too many dots in one line; break it");
+  EXPECT_EQ(parse_message("\n" + deep + " = 1"), "c.toml:2: too many dots in one line; break it");
   std::string quoted = "\"a b\"";
   for (int i = 0; i < 100'000; ++i) quoted += ".\"1.5\"";
-  EXPECT_EQ(recordings::parse_message(quoted + " = 1"), "c.toml:1: too many dots in one line; break it");
+  EXPECT_EQ(parse_message(quoted + " = 1"), "c.toml:1: too many dots in one line; break it");
 }
 
 TEST(ConfigFile, takes_long_lists_and_rulers_of_dots) {
@@ -234,7 +234,7 @@ TEST(ConfigFile, survives_the_deepest_file_it_takes) {
   for (int i = 0; i < 64; ++i) key += ".a.1.1";
   std::string nested;
   for (int i = 0; i < 1000; ++i) nested += "[\n{" + key + " = \n";
-  EXPECT_NE(recordings::parse_message("a = " + nested), "ok");
+  EXPECT_NE(parse_message("a = " + nested), "ok");
   std::string dotted = "a";
   for (int i = 0; i < 64; ++i) dotted += ".a";
   std::string text = "a = ";
@@ -243,11 +243,11 @@ TEST(ConfigFile, survives_the_deepest_file_it_takes) {
     text += "[\n{" + dotted + " = ";
     closing += "}]";
   }
-  EXPECT_EQ(recordings::parse_message(text + "1" + closing), "c.toml:1: unknown key 'a'");
+  EXPECT_EQ(parse_message(text + "1" + closing), "c.toml:1: unknown key 'a'");
 }
 
 TEST(ConfigFile, refuses_more_than_a_mebibyte) {
-  EXPECT_EQ(recordings::parse_message(std::string((1U << 20U) + 1, ' ')), "c.toml: is larger than 1 MiB");
+  EXPECT_EQ(parse_message(std::string((1U << 20U) + 1, ' ')), "c.toml: is larger than 1 MiB");
 }
 
 TEST(ConfigFile, reads_a_file_and_names_one_that_cannot_be_opened) {

@@ -8,7 +8,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "mutations.hpp"
+#include "support/mutations.hpp"
 #include "temporary_folder.hpp"
 
 namespace dermis::files {
@@ -210,14 +210,12 @@ TEST(PositionsCsv, refuses_lines_that_are_no_places) {
 }
 
 TEST(SuitToml, gives_a_value_or_a_one_line_error_for_mutations) {
-  support::expect_value_or_one_line_error(kComplete, 3000, [](const std::string& support::mutated) {
-    return suit_from_toml(support::mutated, "mutated", one_position);
+  support::expect_value_or_one_line_error(
+      kComplete, 3000, [](const std::string& mutated) { return suit_from_toml(mutated, "mutated", one_position); });
+  support::expect_value_or_one_line_error("x_mm,y_mm,z_mm\n1,2,3\n4,5.5,-6\n", 1000, [](const std::string& mutated) {
+    std::istringstream in(mutated);
+    return read_positions(in, "mutated");
   });
-  support::expect_value_or_one_line_error("x_mm,y_mm,z_mm\n1,2,3\n4,5.5,-6\n", 1000,
-                                          [](const std::string& support::mutated) {
-                                            std::istringstream in(support::mutated);
-                                            return read_positions(in, "mutated");
-                                          });
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ Status write_file(const std::string& path, FrameShape shape, const std::vector<R
   return support::write_all(**writer, frames);
 }
 
-Result<std::vector<RawFrame>> files::read_file(const std::string& path) {
+Result<std::vector<RawFrame>> read_file(const std::string& path) {
   const auto reader = Hdf5FramesReader::open(path);
   if (!reader) return reader.error();
   return support::read_all(**reader);
@@ -140,7 +140,7 @@ TEST(Hdf5Frames, that_are_cut_give_an_error) {
   const std::string bytes = support::read_bytes(path);
   for (std::size_t size = 0; size < bytes.size(); size += 397) {
     support::write_bytes(path, bytes.substr(0, size));
-    const auto read = files::read_file(path);
+    const auto read = read_file(path);
     ASSERT_FALSE(read) << size;
     EXPECT_EQ(read.error().message.find('\n'), std::string::npos);
   }

@@ -24,7 +24,7 @@ namespace {
 constexpr FrameShape kShape{3, 5};
 
 /// A frame with every field set or empty by chance.
-RawFrame support::random_frame(Random& random, const FrameShape& shape) {
+RawFrame random_frame(Random& random, const FrameShape& shape) {
   RawFrame frame;
   frame.time = Nanos(static_cast<std::int64_t>(random.bits()));
   if (random.below(2) == 0) frame.temperature_celsius = random.uniform(-20.0, 60.0);
@@ -53,10 +53,10 @@ void expect_same(const RawFrame& a, const RawFrame& b) {
   EXPECT_EQ(std::memcmp(a.counts.data(), b.counts.data(), 4 * a.counts.size()), 0);
 }
 
-std::vector<RawFrame> support::random_frames(std::size_t count, std::uint64_t seed, const FrameShape& shape = kShape) {
+std::vector<RawFrame> random_frames(std::size_t count, std::uint64_t seed, const FrameShape& shape = kShape) {
   Random random(seed);
   std::vector<RawFrame> frames;
-  for (std::size_t i = 0; i < count; ++i) frames.push_back(support::random_frame(random, shape));
+  for (std::size_t i = 0; i < count; ++i) frames.push_back(random_frame(random, shape));
   return frames;
 }
 
@@ -69,7 +69,7 @@ void record(const std::string& path, const std::vector<RawFrame>& frames, const 
   ASSERT_TRUE(committed) << committed.error().message;
 }
 
-std::vector<RawFrame> support::read_all(const std::string& path) {
+std::vector<RawFrame> read_all(const std::string& path) {
   const auto reader = RecordingReader::open(path);
   EXPECT_TRUE(reader) << reader.error().message;
   std::vector<RawFrame> frames;
@@ -87,11 +87,11 @@ TEST(Recording, EveryFrameReadsBackWithTheSameBits) {
   for (const McapCompression compression : {McapCompression::none, McapCompression::lz4, McapCompression::zstd}) {
     const support::TemporaryFolder folder;
     const std::string path = folder.file("rec.mcap");
-    const std::vector<RawFrame> frames = support::random_frames(500, 1);
+    const std::vector<RawFrame> frames = random_frames(500, 1);
     RecordingOptions options;
     options.compression = compression;
     record(path, frames, options);
-    const std::vector<RawFrame> again = support::read_all(path);
+    const std::vector<RawFrame> again = read_all(path);
     ASSERT_EQ(again.size(), frames.size());
     for (std::size_t i = 0; i < frames.size(); ++i) expect_same(again[i], frames[i]);
     EXPECT_EQ(folder.file_count(), 1U);
@@ -104,7 +104,7 @@ TEST(Recording, TopicsAreNamesOfRos) {
        {std::pair{"left hand", "/left_hand/raw"}, {"3D", "/array_3D/raw"}, {"", "/array_/raw"}}) {
     RecordingOptions options;
     options.name = name;
-    record(folder.file("rec.mcap"), support::random_frames(2, 2), options);
+    record(folder.file("rec.mcap"), random_frames(2, 2), options);
     const Result<RecordingInfo> info = recording_info(folder.file("rec.mcap"));
     ASSERT_TRUE(info);
     EXPECT_EQ(info->arrays.front().name, name);
@@ -121,7 +121,7 @@ TEST(Recording, DescriptionAndTotalsAreSaidAtOnceAndByReadingAll) {
   options.array_toml = "[array]\n";
   options.model_hash = "fnv1a64:12";
   options.compression = McapCompression::zstd;
-  std::vector<RawFrame> frames = support::random_frames(100, 3);
+  std::vector<RawFrame> frames = random_frames(100, 3);
   std::uint64_t lost = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     frames[i].time = Nanos(1'700'000'000'000'000'000 + static_cast<std::int64_t>(i) * 10'000'000);
@@ -182,7 +182,7 @@ TEST(Recording, OfNoFrameIsComplete) {
 
 TEST(Recording, ForcesDoNotChangeTheFrames) {
   const support::TemporaryFolder folder;
-  const std::vector<RawFrame> frames = support::random_frames(20, 4);
+  const std::vector<RawFrame> frames = random_frames(20, 4);
   const auto writer = RecordingWriter::create(folder.file("rec.mcap"), kShape);
   ASSERT_TRUE(writer);
   ForceFrame force;
@@ -194,7 +194,7 @@ TEST(Recording, ForcesDoNotChangeTheFrames) {
     ASSERT_TRUE((*writer)->write(frame, force));
   }
   ASSERT_TRUE((*writer)->commit());
-  const std::vector<RawFrame> again = support::read_all(folder.file("rec.mcap"));
+  const std::vector<RawFrame> again = read_all(folder.file("rec.mcap"));
   ASSERT_EQ(again.size(), frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) expect_same(again[i], frames[i]);
 }
@@ -206,10 +206,10 @@ TEST(Recording, FramesAreInTheFileThoughNoneFollowsAndNothingIsCommitted) {
   const auto writer = RecordingWriter::create(path, kShape);
   ASSERT_TRUE(writer);
   EXPECT_EQ(support::read_bytes(path), "an old recording");
-  const std::vector<RawFrame> frames = support::random_frames(3, 5);
+  const std::vector<RawFrame> frames = random_frames(3, 5);
   for (const RawFrame& frame : frames) ASSERT_TRUE((*writer)->write(frame));
   while (support::read_bytes(path) == "an old recording") std::this_thread::yield();  // ctest ends a test that hangs
-  const std::vector<RawFrame> again = support::read_all(path);
+  const std::vector<RawFrame> again = read_all(path);
   ASSERT_EQ(again.size(), frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) expect_same(again[i], frames[i]);
 }
@@ -221,7 +221,7 @@ TEST(Recording, ThatIsNotCommittedStaysOnlyWhereItIsLive) {
     support::write_bytes(path, "an old recording");
     RecordingOptions options;
     options.live = live;
-    const std::vector<RawFrame> frames = support::random_frames(3, 6);
+    const std::vector<RawFrame> frames = random_frames(3, 6);
     {
       const auto writer = RecordingWriter::create(path, kShape, options);
       ASSERT_TRUE(writer);
@@ -229,7 +229,7 @@ TEST(Recording, ThatIsNotCommittedStaysOnlyWhereItIsLive) {
     }
     EXPECT_EQ(folder.file_count(), 1U);
     if (live) {
-      EXPECT_EQ(support::read_all(path).size(), 3U);
+      EXPECT_EQ(read_all(path).size(), 3U);
     } else {
       EXPECT_EQ(support::read_bytes(path), "an old recording");
     }
@@ -247,7 +247,7 @@ TEST(Recording, ReplacesAnEarlierOneOnlyWhenItsOwnBytesAreOnTheDisk) {
     static_cast<void>(support::take_disk_calls());
     const auto writer = RecordingWriter::create(path, kShape, options);
     ASSERT_TRUE(writer);
-    for (const RawFrame& frame : support::random_frames(3, 16)) ASSERT_TRUE((*writer)->write(frame));
+    for (const RawFrame& frame : random_frames(3, 16)) ASSERT_TRUE((*writer)->write(frame));
     while (live && support::read_bytes(path) == "an old recording")
       std::this_thread::yield();  // ctest ends a test that hangs
     ASSERT_TRUE((*writer)->commit());
@@ -281,7 +281,7 @@ TEST(Recording, AFullDiskLeavesWhatWasWritten) {
   constexpr FrameShape kLarge{64, 160};
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
-  const std::vector<RawFrame> frames = support::random_frames(50, 7, kLarge);
+  const std::vector<RawFrame> frames = random_frames(50, 7, kLarge);
   for (const rlim_t size : {rlim_t{1} << 22U, rlim_t{3'500'000}}) {
     {
       const SmallDisk disk(size);
@@ -294,7 +294,7 @@ TEST(Recording, AFullDiskLeavesWhatWasWritten) {
       EXPECT_NE(written.error().message.find("rec.mcap"), std::string::npos);
       EXPECT_FALSE((*writer)->commit());
     }
-    const std::vector<RawFrame> again = support::read_all(path);
+    const std::vector<RawFrame> again = read_all(path);
     EXPECT_GE(again.size(), 50U);
     for (std::size_t i = 0; i < again.size(); ++i) expect_same(again[i], frames[i % frames.size()]);
     const Result<RecordingInfo> info = recording_info(path);
@@ -312,7 +312,7 @@ TEST(Recording, ADiskThatIsFullFromTheBeginningLeavesTheOldFile) {
     const SmallDisk disk(100);
     const auto writer = RecordingWriter::create(path, kShape);
     ASSERT_TRUE(writer);
-    static_cast<void>((*writer)->write(support::random_frames(1, 8)[0]));
+    static_cast<void>((*writer)->write(random_frames(1, 8)[0]));
     EXPECT_FALSE((*writer)->commit());
   }
   EXPECT_EQ(support::read_bytes(path), "an old recording");
@@ -327,7 +327,7 @@ TEST(Recording, WarmWritingAllocatesNothing) {
   options.compression = McapCompression::none;
   const auto writer = RecordingWriter::create(folder.file("rec.mcap"), kLarge, options);
   ASSERT_TRUE(writer);
-  const std::vector<RawFrame> frames = support::random_frames(1, 9, kLarge);
+  const std::vector<RawFrame> frames = random_frames(1, 9, kLarge);
   for (int i = 0; i < 200; ++i) ASSERT_TRUE((*writer)->write(frames[0]));
   std::size_t frames_with_allocations = 0;
   for (int i = 0; i < 200; ++i) {
@@ -343,7 +343,7 @@ TEST(Recording, WarmWritingAllocatesNothing) {
 TEST(Recording, LogTimesNeverGoBack) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
-  std::vector<RawFrame> frames = support::random_frames(4, 10);
+  std::vector<RawFrame> frames = random_frames(4, 10);
   const std::int64_t times[] = {1000, 900, -5, 2000};
   for (std::size_t i = 0; i < 4; ++i) frames[i].time = Nanos(times[i]);
   record(path, frames);
@@ -356,7 +356,7 @@ TEST(Recording, LogTimesNeverGoBack) {
     before = message.log_time;
   }
   EXPECT_EQ(before, 2000U);
-  const std::vector<RawFrame> again = support::read_all(path);
+  const std::vector<RawFrame> again = read_all(path);
   ASSERT_EQ(again.size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) expect_same(again[i], frames[i]);
 }
@@ -366,7 +366,7 @@ TEST(Recording, StepsOfTheUtcClockMoveNoLogTime) {
   constexpr std::int64_t kHour = 3'600'000'000'000;
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
-  std::vector<RawFrame> frames = support::random_frames(30, 15);
+  std::vector<RawFrame> frames = random_frames(30, 15);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::int64_t taken = kBegin + static_cast<std::int64_t>(i) * 10'000'000;
     frames[i].time = Nanos(taken);
@@ -383,7 +383,7 @@ TEST(Recording, StepsOfTheUtcClockMoveNoLogTime) {
   ASSERT_TRUE(info);
   EXPECT_DOUBLE_EQ(info->duration_s, 0.29);
   EXPECT_EQ(info->start_utc, Nanos(kBegin));
-  const std::vector<RawFrame> again = support::read_all(path);
+  const std::vector<RawFrame> again = read_all(path);
   ASSERT_EQ(again.size(), frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) expect_same(again[i], frames[i]);
 }
@@ -429,7 +429,7 @@ TEST(Recording, ATopicIsDeclaredWithItsFirstMessage) {
   const Result<RecordingInfo> info = recording_info(folder.file("rec.mcap"));
   ASSERT_TRUE(info);
   for (const RecordingTopic& topic : info->topics) EXPECT_GT(topic.messages, 0U) << topic.name;
-  EXPECT_EQ(support::read_all(folder.file("rec.mcap")).at(2).temperature_celsius, 25.0);
+  EXPECT_EQ(read_all(folder.file("rec.mcap")).at(2).temperature_celsius, 25.0);
 }
 
 TEST(Recovery, OfAnyCutKeepsAllWholeChunks) {
@@ -441,12 +441,12 @@ TEST(Recovery, OfAnyCutKeepsAllWholeChunks) {
     const std::size_t size = 8 + random.below(bytes.size() - 8);
     SCOPED_TRACE(size);
     support::write_bytes(folder.file("cut.mcap"), bytes.substr(0, size));
-    const std::vector<RawFrame> readable = support::read_all(folder.file("cut.mcap"));
+    const std::vector<RawFrame> readable = read_all(folder.file("cut.mcap"));
     const Result<Recovery> recovery = recover_recording(folder.file("cut.mcap"), folder.file("whole.mcap"));
     ASSERT_TRUE(recovery) << recovery.error().message;
     EXPECT_FALSE(recovery->was_complete);
     EXPECT_EQ(recovery->frames, readable.size());
-    const std::vector<RawFrame> again = support::read_all(folder.file("whole.mcap"));
+    const std::vector<RawFrame> again = read_all(folder.file("whole.mcap"));
     ASSERT_EQ(again.size(), readable.size());
     for (std::size_t k = 0; k < again.size(); ++k) expect_same(again[k], frames[k]);
     const Result<RecordingInfo> info = recording_info(folder.file("whole.mcap"));
@@ -458,7 +458,7 @@ TEST(Recovery, OfAnyCutKeepsAllWholeChunks) {
 
 TEST(Recovery, OfAWholeFileLosesNothing) {
   const support::TemporaryFolder folder;
-  const std::vector<RawFrame> frames = support::random_frames(50, 12);
+  const std::vector<RawFrame> frames = random_frames(50, 12);
   record(folder.file("rec.mcap"), frames);
   const Result<Recovery> recovery = recover_recording(folder.file("rec.mcap"), folder.file("again.mcap"));
   ASSERT_TRUE(recovery);
@@ -466,7 +466,7 @@ TEST(Recovery, OfAWholeFileLosesNothing) {
   EXPECT_EQ(recovery->frames, 50U);
   EXPECT_EQ(recovery->lost_bytes, 0U);
   EXPECT_EQ(recovery->damaged_chunks, 0U);
-  const std::vector<RawFrame> again = support::read_all(folder.file("again.mcap"));
+  const std::vector<RawFrame> again = read_all(folder.file("again.mcap"));
   ASSERT_EQ(again.size(), frames.size());
   for (std::size_t i = 0; i < frames.size(); ++i) expect_same(again[i], frames[i]);
 }
@@ -498,7 +498,7 @@ TEST(Recovery, LeavesOutDamagedChunksAndSaysHowManyMessagesTheyHad) {
     }
     std::vector<RawFrame> expected = frames;
     expected.erase(expected.begin() + 2);
-    const std::vector<RawFrame> again = support::read_all(folder.file("whole.mcap"));
+    const std::vector<RawFrame> again = read_all(folder.file("whole.mcap"));
     ASSERT_EQ(again.size(), expected.size());
     for (std::size_t i = 0; i < again.size(); ++i) expect_same(again[i], expected[i]);
     const auto reader = RecordingReader::open(folder.file("whole.mcap"));
@@ -509,7 +509,7 @@ TEST(Recovery, LeavesOutDamagedChunksAndSaysHowManyMessagesTheyHad) {
 
 TEST(Recovery, RefusesToReplaceWhatItReads) {
   const support::TemporaryFolder folder;
-  record(folder.file("rec.mcap"), support::random_frames(3, 13));
+  record(folder.file("rec.mcap"), random_frames(3, 13));
   const std::string before = support::read_bytes(folder.file("rec.mcap"));
   const Result<Recovery> recovery = recover_recording(folder.file("rec.mcap"), folder.file("rec.mcap"));
   ASSERT_FALSE(recovery);
@@ -519,7 +519,7 @@ TEST(Recovery, RefusesToReplaceWhatItReads) {
 
 TEST(Recovery, OfAnyDamageEndsWithAReadableFileOrAnError) {
   const support::TemporaryFolder folder;
-  record(folder.file("rec.mcap"), support::random_frames(30, 14));
+  record(folder.file("rec.mcap"), random_frames(30, 14));
   const std::string bytes = support::read_bytes(folder.file("rec.mcap"));
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     SCOPED_TRACE(seed);

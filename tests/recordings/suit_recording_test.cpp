@@ -52,7 +52,7 @@ void record(const std::string& path, const std::vector<RecordedArray>& arrays, c
   ASSERT_TRUE(committed) << committed.error().message;
 }
 
-std::vector<Written> files::read_suit(SuitRecordingReader& reader) {
+std::vector<Written> read_suit(SuitRecordingReader& reader) {
   std::vector<Written> all;
   Written read;
   while (true) {
@@ -63,10 +63,10 @@ std::vector<Written> files::read_suit(SuitRecordingReader& reader) {
   }
 }
 
-std::vector<Written> files::read_suit(const std::string& path) {
+std::vector<Written> read_suit(const std::string& path) {
   const auto reader = SuitRecordingReader::open(path);
   EXPECT_TRUE(reader) << reader.error().message;
-  return reader ? files::read_suit(**reader) : std::vector<Written>();
+  return reader ? read_suit(**reader) : std::vector<Written>();
 }
 
 void expect_same(const std::vector<Written>& read, const std::vector<Written>& written) {
@@ -97,7 +97,7 @@ TEST(SuitRecording, EveryFrameOfEveryArrayReadsBackWithTheSameBits) {
     const std::vector<RecordedArray> arrays = three_arrays();
     const std::vector<Written> all = interleaved(arrays, 500, 1);
     record(folder.file("rec.mcap"), arrays, all, {.compression = compression});
-    expect_same(files::read_suit(folder.file("rec.mcap")), all);
+    expect_same(read_suit(folder.file("rec.mcap")), all);
     for (std::size_t i = 0; i < arrays.size(); ++i) {
       const auto reader = RecordingReader::open(folder.file("rec.mcap"), arrays[i].name);
       ASSERT_TRUE(reader) << reader.error().message;
@@ -158,7 +158,7 @@ TEST(SuitRecording, AnArrayThatComesLateOrPausesKeepsTheOrderOfAll) {
     if (written.array == 0) written.frame.time = late += Nanos(1'000'000);
   }
   record(folder.file("rec.mcap"), arrays, all, {.compression = McapCompression::none});
-  expect_same(files::read_suit(folder.file("rec.mcap")), all);
+  expect_same(read_suit(folder.file("rec.mcap")), all);
 }
 
 TEST(SuitRecording, LogTimesOfEachArrayRise) {
@@ -279,11 +279,11 @@ TEST(SuitRecording, OfAnyCutIsRecoveredWithItsTotals) {
     const std::size_t size = 2000 + random.below(bytes.size() - 2000);
     SCOPED_TRACE(size);
     support::write_bytes(folder.file("cut.mcap"), bytes.substr(0, size));
-    const std::vector<Written> readable = files::read_suit(folder.file("cut.mcap"));
+    const std::vector<Written> readable = read_suit(folder.file("cut.mcap"));
     const Result<Recovery> recovery = recover_recording(folder.file("cut.mcap"), folder.file("whole.mcap"));
     ASSERT_TRUE(recovery) << recovery.error().message;
     EXPECT_EQ(recovery->frames, readable.size());
-    expect_same(files::read_suit(folder.file("whole.mcap")), readable);
+    expect_same(read_suit(folder.file("whole.mcap")), readable);
     const Result<RecordingInfo> info = recording_info(folder.file("whole.mcap"));
     ASSERT_TRUE(info);
     ASSERT_EQ(info->arrays.size(), 3U);
@@ -338,7 +338,7 @@ TEST(SuitRecording, SeekGoesOnWithTheFirstFramesOfATimeOrLater) {
       std::erase_if(later, [&](const Written& written) { return written.frame.time < time; });
       (*suit)->seek(time);
       if (i % 3 != 0) {
-        expect_same(files::read_suit(**suit), later);
+        expect_same(read_suit(**suit), later);
         continue;
       }
       const auto one = RecordingReader::open(folder.file(name), "b");
