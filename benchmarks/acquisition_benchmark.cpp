@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "dermis/acquisition/protocol.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
 #include "rows.hpp"
 
@@ -93,8 +94,7 @@ void measure(benchmark::State& state, const Stream& stream, bool checked, Work w
     state.SetIterationTime(seconds);
     speeds.push_back(1e-6 * static_cast<double>(stream.bytes.size()) / seconds);
   }
-  std::nth_element(speeds.begin(), speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2), speeds.end());
-  state.counters["median"] = speeds[speeds.size() / 2];
+  state.counters["median"] = upper_median(std::move(speeds));
   state.counters["checked"] = checked ? 1 : 0;
 }
 

@@ -19,6 +19,7 @@
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "support/pressure_patches.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis {
 namespace {
@@ -433,9 +434,7 @@ void print_scenes(const ArrayDescription& array, const pipeline::Model& model) {
 }  // namespace dermis
 
 int main() {
-  dermis::ArrayDescription array = dermis::support::disc_array();
-  array.readout.adc_reference_v = 5.0;
-  array.readout.supply_v = 5.0;
+  const dermis::ArrayDescription array = dermis::support::reference_array();
   const dermis::pipeline::Model model = dermis::calibrate(array);
   dermis::print_scenes(array, model);
   dermis::PressedArray pressed(array, model);

@@ -13,6 +13,7 @@
 #include "dermis/simulation/simulator.hpp"
 #include "frame_times.hpp"
 #include "rows.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis {
 namespace {
@@ -35,7 +36,8 @@ Recording record(const ArrayDescription& array, std::string_view scene) {
 
 /// The scene with contacts, and what the pipeline makes of it.
 struct Scene {
-  explicit Scene(std::size_t lines) : array(benchmarks::square_array(lines)), frames(record(array, "contacts").frames) {
+  explicit Scene(std::size_t lines)
+      : array(support::reference_array(lines, lines)), frames(record(array, "contacts").frames) {
     const Recording presses = record(array, "calibration");
     model = calibration::calibrate(array, presses.frames, presses.loads).value().model;
   }

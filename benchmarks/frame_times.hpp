@@ -12,23 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/array_description.hpp"
 #include "support/allocation_guard.hpp"
 
 /// Times of single frames, for the benchmarks of what is done with each.
 namespace dermis::benchmarks {
-
-/// The electronics of the reference array, for any size.
-inline ArrayDescription square_array(std::size_t lines) {
-  ArrayDescription array;
-  array.rows = lines;
-  array.cols = lines;
-  array.readout.drive_ohm.assign(lines, 20.0);
-  array.readout.load_ohm.assign(lines, 200.0);
-  array.readout.adc_reference_v = 5.0;
-  array.readout.supply_v = 5.0;
-  return array;
-}
 
 /// Runs process(k) over the frames, again and again, and reports the time of single frames and the allocations per
 /// frame.

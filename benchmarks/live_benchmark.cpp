@@ -27,6 +27,7 @@
 #include "dermis/recordings/suit_recording.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "rows.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis {
 namespace {
@@ -46,18 +47,6 @@ struct Settings {
   double seconds = 10.0;
 };
 
-ArrayDescription make_array() {
-  ArrayDescription array;
-  array.rows = kLines;
-  array.cols = kLines;
-  array.taxel_area_m2 = 38.48e-6;
-  array.readout.drive_ohm.assign(kLines, 20.0);
-  array.readout.load_ohm.assign(kLines, 200.0);
-  array.readout.adc_reference_v = 5.0;
-  array.readout.supply_v = 5.0;
-  return array;
-}
-
 /// The law of the simulated rubber, but for its scatter: newtons = 10 (e / reference)^(1 / exponent), with temperature.
 /// Hidden units that add nothing take the time of those of a calibration.
 fusion::ForceNetworks networks_of_rubber(std::size_t taxels) {
@@ -65,9 +54,9 @@ fusion::ForceNetworks networks_of_rubber(std::size_t taxels) {
   constexpr double kHalfSpanCelsius = 30.0;
   fusion::ForceNetworks networks;
   networks.shape = {fusion::kInputsWithTemperature, 4, 2};
-  networks.temperature_half_span_celsius = kHalfSpanCelsius;
-  networks.offset_siemens.assign(taxels, 1.0 / rubber.unloaded_ohm);
-  networks.offset_per_celsius.assign(taxels, -rubber.temperature_coefficient / rubber.unloaded_ohm);
+  networks.unloaded.temperature.half_span_celsius = kHalfSpanCelsius;
+  networks.unloaded.offset_siemens.assign(taxels, 1.0 / rubber.unloaded_ohm);
+  networks.unloaded.per_celsius.assign(taxels, -rubber.temperature_coefficient / rubber.unloaded_ohm);
   networks.reference_siemens.assign(taxels, static_cast<float>(1.0 / rubber.resistance_at_10n_ohm));
   networks.heaviest_siemens.assign(taxels, static_cast<float>(5.0 / rubber.resistance_at_10n_ohm));
   networks.heaviest_newtons.assign(taxels, 60.0F);
@@ -174,7 +163,7 @@ std::unique_ptr<recordings::SuitRecordingWriter> open_recording(const std::strin
 }
 
 std::vector<live::LiveArray> make_arrays(const Settings& settings, const std::vector<Frames>& scenes) {
-  const ArrayDescription array = make_array();
+  const ArrayDescription array = support::reference_array(kLines, kLines);
   const auto model = std::make_shared<const pipeline::Model>(pipeline::Model{
       .array = array, .networks = networks_of_rubber(array.taxel_count()), .baselines = {}, .provenance = {}});
   const Clock::time_point begin = Clock::now() + std::chrono::milliseconds(500);
@@ -256,7 +245,8 @@ Settings read_settings(int argc, char** argv) {
 
 bool measure(const Settings& settings) {
   std::vector<Frames> scenes;
-  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) scenes.push_back(simulate(make_array(), seed));
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed)
+    scenes.push_back(simulate(support::reference_array(kLines, kLines), seed));
   fmt::print("{} arrays of 16x16 at {} frames/s, {} s; from the arrival of a frame to its contacts\n", settings.arrays,
              settings.rate_hz, settings.seconds);
   fmt::print("{:<24}{:>10}{:>8}{:>10}{:>10}{:>10}{:>10}{:>8}{:>9}\n", "work", "frames", "lost", "p50 us", "p99 us",

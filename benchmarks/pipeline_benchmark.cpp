@@ -13,6 +13,7 @@
 #include "frame_times.hpp"
 #include "rows.hpp"
 #include "support/random_networks.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis {
 namespace {
@@ -33,12 +34,13 @@ pipeline::Model random_model(const ArrayDescription& array) {
   model.array = array;
   model.networks = support::random_networks(array.taxel_count(), fusion::kInputsWithTemperature, 4, 1);
   // What the simulated array is, unloaded: else its taxels are found to be dead.
-  model.networks.offset_siemens.assign(array.taxel_count(), 1.0 / simulation::RubberOptions{}.unloaded_ohm);
+  model.networks.unloaded.offset_siemens.assign(array.taxel_count(), 1.0 / simulation::RubberOptions{}.unloaded_ohm);
   return model;
 }
 
 void frame_counts_to_newtons(benchmark::State& state) {
-  const ArrayDescription array = benchmarks::square_array(static_cast<std::size_t>(state.range(0)));
+  const auto lines = static_cast<std::size_t>(state.range(0));
+  const ArrayDescription array = support::reference_array(lines, lines);
   std::vector<RawFrame> frames = multitouch_frames(array);
   Nanos time{0};
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(random_model(array));

@@ -15,9 +15,11 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "dermis/core/quantile.hpp"
 #include "dermis/recordings/recording.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "rows.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis {
 namespace {
@@ -28,13 +30,7 @@ constexpr std::size_t kScene = 100;  ///< Frames that are repeated.
 constexpr std::size_t kFramesPerChunk = 50;
 
 std::vector<RawFrame> scene_frames() {
-  ArrayDescription array;
-  array.rows = kShape.rows;
-  array.cols = kShape.cols;
-  array.readout.drive_ohm.assign(array.rows, 20.0);
-  array.readout.load_ohm.assign(array.cols, 200.0);
-  array.readout.adc_reference_v = 5.0;
-  array.readout.supply_v = 5.0;
+  const ArrayDescription array = support::reference_array(kShape.rows, kShape.cols);
   auto simulator = simulation::Simulator::create(array, {}, "multitouch", 1, kScene);
   std::vector<RawFrame> frames(kScene);
   for (RawFrame& frame : frames) {
@@ -52,11 +48,6 @@ double processor_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
 }
 
 /// Measures blocks of frames and keeps the rows of the table.
@@ -83,14 +74,14 @@ class Table {
       wall.push_back(1e6 * elapsed.count() / static_cast<double>(frames_));
       processor.push_back(1e6 * (processor_seconds() - processor_start) / static_cast<double>(frames_));
     }
-    fmt::print("{:<28}{:<18}{:>12.2f}{:>14.2f}{:>8.2f}{:>9}\n", work, engine, median(wall), median(processor), ratio(),
-               checked ? "yes" : "NO");
+    fmt::print("{:<28}{:<18}{:>12.2f}{:>14.2f}{:>8.2f}{:>9}\n", work, engine, upper_median(wall),
+               upper_median(processor), ratio(), checked ? "yes" : "NO");
     rows_.push_back({{"work", work + ", 64x160"},
                      {"engine", engine},
                      {"threads", 1},
-                     {"median", median(wall)},
+                     {"median", upper_median(wall)},
                      {"unit", "us"},
-                     {"processor_us", median(processor)},
+                     {"processor_us", upper_median(processor)},
                      {"ratio", ratio()},
                      {"checked", checked}});
   }

@@ -10,9 +10,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "commands.hpp"
+#include "dermis/core/quantile.hpp"
+#include "dermis/core/touch.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "open_source.hpp"
@@ -62,10 +65,7 @@ class NoiseMeter {
   /// Standard deviation over that of the model; empty where something touches too much of the array all the time.
   [[nodiscard]] std::optional<double> ratio() const {
     if (ratios_.empty()) return std::nullopt;
-    std::vector<double> sorted = ratios_;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    return *middle;
+    return upper_median(ratios_);
   }
 
  private:
@@ -158,18 +158,17 @@ class Examination {
   }
 
   void expect_unloaded(const ConductanceFrame& conductance) {
-    const auto& networks = model_.networks;
-    const double offset_celsius = conductance.temperature_celsius.value_or(networks.temperature_centre_celsius) -
-                                  networks.temperature_centre_celsius;
+    const UnloadedLaw& unloaded = model_.networks.unloaded;
+    const double centre_celsius = unloaded.temperature.centre_celsius;
+    const double offset_celsius = conductance.temperature_celsius.value_or(centre_celsius) - centre_celsius;
     for (std::size_t taxel = 0; taxel < expected_.size(); ++taxel) {
-      expected_[taxel] = networks.offset_siemens[taxel] + networks.offset_per_celsius[taxel] * offset_celsius;
+      expected_[taxel] = unloaded.at(taxel, offset_celsius);
     }
   }
 
-  /// The taxel conducts three times what it does unloaded, and so many standard deviations more.
   [[nodiscard]] bool is_touched(const ConductanceFrame& conductance, std::size_t taxel, double sigmas) const {
-    const double least = 3.0 * std::max(expected_[taxel], 0.0) + sigmas * conductance.sigma_siemens[taxel];
-    return conductance.siemens[taxel] > least;
+    const double unloaded = std::max(expected_[taxel], 0.0);
+    return conductance.siemens[taxel] > touched_above(unloaded, conductance.sigma_siemens[taxel], sigmas);
   }
 
   [[nodiscard]] bool is_near_touch(const ConductanceFrame& conductance, std::size_t taxel, double sigmas) const {
@@ -219,8 +218,7 @@ class Examination {
       if (unloaded_frames_[taxel] >= kLeastUnloadedFrames) drifts.push_back(unloaded_share_[taxel] / frames - 1.0);
     }
     if (drifts.empty()) return std::nullopt;
-    std::nth_element(drifts.begin(), drifts.begin() + static_cast<std::ptrdiff_t>(drifts.size() / 2), drifts.end());
-    return drifts[drifts.size() / 2];
+    return upper_median(std::move(drifts));
   }
 
   [[nodiscard]] double saturated_share() const {
@@ -330,11 +328,10 @@ std::vector<std::string> Examination::problems() const {
     found.push_back(
         fmt::format("unloaded taxels conduct {:+.0f} % against the calibration: calibrate again", 100.0 * *drift));
   }
-  const auto& networks = model_.networks;
-  const double half_span = networks.temperature_half_span_celsius + kTemperatureMargin;
-  if (networks.shape.inputs == fusion::kInputsWithTemperature && coldest_ &&
-      (*coldest_ < networks.temperature_centre_celsius - half_span ||
-       *hottest_ > networks.temperature_centre_celsius + half_span)) {
+  const TemperatureSpan& calibrated = model_.networks.unloaded.temperature;
+  const double half_span = calibrated.half_span_celsius + kTemperatureMargin;
+  if (model_.networks.shape.inputs == fusion::kInputsWithTemperature && coldest_ &&
+      (*coldest_ < calibrated.centre_celsius - half_span || *hottest_ > calibrated.centre_celsius + half_span)) {
     found.emplace_back("the temperature leaves the calibrated range: forces there are those at its end");
   }
   return found;
@@ -365,12 +362,11 @@ void Examination::print(const compensation::LineFaultMonitor& monitor) const {
   fmt::print("saturated    {:.2f} % of all readings\n", 100.0 * saturated_share());
   const std::optional<double> drift = offset_drift();
   fmt::print("unloaded     {}\n", drift ? fmt::format("{:+.1f} % against the calibration", 100.0 * *drift) : "unknown");
-  const auto& networks = model_.networks;
+  const TemperatureSpan& calibrated = model_.networks.unloaded.temperature;
   if (coldest_) fmt::print("temperature  {:.1f} to {:.1f} C", *coldest_, *hottest_);
   if (!coldest_) fmt::print("temperature  unknown");
-  fmt::print(", calibrated {:.1f} to {:.1f} C\n",
-             networks.temperature_centre_celsius - networks.temperature_half_span_celsius,
-             networks.temperature_centre_celsius + networks.temperature_half_span_celsius);
+  fmt::print(", calibrated {:.1f} to {:.1f} C\n", calibrated.centre_celsius - calibrated.half_span_celsius,
+             calibrated.centre_celsius + calibrated.half_span_celsius);
   fmt::print("circuit      {} frames unsolved, worst misfit {:.2f} standard deviations\n", unsolved_,
              worst_certificate_);
   const std::size_t unseen = unseen_lines(monitor, array).size();

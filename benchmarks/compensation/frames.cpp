@@ -48,15 +48,6 @@ Contact new_contact(double size, double frame, Random& random) {
 
 }  // namespace
 
-ArrayDescription square_array(std::size_t size) {
-  ArrayDescription array;
-  array.rows = size;
-  array.cols = size;
-  array.readout.drive_ohm.assign(size, 20.0);
-  array.readout.load_ohm.assign(size, 200.0);
-  return array;
-}
-
 std::vector<std::vector<double>> touch_sequence(const ArrayDescription& array, std::size_t frames) {
   Random random(1);
   const auto circuit = simulation::ReadoutCircuit::create(array);

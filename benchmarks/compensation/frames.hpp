@@ -9,9 +9,6 @@
 
 namespace dermis::benchmarks {
 
-/// A grounded divider of size x size taxels: drivers of 20 ohm, loads of 200 ohm, 12 bit.
-[[nodiscard]] ArrayDescription square_array(std::size_t size);
-
 /// Consecutive frames of four contacts that press within ten frames, slide, and let go, on taxels that idle at
 /// 150-300 kohm; contacts go down to 400 ohm. Readings with one count of noise, rounded to counts, over the supply.
 [[nodiscard]] std::vector<std::vector<double>> touch_sequence(const ArrayDescription& array, std::size_t frames);

@@ -20,6 +20,7 @@
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 #include "rows.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::benchmarks {
 namespace {
@@ -110,7 +111,7 @@ class Program {
   /// Checked by the forward solution of Eigen in double: no reading is missed by more than 0.01 count, but for those of
   /// taxels at 0 S, which may lie below.
   void invert(const std::string& work, std::size_t size, std::size_t frame_count, bool warm) {
-    const ArrayDescription array = square_array(size);
+    const ArrayDescription array = support::reference_circuit(size, size);
     const Frames frames = touch_sequence(array, frame_count);
     const double tolerance = 0.01 / array.readout.full_scale_counts();
     const auto judge = eigen_peer(array);
@@ -150,7 +151,7 @@ class Program {
   /// Checked against the forward solution of Eigen in double, relative to each reading.
   template <typename Real>
   void forward(const std::string& work, double tolerance) {
-    const ArrayDescription array = square_array(16);
+    const ArrayDescription array = support::reference_circuit();
     const auto circuit = simulation::ReadoutCircuit::create(array);
     const auto eigen = eigen_peer(array);
     const auto scalar = scalar_peer(array);

@@ -14,8 +14,10 @@
 #include <vector>
 
 #include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::benchmarks {
 namespace {
@@ -34,10 +36,8 @@ std::vector<Sample> random_samples(std::size_t count, double drive_ohm) {
   for (std::size_t k = 0; k < count; ++k) {
     Random random = Random::stream(1, k);
     Sample& sample = samples[k];
-    sample.array.rows = kSize;
-    sample.array.cols = kSize;
+    sample.array = support::reference_circuit(kSize, kSize);
     sample.array.readout.drive_ohm.assign(kSize, drive_ohm);
-    sample.array.readout.load_ohm.assign(kSize, 200.0);
     sample.siemens.resize(sample.array.taxel_count());
     for (double& value : sample.siemens) value = 1.0 / random.log_uniform(1e3, 1e5);
     sample.ratio.resize(sample.siemens.size());
@@ -48,16 +48,11 @@ std::vector<Sample> random_samples(std::size_t count, double drive_ohm) {
 
 using Method = std::function<void(const Sample&, std::span<double>)>;
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
 /// Readings times the one factor that suits the array best, which nobody knows outside of a simulation.
 void nothing(const Sample& sample, std::span<double> siemens) {
   std::vector<double> factors(siemens.size());
   for (std::size_t k = 0; k < siemens.size(); ++k) factors[k] = sample.siemens[k] / sample.ratio[k];
-  const double factor = median(std::move(factors));
+  const double factor = upper_median(std::move(factors));
   for (std::size_t k = 0; k < siemens.size(); ++k) siemens[k] = factor * sample.ratio[k];
 }
 
@@ -115,7 +110,8 @@ void print_method(const std::string& name, const Method& method, const std::vect
     times_us.push_back(elapsed.count() / kRepeats);
   }
   const double largest = *std::max_element(errors.begin(), errors.end());
-  fmt::print("{:<44}{:>12.2g} %{:>12.2g} %{:>10.2f} us\n", name, 1e2 * median(errors), 1e2 * largest, median(times_us));
+  fmt::print("{:<44}{:>12.2g} %{:>12.2g} %{:>10.2f} us\n", name, 1e2 * upper_median(errors), 1e2 * largest,
+             upper_median(times_us));
 }
 
 }  // namespace

@@ -32,13 +32,13 @@ double signal_of(const Sample& sample, std::size_t taxel, fusion::LookUpSignal s
 
 /// The loaded points of a taxel and those of frames without any load, sorted by force.
 std::vector<Point> known_points(const SampleDatabase& database, std::size_t taxel, fusion::LookUpSignal signal,
-                                const TemperatureSpan& span) {
+                                const SampleTemperatures& temperatures) {
   std::vector<Point> points;
   for (const Sample& sample : database.samples) {
     const double newtons = sample.known_newtons[taxel];
     const bool is_unloaded = sample.unloaded && newtons == 0.0;
     if (!(newtons > 0.0) && !is_unloaded) continue;  // NaN: unknown, or the reading is saturated
-    points.push_back({newtons, signal_of(sample, taxel, signal), temperature_offset(sample, span)});
+    points.push_back({newtons, signal_of(sample, taxel, signal), temperature_offset(sample, temperatures)});
   }
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.newtons < b.newtons; });
   return points;
@@ -124,11 +124,11 @@ std::vector<Knot> table_of_levels(std::vector<Point>& points, double coefficient
 /// slope and the temperature coefficient in common.
 class SharedLine {
  public:
-  SharedLine(const SampleDatabase& database, fusion::LookUpSignal signal, const TemperatureSpan& span,
+  SharedLine(const SampleDatabase& database, fusion::LookUpSignal signal, const SampleTemperatures& temperatures,
              bool with_temperature)
       : unloaded_(database.array.taxel_count()), highest_(database.array.taxel_count()) {
     find_range(database, signal);
-    fit(database, signal, span, with_temperature);
+    fit(database, signal, temperatures, with_temperature);
   }
 
   [[nodiscard]] double coefficient() const { return coefficient_; }
@@ -154,7 +154,7 @@ class SharedLine {
   }
 
   /// Least squares of total = a * s + b * s dT over all totals, s the sum of the signals above the unloaded ones.
-  void fit(const SampleDatabase& database, fusion::LookUpSignal signal, const TemperatureSpan& span,
+  void fit(const SampleDatabase& database, fusion::LookUpSignal signal, const SampleTemperatures& temperatures,
            bool with_temperature) {
     double ss = 0.0;
     double st = 0.0;
@@ -165,7 +165,7 @@ class SharedLine {
       for (const TotalForce& total : sample.totals) {
         double s = 0.0;
         for (const std::size_t taxel : total.taxels) s += signal_of(sample, taxel, signal) - unloaded_[taxel];
-        const double t = s * temperature_offset(sample, span);
+        const double t = s * temperature_offset(sample, temperatures);
         ss += s * s;
         st += s * t;
         tt += t * t;
@@ -191,17 +191,17 @@ class SharedLine {
 
 fusion::LookUpTables make_tables(const SampleDatabase& database, const char* name, fusion::LookUpSignal signal,
                                  bool with_temperature) {
-  const TemperatureSpan span = temperature_span(database);
-  const SharedLine shared(database, signal, span, with_temperature);
+  const SampleTemperatures temperatures = sample_temperatures(database);
+  const SharedLine shared(database, signal, temperatures, with_temperature);
   const std::size_t taxels = database.array.taxel_count();
   fusion::LookUpTables tables;
   tables.name = name;
   tables.signal = signal;
-  tables.reference_celsius = span.centre_celsius;
+  tables.reference_celsius = temperatures.span.centre_celsius;
   tables.temperature_coefficient.resize(taxels);
   std::vector<std::vector<Knot>> knots(taxels);
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    std::vector<Point> points = known_points(database, taxel, signal, span);
+    std::vector<Point> points = known_points(database, taxel, signal, temperatures);
     const bool is_known = !points.empty() && points.back().newtons > 0.0;
     double& coefficient = tables.temperature_coefficient[taxel];
     if (with_temperature) coefficient = is_known ? temperature_coefficient(points) : shared.coefficient();

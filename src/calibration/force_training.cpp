@@ -8,11 +8,13 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "calibration/shared_training.hpp"
 #include "calibration/taxel_training.hpp"
 #include "calibration/unloaded_fit.hpp"
 #include "dermis/core/parallel.hpp"
+#include "dermis/core/quantile.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -29,7 +31,7 @@ constexpr double kDetectable = 3.0;             // in standard deviations of the
 
 /// What the samples say about each taxel.
 struct Evidence {
-  TemperatureSpan span;
+  SampleTemperatures temperatures;
   UnloadedFit unloaded;
   std::vector<std::vector<TaxelPoint>> points;  ///< Known forces above zero [taxels].
   std::vector<bool> dead;                       ///< [taxels]
@@ -41,8 +43,8 @@ std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size
     const Sample& sample = database.samples[k];
     const double newtons = sample.known_newtons[taxel];
     if (!(newtons > 0.0)) continue;
-    points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.span),
-                      normalised_temperature(sample, evidence.span), newtons, k});
+    points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.temperatures),
+                      normalised_temperature(sample, evidence.temperatures), newtons, k});
   }
   return points;
 }
@@ -61,8 +63,8 @@ bool is_dead(const std::vector<TaxelPoint>& points, double noise_siemens) {
 Evidence gather_evidence(const SampleDatabase& database) {
   const std::size_t taxels = database.array.taxel_count();
   Evidence evidence;
-  evidence.span = temperature_span(database);
-  evidence.unloaded = fit_unloaded(database, evidence.span);
+  evidence.temperatures = sample_temperatures(database);
+  evidence.unloaded = fit_unloaded(database, evidence.temperatures);
   evidence.points.resize(taxels);
   std::vector<char> dead(taxels);
   parallel_for(taxels, [&](std::size_t taxel) {
@@ -112,10 +114,7 @@ fusion::ForceNetworks make_networks(const network::PerceptronShape& shape, const
   const std::size_t taxels = evidence.points.size();
   fusion::ForceNetworks networks;
   networks.shape = shape;
-  networks.temperature_centre_celsius = evidence.span.centre_celsius;
-  networks.temperature_half_span_celsius = evidence.span.half_span_celsius;
-  networks.offset_siemens = evidence.unloaded.offset_siemens;
-  networks.offset_per_celsius = evidence.unloaded.offset_per_celsius;
+  networks.unloaded = evidence.unloaded.law;
   networks.reference_siemens.assign(taxels, 1.0F);
   networks.heaviest_siemens.assign(taxels, 1.0F);
   networks.heaviest_newtons.assign(taxels, std::numeric_limits<float>::infinity());
@@ -172,8 +171,7 @@ void report_fit(const std::vector<std::size_t>& own, const std::vector<ForceNetw
     report.worst_taxel = own[k];
   }
   if (errors.empty()) return;
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-  report.median_fit_error = errors[errors.size() / 2];
+  report.median_fit_error = upper_median(std::move(errors));
 }
 
 std::vector<TestedLoad> tested_presses(const std::vector<std::size_t>& own, const std::vector<ForceNetwork>& networks,
@@ -205,7 +203,7 @@ Division divide(const Evidence& evidence) {
   for (std::size_t taxel = 0; taxel < evidence.points.size(); ++taxel) {
     if (evidence.dead[taxel]) {
       division.dead.push_back(taxel);
-    } else if (supports_own_network(evidence.points[taxel], evidence.span.is_input)) {
+    } else if (supports_own_network(evidence.points[taxel], evidence.temperatures.is_input)) {
       division.own.push_back(taxel);
     } else {
       division.shared.push_back(taxel);
@@ -221,7 +219,7 @@ std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& di
   parallel_for(division.own.size(), [&](std::size_t k) {
     const std::size_t taxel = division.own[k];
     const std::vector<TaxelPoint>& points = evidence.points[taxel];
-    const bool uses_temperature = evidence.span.is_input;
+    const bool uses_temperature = evidence.temperatures.is_input;
     networks[k] = train_taxel(force_shape(uses_temperature, hidden_units(points.size(), uses_temperature)), points,
                               evidence.unloaded.noise_siemens[taxel], taxel);
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(division.own.size()));
@@ -268,9 +266,10 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   }
   const Evidence evidence = gather_evidence(database);
   const Division division = divide(evidence);
-  report.uses_temperature = evidence.span.is_input;
-  report.lowest_celsius = evidence.span.centre_celsius - evidence.span.half_span_celsius;
-  report.highest_celsius = evidence.span.centre_celsius + evidence.span.half_span_celsius;
+  report.uses_temperature = evidence.temperatures.is_input;
+  const TemperatureSpan& span = evidence.temperatures.span;
+  report.lowest_celsius = span.centre_celsius - span.half_span_celsius;
+  report.highest_celsius = span.centre_celsius + span.half_span_celsius;
   report.own_networks = division.own.size();
   report.shared_networks = division.shared.size();
   report.dead_taxels = division.dead;
@@ -278,7 +277,8 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   std::vector<ForceNetwork> own;
   SharedNetwork shared;
   if (!division.own.empty()) own = train_own(evidence, division, progress);
-  if (!division.shared.empty()) shared = train_shared(database, evidence.span, evidence.unloaded, evidence.dead);
+  if (!division.shared.empty())
+    shared = train_shared(database, evidence.temperatures, evidence.unloaded, evidence.dead);
   const bool has_shared = !shared.network.parameters.empty();
   if (own.empty() && !has_shared) {
     return bad_input("no taxel answers to its loads: check that frames and loads belong together, and the circuit");
@@ -288,7 +288,7 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   report.shared_leave_one_out_error = shared.leave_one_out_error;
 
   training.networks = make_networks(
-      force_shape(evidence.span.is_input, std::max(report.hidden_units, report.shared_hidden_units)), evidence);
+      force_shape(evidence.temperatures.is_input, std::max(report.hidden_units, report.shared_hidden_units)), evidence);
   for (std::size_t k = 0; k < own.size(); ++k) put(training.networks, division.own[k], own[k], 1.0);
   for (const std::size_t taxel : division.shared) {
     put(training.networks, taxel, shared.network, shared.gain[taxel]);

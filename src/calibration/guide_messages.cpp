@@ -51,6 +51,11 @@ std::string describe_weight(double newtons) {
                         : fmt::format("{:g} N ({:.2f} kg)", newtons, grams / 1000.0);
 }
 
+std::string describe_quiet(bool is_disturbed) {
+  return is_disturbed ? "Something moves on the array: take everything off and leave it alone."
+                      : "Take everything off the array and leave it alone.";
+}
+
 std::string describe_press(const GuideState& state, const ArrayDescription& array) {
   const std::string here = array.taxel_name(state.taxel);
   const std::string there = state.pressed_taxel ? array.taxel_name(*state.pressed_taxel) : "another taxel";
@@ -66,6 +71,10 @@ std::string describe_press(const GuideState& state, const ArrayDescription& arra
     case GuideHint::several: return fmt::format("{} is pressed, too: press {} alone.", there, here);
   }
   return {};
+}
+
+std::string describe_fitting(const GuidedPresses& presses) {
+  return fmt::format("Fitting {} presses.", presses.size());
 }
 
 std::string describe_result(const Calibration& calibration, const GuideState& state, const GuidedPresses& presses) {

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/fusion/force_fusion.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 
@@ -64,9 +66,7 @@ GuidedPresses without(const GuidedPresses& presses, const GuidedPresses& left_ou
 
 std::optional<double> median(std::vector<double> values) {
   if (values.empty()) return std::nullopt;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return upper_median(std::move(values));
 }
 
 /// Relative errors of a model on presses; 1 where it gives no force.

@@ -54,9 +54,9 @@ struct RawLoad {
 
 class LoadCollector {
  public:
-  LoadCollector(const SampleDatabase& database, const TemperatureSpan& span, const UnloadedFit& unloaded,
+  LoadCollector(const SampleDatabase& database, const SampleTemperatures& temperatures, const UnloadedFit& unloaded,
                 const std::vector<bool>& dead)
-      : database_(database), span_(span), unloaded_(unloaded), dead_(dead), presses_(dead.size()) {
+      : database_(database), temperatures_(temperatures), unloaded_(unloaded), dead_(dead), presses_(dead.size()) {
     for (std::size_t k = 0; k < database.samples.size(); ++k) {
       const Sample& sample = database.samples[k];
       for (const TotalForce& total : sample.totals) add(k, total.taxels, total.newtons);
@@ -100,11 +100,11 @@ class LoadCollector {
     RawLoad load;
     load.sample = index;
     load.newtons = newtons;
-    load.temperature = normalised_temperature(sample, span_);
+    load.temperature = normalised_temperature(sample, temperatures_);
     bool is_felt = false;
     for (const std::size_t taxel : taxels) {
       if (dead_[taxel]) continue;
-      const double excess = excess_siemens(sample, taxel, unloaded_, span_);
+      const double excess = excess_siemens(sample, taxel, unloaded_, temperatures_);
       if (excess <= 0.0) continue;
       load.excess.emplace_back(taxel, excess);
       is_felt = is_felt || excess > kActive * unloaded_.noise_siemens[taxel];
@@ -113,7 +113,7 @@ class LoadCollector {
   }
 
   const SampleDatabase& database_;
-  const TemperatureSpan& span_;
+  const SampleTemperatures& temperatures_;
   const UnloadedFit& unloaded_;
   const std::vector<bool>& dead_;
   std::vector<std::vector<Press>> presses_;  // [taxels]
@@ -354,9 +354,9 @@ std::vector<TestedLoad> tested_loads(const std::vector<RawLoad>& raw, const Shar
 
 }  // namespace
 
-SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan& span, const UnloadedFit& unloaded,
-                           const std::vector<bool>& dead) {
-  const LoadCollector collector(database, span, unloaded, dead);
+SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatures& temperatures,
+                           const UnloadedFit& unloaded, const std::vector<bool>& dead) {
+  const LoadCollector collector(database, temperatures, unloaded, dead);
   const std::vector<RawLoad> loads = collector.loads(kMostShares);
   SharedNetwork shared;
   shared.gain.assign(dead.size(), 1.0);
@@ -364,7 +364,7 @@ SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan
 
   SharedProblem problem(loads, unloaded);
   const SharedProblem thinned(collector.loads(kMostSharesForStart), unloaded);
-  std::vector<Candidate> candidates = best_starts(thinned, span.is_input, most_hidden_units(loads));
+  std::vector<Candidate> candidates = best_starts(thinned, temperatures.is_input, most_hidden_units(loads));
   Candidate chosen = choose_size(problem, candidates);
   double mean_square = chosen.leave_one_out;
   for (int round = 0; round < kGainRounds; ++round) {

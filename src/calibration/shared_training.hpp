@@ -26,7 +26,7 @@ struct SharedNetwork {
 /// fitted in turn with the network as long as they lower the error of loads that are held out. Large calibrations are
 /// thinned out evenly (12 presses of a taxel alone, 200,000 taxels of all loads together). Deterministic, whatever the
 /// number of threads.
-[[nodiscard]] SharedNetwork train_shared(const SampleDatabase& database, const TemperatureSpan& span,
+[[nodiscard]] SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatures& temperatures,
                                          const UnloadedFit& unloaded, const std::vector<bool>& dead);
 
 }  // namespace dermis::calibration

@@ -17,8 +17,8 @@ pipeline::Model uncalibrated_model(const ArrayDescription& array) {
   const std::size_t taxels = array.taxel_count();
   fusion::ForceNetworks& networks = model.networks;
   networks.shape = {2, 0, 2};
-  networks.offset_siemens.assign(taxels, 0.0);
-  networks.offset_per_celsius.assign(taxels, 0.0);
+  networks.unloaded.offset_siemens.assign(taxels, 0.0);
+  networks.unloaded.per_celsius.assign(taxels, 0.0);
   networks.reference_siemens.assign(taxels, 1.0F);
   networks.heaviest_siemens.assign(taxels, 1.0F);
   networks.heaviest_newtons.assign(taxels, std::numeric_limits<float>::infinity());

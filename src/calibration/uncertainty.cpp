@@ -12,6 +12,7 @@
 
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/parallel.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/fusion/force_fusion.hpp"
 
 namespace dermis::calibration {
@@ -30,14 +31,6 @@ constexpr double kLeastRelativeSigma = 1e-3;
 constexpr double kStartRelativeSigma = 0.1;
 constexpr std::size_t kLoadsPerKnot = 50;
 
-/// The smallest value that at least `share` of `values` do not exceed.
-double quantile(std::vector<double> values, double share) {
-  const auto rank = static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size())));
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(std::max<std::size_t>(rank, 1) - 1);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
 double mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -48,8 +41,7 @@ void erase_outliers(std::vector<double>& mean_squares) {
   std::erase_if(mean_squares, [&](double square) { return square > most; });
 }
 
-// ---------------------------------------------------------------------------------------------- noise of the
-// instruments
+// ---------------------------------------------------------------------------------------- noise of the instruments
 
 std::vector<const Sample*> unloaded_samples(const SampleDatabase& database) {
   std::vector<const Sample*> samples;

@@ -18,11 +18,11 @@ struct UnloadedPoint {
 };
 
 std::vector<UnloadedPoint> unloaded_points(const SampleDatabase& database, std::size_t taxel,
-                                           const TemperatureSpan& span) {
+                                           const SampleTemperatures& temperatures) {
   std::vector<UnloadedPoint> points;
   for (const Sample& sample : database.samples) {
     if (!sample.unloaded || sample.known_newtons[taxel] != 0.0F) continue;
-    points.push_back({sample.siemens[taxel], temperature_offset(sample, span)});
+    points.push_back({sample.siemens[taxel], temperature_offset(sample, temperatures)});
   }
   return points;
 }
@@ -47,7 +47,7 @@ Line fit_line(const std::vector<UnloadedPoint>& points) {
     covariance += (point.siemens - mean_y) * (point.temperature_offset - mean_x) / count;
     variance += std::pow(point.temperature_offset - mean_x, 2) / count;
   }
-  const bool has_slope = 4.0 * variance >= TemperatureSpan::kLeastCelsius * TemperatureSpan::kLeastCelsius;
+  const bool has_slope = 4.0 * variance >= std::pow(SampleTemperatures::kLeastSpanCelsius, 2);
   const double slope = has_slope ? covariance / variance : 0.0;
   double square = 0.0;
   for (const UnloadedPoint& point : points) {
@@ -58,27 +58,28 @@ Line fit_line(const std::vector<UnloadedPoint>& points) {
 
 }  // namespace
 
-double temperature_offset(const Sample& sample, const TemperatureSpan& span) {
-  if (!span.is_input) return 0.0;
-  return std::clamp(*sample.temperature_celsius - span.centre_celsius, -span.half_span_celsius, span.half_span_celsius);
+double temperature_offset(const Sample& sample, const SampleTemperatures& temperatures) {
+  return temperatures.is_input ? temperatures.span.offset(*sample.temperature_celsius) : 0.0;
 }
 
-double normalised_temperature(const Sample& sample, const TemperatureSpan& span) {
-  return span.is_input ? temperature_offset(sample, span) / span.half_span_celsius : 0.0;
+double normalised_temperature(const Sample& sample, const SampleTemperatures& temperatures) {
+  return temperatures.is_input ? temperature_offset(sample, temperatures) / temperatures.span.half_span_celsius : 0.0;
 }
 
-UnloadedFit fit_unloaded(const SampleDatabase& database, const TemperatureSpan& span) {
+UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& temperatures) {
   const std::size_t taxels = database.array.taxel_count();
   const double least_noise = kLeastNoiseCounts * database.siemens_per_count;
-  UnloadedFit fit{std::vector<double>(taxels), std::vector<double>(taxels), std::vector<double>(taxels),
-                  std::vector<double>(taxels, least_noise), std::vector<bool>(taxels)};
+  UnloadedFit fit{{std::vector<double>(taxels), std::vector<double>(taxels), temperatures.span},
+                  std::vector<double>(taxels),
+                  std::vector<double>(taxels, least_noise),
+                  std::vector<bool>(taxels)};
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    const std::vector<UnloadedPoint> points = unloaded_points(database, taxel, span);
+    const std::vector<UnloadedPoint> points = unloaded_points(database, taxel, temperatures);
     fit.is_stuck[taxel] = points.empty();
     if (points.empty()) continue;
     const Line line = fit_line(points);
-    fit.offset_siemens[taxel] = line.level;
-    fit.offset_per_celsius[taxel] = line.slope;
+    fit.law.offset_siemens[taxel] = line.level;
+    fit.law.per_celsius[taxel] = line.slope;
     fit.noise_siemens[taxel] =
         points.size() < kLeastFramesForNoise ? 3.0 * least_noise : std::max(least_noise, line.deviation);
     const double fitted = line.slope == 0.0 ? 1.0 : 2.0;  // numbers of the line

@@ -5,34 +5,32 @@
 #include <vector>
 
 #include "dermis/calibration/sample_database.hpp"
-#include "dermis/calibration/temperature_span.hpp"
+#include "dermis/calibration/sample_temperatures.hpp"
+#include "dermis/core/unloaded_law.hpp"
 
 namespace dermis::calibration {
 
 /// Sample temperature from the centre [C], clamped to the span; 0 where temperature is not an input.
-[[nodiscard]] double temperature_offset(const Sample& sample, const TemperatureSpan& span);
+[[nodiscard]] double temperature_offset(const Sample& sample, const SampleTemperatures& temperatures);
 
 /// The same as an input of a network, in [-1, 1].
-[[nodiscard]] double normalised_temperature(const Sample& sample, const TemperatureSpan& span);
+[[nodiscard]] double normalised_temperature(const Sample& sample, const SampleTemperatures& temperatures);
 
-/// Unloaded conductance of every taxel, offset + per_celsius * dT, and the noise of one frame about it.
+/// Unloaded conductance of every taxel and the noise of one frame about it.
 struct UnloadedFit {
-  std::vector<double> offset_siemens;      ///< [taxels]
-  std::vector<double> offset_per_celsius;  ///< [taxels]
-  std::vector<double>
-      offset_sigma_siemens;           ///< Standard deviation of the fit, averaged over its temperatures [taxels].
+  UnloadedLaw law;
+  std::vector<double> offset_sigma_siemens;  ///< Of the fit, averaged over its temperatures [taxels].
   std::vector<double> noise_siemens;  ///< Standard deviation of a single frame [taxels], at least a third of a count.
   std::vector<bool> is_stuck;         ///< Saturated although nothing presses [taxels].
 };
 
 /// Least squares over the frames in which nothing presses anywhere, at least one.
-[[nodiscard]] UnloadedFit fit_unloaded(const SampleDatabase& database, const TemperatureSpan& span);
+[[nodiscard]] UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& temperatures);
 
 /// Conductance of a taxel above its unloaded value [S].
 [[nodiscard]] inline double excess_siemens(const Sample& sample, std::size_t taxel, const UnloadedFit& unloaded,
-                                           const TemperatureSpan& span) {
-  return sample.siemens[taxel] - unloaded.offset_siemens[taxel] -
-         unloaded.offset_per_celsius[taxel] * temperature_offset(sample, span);
+                                           const SampleTemperatures& temperatures) {
+  return unloaded.law.excess(taxel, sample.siemens[taxel], temperature_offset(sample, temperatures));
 }
 
 }  // namespace dermis::calibration

@@ -105,8 +105,8 @@ OffsetDrift::Implementation::Implementation(const FrameShape& shape, UnloadedCon
       candidate_(shape.taxel_count()),
       has_candidate_(shape.taxel_count()),
       followed_blocks_(shape.taxel_count()) {
-  assert(unloaded_.offset_siemens.size() == shape.taxel_count());
-  assert(unloaded_.per_celsius.size() == shape.taxel_count());
+  assert(unloaded_.law.offset_siemens.size() == shape.taxel_count());
+  assert(unloaded_.law.per_celsius.size() == shape.taxel_count());
   assert(unloaded_.sigma_siemens.size() == shape.taxel_count());
 }
 
@@ -169,8 +169,8 @@ void OffsetDrift::Implementation::forget_history() noexcept {
 }
 
 void OffsetDrift::Implementation::accumulate(const ConductanceFrame& frame) noexcept {
-  const double beside_centre = frame.temperature_celsius.value_or(unloaded_.centre_celsius) - unloaded_.centre_celsius;
-  temperature_sum_ += std::clamp(beside_centre, -unloaded_.half_span_celsius, unloaded_.half_span_celsius);
+  const TemperatureSpan& calibrated = unloaded_.law.temperature;
+  temperature_sum_ += calibrated.offset(frame.temperature_celsius.value_or(calibrated.centre_celsius));
   const double* const siemens = frame.siemens.data();
   double* const sum = sum_.data();
   for (std::size_t k = 0; k < sum_.size(); ++k) sum[k] += siemens[k];
@@ -201,9 +201,9 @@ void OffsetDrift::Implementation::finish_block(double block_s) noexcept {
 
 void OffsetDrift::Implementation::average_block() noexcept {
   const double per_frame = 1.0 / static_cast<double>(frames_);
-  const double beside_centre = temperature_sum_ * per_frame;
+  const double temperature_offset = temperature_sum_ * per_frame;
   for (std::size_t k = 0; k < sum_.size(); ++k) {
-    sum_[k] = sum_[k] * per_frame - unloaded_.offset_siemens[k] - unloaded_.per_celsius[k] * beside_centre;
+    sum_[k] = unloaded_.law.excess(k, sum_[k] * per_frame, temperature_offset);
   }
 }
 
@@ -223,7 +223,7 @@ void OffsetDrift::Implementation::take_block_as_zero() noexcept {
 }
 
 double OffsetDrift::Implementation::unloaded_siemens(std::size_t taxel) const noexcept {
-  return std::max(0.0, unloaded_.offset_siemens[taxel] + tared_[taxel]);
+  return std::max(0.0, unloaded_.law.offset_siemens[taxel] + tared_[taxel]);
 }
 
 double OffsetDrift::Implementation::band(std::size_t taxel) const noexcept {

@@ -44,11 +44,12 @@ bool ForceNetworks::is_consistent() const noexcept {
   const auto is_not_negative = [](auto value) { return std::isfinite(value) && value >= 0; };
   const std::size_t taxels = taxel_count();
   const bool uses_temperature = shape.inputs == kInputsWithTemperature;
+  const auto& [centre_celsius, half_span_celsius] = unloaded.temperature;
   const bool in_range = (uses_temperature || shape.inputs + 1 == kInputsWithTemperature) && shape.hidden <= 64 &&
-                        std::isfinite(temperature_centre_celsius) && std::isfinite(temperature_half_span_celsius) &&
-                        temperature_half_span_celsius >= 0.0 &&  // std::clamp needs low <= high
-                        (!uses_temperature || temperature_half_span_celsius > 0.0);
-  return in_range && all(offset_siemens, taxels, is_finite) && all(offset_per_celsius, taxels, is_finite) &&
+                        std::isfinite(centre_celsius) && std::isfinite(half_span_celsius) &&
+                        half_span_celsius >= 0.0 &&  // std::clamp needs low <= high
+                        (!uses_temperature || half_span_celsius > 0.0);
+  return in_range && all(unloaded.offset_siemens, taxels, is_finite) && all(unloaded.per_celsius, taxels, is_finite) &&
          all(reference_siemens, taxels, is_positive) && all(heaviest_siemens, taxels, is_positive) &&
          all(heaviest_newtons, taxels, [](float value) { return value > 0.0F; }) && all(gain, taxels, is_positive) &&
          all(dead, taxels, [](std::uint8_t value) { return value <= 1; }) &&
@@ -69,7 +70,7 @@ float ForceNetworks::sigma_place(float log_newtons) const noexcept {
 ForceFusion::ForceFusion(ForceNetworks networks)
     : networks_(std::move(networks)),
       bank_(networks_.shape, networks_.taxel_count(), networks_.parameters),
-      offset_per_celsius_(networks_.offset_per_celsius.begin(), networks_.offset_per_celsius.end()),
+      offset_per_celsius_(networks_.unloaded.per_celsius.begin(), networks_.unloaded.per_celsius.end()),
       excess_siemens_(networks_.taxel_count()),
       sigma_siemens_(networks_.taxel_count()),
       inputs_(networks_.shape.inputs * networks_.taxel_count()),
@@ -104,13 +105,13 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
 
 ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conductance,
                                                   ForceFrame& force) const noexcept {
-  const double half_span = networks_.temperature_half_span_celsius;
+  const TemperatureSpan& calibrated = networks_.unloaded.temperature;
   if (!conductance.temperature_celsius) {
     if (uses_temperature()) force.status |= FrameStatus::temperature_unknown;
-    return {0.0, half_span / std::numbers::sqrt3};  // anywhere in the calibrated span
+    return {0.0, calibrated.half_span_celsius / std::numbers::sqrt3};  // anywhere in the calibrated span
   }
-  const double offset = *conductance.temperature_celsius - networks_.temperature_centre_celsius;
-  const double clamped = std::clamp(offset, -half_span, half_span);
+  const double offset = *conductance.temperature_celsius - calibrated.centre_celsius;
+  const double clamped = calibrated.offset(*conductance.temperature_celsius);
   const double outside = std::abs(offset - clamped);
   constexpr double kSensorNoiseCelsius = 1.0;
   if (uses_temperature() && outside > kSensorNoiseCelsius) force.status |= FrameStatus::temperature_clamped;
@@ -120,8 +121,8 @@ ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conduc
 void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept {
   const std::size_t taxels = networks_.taxel_count();
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    const double offset = networks_.offset_siemens[taxel] + networks_.offset_per_celsius[taxel] * temperature_offset;
-    excess_siemens_[taxel] = static_cast<float>(conductance.siemens[taxel] - offset);
+    const double unloaded = networks_.unloaded.at(taxel, temperature_offset);
+    excess_siemens_[taxel] = static_cast<float>(conductance.siemens[taxel] - unloaded);
     const auto noise = static_cast<float>(conductance.sigma_siemens[taxel]);
     const float offset_sigma = networks_.offset_sigma_siemens[taxel];
     sigma_siemens_[taxel] = std::sqrt(noise * noise + offset_sigma * offset_sigma);
@@ -129,7 +130,7 @@ void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, double tem
   conductance_inputs({networks_.reference_siemens, networks_.heaviest_siemens, excess_siemens_, sigma_siemens_},
                      std::span(inputs_).first(2 * taxels));
   if (!uses_temperature()) return;
-  const auto t = static_cast<float>(temperature_offset / networks_.temperature_half_span_celsius);
+  const auto t = static_cast<float>(temperature_offset / networks_.unloaded.temperature.half_span_celsius);
   std::fill(inputs_.begin() + static_cast<std::ptrdiff_t>(2 * taxels), inputs_.end(), t);
 }
 
@@ -146,7 +147,7 @@ void ForceFusion::compute_forces(double temperature_sigma, ForceFrame& force) co
   sources.relative_variance = relative_variance_;
   sources.temperature_sigma = static_cast<float>(temperature_sigma);
   if (uses_temperature()) {
-    sources.temperature_per_celsius = static_cast<float>(1.0 / networks_.temperature_half_span_celsius);
+    sources.temperature_per_celsius = static_cast<float>(1.0 / networks_.unloaded.temperature.half_span_celsius);
   }
   sources.log_first_knot = first;
   sources.knots_per_log = static_cast<float>(kSigmaKnots - 1) / (last - first);

@@ -23,11 +23,11 @@ constexpr const char* kFormatWithoutSigma = "dermis model 1";
 constexpr const char* kProvenancePrefix = "provenance.";
 constexpr std::size_t kMaxBaselines = 16;
 
-/// The tensors of the networks, of shape [taxels] each; the file's names are the struct's.
+/// The tensors of the networks, of shape [taxels] each.
 struct TaxelTensors {
-  std::array<std::pair<const char*, std::vector<double> ForceNetworks::*>, 2> doubles{
-      {{"networks.offset_siemens", &ForceNetworks::offset_siemens},
-       {"networks.offset_per_celsius", &ForceNetworks::offset_per_celsius}}};
+  std::array<std::pair<const char*, std::vector<double> UnloadedLaw::*>, 2> unloaded{
+      {{"networks.offset_siemens", &UnloadedLaw::offset_siemens},
+       {"networks.offset_per_celsius", &UnloadedLaw::per_celsius}}};
   std::array<std::pair<const char*, std::vector<float> ForceNetworks::*>, 5> floats{
       {{"networks.reference_siemens", &ForceNetworks::reference_siemens},
        {"networks.heaviest_siemens", &ForceNetworks::heaviest_siemens},
@@ -81,10 +81,10 @@ void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
   file.metadata["networks.inputs"] = std::to_string(networks.shape.inputs);
   file.metadata["networks.hidden"] = std::to_string(networks.shape.hidden);
   put<double>(file, "networks.temperature_celsius", {3},
-              {networks.temperature_centre_celsius, networks.temperature_half_span_celsius,
+              {networks.unloaded.temperature.centre_celsius, networks.unloaded.temperature.half_span_celsius,
                networks.temperature_sigma_celsius});
   const TaxelTensors tensors;
-  for (const auto& [name, member] : tensors.doubles) put(file, name, {taxels}, networks.*member);
+  for (const auto& [name, member] : tensors.unloaded) put(file, name, {taxels}, networks.unloaded.*member);
   for (const auto& [name, member] : tensors.floats) put(file, name, {taxels}, networks.*member);
   put(file, "networks.dead", {taxels}, networks.dead);
   put(file, "networks.relative_sigma", {fusion::kSigmaKnots, taxels}, networks.relative_sigma);
@@ -99,12 +99,11 @@ ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, Tens
   std::vector<double> temperature;
   reader.get("networks.temperature_celsius", {3}, temperature);
   if (temperature.size() == 3) {
-    networks.temperature_centre_celsius = temperature[0];
-    networks.temperature_half_span_celsius = temperature[1];
+    networks.unloaded.temperature = {temperature[0], temperature[1]};
     networks.temperature_sigma_celsius = temperature[2];
   }
   const TaxelTensors tensors;
-  for (const auto& [name, member] : tensors.doubles) reader.get(name, {taxels}, networks.*member);
+  for (const auto& [name, member] : tensors.unloaded) reader.get(name, {taxels}, networks.unloaded.*member);
   for (const auto& [name, member] : tensors.floats) reader.get(name, {taxels}, networks.*member);
   reader.get("networks.dead", {taxels}, networks.dead);
   reader.get("networks.relative_sigma", {fusion::kSigmaKnots, taxels}, networks.relative_sigma);

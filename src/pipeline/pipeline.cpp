@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/core/quantile.hpp"
+
 namespace dermis::pipeline {
 
 namespace {
@@ -18,15 +20,15 @@ std::vector<double> typical_siemens(const fusion::ForceNetworks& networks) {
   const std::size_t taxels = networks.taxel_count();
   fusion::ForceFusion fusion(networks);
   ConductanceFrame conductance;
-  conductance.temperature_celsius = networks.temperature_centre_celsius;
+  conductance.temperature_celsius = networks.unloaded.temperature.centre_celsius;
   conductance.siemens.resize(taxels);
   conductance.sigma_siemens.assign(taxels, 0.0);
   conductance.taxels.assign(taxels, TaxelStatus::ok);
   ForceFrame force;
   const auto press = [&](const std::vector<double>& share) {
     for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-      conductance.siemens[taxel] =
-          networks.offset_siemens[taxel] + share[taxel] * static_cast<double>(networks.reference_siemens[taxel]);
+      conductance.siemens[taxel] = networks.unloaded.offset_siemens[taxel] +
+                                   share[taxel] * static_cast<double>(networks.reference_siemens[taxel]);
     }
     fusion.process(conductance, force);
   };
@@ -36,9 +38,7 @@ std::vector<double> typical_siemens(const fusion::ForceNetworks& networks) {
   std::copy_if(force.newtons.begin(), force.newtons.end(), std::back_inserter(newtons),
                [](float value) { return std::isfinite(value); });
   if (newtons.empty()) return std::vector<double>(taxels, 1.0);
-  const auto middle = newtons.begin() + static_cast<std::ptrdiff_t>(newtons.size() / 2);
-  std::nth_element(newtons.begin(), middle, newtons.end());
-  const float typical_newtons = *middle;
+  const float typical_newtons = upper_median(std::move(newtons));
 
   std::vector<double> share(taxels, 1.0);
   for (double factor = 8.0; factor > 1.0 + 1e-6; factor = std::sqrt(factor)) {
@@ -55,20 +55,15 @@ std::vector<double> typical_siemens(const fusion::ForceNetworks& networks) {
     if (tells(taxel)) told.push_back(siemens[taxel]);
   }
   if (told.empty()) return std::vector<double>(taxels, 1.0);
-  const auto median = told.begin() + static_cast<std::ptrdiff_t>(told.size() / 2);
-  std::nth_element(told.begin(), median, told.end());
+  const double median = upper_median(std::move(told));
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    if (!tells(taxel)) siemens[taxel] = *median;
+    if (!tells(taxel)) siemens[taxel] = median;
   }
   return siemens;
 }
 
 compensation::UnloadedConductance unloaded(const fusion::ForceNetworks& networks) {
-  return {.offset_siemens = networks.offset_siemens,
-          .per_celsius = networks.offset_per_celsius,
-          .sigma_siemens = {networks.offset_sigma_siemens.begin(), networks.offset_sigma_siemens.end()},
-          .centre_celsius = networks.temperature_centre_celsius,
-          .half_span_celsius = networks.temperature_half_span_celsius};
+  return {networks.unloaded, {networks.offset_sigma_siemens.begin(), networks.offset_sigma_siemens.end()}};
 }
 
 }  // namespace
@@ -87,7 +82,7 @@ Result<Pipeline> Pipeline::create(const Model& model) {
 Pipeline::Pipeline(const Model& model, compensation::Compensator compensator)
     : conditioner_(model.array),
       compensator_(std::move(compensator)),
-      monitor_(model.array, model.networks.offset_siemens),
+      monitor_(model.array, model.networks.unloaded.offset_siemens),
       drift_({model.array.rows, model.array.cols}, unloaded(model.networks)),
       fusion_(model.networks) {}
 

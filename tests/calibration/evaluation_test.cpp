@@ -24,7 +24,7 @@ pipeline::Model exact_model() {
 RawFrame frame_under(const pipeline::Model& model, const std::vector<double>& newtons) {
   const ArrayDescription& array = model.array;
   RawFrame frame;
-  frame.temperature_celsius = model.networks.temperature_centre_celsius;
+  frame.temperature_celsius = model.networks.unloaded.temperature.centre_celsius;
   frame.counts.resize(newtons.size());
   std::vector<double> siemens;
   for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {

@@ -13,21 +13,11 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/simulation/simulator.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::calibration {
 
-/// The reference array of the design, of any size.
-inline ArrayDescription reference_array(std::size_t rows, std::size_t cols) {
-  ArrayDescription array;
-  array.rows = rows;
-  array.cols = cols;
-  array.taxel_area_m2 = simulation::kPaperDiscAreaM2;
-  array.readout.drive_ohm.assign(rows, 20.0);
-  array.readout.load_ohm.assign(cols, 200.0);
-  array.readout.adc_reference_v = 5.0;
-  array.readout.supply_v = 5.0;
-  return array;
-}
+using support::reference_array;
 
 struct Recording {
   std::vector<RawFrame> frames;

@@ -12,19 +12,21 @@
 
 #include "dermis/core/random.hpp"
 #include "support/nodal_array.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::compensation {
 namespace {
 
-ArrayDescription make_array(std::size_t rows, std::size_t cols, Circuit circuit = Circuit::divider,
-                            double drive_ohm = 20.0, double load_ohm = 200.0) {
-  ArrayDescription array;
-  array.rows = rows;
-  array.cols = cols;
-  array.readout.circuit = circuit;
+ArrayDescription make_array(std::size_t rows, std::size_t cols, Circuit circuit = Circuit::divider) {
+  ArrayDescription array = support::reference_circuit(rows, cols, circuit);
+  array.readout.adc_bits = 24;
+  return array;
+}
+
+ArrayDescription make_array(std::size_t rows, std::size_t cols, Circuit circuit, double drive_ohm, double load_ohm) {
+  ArrayDescription array = make_array(rows, cols, circuit);
   array.readout.drive_ohm.assign(rows, drive_ohm);
   array.readout.load_ohm.assign(cols, load_ohm);
-  array.readout.adc_bits = 24;
   return array;
 }
 
@@ -305,7 +307,7 @@ TEST(CrosstalkInversion, a_taxel_that_conducts_better_than_its_driver_comes_back
         SCOPED_TRACE(testing::Message() << share << " of " << drive_ohm << " ohm, seed " << seed);
         Random random(seed);
         const std::size_t size = seed % 2 == 0 ? 4 : 16;
-        const auto array = make_array(size, size, Circuit::divider, drive_ohm);
+        const auto array = make_array(size, size, Circuit::divider, drive_ohm, 200.0);
         auto siemens = random_siemens(array, random);
         const std::size_t shorted = random.below(siemens.size());
         siemens[shorted] = 1.0 / (share * drive_ohm);

@@ -15,26 +15,18 @@
 #include <vector>
 
 #include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/shared_data.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::compensation {
 namespace {
 
 using simulation::LineFaults;
-
-/// The reference array of the project, in the circuit asked for.
-ArrayDescription make_array(std::size_t rows, std::size_t cols, Circuit circuit = Circuit::divider) {
-  ArrayDescription array;
-  array.rows = rows;
-  array.cols = cols;
-  array.readout.circuit = circuit;
-  array.readout.drive_ohm.assign(array.driven_lines(), 20.0);
-  array.readout.load_ohm.assign(array.sensed_lines(), 200.0);
-  return array;
-}
+using support::reference_circuit;
 
 /// A simulated array with faults, and the monitor and compensation that act on what they see of it.
 class Rig {
@@ -157,7 +149,7 @@ TEST(LineFaultMonitor, FindsAndLocatesEveryFaultAndSeesItHeal) {
   constexpr std::size_t kFrom = 15;
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
     for (const std::size_t size : {8UL, 16UL}) {
-      const ArrayDescription array = make_array(size, size, circuit);
+      const ArrayDescription array = reference_circuit(size, size, circuit);
       Random random(size);
       for (const FaultCase& kind : fault_cases(array)) {
         const std::size_t place = random.below(kind.by_taxel ? size * size : size - 1);
@@ -192,7 +184,7 @@ TEST(LineFaultMonitor, FindsSilentLinesThatNothingTouches) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance, Circuit::flexitac, Circuit::none}) {
     for (const bool row : {true, false}) {
       SCOPED_TRACE(testing::Message() << to_string(circuit) << (row ? " row" : " column"));
-      const ArrayDescription array = make_array(12, 9, circuit);
+      const ArrayDescription array = reference_circuit(12, 9, circuit);
       LineFaults faults;
       faults.from_frame = 30;
       (row ? faults.open_rows : faults.open_columns) = {4};
@@ -214,7 +206,7 @@ TEST(LineFaultMonitor, FindsSilentLinesThatNothingTouches) {
 TEST(LineFaultMonitor, NoFalseAlarmOnHealthyArrays) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance, Circuit::flexitac, Circuit::none}) {
     for (const char* scene : {"multitouch", "idle"}) {
-      const ArrayDescription array = make_array(8, 8, circuit);
+      const ArrayDescription array = reference_circuit(8, 8, circuit);
       Rig rig(array, scene, 11, 3000);
       while (rig.next()) continue;
       EXPECT_EQ(rig.changes(), 0) << to_string(circuit) << ' ' << scene;
@@ -235,7 +227,7 @@ TEST(LineFaultMonitor, MemoryOfTheMaterialIsNoFault) {
   for (const char* scene : {"multitouch", "idle"}) {
     for (const double calibrated : {0.7, 1.0, 1.4}) {
       SCOPED_TRACE(testing::Message() << scene << ", unloaded conductance calibrated " << calibrated);
-      const ArrayDescription array = make_array(16, 16);
+      const ArrayDescription array = reference_circuit(16, 16);
       Rig rig(array, scene, 21, 1000, {}, rubber, calibrated);
       while (rig.next()) ASSERT_TRUE(rig.monitor().faults().empty()) << describe(rig.monitor().faults(), array);
       EXPECT_EQ(rig.changes(), 0);
@@ -243,7 +235,7 @@ TEST(LineFaultMonitor, MemoryOfTheMaterialIsNoFault) {
     LineFaults faults;
     faults.from_frame = 200;
     faults.open_rows = {6};
-    Rig rig(make_array(16, 16), scene, 22, 210, faults, rubber);
+    Rig rig(reference_circuit(16, 16), scene, 22, 210, faults, rubber);
     while (rig.next()) continue;
     ASSERT_EQ(rig.monitor().faults().size(), 1U) << "found all the same, within 10 frames";
     EXPECT_EQ(rig.monitor().faults()[0].kind, LineFaultKind::silent_row);
@@ -253,7 +245,7 @@ TEST(LineFaultMonitor, MemoryOfTheMaterialIsNoFault) {
 
 TEST(LineFaultMonitor, SaysWhereItIsBlind) {
   for (const double unloaded_ohm : {200e3, 10e6}) {
-    Rig rig(make_array(16, 16), "idle", 2, 40, {}, unloaded_ohm);
+    Rig rig(reference_circuit(16, 16), "idle", 2, 40, {}, unloaded_ohm);
     EXPECT_FALSE(rig.monitor().sees_silent_row(3)) << "before the first frame";
     while (rig.next()) continue;
     EXPECT_EQ(rig.monitor().sees_silent_row(3), unloaded_ohm < 1e6);
@@ -263,7 +255,7 @@ TEST(LineFaultMonitor, SaysWhereItIsBlind) {
 }
 
 TEST(LineFaultMonitor, TwoFramesWithoutReadingsAreNoFault) {
-  Rig rig(make_array(8, 8), "idle", 3, 40);
+  Rig rig(reference_circuit(8, 8), "idle", 3, 40);
   for (int frame = 0; frame < 10; ++frame) ASSERT_TRUE(rig.next());
   std::fill(rig.conditioned().ratio.begin(), rig.conditioned().ratio.end(), 0.0);
   rig.process();
@@ -273,7 +265,7 @@ TEST(LineFaultMonitor, TwoFramesWithoutReadingsAreNoFault) {
 }
 
 TEST(LineFaultMonitor, RepeatedFramesAreNoStuckTaxels) {
-  Rig rig(make_array(8, 8), "multitouch", 3, 2);
+  Rig rig(reference_circuit(8, 8), "multitouch", 3, 2);
   ASSERT_TRUE(rig.next());
   for (int frame = 0; frame < 200; ++frame) rig.process();
   EXPECT_EQ(rig.changes(), 0);
@@ -284,10 +276,10 @@ TEST(LineFaultMonitor, MeasuresADriftingDriver) {
     LineFaults faults;
     faults.drifting_rows = {5};
     faults.drift_ohm = 60.0;
-    Rig rig(make_array(16, 16, circuit), "multitouch", 3, 6000, faults);
+    Rig rig(reference_circuit(16, 16, circuit), "multitouch", 3, 6000, faults);
     while (rig.next()) continue;
     const auto found = rig.monitor().faults();
-    ASSERT_EQ(found.size(), 1U) << describe(found, make_array(16, 16, circuit));
+    ASSERT_EQ(found.size(), 1U) << describe(found, reference_circuit(16, 16, circuit));
     EXPECT_EQ(found[0].kind, LineFaultKind::drifting_driver);
     EXPECT_EQ(found[0].place, 5U);
     EXPECT_NEAR(found[0].drive_ohm, 80.0, 25.0);
@@ -299,7 +291,7 @@ TEST(LineFaultMonitor, TellsAnOpenRowFromOneShortedToGround) {
   for (const bool grounded : {false, true}) {
     LineFaults faults;
     (grounded ? faults.grounded_rows : faults.open_rows) = {6};
-    Rig rig(make_array(16, 16), "multitouch", 9, 400, faults);
+    Rig rig(reference_circuit(16, 16), "multitouch", 9, 400, faults);
     while (rig.next()) continue;
     ASSERT_EQ(rig.monitor().faults().size(), 1U);
     EXPECT_EQ(rig.monitor().faults()[0].grounded, grounded);
@@ -359,12 +351,6 @@ TEST(LineFaultMonitor, FindsNothingOnRealModulesThatWarmUp) {
   }
 }
 
-double quantile(std::vector<double>& values, double share) {
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
-
 /// Error of the healthy taxels that are pressed, with the fault over without it, same loads and noise.
 std::pair<double, double> error_ratios(const ArrayDescription& array, const LineFaults& faults, std::uint64_t seed) {
   constexpr std::size_t kFrames = 400;
@@ -412,7 +398,7 @@ TEST(FaultySolve, HealthyTaxelsStayRightBesideAnOpenLine) {
   add(Circuit::transimpedance, 1.05, 1.05).shorted_rows = {7};
   add(Circuit::transimpedance, 1.05, 1.05).shorted_columns = {2};
   for (std::size_t k = 0; k < cases.size(); ++k) {
-    const auto [median, p95] = error_ratios(make_array(16, 16, cases[k].circuit), cases[k].faults, 40 + k);
+    const auto [median, p95] = error_ratios(reference_circuit(16, 16, cases[k].circuit), cases[k].faults, 40 + k);
     EXPECT_LE(median, cases[k].most_median) << "case " << k;
     EXPECT_LE(p95, cases[k].most_p95) << "case " << k;
   }
@@ -423,23 +409,24 @@ TEST(FaultySolve, HealthyTaxelsStayRightBesideAnOpenLine) {
 TEST(FaultySolve, HealthyTaxelsStayUsableBesideALineAtARail) {
   LineFaults supplied_row;
   supplied_row.supplied_rows = {5};
-  EXPECT_LE(error_ratios(make_array(16, 16), supplied_row, 1).first, 3.0);
+  EXPECT_LE(error_ratios(reference_circuit(16, 16), supplied_row, 1).first, 3.0);
   LineFaults supplied_column;
   supplied_column.supplied_columns = {5};
-  EXPECT_LE(error_ratios(make_array(16, 16), supplied_column, 2).first, 3.0);
+  EXPECT_LE(error_ratios(reference_circuit(16, 16), supplied_column, 2).first, 3.0);
   LineFaults grounded_column;
   grounded_column.grounded_columns = {5};
-  EXPECT_LE(error_ratios(make_array(16, 16), grounded_column, 3).first, 4.0);
+  EXPECT_LE(error_ratios(reference_circuit(16, 16), grounded_column, 3).first, 4.0);
 }
 
 TEST(FaultySolve, EveryCircuitStaysFiniteWithEveryFault) {
-  std::vector<ArrayDescription> arrays = {make_array(6, 5), make_array(6, 5, Circuit::flexitac),
-                                          make_array(6, 5, Circuit::none), make_array(2, 2), make_array(1, 3)};
-  arrays.push_back(make_array(6, 5));
+  std::vector<ArrayDescription> arrays = {reference_circuit(6, 5), reference_circuit(6, 5, Circuit::flexitac),
+                                          reference_circuit(6, 5, Circuit::none), reference_circuit(2, 2),
+                                          reference_circuit(1, 3)};
+  arrays.push_back(reference_circuit(6, 5));
   arrays.back().readout.idle_columns = IdleColumns::floating;
-  arrays.push_back(make_array(6, 5));
+  arrays.push_back(reference_circuit(6, 5));
   arrays.back().readout.drive_ohm.assign(6, 0.0);
-  arrays.push_back(make_array(6, 5, Circuit::transimpedance));
+  arrays.push_back(reference_circuit(6, 5, Circuit::transimpedance));
   arrays.back().readout.idle_rows = IdleRows::floating;
   for (std::size_t which = 0; which < arrays.size(); ++which) {
     const ArrayDescription& array = arrays[which];
@@ -476,7 +463,7 @@ TEST(FaultySolve, AllocatesNothing) {
   faults.open_rows = {3};
   faults.shorted_columns = {8};
   faults.dead_taxels = {"r10c2"};
-  Rig faulty(make_array(16, 16), "multitouch", 4, 120, faults);
+  Rig faulty(reference_circuit(16, 16), "multitouch", 4, 120, faults);
   ASSERT_TRUE(faulty.next());
   std::size_t allocations = 0;
   while (true) {

@@ -47,13 +47,12 @@ class Skin {
 
   [[nodiscard]] UnloadedConductance calibration() const {
     UnloadedConductance unloaded;
-    unloaded.centre_celsius = kCentreCelsius;
-    unloaded.half_span_celsius = kHalfSpanCelsius;
+    unloaded.law.temperature = {kCentreCelsius, kHalfSpanCelsius};
     for (std::size_t k = 0; k < kTaxels; ++k) {
       const double cold = rubber_.conductance_from_force(k, 0.0, kCentreCelsius - kHalfSpanCelsius);
       const double hot = rubber_.conductance_from_force(k, 0.0, kCentreCelsius + kHalfSpanCelsius);
-      unloaded.offset_siemens.push_back(0.5 * (cold + hot));
-      unloaded.per_celsius.push_back(0.5 * (hot - cold) / kHalfSpanCelsius);
+      unloaded.law.offset_siemens.push_back(0.5 * (cold + hot));
+      unloaded.law.per_celsius.push_back(0.5 * (hot - cold) / kHalfSpanCelsius);
       unloaded.sigma_siemens.push_back(0.1 * sigma_siemens_);
     }
     return unloaded;
@@ -79,14 +78,14 @@ class Skin {
                            const std::function<void(double)>& each = {}) {
     const auto frames = static_cast<std::size_t>(std::llround(seconds * rate_hz));
     const auto last = std::min(frames, static_cast<std::size_t>(std::max(1.0, rate_hz)));
-    const UnloadedConductance unloaded = calibration();
+    const UnloadedLaw unloaded = calibration().law;
     std::vector<double> mean(kTaxels, 0.0);
     for (std::size_t i = 0; i < frames; ++i) {
       if (each) each(static_cast<double>(i) / rate_hz);
       drift.process(read(1.0 / rate_hz));
       if (i + last < frames) continue;
       for (std::size_t k = 0; k < kTaxels; ++k) {
-        const double expected = unloaded.offset_siemens[k] + unloaded.per_celsius[k] * (celsius - kCentreCelsius);
+        const double expected = unloaded.at(k, celsius - kCentreCelsius);
         mean[k] += (frame_.siemens[k] - expected) / static_cast<double>(last);
       }
     }
@@ -103,7 +102,7 @@ class Skin {
            rubber_.conductance_from_force(taxel, 0.0, celsius);
   }
   /// By the calibration, which is 5 % higher than the truth at the centre: the law is bent.
-  [[nodiscard]] double unloaded(std::size_t taxel) const { return calibration().offset_siemens[taxel]; }
+  [[nodiscard]] double unloaded(std::size_t taxel) const { return calibration().law.offset_siemens[taxel]; }
 
  private:
   simulation::ConductiveRubber rubber_;

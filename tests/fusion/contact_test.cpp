@@ -13,14 +13,15 @@
 
 #include "support/allocation_guard.hpp"
 #include "support/pressure_patches.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::fusion {
 namespace {
 
 using std::chrono::milliseconds;
-using support::disc_array;
 using support::measured_forces;
 using support::PressurePatch;
+using support::reference_array;
 using support::round_patch;
 using support::taxel_forces;
 
@@ -42,7 +43,7 @@ class Touch {
     return report;
   }
 
-  ArrayDescription array = disc_array();
+  ArrayDescription array = reference_array();
   Random random{1};
   Nanos time{0};
   ContactTracker tracker;

@@ -40,10 +40,10 @@ ForceFrame fuse(const ForceNetworks& networks, const ConductanceFrame& conductan
 ForceNetworks power_law() {
   ForceNetworks networks;
   networks.shape = {2, 0, 2};
-  networks.temperature_centre_celsius = 20.0;
-  networks.temperature_half_span_celsius = 10.0;
-  networks.offset_siemens = {1e-5};
-  networks.offset_per_celsius = {1e-6};
+  networks.unloaded.temperature.centre_celsius = 20.0;
+  networks.unloaded.temperature.half_span_celsius = 10.0;
+  networks.unloaded.offset_siemens = {1e-5};
+  networks.unloaded.per_celsius = {1e-6};
   networks.reference_siemens = {1e-3F};
   networks.heaviest_siemens = {4e-3F};
   networks.heaviest_newtons = {std::numeric_limits<float>::infinity()};
@@ -59,8 +59,8 @@ ForceNetworks power_law() {
 ForceNetworks two_power_laws() {
   ForceNetworks networks = power_law();
   const auto twice = [](auto& values) { values.push_back(values.front()); };
-  twice(networks.offset_siemens);
-  twice(networks.offset_per_celsius);
+  twice(networks.unloaded.offset_siemens);
+  twice(networks.unloaded.per_celsius);
   twice(networks.reference_siemens);
   twice(networks.heaviest_siemens);
   twice(networks.heaviest_newtons);
@@ -91,7 +91,7 @@ TEST(ForceFusion, force_is_the_documented_formula) {
         const double offset = random.uniform(-20.0, 20.0);
         std::vector<double> siemens(37);
         for (std::size_t k = 0; k < 37; ++k) {
-          siemens[k] = networks.offset_siemens[k] + random.log_uniform(1e-5, 2e-3);
+          siemens[k] = networks.unloaded.offset_siemens[k] + random.log_uniform(1e-5, 2e-3);
         }
         const auto force = fuse(networks, make_frame(siemens, 25.0 + offset));
         for (std::size_t k = 0; k < 37; ++k) {
@@ -117,7 +117,7 @@ TEST(ForceFusion, force_rises_with_conductance_throughout) {
       for (std::size_t k = 0; k < kTaxels; ++k) {
         // From below the unloaded conductance to beyond the heaviest load, denser towards small loads.
         const auto heaviest = static_cast<double>(networks.heaviest_siemens[k]);
-        siemens[k] = networks.offset_siemens[k] + 1.3 * heaviest * std::pow(step / 4000.0, 3) - 1e-6;
+        siemens[k] = networks.unloaded.offset_siemens[k] + 1.3 * heaviest * std::pow(step / 4000.0, 3) - 1e-6;
       }
       fusion.process(make_frame(siemens, 31.0), force);
       for (std::size_t k = 0; k < kTaxels; ++k) {
@@ -133,7 +133,7 @@ TEST(ForceFusion, force_rises_with_conductance_throughout) {
 
 TEST(ForceFusion, force_is_zero_at_and_below_the_unloaded_conductance) {
   const auto networks = support::random_networks(5, 3, 2, 1);
-  std::vector<double> siemens = networks.offset_siemens;
+  std::vector<double> siemens = networks.unloaded.offset_siemens;
   siemens[1] -= 1e-9;
   siemens[2] -= 1e-3;
   siemens[3] = 0.0;
@@ -295,7 +295,7 @@ double reference_sigma(const ForceNetworks& networks, std::size_t taxel, double 
       (log_newtons(siemens * (1 + 1e-6), temperature_offset) - log_newtons(siemens * (1 - 1e-6), temperature_offset)) /
       (2e-6 * siemens);
   const double per_celsius =
-      networks.shape.inputs == 2 && networks.offset_per_celsius[taxel] == 0.0
+      networks.shape.inputs == 2 && networks.unloaded.per_celsius[taxel] == 0.0
           ? 0.0
           : (log_newtons(siemens, temperature_offset + 1e-4) - log_newtons(siemens, temperature_offset - 1e-4)) / 2e-4;
   const double newtons = support::reference_newtons(networks, taxel, siemens, temperature_offset);
@@ -320,7 +320,7 @@ TEST(ForceFusion, sigma_is_the_documented_formula) {
         const double offset = random.uniform(-19.0, 19.0);
         std::vector<double> siemens(37);
         for (std::size_t k = 0; k < 37; ++k) {
-          siemens[k] = networks.offset_siemens[k] + random.log_uniform(2e-5, 1.4e-3);
+          siemens[k] = networks.unloaded.offset_siemens[k] + random.log_uniform(2e-5, 1.4e-3);
         }
         auto frame = make_frame(siemens, 25.0 + offset);
         for (double& sigma : frame.sigma_siemens) sigma = random.log_uniform(1e-7, 1e-5);
@@ -400,9 +400,9 @@ TEST(ForceNetworks, consistent_networks_are_consistent) {
 
 TEST(ForceNetworks, half_span_is_not_negative_even_where_temperature_is_not_an_input) {
   ForceNetworks networks = power_law();
-  networks.temperature_half_span_celsius = 0.0;
+  networks.unloaded.temperature.half_span_celsius = 0.0;
   EXPECT_TRUE(networks.is_consistent());
-  networks.temperature_half_span_celsius = -1.0;
+  networks.unloaded.temperature.half_span_celsius = -1.0;
   EXPECT_FALSE(networks.is_consistent());
 }
 
@@ -419,14 +419,14 @@ TEST(ForceNetworks, every_broken_field_is_found) {
          n.shape.hidden = 65;
          n.parameters.assign(n.shape.parameter_count() * n.taxel_count(), 0.1F);
        }},
-      {"centre", [](auto& n) { n.temperature_centre_celsius = kNan; }},
-      {"half span NaN", [](auto& n) { n.temperature_half_span_celsius = kNan; }},
-      {"half span 0", [](auto& n) { n.temperature_half_span_celsius = 0.0; }},
-      {"half span negative", [](auto& n) { n.temperature_half_span_celsius = -1.0; }},
-      {"offset NaN", [](auto& n) { n.offset_siemens[1] = kNan; }},
-      {"offset size", [](auto& n) { n.offset_siemens.pop_back(); }},
-      {"offset drift NaN", [](auto& n) { n.offset_per_celsius[1] = kNan; }},
-      {"offset drift size", [](auto& n) { n.offset_per_celsius.push_back(0.0); }},
+      {"centre", [](auto& n) { n.unloaded.temperature.centre_celsius = kNan; }},
+      {"half span NaN", [](auto& n) { n.unloaded.temperature.half_span_celsius = kNan; }},
+      {"half span 0", [](auto& n) { n.unloaded.temperature.half_span_celsius = 0.0; }},
+      {"half span negative", [](auto& n) { n.unloaded.temperature.half_span_celsius = -1.0; }},
+      {"offset NaN", [](auto& n) { n.unloaded.offset_siemens[1] = kNan; }},
+      {"offset size", [](auto& n) { n.unloaded.offset_siemens.pop_back(); }},
+      {"offset drift NaN", [](auto& n) { n.unloaded.per_celsius[1] = kNan; }},
+      {"offset drift size", [](auto& n) { n.unloaded.per_celsius.push_back(0.0); }},
       {"reference 0", [](auto& n) { n.reference_siemens[1] = 0.0F; }},
       {"reference infinite", [](auto& n) { n.reference_siemens[1] = kInfinityF; }},
       {"reference size", [](auto& n) { n.reference_siemens.pop_back(); }},

@@ -87,10 +87,10 @@ void expect_equal(const Model& a, const Model& b) {
   EXPECT_EQ(a.array.readout.pressure_raises_reading, b.array.readout.pressure_raises_reading);
 
   EXPECT_EQ(a.networks.shape, b.networks.shape);
-  EXPECT_EQ(a.networks.temperature_centre_celsius, b.networks.temperature_centre_celsius);
-  EXPECT_EQ(a.networks.temperature_half_span_celsius, b.networks.temperature_half_span_celsius);
-  EXPECT_EQ(a.networks.offset_siemens, b.networks.offset_siemens);
-  EXPECT_EQ(a.networks.offset_per_celsius, b.networks.offset_per_celsius);
+  EXPECT_EQ(a.networks.unloaded.temperature.centre_celsius, b.networks.unloaded.temperature.centre_celsius);
+  EXPECT_EQ(a.networks.unloaded.temperature.half_span_celsius, b.networks.unloaded.temperature.half_span_celsius);
+  EXPECT_EQ(a.networks.unloaded.offset_siemens, b.networks.unloaded.offset_siemens);
+  EXPECT_EQ(a.networks.unloaded.per_celsius, b.networks.unloaded.per_celsius);
   EXPECT_EQ(a.networks.reference_siemens, b.networks.reference_siemens);
   EXPECT_EQ(a.networks.heaviest_siemens, b.networks.heaviest_siemens);
   EXPECT_EQ(a.networks.heaviest_newtons, b.networks.heaviest_newtons);

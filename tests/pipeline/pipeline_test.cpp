@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/simulation/adc.hpp"
 #include "dermis/simulation/line_faults.hpp"
@@ -379,7 +380,7 @@ TEST(Pipeline, a_press_of_ten_minutes_loses_less_than_a_hundredth_while_it_warms
 TEST(Pipeline, tracking_takes_an_old_calibration_back_to_zero) {
   const Model model = hand_made_model(4, 5);
   Model aged = model;
-  for (double& offset : aged.networks.offset_siemens) offset *= 1.08;
+  for (double& offset : aged.networks.unloaded.offset_siemens) offset *= 1.08;
   const std::vector<double> unloaded(20, 0.0);
   const auto ghost = [&](bool track) {
     const auto pipeline = make_pipeline(model);
@@ -408,12 +409,6 @@ TEST(Pipeline, a_tare_moves_zero_and_health_still_sees_the_array_as_it_is) {
   pipeline->drift().reset();
   newtons[7] = 10.0;
   EXPECT_NEAR(live(*pipeline, model, newtons, 1.0, 25.0, 25.0)[7], 10.0, 0.01);
-}
-
-double quantile(std::vector<double>& values, double share) {
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
 }
 
 /// Several contacts on the reference circuit with 12 bit and 1 count of noise; row 5 breaks in frame 20.

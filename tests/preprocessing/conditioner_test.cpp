@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dermis/core/random.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::preprocessing {
 namespace {
@@ -18,12 +19,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 ArrayDescription make_array(std::size_t rows = 1, std::size_t cols = 3) {
-  ArrayDescription array;
-  array.rows = rows;
-  array.cols = cols;
-  array.readout.drive_ohm.assign(rows, 20.0);
-  array.readout.load_ohm.assign(cols, 200.0);
-  return array;
+  return support::reference_circuit(rows, cols);
 }
 
 RawFrame make_frame(std::vector<float> counts, std::optional<double> supply_v = {}) {

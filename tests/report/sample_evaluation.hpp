@@ -11,6 +11,7 @@
 
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/core/random.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::report {
 
@@ -70,14 +71,8 @@ inline void summarise_sample(calibration::Evaluation& evaluation) {
 }
 
 inline ArrayDescription sample_array(std::size_t rows, std::size_t cols) {
-  ArrayDescription array;
+  ArrayDescription array = support::reference_array(rows, cols);
   array.name = "chest";
-  array.rows = rows;
-  array.cols = cols;
-  array.taxel_area_m2 = 38.48e-6;
-  array.readout.drive_ohm.assign(rows, 20.0);
-  array.readout.load_ohm.assign(cols, 200.0);
-  array.readout.supply_v = 5.0;
   return array;
 }
 

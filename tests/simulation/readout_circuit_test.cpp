@@ -21,19 +21,15 @@
 
 #include "dermis/core/random.hpp"
 #include "support/allocation_guard.hpp"
+#include "support/reference_array.hpp"
 #include "support/simd_targets.hpp"
 
 namespace dermis::simulation {
 namespace {
 
 ArrayDescription make_array(std::size_t rows, std::size_t cols, Circuit circuit, IdleRows idle_rows) {
-  ArrayDescription array;
-  array.rows = rows;
-  array.cols = cols;
-  array.readout.circuit = circuit;
+  ArrayDescription array = support::reference_circuit(rows, cols, circuit);
   array.readout.idle_rows = idle_rows;
-  array.readout.drive_ohm.assign(rows, 20.0);
-  array.readout.load_ohm.assign(cols, 200.0);
   return array;
 }
 
@@ -77,8 +73,6 @@ std::vector<double> random_list(std::size_t size, double least, double most, Ran
 ArrayDescription random_array(const CircuitKind& kind, std::size_t rows, std::size_t cols, Random& random) {
   ArrayDescription array = make_array(rows, cols, kind.circuit, kind.idle_rows);
   array.readout.idle_columns = kind.idle_columns;
-  array.readout.drive_ohm.resize(array.driven_lines());
-  array.readout.load_ohm.resize(array.sensed_lines());
   scatter_resistors(array, random);
   if (kind.circuit == Circuit::transimpedance) array.readout.supply_v = 3.3;
   if (kind.has_real_amplifiers) {

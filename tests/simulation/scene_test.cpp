@@ -12,19 +12,12 @@
 #include <set>
 #include <vector>
 
+#include "support/reference_array.hpp"
+
 namespace dermis::simulation {
 namespace {
 
-ArrayDescription make_array(std::size_t rows, std::size_t cols) {
-  ArrayDescription array;
-  array.rows = rows;
-  array.cols = cols;
-  array.taxel_area_m2 = 38.48e-6;
-  array.readout.drive_ohm.assign(rows, 20.0);
-  array.readout.load_ohm.assign(cols, 200.0);
-  array.readout.supply_v = 5.0;
-  return array;
-}
+using support::reference_array;
 
 std::vector<SceneFrame> play(std::string_view name, const ArrayDescription& array, std::uint64_t seed = 1,
                              std::optional<std::size_t> frames = {}) {
@@ -39,7 +32,7 @@ double total(const std::vector<double>& values) {
 }
 
 TEST(Scene, LabelsOfEveryFrameStateItsForces) {
-  const ArrayDescription array = make_array(5, 4);
+  const ArrayDescription array = reference_array(5, 4);
   for (const std::string& name : scene_names()) {
     const auto frames = play(name, array);
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -56,7 +49,7 @@ TEST(Scene, LabelsOfEveryFrameStateItsForces) {
 }
 
 TEST(Scene, SupplyStaysWithinTenPercent) {
-  const auto frames = play("multitouch", make_array(4, 4));
+  const auto frames = play("multitouch", reference_array(4, 4));
   const auto [low, high] = std::minmax_element(frames.begin(), frames.end(),
                                                [](const auto& a, const auto& b) { return a.supply_v < b.supply_v; });
   EXPECT_GE(low->supply_v, 4.5);
@@ -66,7 +59,7 @@ TEST(Scene, SupplyStaysWithinTenPercent) {
 }
 
 TEST(Scene, CalibrationPressesEachTaxelAloneAtEveryForceAndTemperature) {
-  const ArrayDescription array = make_array(3, 4);
+  const ArrayDescription array = reference_array(3, 4);
   const auto frames = play("calibration", array);
   EXPECT_EQ(frames.size(), 5 * (20 + 14 * 12));
   std::map<std::pair<double, std::size_t>, std::vector<double>> presses;
@@ -95,12 +88,12 @@ TEST(Scene, CalibrationPressesEachTaxelAloneAtEveryForceAndTemperature) {
 }
 
 TEST(Scene, CalibrationOfTheReferenceArrayHas17920Presses) {
-  const Scene scene = Scene::create("calibration", make_array(16, 16), EnvironmentOptions{}, 1).value();
+  const Scene scene = Scene::create("calibration", reference_array(16, 16), EnvironmentOptions{}, 1).value();
   EXPECT_EQ(scene.frame_count(), 17'920U + 100U);
 }
 
 TEST(Scene, PaperCalibrationIsTheCalibrationAt20Celsius) {
-  const ArrayDescription array = make_array(3, 4);
+  const ArrayDescription array = reference_array(3, 4);
   const auto frames = play("paper_calibration", array);
   const auto all_temperatures = play("calibration", array);
   ASSERT_EQ(frames.size(), 20 + 14 * 12);
@@ -111,7 +104,7 @@ TEST(Scene, PaperCalibrationIsTheCalibrationAt20Celsius) {
 }
 
 TEST(Scene, UniformLabelsPressureOnAllTaxels) {
-  const ArrayDescription array = make_array(3, 3);
+  const ArrayDescription array = reference_array(3, 3);
   const auto frames = play("uniform", array);
   EXPECT_EQ(frames.size(), 5U * (20 + 70));
   std::set<double> levels;
@@ -130,7 +123,7 @@ TEST(Scene, UniformLabelsPressureOnAllTaxels) {
 }
 
 TEST(Scene, PaperPressesSixteenDifferentTaxelsAtEachForce) {
-  const auto frames = play("paper", make_array(16, 16));
+  const auto frames = play("paper", reference_array(16, 16));
   ASSERT_EQ(frames.size(), 48U);
   std::map<double, std::set<std::size_t>> taxels;
   for (const SceneFrame& frame : frames) {
@@ -144,7 +137,7 @@ TEST(Scene, PaperPressesSixteenDifferentTaxelsAtEachForce) {
 }
 
 TEST(Scene, MultitouchStaysInTheCalibratedRange) {
-  const auto frames = play("multitouch", make_array(16, 16));
+  const auto frames = play("multitouch", reference_array(16, 16));
   ASSERT_EQ(frames.size(), 1000U);
   std::size_t on_one_taxel = 0;
   for (const SceneFrame& frame : frames) {
@@ -188,7 +181,7 @@ double summed_force(const std::vector<AppliedContact>& contacts, double x_m, dou
 }
 
 TEST(Scene, ContactsPressOnTaxelsWhatLiesOnTheirDiscs) {
-  ArrayDescription array = make_array(16, 16);
+  ArrayDescription array = reference_array(16, 16);
   array.col_pitch_m = 0.008;
   const double radius_m = std::sqrt(*array.taxel_area_m2 / std::numbers::pi);
   const auto frames = play("contacts", array, 3);
@@ -208,7 +201,7 @@ TEST(Scene, ContactsPressOnTaxelsWhatLiesOnTheirDiscs) {
 }
 
 TEST(Scene, ADiscThatCoversAPatchCarriesItsWholeForce) {
-  ArrayDescription array = make_array(1, 1);
+  ArrayDescription array = reference_array(1, 1);
   array.taxel_area_m2 = 0.01;
   for (const SceneFrame& frame : play("contacts", array)) {
     for (const AppliedContact& contact : frame.contacts) {
@@ -218,7 +211,7 @@ TEST(Scene, ADiscThatCoversAPatchCarriesItsWholeForce) {
 }
 
 TEST(Scene, ContactsStayApartInsideTheArrayAndWithinTheirRanges) {
-  const ArrayDescription array = make_array(16, 16);
+  const ArrayDescription array = reference_array(16, 16);
   std::set<std::size_t> counts;
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
     for (const SceneFrame& frame : play("contacts", array, seed)) {
@@ -245,7 +238,7 @@ TEST(Scene, ContactsStayApartInsideTheArrayAndWithinTheirRanges) {
 }
 
 TEST(Scene, ContactsComeMoveSmoothlyAndGo) {
-  const ArrayDescription array = make_array(16, 16);
+  const ArrayDescription array = reference_array(16, 16);
   const auto frames = play("contacts", array, 7);
   ASSERT_EQ(frames.size(), 2000U);
   std::map<std::uint32_t, std::vector<std::pair<std::size_t, AppliedContact>>> lives;
@@ -276,7 +269,7 @@ TEST(Scene, ContactsComeMoveSmoothlyAndGo) {
 }
 
 TEST(Scene, ContactsFollowTheSeedAndTheLengthAsked) {
-  const ArrayDescription array = make_array(16, 16);
+  const ArrayDescription array = reference_array(16, 16);
   const auto frames = play("contacts", array, 5, 400);
   ASSERT_EQ(frames.size(), 400U);
   ASSERT_FALSE(frames[100].contacts.empty());
@@ -286,7 +279,7 @@ TEST(Scene, ContactsFollowTheSeedAndTheLengthAsked) {
 }
 
 TEST(Scene, IdleWarmsUpAndCoolsDownUnloaded) {
-  const auto frames = play("idle", make_array(2, 2), 1, 100);
+  const auto frames = play("idle", reference_array(2, 2), 1, 100);
   ASSERT_EQ(frames.size(), 100U);
   EXPECT_EQ(frames[0].temperature_celsius, 0.0);
   EXPECT_NEAR(frames[50].temperature_celsius, 50.0, 1e-12);
@@ -295,7 +288,7 @@ TEST(Scene, IdleWarmsUpAndCoolsDownUnloaded) {
 }
 
 TEST(Scene, FramesDependOnSeedAndIndexAlone) {
-  const ArrayDescription array = make_array(6, 6);
+  const ArrayDescription array = reference_array(6, 6);
   const auto frames = play("multitouch", array, 5, 50);
   const Scene longer = Scene::create("multitouch", array, EnvironmentOptions{}, 5, 500).value();
   SceneFrame frame;
@@ -306,7 +299,7 @@ TEST(Scene, FramesDependOnSeedAndIndexAlone) {
 }
 
 TEST(Scene, RefusesWhatItCannotPlay) {
-  ArrayDescription array = make_array(3, 3);
+  ArrayDescription array = reference_array(3, 3);
   const auto message = [&](std::string_view name, std::optional<std::size_t> frames = {}) {
     return Scene::create(name, array, EnvironmentOptions{}, 1, frames).error().message;
   };

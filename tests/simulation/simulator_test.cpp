@@ -13,21 +13,12 @@
 #include <vector>
 
 #include "dermis/core/parallel.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::simulation {
 namespace {
 
-ArrayDescription make_array(std::size_t rows, std::size_t cols) {
-  ArrayDescription array;
-  array.rows = rows;
-  array.cols = cols;
-  array.taxel_area_m2 = kPaperDiscAreaM2;
-  array.readout.drive_ohm.assign(rows, 20.0);
-  array.readout.load_ohm.assign(cols, 200.0);
-  array.readout.adc_reference_v = 5.0;
-  array.readout.supply_v = 5.0;
-  return array;
-}
+using support::reference_array;
 
 std::unique_ptr<Simulator> simulate(const ArrayDescription& array, std::string_view scene, std::uint64_t seed,
                                     std::optional<std::size_t> frames = {}, const SimulationOptions& options = {}) {
@@ -46,7 +37,7 @@ bool same_frame(const RawFrame& a, const RawFrame& b) {
 }
 
 TEST(Simulator, GivesAsManyFramesAsTheSceneHas) {
-  const auto simulator = simulate(make_array(4, 3), "multitouch", 1, 25);
+  const auto simulator = simulate(reference_array(4, 3), "multitouch", 1, 25);
   EXPECT_EQ(simulator->frame_count(), 25U);
   const auto frames = record(*simulator);
   ASSERT_EQ(frames.size(), 25U);
@@ -57,7 +48,7 @@ TEST(Simulator, GivesAsManyFramesAsTheSceneHas) {
 }
 
 TEST(Simulator, SameSeedGivesTheSameFramesInAnyThread) {
-  const ArrayDescription array = make_array(5, 5);
+  const ArrayDescription array = reference_array(5, 5);
   std::vector<std::vector<RawFrame>> runs(8);
   parallel_for(runs.size(), [&](std::size_t i) { runs[i] = record(*simulate(array, "multitouch", i / 2, 40)); });
   for (std::size_t frame = 0; frame < 40; ++frame) {
@@ -67,7 +58,7 @@ TEST(Simulator, SameSeedGivesTheSameFramesInAnyThread) {
 }
 
 TEST(Simulator, TheSamePieceOfRubberGoesThroughAllScenes) {
-  const ArrayDescription array = make_array(4, 4);
+  const ArrayDescription array = reference_array(4, 4);
   const auto calibration = simulate(array, "calibration", 1);
   const auto multitouch = simulate(array, "multitouch", 2);
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
@@ -77,7 +68,7 @@ TEST(Simulator, TheSamePieceOfRubberGoesThroughAllScenes) {
 }
 
 TEST(Simulator, TrueLawFindsTheTrueForcesButForTheMaterialNoise) {
-  const ArrayDescription array = make_array(8, 8);
+  const ArrayDescription array = reference_array(8, 8);
   const auto simulator = simulate(array, "multitouch", 3, 100);
   RawFrame frame;
   while (*simulator->next(frame)) {
@@ -93,7 +84,7 @@ TEST(Simulator, TrueLawFindsTheTrueForcesButForTheMaterialNoise) {
 }
 
 TEST(Simulator, CountsAreTheCircuitsReadings) {
-  const ArrayDescription array = make_array(6, 6);
+  const ArrayDescription array = reference_array(6, 6);
   SimulationOptions options;
   options.environment.adc_noise_lsb = 0.0;
   const auto simulator = simulate(array, "multitouch", 4, 20, options);
@@ -110,7 +101,7 @@ TEST(Simulator, CountsAreTheCircuitsReadings) {
 
 TEST(Simulator, InstrumentsReportWithTheirNoise) {
   constexpr std::size_t kFrames = 4000;
-  const auto simulator = simulate(make_array(1, 1), "idle", 5, kFrames);
+  const auto simulator = simulate(reference_array(1, 1), "idle", 5, kFrames);
   double temperature_variance = 0.0;
   double supply_variance = 0.0;
   RawFrame frame;
@@ -129,7 +120,7 @@ TEST(Simulator, CreepIsSeenInTheConductanceOfAPress) {
   SimulationOptions options;
   options.rubber.creep = 0.1;
   options.rubber.pink_noise = 0.0;
-  const auto simulator = simulate(make_array(4, 4), "paper", 6, {}, options);
+  const auto simulator = simulate(reference_array(4, 4), "paper", 6, {}, options);
   RawFrame frame;
   ASSERT_TRUE(*simulator->next(frame));
   const Load press = simulator->loads().front();
@@ -143,7 +134,7 @@ TEST(Simulator, RefusesOptionsOutOfRange) {
   SimulationOptions options;
   options.rubber.hysteresis = 2.0;
   EXPECT_EQ(options.validate().error().message.find("rubber.hysteresis:"), 0U);
-  EXPECT_EQ(Simulator::create(make_array(2, 2), options, "idle", 1).error().kind, ErrorKind::bad_input);
+  EXPECT_EQ(Simulator::create(reference_array(2, 2), options, "idle", 1).error().kind, ErrorKind::bad_input);
 }
 
 Result<SimulationOptions> read_text(const std::string& text) {

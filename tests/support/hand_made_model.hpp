@@ -8,6 +8,7 @@
 
 #include "dermis/core/random.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::support {
 
@@ -19,22 +20,17 @@ inline constexpr float kTemperatureWeight = 0.2F;
 /// own.
 inline pipeline::Model hand_made_model(std::size_t rows, std::size_t cols) {
   pipeline::Model model;
-  ArrayDescription& array = model.array;
-  array.name = "hand made";
-  array.rows = rows;
-  array.cols = cols;
-  array.readout.drive_ohm.assign(rows, 20.0);
-  array.readout.load_ohm.assign(cols, 200.0);
-  array.readout.adc_bits = 24;
+  model.array = reference_circuit(rows, cols);
+  model.array.name = "hand made";
+  model.array.readout.adc_bits = 24;
   Random random(rows * 1000 + cols);
   const std::size_t taxels = rows * cols;
   fusion::ForceNetworks& networks = model.networks;
   networks.shape = {fusion::kInputsWithTemperature, 0, 2};
-  networks.temperature_centre_celsius = 25.0;
-  networks.temperature_half_span_celsius = 20.0;
+  networks.unloaded.temperature = {25.0, 20.0};
   for (std::size_t k = 0; k < taxels; ++k) {
-    networks.offset_siemens.push_back(random.uniform(4e-6, 6e-6));
-    networks.offset_per_celsius.push_back(random.uniform(-2e-8, 2e-8));
+    networks.unloaded.offset_siemens.push_back(random.uniform(4e-6, 6e-6));
+    networks.unloaded.per_celsius.push_back(random.uniform(-2e-8, 2e-8));
     networks.reference_siemens.push_back(static_cast<float>(random.uniform(0.8e-3, 1.2e-3)));
     networks.heaviest_siemens.push_back(6e-3F);
     networks.heaviest_newtons.push_back(std::numeric_limits<float>::infinity());
@@ -53,10 +49,10 @@ inline pipeline::Model hand_made_model(std::size_t rows, std::size_t cols) {
 /// The conductance of a taxel under a force: the material law turned round.
 inline double siemens_under(const pipeline::Model& model, std::size_t taxel, double newtons, double celsius) {
   const fusion::ForceNetworks& networks = model.networks;
-  const double offset = celsius - networks.temperature_centre_celsius;
-  const double at_centre =
-      newtons / 10.0 * std::exp(-kTemperatureWeight * offset / networks.temperature_half_span_celsius);
-  return networks.offset_siemens[taxel] + networks.offset_per_celsius[taxel] * offset +
+  const TemperatureSpan& calibrated = networks.unloaded.temperature;
+  const double offset = celsius - calibrated.centre_celsius;
+  const double at_centre = newtons / 10.0 * std::exp(-kTemperatureWeight * offset / calibrated.half_span_celsius);
+  return networks.unloaded.at(taxel, offset) +
          static_cast<double>(networks.reference_siemens[taxel]) * std::pow(at_centre, 1.0 / kExponent);
 }
 

@@ -62,17 +62,6 @@ inline double force_on_disc(const PressurePatch& patch, double x, double y) {
   return sum * kStep * kStep;
 }
 
-/// The reference array: 10 mm pitch, discs of 7 mm.
-inline ArrayDescription disc_array(std::size_t rows = 16, std::size_t cols = 16) {
-  ArrayDescription array;
-  array.rows = rows;
-  array.cols = cols;
-  array.taxel_area_m2 = 38.48e-6;
-  array.readout.drive_ohm.assign(rows, 20.0);
-  array.readout.load_ohm.assign(cols, 200.0);
-  return array;
-}
-
 /// True force on each taxel [N].
 inline std::vector<double> taxel_forces(const ArrayDescription& array, const std::vector<PressurePatch>& patches) {
   std::vector<double> newtons(array.taxel_count());

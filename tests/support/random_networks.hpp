@@ -18,15 +18,14 @@ inline fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inp
   Random random(seed);
   fusion::ForceNetworks networks;
   networks.shape = {inputs, hidden, 2};
-  networks.temperature_centre_celsius = 25.0;
-  networks.temperature_half_span_celsius = 20.0;
+  networks.unloaded.temperature = {25.0, 20.0};
   networks.temperature_sigma_celsius = 0.3;
   networks.parameters.resize(networks.shape.parameter_count() * taxels);
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     const double reference = random.log_uniform(5e-4, 2e-3);
     const double share = random.uniform(3.0, 6.0);
-    networks.offset_siemens.push_back(random.uniform(1e-6, 2e-5));
-    networks.offset_per_celsius.push_back(random.uniform(-1e-7, 1e-7));
+    networks.unloaded.offset_siemens.push_back(random.uniform(1e-6, 2e-5));
+    networks.unloaded.per_celsius.push_back(random.uniform(-1e-7, 1e-7));
     networks.reference_siemens.push_back(static_cast<float>(reference));
     networks.heaviest_siemens.push_back(static_cast<float>(reference * share));
     networks.heaviest_newtons.push_back(1e4F);  // beyond what the network gives: the clamp has its own tests
@@ -53,10 +52,11 @@ inline double reference_newtons(const fusion::ForceNetworks& networks, std::size
   const std::size_t taxels = networks.taxel_count();
   const auto heaviest = static_cast<double>(networks.heaviest_siemens[taxel]);
   const double excess =
-      siemens - (networks.offset_siemens[taxel] + networks.offset_per_celsius[taxel] * temperature_offset);
+      siemens - (networks.unloaded.offset_siemens[taxel] + networks.unloaded.per_celsius[taxel] * temperature_offset);
   if (excess <= 0.0) return 0.0;
   const double share = std::fmin(excess, heaviest) / static_cast<double>(networks.reference_siemens[taxel]);
-  const double x[] = {std::log(share), share - 1.0, temperature_offset / networks.temperature_half_span_celsius};
+  const double x[] = {std::log(share), share - 1.0,
+                      temperature_offset / networks.unloaded.temperature.half_span_celsius};
   const network::PerceptronShape& shape = networks.shape;
   const auto parameter = [&](std::size_t k) { return static_cast<double>(networks.parameters[k * taxels + taxel]); };
   double y = parameter(shape.output_bias());

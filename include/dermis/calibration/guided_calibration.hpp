@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -11,36 +10,13 @@
 #include <vector>
 
 #include "dermis/calibration/calibrate.hpp"
+#include "dermis/calibration/calibration_plan.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/core/result.hpp"
 
 namespace dermis::calibration {
-
-/// What a person is asked to press: every taxel with the first weight, then every taxel with the second, ...
-struct CalibrationPlan {
-  std::vector<std::size_t> taxels;                ///< Row-major, none twice, in the order in which they are pressed.
-  std::vector<double> weights_n;                  ///< 1 ... 16 weights of 0.01 ... 1000 N, in their order.
-  Nanos unloaded_time = std::chrono::seconds(3);  ///< Quiet time at the beginning, 0.2 ... 60 s.
-  Nanos hold_time = std::chrono::seconds(1);  ///< Of every press, after it settled for a quarter of it, 0.05 ... 30 s.
-
-  [[nodiscard]] std::size_t press_count() const noexcept { return taxels.size() * weights_n.size(); }
-
-  [[nodiscard]] std::size_t taxel_of(std::size_t press) const { return taxels[press % taxels.size()]; }
-  [[nodiscard]] double weight_of(std::size_t press) const { return weights_n[press / taxels.size()]; }
-
-  /// Names the first field that is wrong, as "weights_n: ..."; at most kMostGuidedPresses presses.
-  [[nodiscard]] Status validate(const ArrayDescription& array) const;
-};
-
-inline constexpr std::size_t kMostGuidedPresses = 8192;
-
-/// Every `stride`-th row and column (>= 1), as far from the edges as they can be, in reading order.
-[[nodiscard]] std::vector<std::size_t> taxels_with_stride(const ArrayDescription& array, std::size_t stride);
-
-/// 1, 2, 5, 10 and 20 N on about 16 taxels all over the array.
-[[nodiscard]] CalibrationPlan default_plan(const ArrayDescription& array);
 
 enum class GuideStage : std::uint8_t { none, unloaded, pressing, fitting, done, failed };
 
@@ -79,9 +55,8 @@ struct GuidedData {
 };
 
 /// Walks a person through the calibration of one live array: unloaded first, then press after press, each recognised
-/// from the frames. What is kept of a press are means over a half or a quarter of the hold, so that a taxel with at
-/// least three weights gets the samples that a network of its own needs. While the person works, what is there is
-/// fitted on a thread of its own and judged by presses that were left out. Thread-safe.
+/// from the frames. While the person works, what is there is fitted on a thread of its own and judged by presses that
+/// were left out. Thread-safe.
 class GuidedCalibration {
  public:
   /// Errors: those of CalibrationPlan::validate(); an array that is not valid.

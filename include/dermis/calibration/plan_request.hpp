@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dermis/calibration/guided_calibration.hpp"
+#include "dermis/calibration/calibration_plan.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/result.hpp"
 

@@ -8,16 +8,14 @@
 
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
+#include "dermis/core/unloaded_law.hpp"
 
 namespace dermis::compensation {
 
-/// What calibration knows of the taxels when nothing touches them: offset + per_celsius * (T - centre) [S].
+/// What calibration knows of the taxels when nothing touches them.
 struct UnloadedConductance {
-  std::vector<double> offset_siemens;
-  std::vector<double> per_celsius;
-  std::vector<double> sigma_siemens;  ///< Standard deviation of offset_siemens.
-  double centre_celsius = 20.0;
-  double half_span_celsius = 0.0;  ///< Temperatures beyond centre +- this are clamped.
+  UnloadedLaw law;
+  std::vector<double> sigma_siemens;  ///< Standard deviation of law.offset_siemens [taxels] [S].
 };
 
 struct OffsetDriftOptions {

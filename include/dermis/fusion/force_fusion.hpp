@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dermis/core/frames.hpp"
+#include "dermis/core/unloaded_law.hpp"
 #include "dermis/network/perceptron_bank.hpp"
 
 namespace dermis::fusion {
@@ -20,7 +21,7 @@ inline constexpr std::size_t kSigmaKnots = 6;
 /// What calibration learns: one small BP network per taxel, (conductance, temperature) -> force. Each per-taxel vector
 /// has the size taxels; taxels without a calibration of their own carry the parameters of a shared network and a gain.
 ///
-///   e = siemens - (offset + offset_per_celsius * dT),   dT = temperature - centre       excess over the unloaded taxel
+///   e = siemens - (offset + per_celsius * dT),   dT = temperature - centre              excess over the unloaded taxel
 ///   newtons = gain * exp(network(ln(e / reference), e / reference - 1, dT / half_span))    and 0 where e <= 0
 ///
 /// The network's direct connection from ln(e) is the power law of conductive rubber, F ~ e^p, which also carries the
@@ -32,21 +33,17 @@ inline constexpr std::size_t kSigmaKnots = 6;
 /// known relationships and are solved before; what is left to learn is the material of one taxel.
 struct ForceNetworks {
   network::PerceptronShape shape{2, 1, 2};  ///< 2 inputs (conductance, twice) or 3 (temperature too).
-  double temperature_centre_celsius = 20.0;
-  double temperature_half_span_celsius = 0.0;  ///< >= 0; the calibrated range is centre +- half span.
-
-  std::vector<double> offset_siemens;      ///< Conductance of the unloaded taxel at the centre temperature [S].
-  std::vector<double> offset_per_celsius;  ///< [S/C]
-  std::vector<float> reference_siemens;    ///< Excess conductance of a typical load [S], > 0.
-  std::vector<float> heaviest_siemens;     ///< e of the heaviest calibrated load [S], > 0.
-  std::vector<float> heaviest_newtons;     ///< Heaviest calibrated load [N]; infinite where only sums are known.
-  std::vector<float> gain;                 ///< > 0; 1 where the taxel has its own network.
-  std::vector<std::uint8_t> dead;          ///< 1: did not answer to its loads.
-  std::vector<float> parameters;           ///< [shape.parameter_count(), taxels]
+  UnloadedLaw unloaded;                     ///< Over the calibrated temperatures.
+  std::vector<float> reference_siemens;     ///< Excess conductance of a typical load [S], > 0.
+  std::vector<float> heaviest_siemens;      ///< e of the heaviest calibrated load [S], > 0.
+  std::vector<float> heaviest_newtons;      ///< Heaviest calibrated load [N]; infinite where only sums are known.
+  std::vector<float> gain;                  ///< > 0; 1 where the taxel has its own network.
+  std::vector<std::uint8_t> dead;           ///< 1: did not answer to its loads.
+  std::vector<float> parameters;            ///< [shape.parameter_count(), taxels]
 
   // What calibration found of its own uncertainty; see ForceFusion.
   double temperature_sigma_celsius = 0.0;   ///< Noise of the temperature sensor [C], >= 0.
-  std::vector<float> offset_sigma_siemens;  ///< Standard deviation of offset_siemens [S], >= 0.
+  std::vector<float> offset_sigma_siemens;  ///< Standard deviation of unloaded.offset_siemens [S], >= 0.
   /// Relative error of the force from all that is not known otherwise (misfit, hysteresis, creep), > 0, at kSigmaKnots
   /// forces in equal ratios. In between its square is linear in ln(newtons), beyond the ends it is constant.
   std::vector<float> relative_sigma;                       ///< [kSigmaKnots, taxels]

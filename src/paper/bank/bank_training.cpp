@@ -11,7 +11,7 @@
 #include <numeric>
 #include <utility>
 
-#include "dermis/calibration/temperature_span.hpp"
+#include "dermis/calibration/sample_temperatures.hpp"
 #include "dermis/core/parallel.hpp"
 #include "dermis/paper/initialisation.hpp"
 #include "dermis/paper/structured_start.hpp"
@@ -68,8 +68,9 @@ double heaviest_force(const SampleDatabase& database) {
 }
 
 std::optional<PaperBank::Range> temperature_range(const SampleDatabase& database) {
-  const calibration::TemperatureSpan span = calibration::temperature_span(database);
-  if (!span.is_input) return std::nullopt;
+  const calibration::SampleTemperatures temperatures = calibration::sample_temperatures(database);
+  if (!temperatures.is_input) return std::nullopt;
+  const TemperatureSpan& span = temperatures.span;
   return PaperBank::Range{span.centre_celsius - span.half_span_celsius, span.centre_celsius + span.half_span_celsius};
 }
 

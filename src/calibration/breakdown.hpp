@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include "dermis/calibration/evaluation.hpp"
+
+namespace dermis::calibration {
+
+/// Fills by_force, by_temperature, by_supply and by_contacts from the judged taxels and totals.
+void break_down(Evaluation& evaluation);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dermis/calibration/evaluation.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/pipeline/pipeline.hpp"
+
+namespace dermis::calibration {
+
+/// All estimators on one frame: dermis, the baselines of the model, a further estimator where there is one.
+class EstimatorRow {
+ public:
+  /// `model` and `further` (nullptr: none) are to outlive it; `pipeline` is that of the model.
+  EstimatorRow(const pipeline::Model& model, pipeline::Pipeline pipeline, FurtherEstimator* further);
+
+  /// Returns false where the frame is rejected.
+  bool run(const RawFrame& raw);
+
+  [[nodiscard]] const ArrayDescription& array() const noexcept { return model_.array; }
+  [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
+  /// Of the last frame, [estimators][taxels].
+  [[nodiscard]] const std::vector<std::vector<float>>& newtons() const noexcept { return newtons_; }
+  /// Of dermis.
+  [[nodiscard]] const ForceFrame& force() const noexcept { return force_; }
+  [[nodiscard]] const pipeline::Pipeline& pipeline() const noexcept { return pipeline_; }
+  /// counts / full scale [taxels].
+  [[nodiscard]] const std::vector<double>& reading() const noexcept { return reading_; }
+
+ private:
+  const pipeline::Model& model_;
+  pipeline::Pipeline pipeline_;
+  FurtherEstimator* further_;
+  ForceFrame force_;
+  std::vector<std::string> names_;
+  std::vector<double> reading_;
+  std::vector<std::vector<float>> newtons_;
+};
+
+}  // namespace dermis::calibration

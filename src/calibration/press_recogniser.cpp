@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/press_recogniser.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace dermis::calibration {
+namespace {
+
+constexpr double kReleasedShare = 0.15;  // of the excess of the press
+constexpr double kLostShare = 0.5;
+constexpr double kOtherTaxelSeconds = 0.15;  // while a weight is put on
+
+}  // namespace
+
+PressRecogniser::PressRecogniser(TouchSense sense, Nanos hold_time) : sense_(std::move(sense)), hold_(hold_time) {}
+
+void PressRecogniser::expect(std::size_t taxel, std::optional<std::size_t> last_taxel) {
+  rest();
+  hint_ = GuideHint::press;
+  taxel_ = taxel;
+  last_taxel_ = last_taxel;
+}
+
+void PressRecogniser::rest() {
+  hold_.clear();
+  hint_ = GuideHint::none;
+  other_seconds_ = 0.0;
+}
+
+PressRecogniser::Event PressRecogniser::feed(const RawFrame& raw, std::span<const double> ratio, double seconds) {
+  touch_ = sense_.feel(ratio, taxel_);
+  reading_ = sense_.relative(ratio, taxel_);
+  if (!touch_.strongest) sense_.follow(ratio, seconds);
+  if (hint_ == GuideHint::release) return is_released(ratio, taxel_) ? Event::released : Event::none;
+  hold_.has_begun() ? follow_hold(raw, ratio) : wait_for_press(raw, ratio, seconds);
+  return hold_.is_done() ? Event::held : Event::none;
+}
+
+void PressRecogniser::wait_for_press(const RawFrame& raw, std::span<const double> ratio, double seconds) {
+  if (touch_.strongest == taxel_ && !touch_.beside) {
+    hold_.feed(raw, ratio, sense_.excess(ratio, taxel_), sense_.noise(taxel_));
+    other_seconds_ = 0.0;
+    hint_ = GuideHint::hold;
+    return;
+  }
+  const bool is_touched = touch_.strongest && !is_memory(ratio);
+  other_seconds_ = is_touched ? other_seconds_ + seconds : 0.0;
+  if (other_seconds_ > kOtherTaxelSeconds) {
+    hint_ = touch_.strongest == taxel_ ? GuideHint::several : GuideHint::other_taxel;
+  } else if (!is_touched && hint_ != GuideHint::too_short) {
+    hint_ = GuideHint::press;
+  }
+}
+
+void PressRecogniser::follow_hold(const RawFrame& raw, std::span<const double> ratio) {
+  const double excess = sense_.excess(ratio, taxel_);
+  if (touch_.strongest != taxel_ || touch_.beside || excess < kLostShare * hold_.mean_excess()) {
+    hold_.clear();
+    hint_ = touch_.strongest ? GuideHint::hold : GuideHint::too_short;
+    return;
+  }
+  hold_.feed(raw, ratio, excess, sense_.noise(taxel_));
+  hint_ = hold_.was_unsteady() ? GuideHint::unsteady : GuideHint::hold;
+}
+
+/// Whether the taxel no longer feels the last press, but for what the material remembers.
+bool PressRecogniser::is_released(std::span<const double> ratio, std::size_t taxel) const {
+  return sense_.excess(ratio, taxel) < std::max(kReleasedShare * kept_excess_, sense_.threshold(taxel));
+}
+
+/// What is felt is what the material remembers of the last press.
+bool PressRecogniser::is_memory(std::span<const double> ratio) const {
+  return last_taxel_ && touch_.strongest == last_taxel_ && is_released(ratio, *last_taxel_);
+}
+
+std::vector<RawFrame> PressRecogniser::keep_hold(std::size_t count) {
+  std::vector<RawFrame> frames = hold_.frames(count);
+  kept_excess_ = hold_.mean_excess();
+  hold_.clear();
+  hint_ = GuideHint::release;
+  return frames;
+}
+
+double PressRecogniser::share(Nanos now) const noexcept {
+  return hint_ == GuideHint::release ? 1.0 : hold_.share(now);
+}
+
+std::optional<std::size_t> PressRecogniser::pressed_taxel() const noexcept {
+  return hint_ == GuideHint::several ? touch_.beside : touch_.strongest;
+}
+
+}  // namespace dermis::calibration
