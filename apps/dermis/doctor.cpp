@@ -16,6 +16,8 @@
 #include "commands.hpp"
 #include "dermis/core/quantile.hpp"
 #include "dermis/core/touch.hpp"
+#include "dermis/compensation/line_fault.hpp"
+#include "dermis/core/neighbours.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "open_source.hpp"
@@ -25,6 +27,7 @@ namespace dermis::app {
 namespace {
 
 using compensation::LineFault;
+using compensation::LineFaultEffect;
 using compensation::LineFaultKind;
 
 constexpr double kMuchNoise = 1.5;          // times what the model says
@@ -33,7 +36,6 @@ constexpr double kMuchSaturation = 0.01;    // of all readings
 constexpr double kTemperatureMargin = 1.0;  // sensor noise [C]
 constexpr std::size_t kLeastUnloadedFrames = 10;
 constexpr double kSurelyTouchedSigmas = 20.0;  // of calibrated noise: noise that has grown is no touch
-constexpr std::size_t kReach = 3;              // taxels around a touched one that may be touched a little
 
 struct DoctorOptions {
   std::string model;
@@ -172,13 +174,9 @@ class Examination {
   }
 
   [[nodiscard]] bool is_near_touch(const ConductanceFrame& conductance, std::size_t taxel, double sigmas) const {
-    const ArrayDescription& array = model_.array;
-    const std::size_t row = taxel / array.cols;
-    const std::size_t col = taxel % array.cols;
-    for (std::size_t i = row - std::min(row, kReach); i <= std::min(row + kReach, array.rows - 1); ++i) {
-      for (std::size_t j = col - std::min(col, kReach); j <= std::min(col + kReach, array.cols - 1); ++j) {
-        if (is_touched(conductance, array.index(i, j), sigmas)) return true;
-      }
+    constexpr PerAxis<std::size_t> kReach{.row = 3, .column = 3};  // taxels around that may be touched a little
+    for (const std::size_t near : Neighbours(model_.array.rows, model_.array.cols, taxel, kReach)) {
+      if (is_touched(conductance, near, sigmas)) return true;
     }
     return false;
   }
@@ -251,40 +249,22 @@ class Examination {
   std::vector<FaultHistory> faults_;
 };
 
-std::size_t masked_taxels(const LineFault& fault, const ArrayDescription& array) {
-  switch (fault.kind) {
-    case LineFaultKind::silent_row:
-    case LineFaultKind::supplied_row: return array.cols;
-    case LineFaultKind::silent_column:
-    case LineFaultKind::supplied_column: return array.rows;
-    case LineFaultKind::shorted_rows: return 2 * array.cols;
-    case LineFaultKind::shorted_columns: return 2 * array.rows;
-    case LineFaultKind::stuck_taxel:
-    case LineFaultKind::dead_taxel: return 1;
-    case LineFaultKind::drifting_driver: break;
-  }
-  return 0;
-}
-
 /// What the fault is, and what to look at.
 std::pair<std::string, std::string> diagnosis(const LineFault& fault, const ArrayDescription& array) {
   const std::string place = place_name(fault, array);
-  switch (fault.kind) {
-    case LineFaultKind::silent_row:
-    case LineFaultKind::silent_column:
+  switch (traits_of(fault.kind).effect) {
+    case LineFaultEffect::silent:
       if (fault.grounded) return {"is shorted to 0 V", "look for a bridge between " + place + " and ground"};
       return {fault.ground_evidence < 0.0 ? "is open" : "is open or shorted to 0 V",
               "check the wire or crimp of " + place};
-    case LineFaultKind::supplied_row:
-    case LineFaultKind::supplied_column:
+    case LineFaultEffect::supplied:
       return {"is shorted to the supply", "look for a bridge between " + place + " and the supply"};
-    case LineFaultKind::shorted_rows:
-    case LineFaultKind::shorted_columns: return {"are shorted together", "look for a bridge between " + place};
-    case LineFaultKind::stuck_taxel:
+    case LineFaultEffect::shorted: return {"are shorted together", "look for a bridge between " + place};
+    case LineFaultEffect::stuck:
       return {"is stuck: its reading does not change", "check the electronics that read " + place};
-    case LineFaultKind::dead_taxel:
+    case LineFaultEffect::dead:
       return {"is dead: it reads less than an unloaded taxel", "check the contact of " + place + " with its lines"};
-    case LineFaultKind::drifting_driver: break;
+    case LineFaultEffect::drifting: break;
   }
   return {
       fmt::format("has risen from {:.0f} to about {:.0f} ohm", array.readout.drive_ohm[fault.place], fault.drive_ohm),
@@ -294,7 +274,7 @@ std::pair<std::string, std::string> diagnosis(const LineFault& fault, const Arra
 std::string Examination::sentence(const FaultHistory& history) const {
   const LineFault& fault = history.fault;
   const auto [what, mend] = diagnosis(fault, model_.array);
-  const std::size_t masked = masked_taxels(fault, model_.array);
+  const std::size_t masked = masked_taxel_count(fault, model_.array);
   std::string text = place_name(fault, model_.array) + " " + what;
   text += history.until ? fmt::format(" from frame {} to {}: {}", fault.frame, *history.until - 1, mend)
                         : fmt::format(" since frame {}: {}", fault.frame, mend);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "calibration/labels.hpp"
+#include "dermis/core/neighbours.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 #include "dermis/preprocessing/phase.hpp"
 
@@ -27,15 +28,10 @@ struct Labelled {
 /// Rubber spreads a load to the taxels around it: what is beside a pressed taxel is not known to be idle.
 void forget_neighbours(const ArrayDescription& array, std::vector<float>& newtons) {
   const std::vector<float> labelled = newtons;
-  for (std::size_t row = 0; row < array.rows; ++row) {
-    for (std::size_t col = 0; col < array.cols; ++col) {
-      if (labelled[array.index(row, col)] == 0.0F) continue;
-      for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= std::min(row + 1, array.rows - 1); ++r) {
-        for (std::size_t c = col - std::min<std::size_t>(col, 1); c <= std::min(col + 1, array.cols - 1); ++c) {
-          float& neighbour = newtons[array.index(r, c)];
-          if (neighbour == 0.0F) neighbour = std::numeric_limits<float>::quiet_NaN();
-        }
-      }
+  for (std::size_t taxel = 0; taxel < labelled.size(); ++taxel) {
+    if (labelled[taxel] == 0.0F) continue;
+    for (const std::size_t near : Neighbours(array.rows, array.cols, taxel)) {
+      if (newtons[near] == 0.0F) newtons[near] = std::numeric_limits<float>::quiet_NaN();
     }
   }
 }

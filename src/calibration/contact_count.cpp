@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "calibration/contact_count.hpp"
 
+#include "dermis/core/neighbours.hpp"
+
 #include <algorithm>
 
 namespace dermis::calibration {
@@ -17,15 +19,12 @@ std::size_t count_contacts(const std::vector<float>& known_newtons, std::size_t 
     open[seed] = false;
     stack.push_back(seed);
     while (!stack.empty()) {
-      const std::size_t row = stack.back() / cols;
-      const std::size_t col = stack.back() % cols;
+      const std::size_t taxel = stack.back();
       stack.pop_back();
-      for (std::size_t r = row == 0 ? 0 : row - 1; r <= std::min(row + 1, rows - 1); ++r) {
-        for (std::size_t c = col == 0 ? 0 : col - 1; c <= std::min(col + 1, cols - 1); ++c) {
-          if (!open[r * cols + c]) continue;
-          open[r * cols + c] = false;
-          stack.push_back(r * cols + c);
-        }
+      for (const std::size_t near : Neighbours(rows, cols, taxel)) {
+        if (!open[near]) continue;
+        open[near] = false;
+        stack.push_back(near);
       }
     }
   }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compensation/faults/masked_taxels.hpp"
 #include "compensation/readout_parts.hpp"
 
 namespace dermis::compensation {
@@ -78,56 +79,36 @@ void FaultInversion::set_faults(std::span<const LineFault> faults) {
 }
 
 void FaultInversion::add(const LineFault& fault) {
-  LumpedCircuit* const circuit = circuits_ ? &circuits_->faulty : nullptr;
-  switch (fault.kind) {
-    case LineFaultKind::silent_row:
-      mask_row(fault.place, true);
-      if (circuit != nullptr) fault.grounded ? circuit->ground_row(fault.place) : circuit->open_row(fault.place);
+  const LineFaultTraits& traits = traits_of(fault.kind);
+  for_each_masked_taxel(fault, array_, [&](std::size_t taxel) {
+    masked_[taxel] = 1;
+    if (traits.hides_conductance) unknown_[taxel] = 1;
+  });
+  if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
+  if (traits.effect == LineFaultEffect::shorted) {
+    shorted_.push_back({*traits.axis, fault.place, ratio_of_shorted_lines(array_, *traits.axis, fault.place)});
+  }
+  if (circuits_) add_to_circuit(fault, circuits_->faulty);
+}
+
+void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const {
+  const LineFaultTraits& traits = traits_of(fault.kind);
+  switch (traits.effect) {
+    case LineFaultEffect::silent:
+      fault.grounded ? circuit.ground_line(*traits.axis, fault.place) : circuit.open_line(*traits.axis, fault.place);
       break;
-    case LineFaultKind::silent_column:
-      mask_column(fault.place, true);
-      if (circuit != nullptr) {
-        fault.grounded ? circuit->ground_column(fault.place) : circuit->open_column(fault.place);
+    case LineFaultEffect::supplied:
+      if (traits.axis == Axis::column) {
+        circuit.tie_column_to_supply(fault.place);
+      } else if (driven_axis(array_) == Axis::row) {  // its readings subtracted, it is a row with an ideal driver
+        circuit.set_drive_ohm(fault.place, 0.0);
       }
       break;
-    case LineFaultKind::supplied_row:  // its readings subtracted, it is a row with an ideal driver
-      mask_row(fault.place, false);
-      supplied_rows_.push_back(fault.place);
-      if (circuit != nullptr && array_.readout.circuit != Circuit::flexitac) circuit->set_drive_ohm(fault.place, 0.0);
-      break;
-    case LineFaultKind::supplied_column:
-      mask_column(fault.place, true);
-      if (circuit != nullptr) circuit->tie_column_to_supply(fault.place);
-      break;
-    case LineFaultKind::shorted_rows:
-      mask_row(fault.place, false);
-      mask_row(fault.place + 1, false);
-      shorted_.push_back({true, fault.place, ratio_of_shorted_lines(array_, true, fault.place)});
-      if (circuit != nullptr) circuit->join_rows(fault.place);
-      break;
-    case LineFaultKind::shorted_columns:
-      mask_column(fault.place, false);
-      mask_column(fault.place + 1, false);
-      shorted_.push_back({false, fault.place, ratio_of_shorted_lines(array_, false, fault.place)});
-      if (circuit != nullptr) circuit->join_columns(fault.place);
-      break;
-    case LineFaultKind::stuck_taxel: mask(fault.place, true); break;
-    case LineFaultKind::dead_taxel: mask(fault.place, false); break;
-    case LineFaultKind::drifting_driver: break;  // reported alone: nothing is to be spoilt by a wrong suspicion
+    case LineFaultEffect::shorted: circuit.join_lines(*traits.axis, fault.place); break;
+    case LineFaultEffect::stuck:
+    case LineFaultEffect::dead:
+    case LineFaultEffect::drifting: break;  // of the reading, of the taxel's conductance, reported alone
   }
-}
-
-void FaultInversion::mask_row(std::size_t row, bool unknown) {
-  for (std::size_t col = 0; col < array_.cols; ++col) mask(array_.index(row, col), unknown);
-}
-
-void FaultInversion::mask_column(std::size_t col, bool unknown) {
-  for (std::size_t row = 0; row < array_.rows; ++row) mask(array_.index(row, col), unknown);
-}
-
-void FaultInversion::mask(std::size_t taxel, bool unknown) {
-  masked_[taxel] = 1;
-  if (unknown) unknown_[taxel] = 1;
 }
 
 InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<const double> ratio,
@@ -180,9 +161,9 @@ double FaultInversion::correct(bool first) noexcept {
 /// Two lines that are one node give the same reading twice, in a known ratio; what differs is noise.
 void FaultInversion::average_shorted_lines() noexcept {
   for (const ShortedLines& pair : shorted_) {
-    for (std::size_t k = 0; k < (pair.rows ? array_.cols : array_.rows); ++k) {
-      double& first = measured_[pair.rows ? array_.index(pair.first, k) : array_.index(k, pair.first)];
-      double& second = measured_[pair.rows ? array_.index(pair.first + 1, k) : array_.index(k, pair.first + 1)];
+    for (std::size_t k = 0; k < line_length(array_, pair.axis); ++k) {
+      double& first = measured_[taxel_on_line(array_, pair.axis, pair.first, k)];
+      double& second = measured_[taxel_on_line(array_, pair.axis, pair.first + 1, k)];
       const double fitted = (pair.ratio * first + second) / (pair.ratio * pair.ratio + 1.0);
       first = pair.ratio * fitted;
       second = fitted;

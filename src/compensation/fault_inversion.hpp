@@ -9,7 +9,8 @@
 
 #include "compensation/lumped_circuit.hpp"
 #include "dermis/compensation/crosstalk.hpp"
-#include "dermis/compensation/line_faults.hpp"
+#include "dermis/compensation/line_fault.hpp"
+#include "dermis/core/axis.hpp"
 
 namespace dermis::compensation {
 
@@ -45,15 +46,13 @@ class FaultInversion {
   };
 
   struct ShortedLines {
-    bool rows;
+    Axis axis;
     std::size_t first;
     double ratio;  ///< Reading of the first line over that of the second.
   };
 
   void add(const LineFault& fault);
-  void mask_row(std::size_t row, bool unknown);
-  void mask_column(std::size_t col, bool unknown);
-  void mask(std::size_t taxel, bool unknown);
+  void add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const;
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
   double correct(bool first) noexcept;

@@ -18,6 +18,7 @@ constexpr double kLeakSiemens = 1e-15;      // holds a line that is connected to
 
 LumpedCircuit::LumpedCircuit(const ArrayDescription& array)
     : array_(array),
+      driven_(driven_axis(array)),
       nodes_(array.rows + array.cols),
       right_columns_(array.driven_lines() + (one_loaded() ? array.sensed_lines() : 0)),
       matrix_(nodes_ * nodes_),
@@ -40,41 +41,22 @@ void LumpedCircuit::restore() {
   is_open_.assign(nodes_, false);
 }
 
-void LumpedCircuit::open_row(std::size_t row) {
-  open_line(row);
+void LumpedCircuit::open_line(Axis axis, std::size_t line) {
+  is_open_[node_of(axis, line)] = true;
+  (axis == driven_ ? drive_siemens_ : load_siemens_)[line] = 0.0;
 }
 
-void LumpedCircuit::open_column(std::size_t col) {
-  open_line(array_.rows + col);
+void LumpedCircuit::ground_line(Axis axis, std::size_t line) {
+  open_line(axis, line);
+  ground_siemens_[node_of(axis, line)] = kShortSiemens;
 }
 
-void LumpedCircuit::ground_row(std::size_t row) {
-  open_line(row);
-  ground_siemens_[row] = kShortSiemens;
-}
-
-void LumpedCircuit::ground_column(std::size_t col) {
-  open_line(array_.rows + col);
-  ground_siemens_[array_.rows + col] = kShortSiemens;
-}
-
-void LumpedCircuit::open_line(std::size_t node) {
-  is_open_[node] = true;
-  const std::size_t line = node < array_.rows ? node : node - array_.rows;
-  const bool is_driven = (node < array_.rows) != flexitac();
-  (is_driven ? drive_siemens_ : load_siemens_)[line] = 0.0;
+void LumpedCircuit::join_lines(Axis axis, std::size_t line) {
+  joint_siemens_[node_of(axis, line)] = axis == Axis::row ? kShortSiemens : kShortSiemens * ground_gain();
 }
 
 void LumpedCircuit::tie_column_to_supply(std::size_t col) {
-  supply_siemens_[array_.rows + col] = kShortSiemens * ground_gain();
-}
-
-void LumpedCircuit::join_rows(std::size_t row) {
-  joint_siemens_[row] = kShortSiemens;
-}
-
-void LumpedCircuit::join_columns(std::size_t col) {
-  joint_siemens_[array_.rows + col] = kShortSiemens * ground_gain();
+  supply_siemens_[node_of(Axis::column, col)] = kShortSiemens * ground_gain();
 }
 
 void LumpedCircuit::set_drive_ohm(std::size_t driven_line, double ohm) {
@@ -86,11 +68,11 @@ double LumpedCircuit::ground_gain() const noexcept {
 }
 
 bool LumpedCircuit::rows_float() const noexcept {
-  return !flexitac() && array_.readout.idle_rows == IdleRows::floating;
+  return driven_ == Axis::row && array_.readout.idle_rows == IdleRows::floating;
 }
 
 bool LumpedCircuit::one_loaded() const noexcept {
-  return flexitac() ||
+  return driven_ == Axis::column ||
          (array_.readout.circuit == Circuit::divider && array_.readout.idle_columns == IdleColumns::floating);
 }
 
@@ -207,13 +189,13 @@ void LumpedCircuit::read(std::size_t scan, std::size_t driven, std::size_t first
     } else {
       reading *= load_siemens_[line] * array_.readout.load_ohm[line];  // virtual ground: current times resistor
     }
-    ratio[flexitac() ? array_.index(line, driven) : array_.index(driven, line)] = reading;
+    ratio[taxel_on_line(array_, driven_, driven, line)] = reading;
   }
 }
 
-double ratio_of_shorted_lines(const ArrayDescription& array, bool rows, std::size_t line) noexcept {
+double ratio_of_shorted_lines(const ArrayDescription& array, Axis axis, std::size_t line) noexcept {
   const Readout& readout = array.readout;
-  const bool driven = rows == (readout.circuit != Circuit::flexitac);
+  const bool driven = axis == driven_axis(array);
   const bool opposed = readout.circuit == Circuit::flexitac || readout.idle_rows == IdleRows::grounded;
   if (readout.circuit == Circuit::none || !driven || !opposed) return 1.0;
   const double first = readout.drive_ohm[line];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dermis/core/array_description.hpp"
+#include "dermis/core/axis.hpp"
 
 namespace dermis::compensation {
 
@@ -22,30 +23,24 @@ class LumpedCircuit {
   /// Takes all faults away.
   void restore();
 
-  void open_row(std::size_t row);
-  void open_column(std::size_t col);
-  void ground_row(std::size_t row);
-  void ground_column(std::size_t col);
+  void open_line(Axis axis, std::size_t line);
+  void ground_line(Axis axis, std::size_t line);
+  void join_lines(Axis axis, std::size_t line);  ///< With the next row or column.
   void tie_column_to_supply(std::size_t col);
-  void join_rows(std::size_t row);     ///< With the next row.
-  void join_columns(std::size_t col);  ///< With the next column.
   void set_drive_ohm(std::size_t driven_line, double ohm);
 
   /// Readings over the supply [rows, cols]. Allocates nothing.
   void solve(std::span<const double> siemens, std::span<double> ratio) noexcept;
 
  private:
-  [[nodiscard]] bool flexitac() const noexcept { return array_.readout.circuit == Circuit::flexitac; }
   [[nodiscard]] double ground_gain() const noexcept;
   [[nodiscard]] bool rows_float() const noexcept;
   [[nodiscard]] bool one_loaded() const noexcept;
-  [[nodiscard]] std::size_t driven_node(std::size_t line) const noexcept {
-    return flexitac() ? array_.rows + line : line;
+  [[nodiscard]] std::size_t node_of(Axis axis, std::size_t line) const noexcept {
+    return axis == Axis::row ? line : array_.rows + line;
   }
-  [[nodiscard]] std::size_t sensed_node(std::size_t line) const noexcept {
-    return flexitac() ? line : array_.rows + line;
-  }
-  void open_line(std::size_t node);
+  [[nodiscard]] std::size_t driven_node(std::size_t line) const noexcept { return node_of(driven_, line); }
+  [[nodiscard]] std::size_t sensed_node(std::size_t line) const noexcept { return node_of(crossing(driven_), line); }
   void assemble(std::span<const double> siemens) noexcept;
   void add_drivers(std::size_t driven) noexcept;
   void add_sources(std::size_t scan, std::size_t driven) noexcept;
@@ -56,6 +51,7 @@ class LumpedCircuit {
   void read(std::size_t scan, std::size_t driven, std::size_t first_probe, std::span<double> ratio) const noexcept;
 
   ArrayDescription array_;
+  Axis driven_;
   std::size_t nodes_;                   // rows, then columns
   std::vector<double> drive_siemens_;   // [driven lines]
   std::vector<double> load_siemens_;    // [sensed lines]
@@ -71,6 +67,6 @@ class LumpedCircuit {
 
 /// Reading of a row (or column) over that of the next one where both are one node: grounded idle rows work against the
 /// driven one through their drivers.
-[[nodiscard]] double ratio_of_shorted_lines(const ArrayDescription& array, bool rows, std::size_t line) noexcept;
+[[nodiscard]] double ratio_of_shorted_lines(const ArrayDescription& array, Axis axis, std::size_t line) noexcept;
 
 }  // namespace dermis::compensation

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "dermis/core/neighbours.hpp"
+
 namespace dermis::compensation {
 namespace {
 
@@ -57,7 +59,7 @@ class OffsetDrift::Implementation {
   void take_block_as_zero() noexcept;
   void find_pressed() noexcept;
   void hold_pressed(double block_s) noexcept;
-  [[nodiscard]] bool pressed_nearby(std::size_t row, std::size_t col) const noexcept;
+  [[nodiscard]] bool pressed_nearby(std::size_t taxel) const noexcept;
   void follow_idle(double block_s) noexcept;
   void follow(std::size_t taxel, double block_s) noexcept;
   [[nodiscard]] double unloaded_siemens(std::size_t taxel) const noexcept;
@@ -237,21 +239,14 @@ void OffsetDrift::Implementation::find_pressed() noexcept {
 }
 
 void OffsetDrift::Implementation::hold_pressed(double block_s) noexcept {
-  for (std::size_t row = 0; row < shape_.rows; ++row) {
-    for (std::size_t col = 0; col < shape_.cols; ++col) {
-      float& hold_s = hold_s_[row * shape_.cols + col];
-      hold_s = pressed_nearby(row, col) ? kCreepBackS : std::max(0.0F, hold_s - static_cast<float>(block_s));
-    }
+  for (std::size_t k = 0; k < hold_s_.size(); ++k) {
+    hold_s_[k] = pressed_nearby(k) ? kCreepBackS : std::max(0.0F, hold_s_[k] - static_cast<float>(block_s));
   }
 }
 
-bool OffsetDrift::Implementation::pressed_nearby(std::size_t row, std::size_t col) const noexcept {
-  const std::size_t last_row = std::min(row + 1, shape_.rows - 1);
-  const std::size_t last_col = std::min(col + 1, shape_.cols - 1);
-  for (std::size_t r = row - std::min<std::size_t>(row, 1); r <= last_row; ++r) {
-    for (std::size_t c = col - std::min<std::size_t>(col, 1); c <= last_col; ++c) {
-      if (pressed_[r * shape_.cols + c] != 0) return true;
-    }
+bool OffsetDrift::Implementation::pressed_nearby(std::size_t taxel) const noexcept {
+  for (const std::size_t near : Neighbours(shape_.rows, shape_.cols, taxel)) {
+    if (pressed_[near] != 0) return true;
   }
   return false;
 }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "dermis/core/neighbours.hpp"
 #include "fusion/contact_gauge.hpp"
 #include "fusion/contact_tracks.hpp"
 #include "fusion/stressed_areas.hpp"
@@ -117,14 +118,9 @@ class ContactTracker::Implementation {
 
   /// No taxel of another area beside it is stronger; else it is the rim of that one.
   [[nodiscard]] bool is_top(const ForceFrame& force, std::span<const std::uint32_t> area, std::uint32_t taxel) const {
-    const std::size_t row = taxel / cols_;
-    const std::size_t col = taxel % cols_;
-    for (std::size_t r = row > 0 ? row - 1 : 0; r <= std::min(row + 1, rows_ - 1); ++r) {
-      for (std::size_t c = col > 0 ? col - 1 : 0; c <= std::min(col + 1, cols_ - 1); ++c) {
-        const auto beside = static_cast<std::uint32_t>(r * cols_ + c);
-        if (!(force.newtons[beside] > force.newtons[taxel])) continue;
-        if (std::find(area.begin(), area.end(), beside) == area.end()) return false;
-      }
+    for (const std::size_t beside : Neighbours(rows_, cols_, taxel)) {
+      if (!(force.newtons[beside] > force.newtons[taxel])) continue;
+      if (std::find(area.begin(), area.end(), beside) == area.end()) return false;
     }
     return true;
   }

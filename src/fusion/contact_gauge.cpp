@@ -7,6 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "dermis/core/neighbours.hpp"
+
 namespace dermis::fusion {
 namespace {
 
@@ -174,18 +176,11 @@ void ContactGauge::gather(const ForceFrame& force, std::span<const std::uint32_t
     add_taxel(force, taxel);
   }
   for (const std::uint32_t taxel : taxels) {
-    const std::size_t row = taxel / cols_;
-    const std::size_t col = taxel % cols_;
-    const std::size_t last_row = std::min(row + 1, rows_ - 1);
-    const std::size_t last_col = std::min(col + 1, cols_ - 1);
-    for (std::size_t r = row > 0 ? row - 1 : 0; r <= last_row; ++r) {
-      for (std::size_t c = col > 0 ? col - 1 : 0; c <= last_col; ++c) {
-        const std::size_t beside = r * cols_ + c;
-        if (visited_[beside] == area_) continue;
-        visited_[beside] = area_;
-        const bool is_of_other = force.newtons[beside] >= pressed_sigma_ * force.sigma_newtons[beside];
-        if (!is_of_other) add_taxel(force, static_cast<std::uint32_t>(beside));
-      }
+    for (const std::size_t beside : Neighbours(rows_, cols_, taxel)) {
+      if (visited_[beside] == area_) continue;
+      visited_[beside] = area_;
+      const bool is_of_other = force.newtons[beside] >= pressed_sigma_ * force.sigma_newtons[beside];
+      if (!is_of_other) add_taxel(force, static_cast<std::uint32_t>(beside));
     }
   }
 }

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "dermis/compensation/line_faults.hpp"
+#include "dermis/compensation/line_fault.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"

@@ -5,45 +5,12 @@
 #include <cstddef>
 #include <memory>
 #include <span>
-#include <string>
-#include <vector>
 
+#include "dermis/compensation/line_fault.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
-#include "dermis/core/result.hpp"
 
 namespace dermis::compensation {
-
-/// What can be seen of a fault from the readings alone.
-enum class LineFaultKind {
-  silent_row,       ///< Open or shorted to 0 V: nothing arrives from the row.
-  silent_column,    ///< The same of a column.
-  supplied_row,     ///< Shorted to the supply: every scan also holds its readings.
-  supplied_column,  ///< Shorted to the supply: it reads full scale whatever is pressed.
-  shorted_rows,     ///< Shorted to the next row: both read their sum.
-  shorted_columns,  ///< Shorted to the next column.
-  stuck_taxel,      ///< Its reading stays the same, noise included.
-  dead_taxel,       ///< Reads less than an unloaded taxel can.
-  drifting_driver,  ///< The resistance of a driver has risen: the whole line sags with its own current.
-};
-
-struct LineFault {
-  LineFaultKind kind = LineFaultKind::silent_row;
-  std::size_t place = 0;   ///< Row or column (the first of two), driven line, or row-major taxel.
-  std::size_t frame = 0;   ///< First frame in which it showed, counted from 0.
-  Nanos time{};            ///< Time of that frame.
-  double drive_ohm = 0.0;  ///< drifting_driver: its resistance now [ohm].
-  /// Silent lines: log-likelihood ratio of a short to 0 V against an open line, -30 ... 30. Both read the same, but
-  /// take different currents from the other lines where they are pressed; 0 until they have been.
-  double ground_evidence = 0.0;
-  bool grounded = false;  ///< Taken to be shorted to 0 V, not open: from evidence 10 until it has fallen to -10.
-};
-
-/// "silent_row", ...
-[[nodiscard]] const char* to_string(LineFaultKind kind) noexcept;
-
-/// "row 3", "columns 4 and 5", "taxel r3c5", "driver of row 3".
-[[nodiscard]] std::string place_name(const LineFault& fault, const ArrayDescription& array);
 
 /// Finds line faults in a stream of frames, and sees when they are gone. What it knows is the conductance of the
 /// unloaded taxels and the noise of a reading:

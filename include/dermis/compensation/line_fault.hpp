@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/axis.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::compensation {
+
+/// What can be seen of a fault from the readings alone.
+enum class LineFaultKind {
+  silent_row,       ///< Open or shorted to 0 V: nothing arrives from the row.
+  silent_column,    ///< The same of a column.
+  supplied_row,     ///< Shorted to the supply: every scan also holds its readings.
+  supplied_column,  ///< Shorted to the supply: it reads full scale whatever is pressed.
+  shorted_rows,     ///< Shorted to the next row: both read their sum.
+  shorted_columns,  ///< Shorted to the next column.
+  stuck_taxel,      ///< Its reading stays the same, noise included.
+  dead_taxel,       ///< Reads less than an unloaded taxel can.
+  drifting_driver,  ///< The resistance of a driver has risen: the whole line sags with its own current.
+};
+
+/// What has happened, wherever it is.
+enum class LineFaultEffect { silent, supplied, shorted, stuck, dead, drifting };
+
+/// What a fault is on.
+enum class LineFaultScope { line, line_pair, taxel, driver };
+
+/// What is common to all faults of a kind.
+struct LineFaultTraits {
+  const char* name = "";  ///< "silent_row", ...
+  LineFaultEffect effect = LineFaultEffect::silent;
+  LineFaultScope scope = LineFaultScope::line;
+  std::optional<Axis> axis;        ///< Of the line or lines; empty for taxels and drivers.
+  bool hides_conductance = false;  ///< No reading tells the conductance of the masked taxels.
+};
+
+[[nodiscard]] const LineFaultTraits& traits_of(LineFaultKind kind) noexcept;
+
+struct LineFault {
+  LineFaultKind kind = LineFaultKind::silent_row;
+  std::size_t place = 0;   ///< Row or column (the first of two), driven line, or row-major taxel.
+  std::size_t frame = 0;   ///< First frame in which it showed, counted from 0.
+  Nanos time{};            ///< Time of that frame.
+  double drive_ohm = 0.0;  ///< drifting_driver: its resistance now [ohm].
+  /// Silent lines: log-likelihood ratio of a short to 0 V against an open line, -30 ... 30. Both read the same, but
+  /// take different currents from the other lines where they are pressed; 0 until they have been.
+  double ground_evidence = 0.0;
+  bool grounded = false;  ///< Taken to be shorted to 0 V, not open: from evidence 10 until it has fallen to -10.
+};
+
+/// "silent_row", ...
+[[nodiscard]] const char* to_string(LineFaultKind kind) noexcept;
+
+/// "row 3", "columns 4 and 5", "taxel r3c5", "driver of row 3".
+[[nodiscard]] std::string place_name(const LineFault& fault, const ArrayDescription& array);
+
+/// Taxels whose readings are not their own: all on the faulty lines, or the faulty one; none for a drifting driver,
+/// which is reported alone, as nothing is to be spoilt by a wrong suspicion.
+[[nodiscard]] std::size_t masked_taxel_count(const LineFault& fault, const ArrayDescription& array) noexcept;
+
+}  // namespace dermis::compensation

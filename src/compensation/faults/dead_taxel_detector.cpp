@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/faults/dead_taxel_detector.hpp"
+
+#include <limits>
+
+namespace dermis::compensation {
+
+DeadTaxelDetector::DeadTaxelDetector(const ArrayDescription& array)
+    : floor_(floor_evidence(array.readout.adc_noise_counts)),
+      evidence_(array.taxel_count()),
+      dead_(array.taxel_count()),
+      since_(array.taxel_count()),
+      alive_(array.taxel_count()) {}
+
+void DeadTaxelDetector::judge(const Observation& seen, FaultList& faults) noexcept {
+  if (!seen.solved) return;
+  const TaxelBlock block = TaxelBlock::of_frame(seen.frame, dead_.size());
+  weigh(seen, block);
+  const float most = add_up(seen.frame, block);
+  if (most < static_cast<float>(kEvidence) && !faults.contains(LineFaultKind::dead_taxel)) return;
+  for (std::size_t taxel = block.from; taxel < block.to; ++taxel) judge_taxel(seen, taxel, faults);
+}
+
+void DeadTaxelDetector::weigh(const Observation& seen, const TaxelBlock& block) noexcept {
+  const auto [from, to] = block;
+  const FloorEvidence floor = floor_;
+  const double* const siemens = seen.conductance.siemens.data();
+  const double* const sigma = seen.conductance.sigma_siemens.data();
+  const double* const unloaded = seen.unloaded.siemens().data();
+  const float* const expected = seen.unloaded.least_reading().data();
+  float* const evidence = evidence_.data();
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
+    const auto per_sigma = 1.0F / static_cast<float>(sigma[taxel]);
+    const float conductance = static_cast<float>(siemens[taxel]) * per_sigma;
+    const float least = static_cast<float>(kUnloadedShare * unloaded[taxel]) * per_sigma;
+    const float mean = expected[taxel] > 0.0F ? least : 0.0F;
+    evidence[taxel] = silence_evidence(conductance, mean, std::numeric_limits<float>::min(), floor, kMostForTaxel);
+  }
+}
+
+/// The largest of the block's sums.
+float DeadTaxelDetector::add_up(std::size_t frame, const TaxelBlock& block) noexcept {
+  const auto [from, to] = block;
+  const auto next_frame = static_cast<std::int32_t>(frame) + 1;
+  const float* const evidence = evidence_.data();
+  float* const dead = dead_.data();
+  std::int32_t* const since = since_.data();
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
+    const float sum = dead[taxel] + evidence[taxel];
+    const std::int32_t began = since[taxel];
+    since[taxel] = sum > 0.0F ? began : next_frame;
+    dead[taxel] = sum > 0.0F ? sum : 0.0F;
+  }
+  float most = 0.0F;
+  for (std::size_t taxel = from; taxel < to; ++taxel) most = dead[taxel] > most ? dead[taxel] : most;
+  return most;
+}
+
+void DeadTaxelDetector::judge_taxel(const Observation& seen, std::size_t taxel, FaultList& faults) noexcept {
+  const std::uint8_t causes = faults.causes(taxel);
+  if ((causes & ~kDeadCause) != 0) {
+    dead_[taxel] = 0.0F;
+    since_[taxel] = static_cast<std::int32_t>(seen.frame) + 1;
+  } else if ((causes & kDeadCause) != 0) {
+    alive_[taxel].add(static_cast<double>(-evidence_[taxel]), seen.frame, seen.conditioned.time);
+    if (!alive_[taxel].decides(kHealFrames)) return;
+    faults.remove(LineFaultKind::dead_taxel, taxel);
+    dead_[taxel] = 0.0F;
+  } else if (dead_[taxel] >= static_cast<float>(kEvidence)) {
+    faults.add({.kind = LineFaultKind::dead_taxel,
+                .place = taxel,
+                .frame = static_cast<std::size_t>(since_[taxel]),
+                .time = seen.conditioned.time});
+    alive_[taxel].restart();
+  }
+}
+
+}  // namespace dermis::compensation

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/faults/drifting_driver_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "compensation/faults/untouched.hpp"
+#include "dermis/core/axis.hpp"
+
+namespace dermis::compensation {
+namespace {
+
+constexpr LineFaultKind kKind = LineFaultKind::drifting_driver;
+constexpr double kSigmas = 5.0;       // when the current rises and when it falls
+constexpr double kMostOutlier = 3.0;  // standard deviations
+constexpr double kLeastSag = 0.03;    // of the typical loaded line
+constexpr double kLeastShare = 0.25;  // of the driver's resistance
+constexpr double kLeastPairs = 20.0;
+constexpr std::size_t kLinesPerFrame = 3;  // no divisor of usual numbers of lines: recurring loads meet all
+constexpr double kMemory = 0.998;          // per pair of frames
+constexpr double kDoubtOfUnloaded = 0.1;   // relative, from one frame to the next: temperature, memory
+
+bool masks_taxels(const LineFault& fault) {
+  return fault.kind != kKind;
+}
+
+}  // namespace
+
+void DriftingDriverDetector::Fit::add(double slope, double value, double variance, double load) {
+  normal = kMemory * normal + slope * slope / variance;
+  moment = kMemory * moment + slope * value / variance;
+  square = kMemory * square + value * value / variance;
+  loads = kMemory * loads + slope * slope / variance * load * load;
+  pairs = kMemory * pairs + 1.0;
+}
+
+/// From the scatter of what was fitted, which memory of the material makes wider than noise alone.
+double DriftingDriverDetector::Fit::deviation() const {
+  const double scatter = (square - moment * moment / normal) / pairs;
+  return std::sqrt(std::max(scatter, 1.0) / normal);
+}
+
+double DriftingDriverDetector::Fit::typical_load() const {
+  return std::sqrt(loads / normal);
+}
+
+DriftingDriverDetector::DriftingDriverDetector(const ArrayDescription& array)
+    : array_(array),
+      drivers_(array.driven_lines()),
+      touched_(array.sensed_lines()),
+      last_siemens_(array.taxel_count()),
+      last_line_siemens_(array.driven_lines()) {}
+
+void DriftingDriverDetector::judge(const Observation& seen, FaultList& faults) noexcept {
+  const bool can_judge = seen.solved && knows_what_currents_take(array_.readout) &&
+                         std::none_of(faults.all().begin(), faults.all().end(), masks_taxels);
+  const bool has_last = std::exchange(has_last_, can_judge);
+  if (!can_judge) return;
+  for (std::size_t turn = 0; turn < kLinesPerFrame && has_last; ++turn) {
+    compare_with_last(seen, (kLinesPerFrame * seen.frame + turn) % drivers_.size(), faults);
+  }
+  remember(seen);
+}
+
+void DriftingDriverDetector::compare_with_last(const Observation& seen, std::size_t line, FaultList& faults) noexcept {
+  const double rise = seen.sums.driven_siemens()[line] - last_line_siemens_[line];
+  auto [now, last, variance, unloaded_siemens] = untouched_pair(seen, line);
+  if (std::abs(rise) < kPressedShare * unloaded_siemens || !(variance > 0.0)) return;
+  Driver& driver = drivers_[line];
+  if (driver.fallen.pairs + driver.risen.pairs == 0.0) {
+    driver.first_frame = seen.frame;
+    driver.first_time = seen.conditioned.time;
+  }
+  const double mean = 0.5 * (now + last);
+  variance += std::pow(kDoubtOfUnloaded * mean, 2);
+  const double most = kMostOutlier * std::sqrt(variance);
+  Fit& fit = rise > 0.0 ? driver.risen : driver.fallen;
+  fit.add(mean * rise, std::clamp(last - now, -most, most), variance, rise);
+  judge_driver(line, faults);
+}
+
+DriftingDriverDetector::Pair DriftingDriverDetector::untouched_pair(const Observation& seen,
+                                                                    std::size_t line) noexcept {
+  find_touched(seen, line);
+  const Axis driven = driven_axis(array_);
+  Pair pair;
+  for (std::size_t place = 0; place < touched_.size(); ++place) {
+    const std::size_t taxel = taxel_on_line(array_, driven, line, place);
+    const double unloaded_siemens = seen.unloaded.siemens()[taxel];
+    pair.unloaded_siemens += unloaded_siemens;
+    if (!(unloaded_siemens > 0.0) || touched_[place] != 0) continue;
+    const double sigma_siemens = seen.conductance.sigma_siemens[taxel];
+    pair.now += seen.conductance.siemens[taxel];
+    pair.last += last_siemens_[taxel];
+    pair.variance += 2.0 * sigma_siemens * sigma_siemens;
+  }
+  return pair;
+}
+
+/// Places of a line near which the line or one beside it is touched: reads more than an unloaded taxel, in this frame
+/// or in the last one.
+void DriftingDriverDetector::find_touched(const Observation& seen, std::size_t line) noexcept {
+  const Axis driven = driven_axis(array_);
+  const std::size_t places = touched_.size();
+  const double* const siemens = seen.conductance.siemens.data();
+  const double* const sigma_siemens = seen.conductance.sigma_siemens.data();
+  std::fill(touched_.begin(), touched_.end(), std::uint8_t{0});
+  const std::size_t first = line - std::min<std::size_t>(line, 1);
+  const std::size_t last = std::min(line + 1, drivers_.size() - 1);
+  for (std::size_t near = first; near <= last; ++near) {
+    for (std::size_t place = 0; place < places; ++place) {
+      const std::size_t taxel = taxel_on_line(array_, driven, near, place);
+      const double most = seen.unloaded.most_siemens(taxel, sigma_siemens[taxel]);
+      if (!(siemens[taxel] > most || last_siemens_[taxel] > most)) continue;
+      const std::size_t from = place - std::min(place, kContactReach);
+      const std::size_t to = std::min(place + kContactReach + 1, places);
+      std::fill(touched_.begin() + static_cast<std::ptrdiff_t>(from),
+                touched_.begin() + static_cast<std::ptrdiff_t>(to), std::uint8_t{1});
+    }
+  }
+}
+
+void DriftingDriverDetector::judge_driver(std::size_t line, FaultList& faults) noexcept {
+  const auto& [fallen, risen, first_frame, first_time] = drivers_[line];
+  if (std::min(fallen.pairs, risen.pairs) < kLeastPairs) return;
+  const double nominal_ohm = array_.readout.drive_ohm[line];
+  const double least_sag_ohm = kLeastSag / std::max(fallen.typical_load(), risen.typical_load());
+  const double least_ohm = std::max(kLeastShare * nominal_ohm, least_sag_ohm);
+  const auto has_risen = [&](const Fit& fit) {
+    return fit.estimate() > std::max(kSigmas * fit.deviation(), least_ohm);
+  };
+  const auto is_nominal = [&](const Fit& fit) { return fit.estimate() + fit.deviation() < least_ohm; };
+  const double ohm = nominal_ohm + (fallen.moment + risen.moment) / (fallen.normal + risen.normal);
+  const std::span<LineFault> all = faults.all();
+  const auto known = std::find_if(
+      all.begin(), all.end(), [line](const LineFault& fault) { return fault.kind == kKind && fault.place == line; });
+  if (known != all.end()) {
+    known->drive_ohm = ohm;
+    if (is_nominal(fallen) && is_nominal(risen)) faults.remove(kKind, line);
+  } else if (has_risen(fallen) && has_risen(risen)) {
+    faults.add({.kind = kKind, .place = line, .frame = first_frame, .time = first_time, .drive_ohm = ohm});
+  }
+}
+
+void DriftingDriverDetector::remember(const Observation& seen) noexcept {
+  const std::span<const double> line_siemens = seen.sums.driven_siemens();
+  std::copy(seen.conductance.siemens.begin(), seen.conductance.siemens.end(), last_siemens_.begin());
+  std::copy(line_siemens.begin(), line_siemens.end(), last_line_siemens_.begin());
+}
+
+}  // namespace dermis::compensation

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/faults/fault_list.hpp"
+
+#include <algorithm>
+
+#include "compensation/faults/masked_taxels.hpp"
+
+namespace dermis::compensation {
+namespace {
+
+std::uint8_t cause_of(const LineFaultTraits& traits) {
+  switch (traits.effect) {
+    case LineFaultEffect::silent:
+    case LineFaultEffect::supplied: return kLineCause[*traits.axis];
+    case LineFaultEffect::shorted: return kPairCause;
+    case LineFaultEffect::stuck: return kStuckCause;
+    case LineFaultEffect::dead: return kDeadCause;
+    case LineFaultEffect::drifting: break;
+  }
+  return 0;
+}
+
+}  // namespace
+
+FaultList::FaultList(const ArrayDescription& array)
+    : array_(array),
+      causes_(array.taxel_count()),
+      witnesses_{std::vector<float>(array.taxel_count(), 1.0F), std::vector<float>(array.taxel_count(), 1.0F)} {
+  faults_.reserve(3 * (array.rows + array.cols) + 2 * array.taxel_count());
+}
+
+void FaultList::add(const LineFault& fault) noexcept {
+  if (faults_.size() == faults_.capacity()) return;
+  faults_.push_back(fault);
+  mask_taxels();
+  count_change();
+}
+
+void FaultList::remove(LineFaultKind kind, std::size_t place) noexcept {
+  std::erase_if(faults_, [&](const LineFault& fault) { return fault.kind == kind && fault.place == place; });
+  mask_taxels();
+  count_change();
+}
+
+void FaultList::mask_taxels() noexcept {
+  std::fill(causes_.begin(), causes_.end(), std::uint8_t{0});
+  for (const LineFault& fault : faults_) {
+    const std::uint8_t cause = cause_of(traits_of(fault.kind));
+    for_each_masked_taxel(fault, array_, [&](std::size_t taxel) { causes_[taxel] |= cause; });
+  }
+  for (const Axis axis : kAxes) {
+    const int own = kLineCause[axis] | kDeadCause;
+    for (std::size_t taxel = 0; taxel < causes_.size(); ++taxel) {
+      witnesses_[axis][taxel] = (causes_[taxel] & ~own) == 0 ? 1.0F : 0.0F;
+    }
+  }
+}
+
+}  // namespace dermis::compensation

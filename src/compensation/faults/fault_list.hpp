@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dermis/compensation/line_fault.hpp"
+#include "dermis/core/axis.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::compensation {
+
+/// Why the reading of a taxel is not its own.
+inline constexpr std::uint8_t kRowCause = 1;
+inline constexpr std::uint8_t kColumnCause = 2;
+inline constexpr std::uint8_t kStuckCause = 4;
+inline constexpr std::uint8_t kDeadCause = 8;
+inline constexpr std::uint8_t kPairCause = 16;
+
+inline constexpr PerAxis<std::uint8_t> kLineCause{.row = kRowCause, .column = kColumnCause};
+
+/// The faults found so far, and the taxels that they mask.
+class FaultList {
+ public:
+  explicit FaultList(const ArrayDescription& array);
+
+  /// In the order in which they were found.
+  [[nodiscard]] std::span<const LineFault> all() const noexcept { return faults_; }
+  [[nodiscard]] std::span<LineFault> all() noexcept { return faults_; }
+
+  [[nodiscard]] bool contains(LineFaultKind kind, std::size_t place) const noexcept {
+    return std::any_of(faults_.begin(), faults_.end(),
+                       [&](const LineFault& fault) { return fault.kind == kind && fault.place == place; });
+  }
+  [[nodiscard]] bool contains(LineFaultKind kind) const noexcept {
+    return std::any_of(faults_.begin(), faults_.end(), [&](const LineFault& fault) { return fault.kind == kind; });
+  }
+
+  /// Does nothing when the list is full: there are more faults than a repair would look at.
+  void add(const LineFault& fault) noexcept;
+  void remove(LineFaultKind kind, std::size_t place) noexcept;
+
+  /// Counts how often the list has changed.
+  [[nodiscard]] std::size_t changes() const noexcept { return changes_; }
+  void count_change() noexcept { ++changes_; }
+
+  /// Bits of kRowCause ... kPairCause; 0: the reading is the taxel's own.
+  [[nodiscard]] std::uint8_t causes(std::size_t taxel) const noexcept { return causes_[taxel]; }
+
+  /// 1 where the taxel is evidence on its line, 0 where another fault than that of the line, or death, masks it.
+  [[nodiscard]] std::span<const float> witnesses(Axis axis) const noexcept { return witnesses_[axis]; }
+
+ private:
+  void mask_taxels() noexcept;
+
+  const ArrayDescription& array_;
+  std::vector<LineFault> faults_;
+  std::vector<std::uint8_t> causes_;       // [taxels]
+  PerAxis<std::vector<float>> witnesses_;  // [taxels]
+  std::size_t changes_ = 0;
+};
+
+}  // namespace dermis::compensation

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "compensation/faults/fault_list.hpp"
+#include "compensation/faults/observation.hpp"
+#include "dermis/core/axis.hpp"
+
+namespace dermis::compensation {
+
+/// Tells silent lines that are shorted to 0 V from open ones: shorted, a line takes current from the lines that cross
+/// it where it is pressed (as its neighbours are), and untouched taxels on those read less.
+class GroundedLineDetector {
+ public:
+  explicit GroundedLineDetector(const ArrayDescription& array);
+
+  void judge(const Observation& seen, FaultList& faults) noexcept;
+
+ private:
+  /// Of the untouched taxels of a line.
+  struct Sums {
+    double siemens = 0.0;
+    double expected = 0.0;
+    double variance = 0.0;
+  };
+
+  void find_untouched(const Observation& seen, const FaultList& faults) noexcept;
+  void touch_around_presses(const Observation& seen) noexcept;
+  void judge_line(const Observation& seen, LineFault& fault) const noexcept;
+  [[nodiscard]] double evidence_at(const Observation& seen, const LineFault& fault, std::size_t place) const noexcept;
+  [[nodiscard]] double taken_share(const Observation& seen, Axis axis, std::size_t place,
+                                   double pressed_siemens) const noexcept;
+  [[nodiscard]] Sums sums_on(const Observation& seen, Axis axis, std::size_t line) const noexcept;
+
+  const ArrayDescription& array_;
+  std::vector<std::uint8_t> untouched_;  // [taxels]
+  double common_share_ = 0.0;            // conductance over that of unloaded taxels, common to the array: temperature
+};
+
+}  // namespace dermis::compensation

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+namespace dermis::compensation {
+
+/// What the noise of a reading makes of one at the floor of the ADC.
+struct FloorEvidence {
+  float sigmas = 0.0F;       // readings below half a count are the floor
+  float slope = 0.0F;        // log P(floor | silent) / P(floor | mean), to second order in the mean:
+  float curvature = 0.0F;    // the least that it can be
+  double information = 0.0;  // mean evidence of a silent taxel over the squared expected reading
+};
+
+/// `noise_counts`: standard deviation of a reading, rounding included.
+[[nodiscard]] FloorEvidence floor_evidence(double noise_counts);
+
+/// Log-likelihood ratio of a silent taxel against one that reads `expected`, or more [standard deviations]: Gaussian
+/// noise, cut off at the floor of the ADC, where readings below `floor_end` are.
+inline float silence_evidence(float reading, float expected, float floor_end, const FloorEvidence& floor, float most) {
+  constexpr float kMostMean = 8.0F;  // beyond, silence is told by less than half of this many deviations
+  constexpr float kMostAgainst = -20.0F;
+  const float mean = expected < kMostMean ? expected : kMostMean;
+  const float above = mean * (0.5F * mean - reading);
+  const float at_floor = mean * (floor.slope + floor.curvature * mean);
+  const float ratio = reading < floor_end ? at_floor : above;
+  const float limited = ratio < most ? ratio : most;
+  return limited > kMostAgainst ? limited : kMostAgainst;
+}
+
+}  // namespace dermis::compensation

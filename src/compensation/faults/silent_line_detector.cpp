@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/faults/silent_line_detector.hpp"
+
+#include <algorithm>
+
+namespace dermis::compensation {
+namespace {
+
+constexpr float kMostForTaxel = 8.0F;  // evidence of one taxel in one frame
+constexpr double kFoundWithinFrames = 10.0;
+
+constexpr PerAxis<LineFaultKind> kSilent{.row = LineFaultKind::silent_row, .column = LineFaultKind::silent_column};
+constexpr PerAxis<LineFaultKind> kSupplied{.row = LineFaultKind::supplied_row,
+                                           .column = LineFaultKind::supplied_column};
+
+}  // namespace
+
+SilentLineDetector::SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded)
+    : array_(array),
+      unloaded_(unloaded),
+      floor_(floor_evidence(array.readout.adc_noise_counts)),
+      evidence_(array.taxel_count()),
+      line_evidence_{std::vector<float>(array.rows), std::vector<float>(array.cols)},
+      tests_{std::vector<LineTests>(array.rows), std::vector<LineTests>(array.cols)} {}
+
+void SilentLineDetector::judge(const Observation& seen, FaultList& faults) noexcept {
+  last_sigma_ratio_ = seen.conditioned.sigma_ratio;
+  weigh_taxels(seen);
+  sum_over_lines(faults);
+  for (const Axis axis : kAxes) judge_lines(seen, axis, faults);
+}
+
+bool SilentLineDetector::sees(Axis axis, std::size_t line) const noexcept {
+  double per_frame = 0.0;
+  for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
+    const double unloaded_ratio = unloaded_.ratio()[taxel_on_line(array_, axis, line, k)];
+    const double mean = kUnloadedShare * unloaded_ratio / last_sigma_ratio_;
+    per_frame += std::min(floor_.information * mean * mean, static_cast<double>(kMostForTaxel));
+  }
+  return last_sigma_ratio_ > 0.0 && per_frame >= kEvidence / kFoundWithinFrames;
+}
+
+void SilentLineDetector::weigh_taxels(const Observation& seen) noexcept {
+  const std::size_t taxels = evidence_.size();
+  const double per_sigma = 1.0 / seen.conditioned.sigma_ratio;
+  const FloorEvidence floor = floor_;
+  const double* const ratios = seen.conditioned.ratio.data();
+  const float* const expected = unloaded_.least_reading().data();
+  float* const evidence = evidence_.data();
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    const auto reading = static_cast<float>(ratios[taxel] * per_sigma);
+    evidence[taxel] = silence_evidence(reading, expected[taxel], floor.sigmas, floor, kMostForTaxel);
+  }
+}
+
+void SilentLineDetector::sum_over_lines(const FaultList& faults) noexcept {
+  const std::size_t cols = array_.cols;
+  float* const columns = line_evidence_.column.data();
+  std::fill_n(columns, cols, 0.0F);
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    const float* const evidence = &evidence_[row * cols];
+    const float* const of_column = &faults.witnesses(Axis::column)[row * cols];
+    const float* const of_row = &faults.witnesses(Axis::row)[row * cols];
+    for (std::size_t col = 0; col < cols; ++col) columns[col] += of_column[col] * evidence[col];
+    float parts[4] = {};
+    for (std::size_t col = 0; col < cols; ++col) parts[col % 4] += of_row[col] * evidence[col];
+    line_evidence_.row[row] = (parts[0] + parts[1]) + (parts[2] + parts[3]);
+  }
+}
+
+void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept {
+  const Nanos time = seen.conditioned.time;
+  for (std::size_t line = 0; line < line_count(array_, axis); ++line) {
+    if (faults.contains(kSupplied[axis], line)) continue;
+    const auto evidence = static_cast<double>(line_evidence_[axis][line]);
+    auto& [silent, alive] = tests_[axis][line];
+    if (!faults.contains(kSilent[axis], line)) {
+      silent.add(evidence, seen.frame, time);
+      if (!silent.decides(kLineFrames)) continue;
+      faults.add({.kind = kSilent[axis], .place = line, .frame = silent.first_frame, .time = silent.first_time});
+      alive.restart();
+    } else {
+      alive.add(-evidence, seen.frame, time);
+      if (!alive.decides(kHealFrames)) continue;
+      faults.remove(kSilent[axis], line);
+      silent.restart();
+    }
+  }
+}
+
+}  // namespace dermis::compensation

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "compensation/faults/fault_list.hpp"
+#include "compensation/faults/observation.hpp"
+#include "compensation/faults/page_test.hpp"
+#include "compensation/faults/silence_evidence.hpp"
+#include "dermis/core/axis.hpp"
+
+namespace dermis::compensation {
+
+/// A line is silent when its taxels read less than unloaded ones would, all together: evidence that each is silent,
+/// summed over the line and the frames.
+class SilentLineDetector {
+ public:
+  SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded);
+
+  void judge(const Observation& seen, FaultList& faults) noexcept;
+
+  /// The line would be missed within 10 frames. False until the first frame.
+  [[nodiscard]] bool sees(Axis axis, std::size_t line) const noexcept;
+
+ private:
+  struct LineTests {
+    PageTest silent;
+    PageTest alive;  // of a line that was found to be silent
+  };
+
+  void weigh_taxels(const Observation& seen) noexcept;
+  void sum_over_lines(const FaultList& faults) noexcept;
+  void judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept;
+
+  const ArrayDescription& array_;
+  const UnloadedTaxels& unloaded_;
+  FloorEvidence floor_;
+  double last_sigma_ratio_ = 0.0;
+  std::vector<float> evidence_;                // that the taxel is silent, of this frame [taxels]
+  PerAxis<std::vector<float>> line_evidence_;  // sums of it
+  PerAxis<std::vector<LineTests>> tests_;
+};
+
+}  // namespace dermis::compensation

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "compensation/faults/fault_list.hpp"
+#include "compensation/faults/observation.hpp"
+#include "compensation/faults/taxel_block.hpp"
+
+namespace dermis::compensation {
+
+/// Noise moves a reading to another count with a probability that is known, and that taxels which nothing presses show:
+/// a reading that repeats while it should not is as unlikely as the repetitions multiplied. Readings like those of
+/// unloaded taxels are not judged: they are weak, and may be quiet.
+class StuckTaxelDetector {
+ public:
+  explicit StuckTaxelDetector(const ArrayDescription& array);
+
+  void judge(const Observation& seen, FaultList& faults) noexcept;
+
+ private:
+  /// The counts that the ADC gave, as a line over the readings.
+  struct CountScale {
+    double zero;
+    double per_ratio;
+  };
+
+  [[nodiscard]] CountScale count_scale(double sigma_ratio) const noexcept;
+  void heal(const Observation& seen, const CountScale& scale, const TaxelBlock& block, FaultList& faults) noexcept;
+  [[nodiscard]] double count_repetitions(const Observation& seen, const CountScale& scale,
+                                         const TaxelBlock& block) noexcept;
+  void find(const Observation& seen, const TaxelBlock& block, FaultList& faults) noexcept;
+
+  const Readout& readout_;
+  double repeats_by_noise_;          // probability that a reading repeats, at least
+  double chance_ = 0.0;              // minus logarithm of that probability, as other taxels show it
+  std::vector<double> evidence_;     // Page's sum [taxels]
+  std::vector<double> repetitions_;  // in a row, while pressed [taxels]
+  std::vector<double> last_counts_;  // [taxels]
+  std::vector<int> changes_;         // since it was found to be stuck [taxels]
+};
+
+}  // namespace dermis::compensation

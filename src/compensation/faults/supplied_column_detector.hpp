@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "compensation/faults/fault_list.hpp"
+#include "compensation/faults/observation.hpp"
+#include "compensation/faults/page_test.hpp"
+
+namespace dermis::compensation {
+
+/// A column at the supply reads full scale in all rows, while most columns do not.
+class SuppliedColumnDetector {
+ public:
+  explicit SuppliedColumnDetector(const ArrayDescription& array);
+
+  void judge(const Observation& seen, FaultList& faults) noexcept;
+
+ private:
+  struct Column {
+    bool is_full_scale = false;  // in this frame
+    PageTest supplied;
+    PageTest released;  // of a column that was found to be at the supply
+  };
+
+  /// How many columns are.
+  std::size_t find_full_scale(const Observation& seen, const FaultList& faults) noexcept;
+
+  const ArrayDescription& array_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace dermis::compensation

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "compensation/faults/fault_list.hpp"
+#include "compensation/faults/observation.hpp"
+#include "compensation/faults/press_count.hpp"
+
+namespace dermis::compensation {
+
+/// A row at the supply reads the least in every column, as the others hold its reading too. What speaks for it is a
+/// press on it that shows alike in most other rows.
+class SuppliedRowDetector {
+ public:
+  explicit SuppliedRowDetector(const ArrayDescription& array);
+
+  void judge(const Observation& seen, FaultList& faults) noexcept;
+
+ private:
+  /// What the presses on a row show in the other rows.
+  struct Comparison {
+    bool any = false;  // press that shows
+    int shows = 0;     // new presses that do
+    int fails = 0;     // readings below those of the row
+  };
+
+  /// How a press on a row stands against the readings of the other rows in its column.
+  struct ColumnComparison {
+    bool shows = false;
+    int fails = 0;
+  };
+
+  void choose_candidate(const Observation& seen, const FaultList& faults) noexcept;
+  void judge_row(const Observation& seen, std::size_t row, bool is_known, FaultList& faults) noexcept;
+  [[nodiscard]] Comparison compare_row(const Observation& seen, std::size_t row, const FaultList& faults) noexcept;
+  [[nodiscard]] ColumnComparison compare_in_column(const Observation& seen, std::size_t row, std::size_t col,
+                                                   const FaultList& faults) const noexcept;
+
+  const ArrayDescription& array_;
+  std::size_t candidate_ = 0;       // the row under suspicion
+  PressCount count_;                // of its presses
+  std::vector<double> last_ratio_;  // of the last press that showed [taxels]
+};
+
+}  // namespace dermis::compensation

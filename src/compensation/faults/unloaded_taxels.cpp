@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/faults/unloaded_taxels.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+#include "compensation/lumped_circuit.hpp"
+
+namespace dermis::compensation {
+
+UnloadedTaxels::UnloadedTaxels(const ArrayDescription& array, std::span<const double> siemens)
+    : array_(array),
+      siemens_(siemens.begin(), siemens.end()),
+      ratio_(array.taxel_count()),
+      least_reading_(array.taxel_count()),
+      left_(array.sensed_lines()),
+      pressed_lines_{std::vector<std::uint8_t>(array.rows), std::vector<std::uint8_t>(array.cols)} {
+  assert(siemens.size() == array.taxel_count());
+  for (double& of_taxel : siemens_) of_taxel = std::max(of_taxel, 0.0);
+  if (array.readout.circuit == Circuit::none) {
+    ratio_ = siemens_;
+  } else {
+    LumpedCircuit(array).solve(siemens_, ratio_);
+  }
+}
+
+void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums& sums, bool solved) noexcept {
+  if (array_.readout.circuit == Circuit::none) {
+    expect_beside_no_press(conditioned);
+  } else {
+    expect_beside_presses(sums, conditioned.sigma_ratio, solved);
+  }
+}
+
+/// Pressed taxels on the sensed line of an unloaded one take the share of the supply that they read themselves, those
+/// on its driven line pull the line down.
+void UnloadedTaxels::expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept {
+  const Readout& readout = array_.readout;
+  const Axis driven = driven_axis(array_);
+  const bool shares = readout.circuit == Circuit::divider || readout.circuit == Circuit::flexitac;
+  const std::span<const double> taken = sums.ratio(crossing(driven));
+  for (std::size_t line = 0; line < left_.size(); ++line) {
+    left_[line] = shares ? std::clamp(1.0 - taken[line], 0.0, 1.0) : 1.0;
+  }
+  const std::span<const double> line_siemens = sums.driven_siemens();
+  const auto sag = [&](std::size_t line) {
+    return solved ? 1.0 / (1.0 + readout.drive_ohm[line] * line_siemens[line]) : kUnloadedShare;
+  };
+  const double scale = kUnloadedShare / sigma_ratio;
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    const double* const unloaded = &ratio_[row * array_.cols];
+    float* const least = &least_reading_[row * array_.cols];
+    if (driven == Axis::row) {
+      const double factor = scale * sag(row);
+      for (std::size_t col = 0; col < array_.cols; ++col) {
+        least[col] = static_cast<float>(factor * unloaded[col] * left_[col]);
+      }
+    } else {
+      const double factor = scale * left_[row];
+      for (std::size_t col = 0; col < array_.cols; ++col) {
+        least[col] = static_cast<float>(factor * unloaded[col] * sag(col));
+      }
+    }
+  }
+}
+
+/// In an unknown circuit nobody knows what a press takes from the taxels of its lines.
+void UnloadedTaxels::expect_beside_no_press(const ConditionedFrame& conditioned) noexcept {
+  find_pressed_lines(conditioned);
+  for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {
+    const bool beside = pressed_lines_.row[taxel / array_.cols] != 0 || pressed_lines_.column[taxel % array_.cols] != 0;
+    const double expected = beside ? 0.0 : kUnloadedShare * ratio_[taxel];
+    least_reading_[taxel] = static_cast<float>(expected / conditioned.sigma_ratio);
+  }
+}
+
+void UnloadedTaxels::find_pressed_lines(const ConditionedFrame& conditioned) noexcept {
+  for (const Axis axis : kAxes) std::fill(pressed_lines_[axis].begin(), pressed_lines_[axis].end(), std::uint8_t{0});
+  for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {
+    const double most = kPressedShare * ratio_[taxel] + kMostSigmas * conditioned.sigma_ratio;
+    if (conditioned.ratio[taxel] <= most) continue;
+    pressed_lines_.row[taxel / array_.cols] = 1;
+    pressed_lines_.column[taxel % array_.cols] = 1;
+  }
+}
+
+}  // namespace dermis::compensation

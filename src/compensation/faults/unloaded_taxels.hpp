@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "compensation/faults/line_sums.hpp"
+#include "dermis/core/axis.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::compensation {
+
+inline constexpr double kUnloadedShare = 0.3;  // of the unloaded conductance: temperature, memory, age leave at least
+inline constexpr double kPressedShare = 3.0;   // of the unloaded conductance, or more: a load
+
+/// What taxels read that nothing presses.
+class UnloadedTaxels {
+ public:
+  /// `siemens`: see LineFaultMonitor.
+  UnloadedTaxels(const ArrayDescription& array, std::span<const double> siemens);
+
+  /// Finds least_reading() of this frame, from what the pressed taxels take from the others of their lines.
+  void expect(const ConditionedFrame& conditioned, const LineSums& sums, bool solved) noexcept;
+
+  /// Conductance of every taxel; 0 where it is not known.
+  [[nodiscard]] std::span<const double> siemens() const noexcept { return siemens_; }
+
+  /// Readings while nothing is pressed.
+  [[nodiscard]] std::span<const double> ratio() const noexcept { return ratio_; }
+
+  /// Least reading of every unloaded taxel among the loads of this frame [standard deviations].
+  [[nodiscard]] std::span<const float> least_reading() const noexcept { return least_reading_; }
+
+  /// Most that an unloaded taxel may come out with, at this standard deviation of its conductance.
+  [[nodiscard]] double most_siemens(std::size_t taxel, double sigma_siemens) const noexcept {
+    return kPressedShare * siemens_[taxel] + kMostSigmas * sigma_siemens;
+  }
+
+ private:
+  static constexpr double kMostSigmas = 5.0;
+
+  void expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept;
+  void expect_beside_no_press(const ConditionedFrame& conditioned) noexcept;
+  void find_pressed_lines(const ConditionedFrame& conditioned) noexcept;
+
+  const ArrayDescription& array_;
+  std::vector<double> siemens_;                       // [taxels]
+  std::vector<double> ratio_;                         // [taxels]
+  std::vector<float> least_reading_;                  // [taxels]
+  std::vector<double> left_;                          // share of the supply that is left on a sensed line
+  PerAxis<std::vector<std::uint8_t>> pressed_lines_;  // in an unknown circuit
+};
+
+}  // namespace dermis::compensation
