@@ -18,7 +18,7 @@ endif()
 # sources of src/<name>, with the public headers of include/dermis/<name>.
 function(dermis_module name)
   cmake_parse_arguments(MODULE "" "" "DEPENDS;PRIVATE" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
   add_library(dermis_${name} STATIC ${sources})
   add_library(dermis::${name} ALIAS dermis_${name})
   set_target_properties(dermis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
