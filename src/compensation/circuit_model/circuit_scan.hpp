@@ -46,7 +46,7 @@ class CircuitScan {
 template <typename Derive>
 void fill_jacobian(const ScannedLines& lines, std::span<double> jacobian, const Derive& derive) {
   lines.for_each_reading([&](std::size_t driven, std::size_t sensed, std::size_t reading) {
-    derive(driven, sensed, 0, jacobian.subspan(reading * lines.taxels(), lines.taxels()));
+    derive(driven, sensed, std::size_t{0}, jacobian.subspan(reading * lines.taxels(), lines.taxels()));
   });
 }
 
