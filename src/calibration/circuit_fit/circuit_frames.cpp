@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "calibration/circuit_frames.hpp"
+#include "calibration/circuit_fit/circuit_frames.hpp"
 
 #include <algorithm>
 #include <cmath>

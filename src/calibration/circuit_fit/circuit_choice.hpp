@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "dermis/calibration/circuit_fit.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// The kind of circuit that explains the frames best.
+struct CircuitChoice {
+  ArrayDescription array;                    ///< Of that kind; resistances that are not given are kFitOhm.
+  std::vector<CircuitCandidate> candidates;  ///< The best first.
+};
+
+/// Fits every kind to half of the frames and judges it on the other half. Errors: no kind explains the frames.
+[[nodiscard]] Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames);
+
+}  // namespace dermis::calibration

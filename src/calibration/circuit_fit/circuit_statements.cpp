@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_fit/circuit_statements.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+
+namespace dermis::calibration {
+namespace {
+
+constexpr double kWellKnown = 0.02;  // relative standard error below which a resistance counts as found
+constexpr double kUnknown = 0.5;     // and above which nothing can be said
+
+std::string describe_candidates(const std::vector<CircuitCandidate>& candidates) {
+  std::string text = fmt::format("circuit: {} (held-out error {:.3g} standard deviations of a reading;",
+                                 candidates.front().name, candidates.front().held_out_error);
+  for (std::size_t k = 1; k < candidates.size(); ++k) {
+    text += std::isfinite(candidates[k].held_out_error)
+                ? fmt::format(" {} {:.3g}{}", candidates[k].name, candidates[k].held_out_error,
+                              k + 1 < candidates.size() ? ";" : ")")
+                : fmt::format(" {} not possible{}", candidates[k].name, k + 1 < candidates.size() ? ";" : ")");
+  }
+  return text;
+}
+
+std::optional<std::string> describe_doubt(const std::vector<CircuitCandidate>& candidates) {
+  std::string names;
+  for (const CircuitCandidate& candidate : candidates) {
+    if (candidate.indistinguishable) names += (names.empty() ? "\"" : ", \"") + candidate.name + "\"";
+  }
+  if (names.empty()) return std::nullopt;
+  return "these frames do not tell the chosen circuit from " + names +
+         "; record heavy presses, and two or more weights in one row and in one column";
+}
+
+/// "18.2 to 22.1 ohm, +-2.6 to 3.1 % each" of the fitted lines of a kind.
+struct Range {
+  double least_ohm = std::numeric_limits<double>::infinity();
+  double most_ohm = 0.0;
+  double best_error = 1.0;
+  double worst_error = 0.0;
+  std::size_t count = 0;
+};
+
+Range fitted_range(const std::vector<double>& ohms, const std::vector<double>& errors) {
+  Range range;
+  for (std::size_t k = 0; k < ohms.size(); ++k) {
+    if (errors[k] == 0.0) continue;
+    range.least_ohm = std::min(range.least_ohm, ohms[k]);
+    range.most_ohm = std::max(range.most_ohm, ohms[k]);
+    range.best_error = std::min(range.best_error, errors[k]);
+    range.worst_error = std::max(range.worst_error, errors[k]);
+    ++range.count;
+  }
+  return range;
+}
+
+std::string describe(const char* name, const Range& range) {
+  return fmt::format("{}: {} fitted, {:.4g} to {:.4g} ohm, standard error {:.1f} to {:.1f} % each", name, range.count,
+                     range.least_ohm, range.most_ohm, 100.0 * range.best_error, 100.0 * range.worst_error);
+}
+
+void describe_drives(const ResistanceFit& fit, std::vector<std::string>& statements) {
+  const Range drives = fitted_range(fit.array.readout.drive_ohm, fit.errors.drive);
+  if (drives.count == 0) return;
+  if (drives.worst_error > kUnknown) {
+    statements.push_back(fmt::format(
+        "drive_ohm: too small for these frames to tell, at most about {:.3g} ohm; what is left of its crosstalk is as "
+        "small, and forces hardly depend on it",
+        drives.most_ohm * (1.0 + 2.0 * drives.worst_error)));
+    return;
+  }
+  statements.push_back(describe("drive_ohm", drives));
+  if (drives.count > 1) {
+    statements.back() += fmt::format(", {:.1f} % their mean", 100.0 * fit.errors.common_drive);
+  }
+  if (drives.worst_error > kWellKnown) {
+    statements.emplace_back(
+        "drive_ohm: a few frames with heavy weights on several taxels of each row at once, or with a uniform load "
+        "on the whole array, determine it better than any number of single presses");
+  }
+}
+
+void describe_loads(const ResistanceFit& fit, std::vector<std::string>& statements) {
+  const Range loads = fitted_range(fit.array.readout.load_ohm, fit.errors.load);
+  if (loads.count == 0) return;
+  statements.push_back(describe("load_ohm", loads));
+  if (fit.sheet_scatter > 0.0) {
+    statements.push_back(
+        fmt::format("load_ohm: rests on the unloaded rubber differing from line to line across the loads by no more "
+                    "than it does along them, {:.1f} %",
+                    100.0 * fit.sheet_scatter));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> describe_choice(const std::vector<CircuitCandidate>& candidates) {
+  std::vector<std::string> statements{describe_candidates(candidates)};
+  if (const auto doubt = describe_doubt(candidates)) statements.push_back(*doubt);
+  return statements;
+}
+
+std::vector<std::string> describe_fit(const ResistanceFit& fit) {
+  std::vector<std::string> statements;
+  if (fit.array.readout.circuit == Circuit::none) {
+    statements.emplace_back("no circuit explains the frames better than none: crosstalk stays in the forces");
+    return statements;
+  }
+  if (!fit.has_absolute) {
+    statements.push_back(
+        fmt::format("no resistance is known, so only ratios are determined: the loads' geometric mean is set to {:g} "
+                    "ohm; forces do not depend on it",
+                    kNominalLoadOhm));
+  }
+  describe_drives(fit, statements);
+  describe_loads(fit, statements);
+  if (!fit.has_idle_readings) {
+    statements.emplace_back(
+        "the readings of idle taxels are too close to 0 to show crosstalk: the resistances rest on taxels that are "
+        "pressed together");
+  }
+  return statements;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibration/circuit_fit/resistance_fit.hpp"
+#include "dermis/calibration/circuit_fit.hpp"
+
+namespace dermis::calibration {
+
+/// Which kind was chosen, and from which ones the frames do not tell it.
+[[nodiscard]] std::vector<std::string> describe_choice(const std::vector<CircuitCandidate>& candidates);
+
+/// The resistances with their standard errors, and what the frames cannot determine.
+[[nodiscard]] std::vector<std::string> describe_fit(const ResistanceFit& fit);
+
+}  // namespace dermis::calibration

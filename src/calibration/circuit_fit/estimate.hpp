@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <Eigen/Core>
+
+#include "calibration/circuit_fit/rubber.hpp"
+
+namespace dermis::calibration {
+
+inline constexpr double kLineSpread = 0.1;      // resistances of one kind are alike: first guess of their spread
+inline constexpr double kShapeSpread = 0.1;     // first guess of the scatter of the laws' shapes over the taxels
+inline constexpr double kRubberScatter = 0.01;  // first guess
+
+/// How far things lie apart that are alike: learned from the readings.
+struct Scatter {
+  double noise_variance = 1.0;  ///< Of the idle readings, over what their noise is said to be.
+  double rubber_variance = kRubberScatter * kRubberScatter;  ///< Of a pressed taxel about its law, relative.
+  Eigen::VectorXd shape_variance = Eigen::VectorXd::Constant(kShapeTerms, kShapeSpread* kShapeSpread);
+  double drive_spread = kLineSpread;  ///< Relative.
+  double load_spread = kLineSpread;
+  double sheet = 0.0;  ///< Unloaded conductance from line to line, relative; 0: never compared.
+};
+
+/// What the fit takes for true at one time; a step gives the next.
+struct Estimate {
+  Eigen::VectorXd parameters;  ///< See LineParameters.
+  Rubber rubber;
+  Scatter scatter;
+};
+
+}  // namespace dermis::calibration

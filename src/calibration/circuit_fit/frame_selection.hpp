@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/circuit_fit/line_parameters.hpp"
+
+namespace dermis::calibration {
+
+/// As many frames as the time allows: an inversion for each parameter and frame.
+[[nodiscard]] std::size_t affordable_frames(const LineParameters& lines);
+
+/// About `most` frames of all, spread at random: neighbours in time may press the same taxels.
+[[nodiscard]] std::vector<const CircuitFrame*> select_frames(const CircuitFrames& frames, std::size_t most);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/circuit_fit/estimate.hpp"
+#include "calibration/circuit_fit/line_parameters.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// What a Gauss-Newton step gives.
+struct Iteration {
+  Estimate estimate;
+  Eigen::MatrixXd covariance;      ///< Of the parameters, then of what the pressed laws have in common.
+  double step = 0.0;               ///< The largest of a parameter, in its standard errors.
+  bool has_idle_readings = false;  ///< That are large enough to tell something.
+};
+
+/// The common ratio of drivers to loads that leaves least of the frames, and the first unloaded laws. `rubber`: nothing
+/// is known of it. Errors: a circuit that cannot be inverted, or not at most of the frames.
+[[nodiscard]] Result<Estimate> find_start(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
+                                          const Rubber& rubber);
+
+/// Gauss-Newton with the taxels' laws eliminated (variable projection), until a step is smaller than `enough` standard
+/// errors. Errors: a circuit that cannot be inverted.
+[[nodiscard]] Result<Iteration> iterate(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
+                                        const Estimate& start, double enough);
+
+}  // namespace dermis::calibration

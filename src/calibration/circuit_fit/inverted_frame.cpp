@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_fit/inverted_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dermis::calibration {
+namespace {
+
+/// The readings that the circuit would give with the idle taxels at their laws, and their inversion.
+struct SmoothFrame {
+  std::vector<double> ratio;
+  std::vector<double> siemens;
+};
+
+std::optional<SmoothFrame> without_idle_noise(SlopedInversion& inversion, const CircuitFrame& frame,
+                                              const InvertedFrame& inverted, const Rubber& rubber) {
+  constexpr int kMaxSteps = 10;
+  constexpr double kEnoughSigmas = 0.02;
+  SmoothFrame smooth{frame.ratio, inverted.siemens};
+  const Eigen::VectorXd basis = unloaded_basis(rubber, frame.temperature);
+  for (int k = 0; k < kMaxSteps; ++k) {
+    double largest = 0.0;
+    for (std::size_t taxel = 0; taxel < smooth.ratio.size(); ++taxel) {
+      const Eigen::VectorXd& law = rubber.laws[taxel].unloaded;
+      if (frame.newtons[taxel] != 0.0F || law.size() == 0) continue;
+      const double expected = law.dot(basis) * rubber.reference_siemens;
+      const double sigmas = (smooth.siemens[taxel] - expected) / inverted.sigma_siemens[taxel];
+      smooth.ratio[taxel] -= sigmas * frame.sigma_ratio;
+      largest = std::max(largest, std::abs(sigmas));
+    }
+    if (!inversion.invert(smooth.ratio, smooth.siemens)) return std::nullopt;
+    if (largest < kEnoughSigmas) break;
+  }
+  return smooth;
+}
+
+/// false: as invert_frame().
+bool add_slopes(SlopedInversion& inversion, const CircuitFrame& frame, const Rubber& rubber, InvertedFrame& inverted) {
+  const std::optional<SmoothFrame> smooth = without_idle_noise(inversion, frame, inverted, rubber);
+  if (!smooth) return false;
+  for (std::size_t taxel = 0; taxel < inverted.siemens.size(); ++taxel) {
+    if (frame.newtons[taxel] != 0.0F) inverted.siemens[taxel] = smooth->siemens[taxel];
+  }
+  return inversion.differentiate(smooth->ratio, smooth->siemens, inverted.slopes);
+}
+
+bool invert_into(SlopedInversion& inversion, const CircuitFrame& frame, const Rubber& rubber, InvertedFrame& inverted) {
+  if (!inversion.invert(frame.ratio, inverted.siemens)) return false;
+  inversion.propagate_noise(frame.sigma_ratio, inverted.sigma_siemens);
+  return inversion.slope_count() == 0 || add_slopes(inversion, frame, rubber, inverted);
+}
+
+}  // namespace
+
+std::optional<InvertedFrame> invert_frame(SlopedInversion& inversion, const CircuitFrame& frame, const Rubber& rubber) {
+  const std::size_t taxels = frame.ratio.size();
+  InvertedFrame inverted{std::vector<double>(taxels), std::vector<double>(taxels),
+                         Eigen::MatrixXd(static_cast<Eigen::Index>(taxels), inversion.slope_count())};
+  if (invert_into(inversion, frame, rubber, inverted)) return inverted;
+  inversion.forget();
+  return std::nullopt;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/circuit_fit/rubber.hpp"
+#include "calibration/circuit_fit/sloped_inversion.hpp"
+
+namespace dermis::calibration {
+
+/// A frame's taxels in one circuit.
+struct InvertedFrame {
+  std::vector<double> siemens;
+  std::vector<double> sigma_siemens;
+  Eigen::MatrixXd slopes;  ///< d siemens / d parameter [taxels, parameters or 0].
+};
+
+/// Empty: the circuit cannot give this frame, and the inversion has forgotten it. Where slopes are wanted they, and the
+/// pressed taxels, are taken with the idle ones at their laws: derivatives taken at noisy readings would follow the
+/// noise, and the fit would do away with the noise by making all conductances small.
+[[nodiscard]] std::optional<InvertedFrame> invert_frame(SlopedInversion& inversion, const CircuitFrame& frame,
+                                                        const Rubber& rubber);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_fit/measurements.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "calibration/circuit_fit/inverted_frame.hpp"
+#include "dermis/core/parallel.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kLeastIdleSigmas = 3.0;  // an idle reading below this is cut at 0 too often
+
+/// Idle readings tell something only where they are well above 0, where noise is cut.
+bool is_readable(const VectorXd& law, const VectorXd& basis, double reference_siemens, double sigma_siemens) {
+  if (law.size() == 0) return true;  // not known yet
+  return law.dot(basis) * reference_siemens >= kLeastIdleSigmas * sigma_siemens;
+}
+
+void add_idle(const CircuitFrame& frame, const InvertedFrame& inverted, const Estimate& estimate,
+              NormalEquations& idle) {
+  const Rubber& rubber = estimate.rubber;
+  const Index slopes = inverted.slopes.cols();
+  const VectorXd basis = unloaded_basis(rubber, frame.temperature);
+  MatrixXd rows(slopes + 1, inverted.slopes.rows());
+  Index used = 0;
+  for (std::size_t taxel = 0; taxel < rubber.laws.size(); ++taxel) {
+    const double sigma = inverted.sigma_siemens[taxel];
+    if (frame.newtons[taxel] != 0.0F) continue;
+    if (!is_readable(rubber.laws[taxel].unloaded, basis, rubber.reference_siemens, sigma)) continue;
+    const double relative_sigma = sigma / rubber.reference_siemens;
+    const double weight = 1.0 / (estimate.scatter.noise_variance * relative_sigma * relative_sigma);
+    auto row = rows.col(used++);
+    row.head(slopes) = inverted.slopes.row(static_cast<Index>(taxel)).transpose() / rubber.reference_siemens;
+    row[slopes] = inverted.siemens[taxel] / rubber.reference_siemens;
+    idle.add_local(taxel, basis, row, weight);
+    row *= std::sqrt(weight);
+  }
+  idle.global.selfadjointView<Eigen::Lower>().rankUpdate(rows.leftCols(used));
+}
+
+void add_pressed(const CircuitFrame& frame, const InvertedFrame& inverted, const ForceScale& scale,
+                 std::vector<PressedReading>& pressed) {
+  for (std::size_t taxel = 0; taxel < frame.newtons.size(); ++taxel) {
+    if (!(frame.newtons[taxel] > 0.0F)) continue;
+    pressed.push_back({taxel, scale.log_force(static_cast<double>(frame.newtons[taxel])), frame.temperature,
+                       inverted.siemens[taxel], inverted.sigma_siemens[taxel],
+                       inverted.slopes.row(static_cast<Index>(taxel)).transpose()});
+  }
+}
+
+Measurements merge(std::vector<Measurements> parts) {
+  Measurements all = std::move(parts.front());
+  for (std::size_t k = 1; k < parts.size(); ++k) {
+    all.idle += parts[k].idle;
+    all.unsolved += parts[k].unsolved;
+    std::move(parts[k].pressed.begin(), parts[k].pressed.end(), std::back_inserter(all.pressed));
+  }
+  return all;
+}
+
+}  // namespace
+
+Result<Measurements> measure(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
+                             const Estimate& estimate, Slopes slopes) {
+  if (auto trial = SlopedInversion::create(lines, estimate.parameters, Slopes::none); !trial) return trial.error();
+  const Rubber& rubber = estimate.rubber;
+  const Index columns = (slopes == Slopes::all ? lines.count() : 0) + 1;
+  const NormalEquations none(rubber.laws.size(), rubber.unloaded_terms, columns);
+  const std::size_t tasks = std::max<std::size_t>(1, (frames.size() + kFramesPerTask - 1) / kFramesPerTask);
+  std::vector<Measurements> parts(tasks, Measurements{none, {}, 0});
+  parallel_for(tasks, [&](std::size_t task) {
+    auto inversion = SlopedInversion::create(lines, estimate.parameters, slopes);
+    for (std::size_t k = task * kFramesPerTask; k < std::min(frames.size(), (task + 1) * kFramesPerTask); ++k) {
+      const std::optional<InvertedFrame> inverted = invert_frame(*inversion, *frames[k], rubber);
+      if (!inverted) {
+        ++parts[task].unsolved;
+        continue;
+      }
+      add_idle(*frames[k], *inverted, estimate, parts[task].idle);
+      add_pressed(*frames[k], *inverted, rubber.force_scale, parts[task].pressed);
+    }
+  });
+  return merge(std::move(parts));
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/circuit_fit/estimate.hpp"
+#include "calibration/circuit_fit/line_parameters.hpp"
+#include "calibration/circuit_fit/normal_equations.hpp"
+#include "calibration/circuit_fit/pressed_readings.hpp"
+#include "calibration/circuit_fit/sloped_inversion.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// What the frames say in one circuit.
+struct Measurements {
+  NormalEquations idle;  ///< Columns: parameters, conductance over the reference.
+  std::vector<PressedReading> pressed;
+  std::size_t unsolved = 0;  ///< Frames that the circuit cannot give.
+};
+
+/// Inverts the frames on all cores. Errors: a circuit that cannot be inverted.
+[[nodiscard]] Result<Measurements> measure(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
+                                           const Estimate& estimate, Slopes slopes);
+
+}  // namespace dermis::calibration

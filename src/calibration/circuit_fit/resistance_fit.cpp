@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_fit/resistance_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "calibration/circuit_fit/frame_selection.hpp"
+#include "calibration/circuit_fit/gauss_newton.hpp"
+#include "calibration/circuit_fit/line_parameters.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+constexpr std::size_t kFirstFrames = 1500;  // the way to the solution is found with these
+constexpr double kEnoughAtFirst = 0.1;      // a step this small against the standard errors ends the fit
+constexpr double kEnough = 0.25;            // the same, with all frames
+
+ResistanceFit report(const LineParameters& lines, const Iteration& last) {
+  ResistanceFit fit;
+  fit.array = lines.array_at(last.estimate.parameters);
+  fit.errors = standard_errors(lines, last.estimate.parameters, last.covariance);
+  fit.rubber = last.estimate.rubber;
+  fit.rubber_scatter = std::sqrt(last.estimate.scatter.rubber_variance);
+  fit.sheet_scatter = last.estimate.scatter.sheet;
+  fit.has_idle_readings = last.has_idle_readings;
+  fit.has_absolute = lines.has_absolute();
+  return fit;
+}
+
+}  // namespace
+
+Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const CircuitFrames& frames) {
+  const LineParameters lines(array);
+  const std::size_t most = affordable_frames(lines);
+  const auto first = select_frames(frames, std::min(kFirstFrames, most));
+  const Rubber unknown = unknown_rubber(frames, array.taxel_count(), 1.0 / lines.reference_ohm());
+  const Result<Estimate> start = find_start(lines, first, unknown);
+  if (!start) return start.error();
+  Result<Iteration> last = iterate(lines, first, *start, kEnoughAtFirst);
+  if (last && most > first.size() && first.size() < frames.frames.size()) {
+    last = iterate(lines, select_frames(frames, most), last->estimate, kEnough);
+  }
+  if (!last) return last.error();
+  return report(lines, *last);
+}
+
+}  // namespace dermis::calibration

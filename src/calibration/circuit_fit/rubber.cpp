@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_fit/rubber.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace dermis::calibration {
+namespace {
+
+using Eigen::VectorXd;
+
+ForceScale force_scale(const CircuitFrames& frames) {
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (const CircuitFrame& frame : frames.frames) {
+    for (const float newtons : frame.newtons) {
+      if (!(newtons > 0.0F)) continue;
+      lowest = std::min(lowest, std::log(static_cast<double>(newtons)));
+      highest = std::max(highest, std::log(static_cast<double>(newtons)));
+    }
+  }
+  if (!(highest > lowest)) return {std::isfinite(lowest) ? lowest : 0.0, 1.0};
+  return {0.5 * (lowest + highest), 0.5 * (highest - lowest)};
+}
+
+}  // namespace
+
+double ForceScale::log_force(double newtons) const {
+  return (std::log(newtons) - centre) / half_span;
+}
+
+Rubber unknown_rubber(const CircuitFrames& frames, std::size_t taxels, double reference_siemens) {
+  Rubber rubber;
+  rubber.reference_siemens = reference_siemens;
+  rubber.force_scale = force_scale(frames);
+  rubber.unloaded_terms = frames.has_temperature ? 3 : 1;
+  rubber.laws.resize(taxels);
+  return rubber;
+}
+
+VectorXd unloaded_basis(const Rubber& rubber, double temperature) {
+  if (rubber.unloaded_terms == 1) return VectorXd::Ones(1);
+  return Eigen::Vector3d(1.0, temperature, temperature * temperature);
+}
+
+VectorXd pressed_basis(double x, double t) {
+  VectorXd basis(kPressedTerms);
+  basis << 1.0, x, t, x * x, x * x * x, t * t, t * x;
+  return basis;
+}
+
+VectorXd common_basis(double x, double t, double excess) {
+  VectorXd basis(kCommonTerms);
+  basis << std::pow(x, 4), std::pow(x, 5), std::pow(x, 6), t * x * x, t * x * x * x, t * t * x, -excess;
+  return basis;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_fit/sloped_inversion.hpp"
+
+#include <utility>
+
+namespace dermis::calibration {
+namespace {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+constexpr double kSlopeStep = 1e-3;   // of a parameter
+constexpr double kTolerance = 1e-12;  // of the inversions, in readings over the supply
+
+}  // namespace
+
+Result<SlopedInversion> SlopedInversion::create(const LineParameters& lines, const VectorXd& parameters,
+                                                Slopes slopes) {
+  SlopedInversion result;
+  const Index count = slopes == Slopes::all ? parameters.size() : 0;
+  for (Index p = -1; p < count; ++p) {
+    VectorXd shifted = parameters;
+    if (p >= 0) shifted[p] += kSlopeStep;
+    auto inversion = compensation::make_crosstalk_inversion(lines.array_at(shifted), {.tolerance_ratio = kTolerance});
+    if (!inversion) return inversion.error();
+    result.inversions_.push_back(std::move(*inversion));
+  }
+  return result;
+}
+
+void SlopedInversion::forget() {
+  for (const auto& inversion : inversions_) inversion->forget();
+}
+
+bool SlopedInversion::invert(const std::vector<double>& ratio, std::vector<double>& siemens) {
+  return inversions_[0]->invert(ratio, siemens).solved;
+}
+
+void SlopedInversion::propagate_noise(double sigma_ratio, std::vector<double>& sigma) {
+  inversions_[0]->propagate_noise(sigma_ratio, sigma);
+}
+
+bool SlopedInversion::differentiate(const std::vector<double>& ratio, const std::vector<double>& siemens,
+                                    Eigen::MatrixXd& slopes) {
+  shifted_.resize(ratio.size());
+  for (Index p = 0; p < slopes.cols(); ++p) {
+    if (!inversions_[static_cast<std::size_t>(p) + 1]->invert(ratio, shifted_).solved) return false;
+    for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+      slopes(static_cast<Index>(taxel), p) = (shifted_[taxel] - siemens[taxel]) / kSlopeStep;
+    }
+  }
+  return true;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "calibration/circuit_fit/line_parameters.hpp"
+#include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// Frames in a row that one inversion takes, each from the last one's solution, whatever the number of threads.
+inline constexpr std::size_t kFramesPerTask = 256;
+
+/// Whether derivatives by the parameters are wanted.
+enum class Slopes { none, all };
+
+/// Inversions of one circuit at the parameters and a little beside each of them.
+class SlopedInversion {
+ public:
+  static Result<SlopedInversion> create(const LineParameters& lines, const Eigen::VectorXd& parameters, Slopes slopes);
+
+  /// Does not start from the last frame.
+  void forget();
+
+  [[nodiscard]] Eigen::Index slope_count() const { return static_cast<Eigen::Index>(inversions_.size()) - 1; }
+
+  /// false: the circuit cannot give these readings.
+  [[nodiscard]] bool invert(const std::vector<double>& ratio, std::vector<double>& siemens);
+
+  /// Of the frame inverted last.
+  void propagate_noise(double sigma_ratio, std::vector<double>& sigma);
+
+  /// d siemens / d parameter [taxels, parameters] at readings whose inversion is `siemens`.
+  [[nodiscard]] bool differentiate(const std::vector<double>& ratio, const std::vector<double>& siemens,
+                                   Eigen::MatrixXd& slopes);
+
+ private:
+  std::vector<std::unique_ptr<compensation::CrosstalkInversion>> inversions_;
+  std::vector<double> shifted_;
+};
+
+}  // namespace dermis::calibration

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_fit/standard_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::calibration {
+
+using Eigen::Index;
+
+StandardErrors standard_errors(const LineParameters& lines, const Eigen::VectorXd& parameters,
+                               const Eigen::MatrixXd& covariance) {
+  StandardErrors errors;
+  errors.drive.assign(lines.array().readout.drive_ohm.size(), 0.0);
+  errors.load.assign(lines.array().readout.load_ohm.size(), 0.0);
+  Index p = 0;
+  for (const std::size_t line : lines.drives()) {
+    errors.drive[line] = std::min(1.0, std::sqrt(covariance(p, p)) / parameters[p]);
+    ++p;
+  }
+  for (const std::size_t line : lines.loads()) {
+    errors.load[line] = std::min(1.0, std::sqrt(covariance(p, p)));
+    ++p;
+  }
+  const Index drives = lines.drive_count();
+  if (drives > 0) {
+    const double sigma = std::sqrt(covariance.topLeftCorner(drives, drives).sum()) / static_cast<double>(drives);
+    errors.common_drive = std::min(1.0, sigma / parameters.head(drives).mean());
+  }
+  return errors;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calibration/circuit_fit/line_parameters.hpp"
+
+namespace dermis::calibration {
+
+/// Relative standard errors of the resistances, 1 at most; 0: given.
+struct StandardErrors {
+  std::vector<double> drive;
+  std::vector<double> load;
+  double common_drive = 0.0;  ///< Of the drivers' mean.
+};
+
+/// `covariance` is of the parameters, and may be of more after them.
+[[nodiscard]] StandardErrors standard_errors(const LineParameters& lines, const Eigen::VectorXd& parameters,
+                                             const Eigen::MatrixXd& covariance);
+
+}  // namespace dermis::calibration
