@@ -4,8 +4,6 @@
 
 #include "dermis/core/neighbours.hpp"
 
-#include <algorithm>
-
 namespace dermis::calibration {
 
 std::size_t count_contacts(const std::vector<float>& known_newtons, std::size_t rows, std::size_t cols) {
