@@ -2,22 +2,38 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "serve/suit_recorder.hpp"
 
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include <filesystem>
 #include <utility>
 
-namespace dermis::app {
+namespace dermis::serve {
 
-SuitRecorder::SuitRecorder(std::function<void(const std::string&)> failed) : failed_(std::move(failed)) {}
+std::string recording_name(const std::string& wanted, bool is_first, std::chrono::system_clock::time_point now) {
+  if (is_first && !wanted.empty()) return wanted;
+  const std::filesystem::path pattern(wanted.empty() ? "dermis.mcap" : wanted);
+  const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch());
+  const std::string stamp = fmt::format(
+      "{:%Y%m%d-%H%M%S}-{:03}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)), since_epoch.count() % 1000);
+  const std::string name = pattern.stem().string() + "-" + stamp + pattern.extension().string();
+  return (pattern.parent_path() / name).string();
+}
+
+SuitRecorder::SuitRecorder(std::string wanted, Arrays arrays, Failed failed)
+    : wanted_(std::move(wanted)), arrays_(std::move(arrays)), failed_(std::move(failed)) {}
 
 SuitRecorder::~SuitRecorder() {
   static_cast<void>(end());
 }
 
-Status SuitRecorder::begin(const std::string& path, const std::vector<recordings::RecordedArray>& arrays) {
+Status SuitRecorder::begin() {
   const std::lock_guard switching(switch_mutex_);
-  if (recording_) return bad_input("a recording goes on: " + this->path());
+  if (recording_) return bad_input("a recording goes on: " + path());
   await_closing();
+  const std::string path = recording_name(wanted_, this->path().empty(), std::chrono::system_clock::now());
   Result<std::unique_ptr<recordings::SuitRecordingWriter>> writer =
-      recordings::SuitRecordingWriter::create(path, arrays);
+      recordings::SuitRecordingWriter::create(path, arrays_());
   if (!writer) return writer.error();
   const std::unique_lock lock(writer_mutex_);
   writer_ = *std::move(writer);
@@ -75,4 +91,4 @@ std::string SuitRecorder::path() const {
   return path_;
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::serve

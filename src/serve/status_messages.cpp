@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/status_messages.hpp"
+
 #include <fmt/core.h>
 
 #include <chrono>
@@ -7,9 +9,8 @@
 #include <utility>
 
 #include "dermis/compensation/line_faults.hpp"
-#include "serve/serve_session.hpp"
 
-namespace dermis::app {
+namespace dermis::serve {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -18,7 +19,9 @@ double seconds(Nanos span) {
   return std::chrono::duration<double>(span).count();
 }
 
-messages::ArrayStatistics statistics_of(const std::string& name, const live::ArrayStatistics& array) {
+}  // namespace
+
+messages::ArrayStatistics statistics_message(const std::string& name, const live::ArrayStatistics& array) {
   messages::ArrayStatistics out;
   out.name = name;
   out.ended = array.ended;
@@ -36,8 +39,8 @@ messages::ArrayStatistics statistics_of(const std::string& name, const live::Arr
   return out;
 }
 
-messages::Diagnosis diagnose(const std::string& name, const pipeline::Model& model,
-                             const live::ArrayStatistics& statistics) {
+messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::Model& model,
+                                      const live::ArrayStatistics& statistics) {
   messages::Diagnosis diagnosis;
   diagnosis.name = name;
   diagnosis.hardware_id = model.array.name;
@@ -64,7 +67,7 @@ messages::Diagnosis diagnose(const std::string& name, const pipeline::Model& mod
   return diagnosis;
 }
 
-messages::CalibrationState state_of(CalibrationProgress progress) {
+messages::CalibrationState calibration_message(CalibrationProgress progress) {
   messages::CalibrationState state;
   calibration::GuideState& guide = progress.state;
   state.array = std::move(progress.array);
@@ -84,65 +87,4 @@ messages::CalibrationState state_of(CalibrationProgress progress) {
   return state;
 }
 
-}  // namespace
-
-void ServeSession::publish(stream::ChannelId channel) {
-  server_->publish(channel, now(), message_);
-}
-
-void ServeSession::publish_statistics() {
-  if (!server_->has_subscribers(channels_.statistics)) return;
-  messages::Statistics statistics;
-  statistics.time = now();
-  for (std::size_t k = 0; k < suit_.arrays.size(); ++k) {
-    statistics.arrays.push_back(statistics_of(suit_.arrays[k].name, live_->statistics(k)));
-  }
-  statistics.recording = recorder_.recording();
-  statistics.recording_file = recorder_.path();
-  statistics.recording_frames = recorder_.frames();
-  const stream::ServerStatistics server = server_->statistics();
-  statistics.clients = static_cast<std::uint32_t>(server.clients);
-  statistics.client_drops = server.dropped;
-  messages::encode_statistics(statistics, kSuitFrame, message_);
-  publish(channels_.statistics);
-}
-
-void ServeSession::publish_health() {
-  if (!server_->has_subscribers(channels_.health)) return;
-  std::vector<messages::Diagnosis> diagnoses;
-  for (std::size_t k = 0; k < suit_.arrays.size(); ++k) {
-    diagnoses.push_back(diagnose(suit_.arrays[k].name, *model(k), live_->statistics(k)));
-  }
-  messages::encode_diagnostics(diagnoses, now(), kSuitFrame, message_);
-  publish(channels_.health);
-}
-
-void ServeSession::publish_transforms() {
-  if (!server_->has_subscribers(channels_.transforms)) return;
-  std::vector<messages::Transform> transforms;
-  for (const ServedArray& array : suit_.arrays) transforms.push_back({kSuitFrame, array.name, array.suit_from_array});
-  messages::encode_transforms(transforms, now(), message_);
-  publish(channels_.transforms);
-}
-
-void ServeSession::publish_calibration() {
-  if (!server_->has_subscribers(channels_.calibration)) return;
-  std::optional<CalibrationProgress> progress = calibration_->progress();
-  if (!progress) return;
-  messages::CalibrationState state = state_of(*std::move(progress));
-  state.time = now();
-  messages::encode_calibration_state(state, kSuitFrame, message_);
-  publish(channels_.calibration);
-}
-
-/// The clock of a recording, ten times a second while it runs and once when it stands still.
-void ServeSession::publish_playback() {
-  if (!suit_.playback) return;
-  const live::PlaybackStatus status = suit_.playback->status();
-  const bool changed =
-      status.now != last_playback_.now || status.state != last_playback_.state || status.speed != last_playback_.speed;
-  if (changed) server_->playback_changed(playback_state(status, false));
-  last_playback_ = status;
-}
-
-}  // namespace dermis::app
+}  // namespace dermis::serve

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace dermis::app {
+namespace dermis::serve {
 namespace {
 
 stream::ChannelId add_channel(stream::Server& server, const std::string& topic, const messages::MessageType& type) {
@@ -113,4 +113,4 @@ void Broadcaster::publish_points() {
   server_.publish(points_, last_time(), points_message_);
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::serve

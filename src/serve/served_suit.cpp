@@ -1,27 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/served_suit.hpp"
+#include "dermis/serve/served_suit.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "dermis/acquisition/source_uri.hpp"
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/recordings/frame_files.hpp"
-#include "model_or_array.hpp"
-#include "open_source.hpp"
+#include "serve/model_or_array.hpp"
 
-namespace dermis::app {
+namespace dermis::serve {
 namespace {
-
-constexpr double kUnknownFullScaleN = 50.0;
 
 /// A name that topics may have, as suit.toml asks for.
 std::string topic_name(const std::string& name) {
@@ -74,8 +69,13 @@ Result<ServedArray> open_array(const SuitArray& described, Models& models) {
   Result<ArraySurface> surface =
       ArraySurface::create(array, described.shape, described.base_from_array, described.mirrored);
   if (!surface) return bad_input(fmt::format("array '{}': {}", name, surface.error().message));
-  return ServedArray{std::move(name),         std::move(known->description), described.model,
-                     std::move(known->model), *std::move(surface),           described.base_from_array};
+  return ServedArray{std::move(name),
+                     nullptr,
+                     std::move(known->model),
+                     *std::move(surface),
+                     described.base_from_array,
+                     std::move(known->description),
+                     described.model};
 }
 
 bool is_recording(const std::string& from) {
@@ -83,11 +83,12 @@ bool is_recording(const std::string& from) {
   return from.substr(0, from.find('#')).ends_with(".mcap");
 }
 
-Result<std::unique_ptr<FrameSource>> open_live_source(const std::string& from, const ServedArray& array) {
+Result<std::unique_ptr<FrameSource>> open_live(const std::string& from, const ServedArray& array,
+                                               const OpenSource& open_source) {
   if (is_recording(from)) {
     return bad_input(fmt::format("'{}': a recording is served with --from {} --suit suit.toml", from, from));
   }
-  if (!is_live(from)) {
+  if (!acquisition::is_source_uri(from)) {
     return bad_input(
         fmt::format("'{}': only devices and recordings are served; make a recording of it first "
                     "(dermis convert {} it.mcap)",
@@ -99,7 +100,7 @@ Result<std::unique_ptr<FrameSource>> open_live_source(const std::string& from, c
     return bad_input(fmt::format("'{}': say how many frames a second it sends, such as {}{}rate=100", from, from,
                                  from.find('?') == std::string::npos ? "?" : "&"));
   }
-  return open_source(from, &array.model->array);
+  return open_source(from, array.model->array);
 }
 
 /// Index in the recording of each array of the suit.
@@ -107,7 +108,7 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
   Result<std::unique_ptr<live::Playback>> playback = live::Playback::open(from);
   if (!playback) return playback.error();
   const std::vector<recordings::RecordedArray>& recorded = (*playback)->arrays();
-  for (const ServedArray& array : suit.arrays) {
+  for (ServedArray& array : suit.arrays) {
     const auto same = [&](const recordings::RecordedArray& other) { return topic_name(other.name) == array.name; };
     auto found = std::find_if(recorded.begin(), recorded.end(), same);
     if (found == recorded.end() && suit.arrays.size() == 1 && recorded.size() == 1) found = recorded.begin();
@@ -117,56 +118,41 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
       return bad_input(fmt::format("'{}': array '{}' has {}x{} taxels, its model {}x{}", from, array.name,
                                    found->shape.rows, found->shape.cols, shape.rows, shape.cols));
     }
-    suit.sources.push_back((*playback)->source(static_cast<std::size_t>(found - recorded.begin())));
+    array.source = (*playback)->source(static_cast<std::size_t>(found - recorded.begin()));
   }
   suit.playback = *std::move(playback);
   return Done{};
 }
 
-Status open_sources(const SuitPlace& place, const SuitDescription& described, ServedSuit& suit) {
+Status open_sources(const SuitPlace& place, const SuitDescription& described, const OpenSource& open_source,
+                    ServedSuit& suit) {
   if (is_recording(place.from)) return open_playback(place.from, suit);
   for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
-    Result<std::unique_ptr<FrameSource>> source = open_live_source(described.arrays[k].from, suit.arrays[k]);
+    Result<std::unique_ptr<FrameSource>> source = open_live(described.arrays[k].from, suit.arrays[k], open_source);
     if (!source) return source.error();
-    suit.sources.push_back(*std::move(source));
+    suit.arrays[k].source = *std::move(source);
   }
   return Done{};
 }
 
-double full_scale_newtons(const fusion::ForceNetworks& networks) {
-  double heaviest = 0.0;
-  for (std::size_t k = 0; k < networks.taxel_count(); ++k) {
-    const auto newtons = static_cast<double>(networks.heaviest_newtons[k]);
-    if (networks.dead[k] == 0 && std::isfinite(newtons)) heaviest = std::max(heaviest, newtons);
-  }
-  return heaviest > 0.0 ? heaviest : kUnknownFullScaleN;
-}
-
-nlohmann::ordered_json json_of(const Vector3& vector) {
-  return {vector.x, vector.y, vector.z};
-}
-
-nlohmann::ordered_json json_of(const ServedArray& array) {
-  const ArrayDescription& description = array.model->array;
-  nlohmann::ordered_json json;
-  json["name"] = array.name;
-  json["rows"] = description.rows;
-  json["cols"] = description.cols;
-  json["pitch_m"] = {description.row_pitch_m, description.col_pitch_m};
-  json["taxel_area_m2"] = nullptr;
-  if (description.taxel_area_m2) json["taxel_area_m2"] = *description.taxel_area_m2;
-  json["full_scale_counts"] = description.readout.full_scale_counts();
-  json["full_scale_n"] = full_scale_newtons(array.model->networks);
-  for (const SurfacePoint& taxel : array.surface.taxels()) {
-    json["positions"].push_back(json_of(taxel.position));
-    json["normals"].push_back(json_of(taxel.normal));
-  }
-  return json;
-}
-
 }  // namespace
 
-Result<ServedSuit> open_served_suit(const SuitPlace& place) {
+Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, pipeline::Model model) {
+  Result<ArraySurface> surface = ArraySurface::create(model.array);
+  if (!surface) return surface.error();
+  ArrayDescription description = model.array;
+  std::string name = topic_name(description.name);
+  ServedSuit suit;
+  suit.arrays.push_back({std::move(name),
+                         std::move(source),
+                         std::make_shared<const pipeline::Model>(std::move(model)),
+                         *std::move(surface),
+                         {},
+                         std::move(description)});
+  return suit;
+}
+
+Result<ServedSuit> open_suit(const SuitPlace& place, const OpenSource& open_source) {
   const Result<SuitDescription> described = describe(place);
   if (!described) return described.error();
   ServedSuit suit;
@@ -177,16 +163,8 @@ Result<ServedSuit> open_served_suit(const SuitPlace& place) {
     if (!array) return array.error();
     suit.arrays.push_back(*std::move(array));
   }
-  if (Status opened = open_sources(place, *described, suit); !opened) return opened.error();
+  if (Status opened = open_sources(place, *described, open_source, suit); !opened) return opened.error();
   return suit;
 }
 
-std::string suit_json(const ServedSuit& suit) {
-  nlohmann::ordered_json json;
-  json["name"] = suit.name;
-  json["arrays"] = nlohmann::ordered_json::array();
-  for (const ServedArray& array : suit.arrays) json["arrays"].push_back(json_of(array));
-  return json.dump();
-}
-
-}  // namespace dermis::app
+}  // namespace dermis::serve

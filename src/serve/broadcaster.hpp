@@ -14,12 +14,10 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/live/live_suit.hpp"
 #include "dermis/messages/live_messages.hpp"
+#include "dermis/serve/served_suit.hpp"
 #include "dermis/stream/server.hpp"
-#include "serve/served_suit.hpp"
 
-namespace dermis::app {
-
-inline constexpr const char* kSuitFrame = "suit";
+namespace dermis::serve {
 
 /// What comes of the frames -> the channels of docs/stream.md. Thread-safe: each array on a thread of its own.
 class Broadcaster {
@@ -71,4 +69,4 @@ class Broadcaster {
   std::atomic<std::int64_t> last_time_ns_{0};
 };
 
-}  // namespace dermis::app
+}  // namespace dermis::serve

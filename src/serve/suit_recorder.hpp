@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -17,22 +18,31 @@
 #include "dermis/core/result.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 
-namespace dermis::app {
+namespace dermis::serve {
+
+/// The name of a recording: the first has the one that is wanted; the next, and all where none is wanted, the time in
+/// it, as "rec-20261122-101500-123.mcap", so that nothing is overwritten.
+[[nodiscard]] std::string recording_name(const std::string& wanted, bool is_first,
+                                         std::chrono::system_clock::time_point now);
 
 /// Records every frame of all arrays, as the device said it, from begin() to stop(): the model gives the forces again,
 /// and they would be four fifths of the bytes. Loses nothing: where the disk cannot follow, the arrays wait for it.
 /// Thread-safe.
 class SuitRecorder {
  public:
-  /// `failed` is told, on the thread that closes the file, why a recording ended.
-  explicit SuitRecorder(std::function<void(const std::string&)> failed);
+  using Arrays = std::function<std::vector<recordings::RecordedArray>()>;
+  using Failed = std::function<void(const std::string& why)>;
+
+  /// `wanted`: the path of the first recording, or empty. `arrays` tells begin() what is recorded; `failed` is told, on
+  /// the thread that closes the file, why a recording ended.
+  SuitRecorder(std::string wanted, Arrays arrays, Failed failed);
   SuitRecorder(const SuitRecorder&) = delete;
   SuitRecorder& operator=(const SuitRecorder&) = delete;
   /// As end().
   ~SuitRecorder();
 
   /// Fails where the file cannot be made, or a recording goes on.
-  [[nodiscard]] Status begin(const std::string& path, const std::vector<recordings::RecordedArray>& arrays);
+  [[nodiscard]] Status begin();
   /// Takes no more frames; the file is closed in the background.
   void stop();
   /// stop(), and waits for it; the outcome of the recording. Done where there is none.
@@ -50,7 +60,9 @@ class SuitRecorder {
   void close(recordings::SuitRecordingWriter& writer);
   void await_closing();
 
-  const std::function<void(const std::string&)> failed_;
+  const std::string wanted_;
+  const Arrays arrays_;
+  const Failed failed_;
   std::mutex switch_mutex_;  // One begin() or end() at a time.
   std::atomic<bool> recording_{false};
   std::atomic<std::uint64_t> frames_{0};
@@ -62,4 +74,4 @@ class SuitRecorder {
   std::string path_;
 };
 
-}  // namespace dermis::app
+}  // namespace dermis::serve

@@ -15,9 +15,8 @@
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/frames_csv.hpp"
 #include "dermis/files/loads_csv.hpp"
-#include "rehearsal.hpp"
 
-namespace dermis::app {
+namespace dermis::serve {
 namespace {
 
 using calibration::GuidedCalibration;
@@ -54,8 +53,9 @@ Status write_data(const std::string& path, const ArrayDescription& array, const 
 
 }  // namespace
 
-CalibrationServices::CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model)
-    : arrays_(std::move(arrays)), use_model_(std::move(use_model)) {}
+CalibrationServices::CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model,
+                                         GuideListener listener)
+    : arrays_(std::move(arrays)), use_model_(std::move(use_model)), listener_(std::move(listener)) {}
 
 const std::vector<std::string>& CalibrationServices::names() {
   static const std::vector<std::string> kNames = {"/calibration/start",  "/calibration/skip", "/calibration/repeat",
@@ -65,7 +65,7 @@ const std::vector<std::string>& CalibrationServices::names() {
 
 std::shared_ptr<GuidedCalibration> CalibrationServices::guide() const {
   const std::lock_guard lock(mutex_);
-  return guide_;
+  return last_.guide;
 }
 
 void CalibrationServices::feed(std::size_t array, const RawFrame& raw) {
@@ -73,12 +73,13 @@ void CalibrationServices::feed(std::size_t array, const RawFrame& raw) {
   const auto present = guide();
   if (!present) return;
   present->feed(raw);
-  if (guide_voice().has_listener()) tell_hands();
+  notify_listener();
 }
 
-void CalibrationServices::tell_hands() {
+void CalibrationServices::notify_listener() const {
+  if (!listener_) return;
   const std::lock_guard lock(mutex_);
-  guide_voice().say(guide_ ? guide_->state() : calibration::GuideState{}, hold_time_);
+  listener_(last_.guide ? last_.guide->state() : calibration::GuideState{}, last_.hold_time);
 }
 
 Result<std::string> CalibrationServices::call(std::string_view service, std::string_view request) {
@@ -114,22 +115,21 @@ Result<std::string> CalibrationServices::start(std::string_view text) {
   const Nanos hold_time = plan->hold_time;
   Result<std::unique_ptr<GuidedCalibration>> created = GuidedCalibration::create(description, *std::move(plan));
   if (!created) return created.error();
-  replace_guide(*array, hold_time, std::move(*created));
+  replace({*array, *std::move(created), hold_time});
   return std::string("{}");
 }
 
-void CalibrationServices::replace_guide(std::size_t array, Nanos hold_time, std::shared_ptr<GuidedCalibration> guide) {
+void CalibrationServices::replace(Calibration calibration) {
   {
     const std::lock_guard lock(mutex_);
-    active_array_ = guide ? array : kNone;
-    array_ = array;
-    hold_time_ = hold_time;
-    saved_file_.clear();
-    std::swap(guide_, guide);
+    active_array_ = calibration.guide ? calibration.array : kNone;
+    std::swap(last_, calibration);
   }
-  tell_hands();
+  notify_listener();
   // Its end may have to wait for a fit, the caller not.
-  if (guide) ending_ = std::async(std::launch::async, [old = std::move(guide)]() mutable { old.reset(); });
+  if (calibration.guide) {
+    ending_ = std::async(std::launch::async, [old = std::move(calibration.guide)]() mutable { old.reset(); });
+  }
 }
 
 Result<std::string> CalibrationServices::save() {
@@ -138,35 +138,35 @@ Result<std::string> CalibrationServices::save() {
   const auto fit = present->calibration();
   const GuidedData data = present->data();
   if (!fit && present->state().stage != GuideStage::failed) return bad_input("the model is not ready; finish first");
-  const CalibratedArray& array = arrays_[array_];
+  const CalibratedArray& array = arrays_[last_.array];
   const std::string name = array.name + "-" + time_stamp();
   const std::string path = (std::filesystem::path(array.model).parent_path() / name).string();
   if (Status written = write_data(path, array.description, data); !written) return written.error();
   if (!fit) return failed("no model could be fitted; what was measured is in " + name + ".frames.csv and .loads.csv");
   const std::string file = name + ".safetensors";
   if (Status written = pipeline::write_model(path + ".safetensors", fit->model); !written) return written.error();
-  if (Status used = use_model_(array_, {fit, &fit->model}); !used) return used.error();
+  if (Status used = use_model_(last_.array, {fit, &fit->model}); !used) return used.error();
   {
     const std::lock_guard lock(mutex_);
-    saved_file_ = file;
+    last_.saved_file = file;
   }
   return nlohmann::json{{"file", file}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
 Result<std::string> CalibrationServices::cancel() {
   if (!guide()) return bad_input(kNoCalibration);
-  replace_guide(array_, {}, nullptr);
+  replace({last_.array});
   return std::string("{}");
 }
 
 std::optional<CalibrationProgress> CalibrationServices::progress() const {
   const std::lock_guard lock(mutex_);
-  if (array_ == kNone) return std::nullopt;
+  if (last_.array == kNone) return std::nullopt;
   CalibrationProgress progress;
-  progress.array = arrays_[array_].name;
-  if (guide_) progress.state = guide_->state();
-  if (!saved_file_.empty()) progress.state.message += " Saved as " + saved_file_ + " and in use.";
+  progress.array = arrays_[last_.array].name;
+  if (last_.guide) progress.state = last_.guide->state();
+  if (!last_.saved_file.empty()) progress.state.message += " Saved as " + last_.saved_file + " and in use.";
   return progress;
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::serve

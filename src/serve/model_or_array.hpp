@@ -8,7 +8,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/pipeline/model.hpp"
 
-namespace dermis::app {
+namespace dermis::serve {
 
 /// An array that can be served and calibrated, whether it was calibrated before or not.
 struct ModelOrArray {
@@ -19,4 +19,4 @@ struct ModelOrArray {
 /// A model file, or an array.toml (by its ending .toml).
 [[nodiscard]] Result<ModelOrArray> read_model_or_array(const std::string& path);
 
-}  // namespace dermis::app
+}  // namespace dermis::serve

@@ -19,7 +19,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/pipeline/model.hpp"
 
-namespace dermis::app {
+namespace dermis::serve {
 
 /// An array that can be calibrated.
 struct CalibratedArray {
@@ -40,7 +40,10 @@ class CalibrationServices {
   /// Takes a new model into use for an array that is at work.
   using UseModel = std::function<Status(std::size_t array, std::shared_ptr<const pipeline::Model>)>;
 
-  CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model);
+  /// Told what the calibration asks for after every frame; may be empty.
+  using GuideListener = std::function<void(const calibration::GuideState&, Nanos hold_time)>;
+
+  CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model, GuideListener listener = {});
 
   /// "/calibration/start", ...
   [[nodiscard]] static const std::vector<std::string>& names();
@@ -57,24 +60,29 @@ class CalibrationServices {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
+  struct Calibration {
+    std::size_t array = kNone;
+    std::shared_ptr<calibration::GuidedCalibration> guide{};  ///< Null: it was cancelled.
+    Nanos hold_time{};                                        ///< Of its plan.
+    std::string saved_file{};
+  };
+
   [[nodiscard]] std::shared_ptr<calibration::GuidedCalibration> guide() const;
   Result<std::string> start(std::string_view request);
   Result<std::string> save();
   Result<std::string> cancel();
   [[nodiscard]] Result<std::size_t> find_array(const std::string& name) const;
-  void replace_guide(std::size_t array, Nanos hold_time, std::shared_ptr<calibration::GuidedCalibration> guide);
-  void tell_hands();
+  void replace(Calibration calibration);
+  void notify_listener() const;
 
   const std::vector<CalibratedArray> arrays_;
   const UseModel use_model_;
+  const GuideListener listener_;
   std::mutex calls_mutex_;    ///< One call at a time.
   std::future<void> ending_;  ///< A calibration whose last fit is waited for.
   std::atomic<std::size_t> active_array_{kNone};
-  mutable std::mutex mutex_;   ///< Of what follows; never held for long, because frames wait for it.
-  std::size_t array_ = kNone;  ///< Of the last calibration.
-  std::shared_ptr<calibration::GuidedCalibration> guide_;
-  Nanos hold_time_{};  ///< Of its plan.
-  std::string saved_file_;
+  mutable std::mutex mutex_;  ///< Of what follows; never held for long, because frames wait for it.
+  Calibration last_;
 };
 
-}  // namespace dermis::app
+}  // namespace dermis::serve

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "model_or_array.hpp"
+#include "serve/model_or_array.hpp"
 
 #include <utility>
 
 #include "dermis/calibration/uncalibrated_model.hpp"
 #include "dermis/files/array_toml.hpp"
 
-namespace dermis::app {
+namespace dermis::serve {
 
 Result<ModelOrArray> read_model_or_array(const std::string& path) {
   if (!path.ends_with(".toml")) {
@@ -21,4 +21,4 @@ Result<ModelOrArray> read_model_or_array(const std::string& path) {
   return ModelOrArray{calibration::uncalibrated_model(*array), *std::move(array)};
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::serve
