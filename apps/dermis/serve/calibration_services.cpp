@@ -15,13 +15,13 @@
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/frames_csv.hpp"
 #include "dermis/files/loads_csv.hpp"
-#include "rehearsal.hpp"
 
 namespace dermis::app {
 namespace {
 
 using calibration::GuidedCalibration;
 using calibration::GuidedData;
+using calibration::GuideHint;
 using calibration::GuideStage;
 
 constexpr const char* kNoCalibration = "no calibration is going on; begin with /calibration/start";
@@ -45,6 +45,11 @@ Status write_frames(const std::string& path, const ArrayDescription& array, cons
   return (*writer)->commit();
 }
 
+sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time) {
+  const bool press = state.stage == GuideStage::pressing && state.hint != GuideHint::release;
+  return {press, state.hint == GuideHint::other_taxel, state.taxel, state.weight_n, hold_time};
+}
+
 /// What `dermis calibrate` needs to make the model again, or a better one.
 Status write_data(const std::string& path, const ArrayDescription& array, const GuidedData& data) {
   if (Status written = files::write_array(path + ".array.toml", array); !written) return written;
@@ -54,8 +59,9 @@ Status write_data(const std::string& path, const ArrayDescription& array, const 
 
 }  // namespace
 
-CalibrationServices::CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model)
-    : arrays_(std::move(arrays)), use_model_(std::move(use_model)) {}
+CalibrationServices::CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model,
+                                         std::shared_ptr<sources::GuideVoice> guide_voice)
+    : arrays_(std::move(arrays)), use_model_(std::move(use_model)), guide_voice_(std::move(guide_voice)) {}
 
 const std::vector<std::string>& CalibrationServices::names() {
   static const std::vector<std::string> kNames = {"/calibration/start",  "/calibration/skip", "/calibration/repeat",
@@ -73,12 +79,12 @@ void CalibrationServices::feed(std::size_t array, const RawFrame& raw) {
   const auto present = guide();
   if (!present) return;
   present->feed(raw);
-  if (guide_voice().has_listener()) tell_hands();
+  if (guide_voice_->has_listener()) tell_hands();
 }
 
 void CalibrationServices::tell_hands() {
   const std::lock_guard lock(mutex_);
-  guide_voice().say(guide_ ? guide_->state() : calibration::GuideState{}, hold_time_);
+  guide_voice_->say(words_of(guide_ ? guide_->state() : calibration::GuideState{}, hold_time_));
 }
 
 Result<std::string> CalibrationServices::call(std::string_view service, std::string_view request) {

@@ -18,6 +18,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/sources/guide_voice.hpp"
 
 namespace dermis::app {
 
@@ -40,7 +41,9 @@ class CalibrationServices {
   /// Takes a new model into use for an array that is at work.
   using UseModel = std::function<Status(std::size_t array, std::shared_ptr<const pipeline::Model>)>;
 
-  CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model);
+  /// `guide_voice`: what the calibration asks for is said to it.
+  CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model,
+                      std::shared_ptr<sources::GuideVoice> guide_voice);
 
   /// "/calibration/start", ...
   [[nodiscard]] static const std::vector<std::string>& names();
@@ -67,6 +70,7 @@ class CalibrationServices {
 
   const std::vector<CalibratedArray> arrays_;
   const UseModel use_model_;
+  const std::shared_ptr<sources::GuideVoice> guide_voice_;
   std::mutex calls_mutex_;    ///< One call at a time.
   std::future<void> ending_;  ///< A calibration whose last fit is waited for.
   std::atomic<std::size_t> active_array_{kNone};

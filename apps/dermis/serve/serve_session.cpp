@@ -10,8 +10,8 @@
 
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/content_hash.hpp"
+#include "dermis/sources/pacer.hpp"
 #include "live_line.hpp"
-#include "pacer.hpp"
 #include "stop_flag.hpp"
 #include "viewer/viewer_assets.hpp"
 
@@ -47,7 +47,8 @@ ServeSession::ServeSession(ServedSuit suit, const std::string& record)
           calibrated_arrays(suit_),
           [this](std::size_t array, std::shared_ptr<const pipeline::Model> model) {
             return use_model(array, std::move(model));
-          })),
+          },
+          suit_.guide)),
       recorder_([this](const std::string& why) {
         say("the recording has ended: " + why);
         server_->status(2, "the recording has ended: " + why);
@@ -140,7 +141,7 @@ std::optional<stream::Playback> ServeSession::playback() {
 Status ServeSession::run() {
   live_->start();
   if (suit_.playback) suit_.playback->control({.play = true});
-  Pacer pacer(&stop_flag());
+  sources::Pacer pacer(&stop_flag());
   for (std::int64_t tick = 0; pacer.wait_until(Nanos(tick * 1'000'000'000 / kTicksPerSecond)); ++tick) {
     broadcaster_->publish_points();
     if (tick % 3 == 0) publish_calibration();

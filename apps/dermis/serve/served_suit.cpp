@@ -15,8 +15,10 @@
 #include "dermis/acquisition/source_uri.hpp"
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "dermis/sources/open_source.hpp"
+#include "live_line.hpp"
 #include "model_or_array.hpp"
-#include "open_source.hpp"
+#include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
@@ -83,11 +85,12 @@ bool is_recording(const std::string& from) {
   return from.substr(0, from.find('#')).ends_with(".mcap");
 }
 
-Result<std::unique_ptr<FrameSource>> open_live_source(const std::string& from, const ServedArray& array) {
+Result<std::unique_ptr<FrameSource>> open_live_source(const std::string& from, const ServedArray& array,
+                                                      const std::shared_ptr<sources::GuideVoice>& guide) {
   if (is_recording(from)) {
     return bad_input(fmt::format("'{}': a recording is served with --from {} --suit suit.toml", from, from));
   }
-  if (!is_live(from)) {
+  if (!acquisition::is_source_uri(from)) {
     return bad_input(
         fmt::format("'{}': only devices and recordings are served; make a recording of it first "
                     "(dermis convert {} it.mcap)",
@@ -99,7 +102,7 @@ Result<std::unique_ptr<FrameSource>> open_live_source(const std::string& from, c
     return bad_input(fmt::format("'{}': say how many frames a second it sends, such as {}{}rate=100", from, from,
                                  from.find('?') == std::string::npos ? "?" : "&"));
   }
-  return open_source(from, &array.model->array);
+  return sources::open_source(*uri, {&array.model->array, &stop_flag(), say, guide});
 }
 
 /// Index in the recording of each array of the suit.
@@ -126,7 +129,8 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
 Status open_sources(const SuitPlace& place, const SuitDescription& described, ServedSuit& suit) {
   if (is_recording(place.from)) return open_playback(place.from, suit);
   for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
-    Result<std::unique_ptr<FrameSource>> source = open_live_source(described.arrays[k].from, suit.arrays[k]);
+    Result<std::unique_ptr<FrameSource>> source =
+        open_live_source(described.arrays[k].from, suit.arrays[k], suit.guide);
     if (!source) return source.error();
     suit.sources.push_back(*std::move(source));
   }

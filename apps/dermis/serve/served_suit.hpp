@@ -12,6 +12,7 @@
 #include "dermis/live/live_suit.hpp"
 #include "dermis/live/playback.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/sources/guide_voice.hpp"
 
 namespace dermis::app {
 
@@ -38,6 +39,7 @@ struct ServedSuit {
   std::vector<ServedArray> arrays;
   std::vector<std::unique_ptr<FrameSource>> sources;  ///< Of each array.
   std::unique_ptr<live::Playback> playback;           ///< Where a recording is served.
+  std::shared_ptr<sources::GuideVoice> guide = std::make_shared<sources::GuideVoice>();  ///< Of the simulated hands.
 };
 
 [[nodiscard]] Result<ServedSuit> open_served_suit(const SuitPlace& place);
