@@ -10,8 +10,6 @@
 #include "commands.hpp"
 #include "dermis/serve/session.hpp"
 #include "live_line.hpp"
-#include "open_source.hpp"
-#include "rehearsal.hpp"
 #include "stop_flag.hpp"
 #include "viewer/viewer_assets.hpp"
 
@@ -41,20 +39,10 @@ std::string address(const stream::ServerOptions& server, std::uint16_t port) {
   return url;
 }
 
-Result<serve::ServedSuit> open_suit(const serve::SuitPlace& place) {
-  Result<serve::ServedSuit> suit = serve::open_suit(
-      place, [](const std::string& uri, const ArrayDescription& array) { return open_source(uri, &array); });
-  if (!suit || !guide_voice().has_listener()) return suit;
-  suit->guide_listener = [](const calibration::GuideState& state, Nanos hold_time) {
-    guide_voice().say(state, hold_time);
-  };
-  return suit;
-}
-
 Status serve_suit(ServeOptions& options) {
   if (Status possible = check(options); !possible) return possible;
   const std::atomic<bool>& stop = stop_flag();
-  Result<serve::ServedSuit> suit = open_suit(options.place);
+  Result<serve::ServedSuit> suit = serve::open_suit(options.place, {.stop = &stop, .notice = say});
   if (!suit) return suit.error();
   const std::size_t arrays = suit->arrays.size();
   const std::string what = arrays == 1 ? suit->arrays.front().name : fmt::format("{} arrays", arrays);

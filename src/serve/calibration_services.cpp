@@ -21,6 +21,7 @@ namespace {
 
 using calibration::GuidedCalibration;
 using calibration::GuidedData;
+using calibration::GuideHint;
 using calibration::GuideStage;
 
 constexpr const char* kNoCalibration = "no calibration is going on; begin with /calibration/start";
@@ -44,6 +45,11 @@ Status write_frames(const std::string& path, const ArrayDescription& array, cons
   return (*writer)->commit();
 }
 
+sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time) {
+  const bool press = state.stage == GuideStage::pressing && state.hint != GuideHint::release;
+  return {press, state.hint == GuideHint::other_taxel, state.taxel, state.weight_n, hold_time};
+}
+
 /// What `dermis calibrate` needs to make the model again, or a better one.
 Status write_data(const std::string& path, const ArrayDescription& array, const GuidedData& data) {
   if (Status written = files::write_array(path + ".array.toml", array); !written) return written;
@@ -54,8 +60,8 @@ Status write_data(const std::string& path, const ArrayDescription& array, const 
 }  // namespace
 
 CalibrationServices::CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model,
-                                         GuideListener listener)
-    : arrays_(std::move(arrays)), use_model_(std::move(use_model)), listener_(std::move(listener)) {}
+                                         std::shared_ptr<sources::GuideVoice> guide_voice)
+    : arrays_(std::move(arrays)), use_model_(std::move(use_model)), guide_voice_(std::move(guide_voice)) {}
 
 const std::vector<std::string>& CalibrationServices::names() {
   static const std::vector<std::string> kNames = {"/calibration/start",  "/calibration/skip", "/calibration/repeat",
@@ -73,13 +79,12 @@ void CalibrationServices::feed(std::size_t array, const RawFrame& raw) {
   const auto present = guide();
   if (!present) return;
   present->feed(raw);
-  notify_listener();
+  if (guide_voice_->has_listener()) say_what_to_do();
 }
 
-void CalibrationServices::notify_listener() const {
-  if (!listener_) return;
+void CalibrationServices::say_what_to_do() const {
   const std::lock_guard lock(mutex_);
-  listener_(last_.guide ? last_.guide->state() : calibration::GuideState{}, last_.hold_time);
+  guide_voice_->say(words_of(last_.guide ? last_.guide->state() : calibration::GuideState{}, last_.hold_time));
 }
 
 Result<std::string> CalibrationServices::call(std::string_view service, std::string_view request) {
@@ -125,7 +130,7 @@ void CalibrationServices::replace(Calibration calibration) {
     active_array_ = calibration.guide ? calibration.array : kNone;
     std::swap(last_, calibration);
   }
-  notify_listener();
+  say_what_to_do();
   // Its end may have to wait for a fit, the caller not.
   if (calibration.guide) {
     ending_ = std::async(std::launch::async, [old = std::move(calibration.guide)]() mutable { old.reset(); });

@@ -18,6 +18,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/sources/guide_voice.hpp"
 
 namespace dermis::serve {
 
@@ -40,10 +41,9 @@ class CalibrationServices {
   /// Takes a new model into use for an array that is at work.
   using UseModel = std::function<Status(std::size_t array, std::shared_ptr<const pipeline::Model>)>;
 
-  /// Told what the calibration asks for after every frame; may be empty.
-  using GuideListener = std::function<void(const calibration::GuideState&, Nanos hold_time)>;
-
-  CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model, GuideListener listener = {});
+  /// `guide_voice`: what the calibration asks for is said to it, for simulated hands.
+  CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model,
+                      std::shared_ptr<sources::GuideVoice> guide_voice);
 
   /// "/calibration/start", ...
   [[nodiscard]] static const std::vector<std::string>& names();
@@ -73,11 +73,11 @@ class CalibrationServices {
   Result<std::string> cancel();
   [[nodiscard]] Result<std::size_t> find_array(const std::string& name) const;
   void replace(Calibration calibration);
-  void notify_listener() const;
+  void say_what_to_do() const;
 
   const std::vector<CalibratedArray> arrays_;
   const UseModel use_model_;
-  const GuideListener listener_;
+  const std::shared_ptr<sources::GuideVoice> guide_voice_;
   std::mutex calls_mutex_;    ///< One call at a time.
   std::future<void> ending_;  ///< A calibration whose last fit is waited for.
   std::atomic<std::size_t> active_array_{kNone};

@@ -13,6 +13,7 @@
 #include "dermis/acquisition/source_uri.hpp"
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "dermis/sources/open_source.hpp"
 #include "serve/model_or_array.hpp"
 
 namespace dermis::serve {
@@ -84,7 +85,7 @@ bool is_recording(const std::string& from) {
 }
 
 Result<std::unique_ptr<FrameSource>> open_live(const std::string& from, const ServedArray& array,
-                                               const OpenSource& open_source) {
+                                               sources::SourceOptions options) {
   if (is_recording(from)) {
     return bad_input(fmt::format("'{}': a recording is served with --from {} --suit suit.toml", from, from));
   }
@@ -100,7 +101,8 @@ Result<std::unique_ptr<FrameSource>> open_live(const std::string& from, const Se
     return bad_input(fmt::format("'{}': say how many frames a second it sends, such as {}{}rate=100", from, from,
                                  from.find('?') == std::string::npos ? "?" : "&"));
   }
-  return open_source(from, array.model->array);
+  options.array = &array.model->array;
+  return sources::open_source(*uri, options);
 }
 
 /// Index in the recording of each array of the suit.
@@ -124,11 +126,11 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
   return Done{};
 }
 
-Status open_sources(const SuitPlace& place, const SuitDescription& described, const OpenSource& open_source,
+Status open_sources(const SuitPlace& place, const SuitDescription& described, const sources::SourceOptions& options,
                     ServedSuit& suit) {
   if (is_recording(place.from)) return open_playback(place.from, suit);
   for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
-    Result<std::unique_ptr<FrameSource>> source = open_live(described.arrays[k].from, suit.arrays[k], open_source);
+    Result<std::unique_ptr<FrameSource>> source = open_live(described.arrays[k].from, suit.arrays[k], options);
     if (!source) return source.error();
     suit.arrays[k].source = *std::move(source);
   }
@@ -152,7 +154,7 @@ Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, pipeline::Mo
   return suit;
 }
 
-Result<ServedSuit> open_suit(const SuitPlace& place, const OpenSource& open_source) {
+Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions options) {
   const Result<SuitDescription> described = describe(place);
   if (!described) return described.error();
   ServedSuit suit;
@@ -163,7 +165,8 @@ Result<ServedSuit> open_suit(const SuitPlace& place, const OpenSource& open_sour
     if (!array) return array.error();
     suit.arrays.push_back(*std::move(array));
   }
-  if (Status opened = open_sources(place, *described, open_source, suit); !opened) return opened.error();
+  options.guide = suit.guide;
+  if (Status opened = open_sources(place, *described, options, suit); !opened) return opened.error();
   return suit;
 }
 

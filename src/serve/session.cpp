@@ -96,7 +96,7 @@ Session::Implementation::Implementation(ServedSuit suit, const SessionOptions& o
           [this](std::size_t array, const std::shared_ptr<const pipeline::Model>& model) {
             return use_model(array, model);
           },
-          suit_.guide_listener),
+          suit_.guide),
       recorder_(
           options.record, [this] { return recorded_arrays(suit_, models_); },
           [this, notice = options.server.notice](const std::string& why) { report_failed_recording(notice, why); }) {}

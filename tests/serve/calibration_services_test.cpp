@@ -33,6 +33,10 @@ ArrayDescription array_of(std::size_t rows, std::size_t cols) {
   return support::hand_made_model(rows, cols).array;
 }
 
+Status use_none(std::size_t, const std::shared_ptr<const pipeline::Model>&) {
+  return Done{};
+}
+
 /// The services of the arrays "left" and "right", with a person at the right one.
 class Calibrations : public testing::Test {
  protected:
@@ -72,7 +76,8 @@ class Calibrations : public testing::Test {
         array_in_use_ = array;
         model_in_use_ = std::move(model);
         return use_;
-      }};
+      },
+      std::make_shared<sources::GuideVoice>()};
 };
 
 TEST_F(Calibrations, have_nothing_to_tell_before_the_first) {
@@ -155,28 +160,27 @@ TEST_F(Calibrations, say_when_the_new_model_cannot_be_used) {
 }
 
 TEST(CalibrationServices, the_only_array_needs_no_name) {
-  CalibrationServices services({{"chest", array_of(2, 2), ""}},
-                               [](std::size_t, const std::shared_ptr<const pipeline::Model>&) { return Done{}; });
+  CalibrationServices services({{"chest", array_of(2, 2), ""}}, use_none, std::make_shared<sources::GuideVoice>());
   EXPECT_TRUE(services.call("/calibration/start", "{}"));
   EXPECT_EQ(services.progress()->array, "chest");
 }
 
-TEST(CalibrationServices, who_listens_is_told_after_every_frame_and_at_the_end) {
-  std::vector<GuideStage> stages;
-  std::vector<Nanos> hold_times;
-  CalibrationServices services(
-      {{"chest", array_of(2, 2), ""}},
-      [](std::size_t, const std::shared_ptr<const pipeline::Model>&) { return Done{}; },
-      [&](const calibration::GuideState& state, Nanos hold_time) {
-        stages.push_back(state.stage);
-        hold_times.push_back(hold_time);
-      });
-  ASSERT_TRUE(services.call("/calibration/start", R"({"hold_s": 0.25})"));
+TEST(CalibrationServices, a_hand_that_listens_is_told_what_to_press) {
+  const auto voice = std::make_shared<sources::GuideVoice>();
+  voice->listen();
+  CalibrationServices services({{"chest", array_of(2, 2), ""}}, use_none, voice);
+  ASSERT_TRUE(
+      services.call("/calibration/start", R"({"taxels": [3], "weights_n": [2], "unloaded_s": 0.2, "hold_s": 0.25})"));
+  EXPECT_FALSE(voice->words().press);
+  EXPECT_EQ(voice->words().hold_time, std::chrono::milliseconds(250));
   calibration::HandledArray handled(array_of(2, 2), {}, kSeed);
-  services.feed(0, handled.frame(std::vector<double>(4)));
+  for (std::size_t frame = 0; frame < kMostFrames && !voice->words().press; ++frame) {
+    services.feed(0, handled.frame(std::vector<double>(4)));
+  }
+  EXPECT_EQ(voice->words().taxel, 3U);
+  EXPECT_EQ(voice->words().weight_n, 2.0);
   ASSERT_TRUE(services.call("/calibration/cancel", "{}"));
-  EXPECT_EQ(stages, (std::vector<GuideStage>{GuideStage::unloaded, GuideStage::unloaded, GuideStage::none}));
-  EXPECT_EQ(hold_times[1], std::chrono::milliseconds(250));
+  EXPECT_FALSE(voice->words().press);
 }
 
 }  // namespace

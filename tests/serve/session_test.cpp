@@ -84,23 +84,27 @@ std::vector<std::size_t> recorded_frames(const std::string& path) {
   return frames;
 }
 
-/// An array under the hand of somebody who does what the guide says, as fast as it is read.
+/// An array under a hand that does what the guide says, as fast as it is read.
 class GuidedArray final : public FrameSource {
  public:
-  explicit GuidedArray(const ArrayDescription& array) : handled_(array, {}, kSeed), user_(array, {}, kSeed) {}
-
-  void hear(const calibration::GuideState& state) { state_ = state; }
+  GuidedArray(const ArrayDescription& array, std::shared_ptr<sources::GuideVoice> voice)
+      : handled_(array, {}, kSeed), voice_(std::move(voice)), force_n_(array.taxel_count()) {
+    voice_->listen();
+  }
 
   Result<bool> next(RawFrame& frame) override {
-    frame = handled_.frame(user_.react(state_));
+    const sources::GuideWords words = voice_->words();
+    force_n_.assign(force_n_.size(), 0.0);
+    if (words.press) force_n_[words.taxel] = words.weight_n;
+    frame = handled_.frame(force_n_);
     return true;
   }
   [[nodiscard]] std::optional<FrameShape> shape() const override { return FrameShape{kRows, kCols}; }
 
  private:
   calibration::HandledArray handled_;
-  calibration::SimulatedUser user_;
-  calibration::GuideState state_;
+  std::shared_ptr<sources::GuideVoice> voice_;
+  std::vector<double> force_n_;
 };
 
 TEST(Session, streams_every_topic_of_all_arrays) {
@@ -150,9 +154,8 @@ TEST(Session, records_from_its_beginning_and_again_when_a_client_asks) {
 TEST(Session, calibrates_an_array_at_work_and_takes_the_model_into_use) {
   const TemporaryFolder folder;
   const auto model = std::make_shared<const pipeline::Model>(support::hand_made_model(kRows, kCols));
-  auto source = std::make_unique<GuidedArray>(model->array);
   ServedSuit suit;
-  suit.guide_listener = [guided = source.get()](const calibration::GuideState& state, Nanos) { guided->hear(state); };
+  auto source = std::make_unique<GuidedArray>(model->array, suit.guide);
   suit.arrays.push_back({"chest",
                          std::move(source),
                          model,

@@ -2,19 +2,18 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "dermis/calibration/guided_calibration.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frame_source.hpp"
-#include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/core/surface.hpp"
 #include "dermis/live/playback.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/sources/guide_voice.hpp"
+#include "dermis/sources/open_source.hpp"
 
 /// An array or a suit served live: the stream of docs/stream.md with its parameters, services and recordings.
 namespace dermis::serve {
@@ -38,8 +37,8 @@ struct ServedSuit {
   std::string name = "suit";
   std::vector<ServedArray> arrays;             ///< At least one.
   std::unique_ptr<live::Playback> playback{};  ///< Of the recording from which all sources come; null: they are live.
-  /// Told after every frame what a guided calibration asks for, as simulated hands need it; thread-safe. Empty: nobody.
-  std::function<void(const calibration::GuideState&, Nanos hold_time)> guide_listener{};
+  /// Heard by the simulated hands among the sources. Not null.
+  std::shared_ptr<sources::GuideVoice> guide = std::make_shared<sources::GuideVoice>();
 };
 
 /// One flat array, named as its model says. Fails where the model's array is not valid.
@@ -52,11 +51,8 @@ struct SuitPlace {
   std::string suit{};   ///< suit.toml
 };
 
-/// Opens a source by its URI; `array`: what its frames must fit.
-using OpenSource =
-    std::function<Result<std::unique_ptr<FrameSource>>(const std::string& uri, const ArrayDescription& array)>;
-
-/// Opens all that the place names. Fails where one cannot be opened or two do not fit each other.
-[[nodiscard]] Result<ServedSuit> open_suit(const SuitPlace& place, const OpenSource& open_source);
+/// Opens all that the place names. Of the options, `array` and `guide` are not used. Fails where a file or a source
+/// cannot be opened, and where they do not fit each other.
+[[nodiscard]] Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions options = {});
 
 }  // namespace dermis::serve

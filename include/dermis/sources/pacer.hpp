@@ -10,18 +10,20 @@
 
 #include "dermis/core/frames.hpp"
 
-namespace dermis::app {
+namespace dermis::sources {
 
-/// From `first` to `time` at a pace; whatever a file says, at most 31 years.
-[[nodiscard]] inline Nanos span(Nanos first, Nanos time, double speed = 1.0) {
+/// How long after the frame of time `first` that of `time` is due, at `speed` times their pace. Whatever a file says,
+/// at most 31 years.
+[[nodiscard]] inline Nanos due_after(Nanos first, Nanos time, double speed = 1.0) {
   constexpr double kMost = 1e18;  // [ns]
   const double recorded_ns = static_cast<double>(time.count()) - static_cast<double>(first.count());
   return Nanos(std::llround(std::clamp(recorded_ns / speed, 0.0, kMost)));
 }
 
-/// Waits for moments since its making, by the steady clock, so that errors do not add up.
+/// Waits for moments since its making, by the steady clock, so that errors do not add up. Not thread-safe.
 class Pacer {
  public:
+  /// `stop` null: waits in any case.
   explicit Pacer(const std::atomic<bool>* stop) : stop_(stop) {}
 
   /// False where the stop flag was set meanwhile; it is looked at ten times a second.
@@ -43,4 +45,4 @@ class Pacer {
   std::chrono::time_point<std::chrono::steady_clock, Nanos> begin_ = std::chrono::steady_clock::now();
 };
 
-}  // namespace dermis::app
+}  // namespace dermis::sources

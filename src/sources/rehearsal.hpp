@@ -2,14 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "dermis/calibration/guided_calibration.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/random.hpp"
@@ -17,52 +15,29 @@
 #include "dermis/simulation/adc.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 #include "dermis/simulation/rubber.hpp"
+#include "dermis/sources/guide_voice.hpp"
 
-namespace dermis::app {
-
-/// What the guided calibration of this process asks for, as simulated hands hear it. Thread-safe.
-class GuideVoice {
- public:
-  /// There is a hand that listens.
-  void listen() { has_listener_ = true; }
-  [[nodiscard]] bool has_listener() const { return has_listener_.load(std::memory_order_relaxed); }
-
-  void say(const calibration::GuideState& state, Nanos hold_time);
-
-  struct Words {
-    calibration::GuideStage stage = calibration::GuideStage::none;
-    calibration::GuideHint hint = calibration::GuideHint::none;
-    std::size_t taxel = 0;
-    double weight_n = 0.0;
-    Nanos hold_time{};
-  };
-  [[nodiscard]] Words words() const;
-
- private:
-  std::atomic<bool> has_listener_ = false;
-  mutable std::mutex mutex_;
-  Words words_;
-};
-
-/// One a process, as there is one calibration at a time.
-[[nodiscard]] GuideVoice& guide_voice();
+namespace dermis::sources {
 
 /// A simulated array under the hand of somebody who does what the guide says, so that it can be tried without an array:
 /// puts the weight on after a while of the length of a hold, and takes it off when told. Every eighth press begins on
 /// the taxel beside. Not thread-safe.
 class Rehearsal {
  public:
-  [[nodiscard]] static Result<Rehearsal> create(const ArrayDescription& array, std::uint64_t seed, double rate_hz);
+  /// `guide` null: nobody asks for anything.
+  [[nodiscard]] static Result<Rehearsal> create(const ArrayDescription& array, std::uint64_t seed, double rate_hz,
+                                                std::shared_ptr<GuideVoice> guide);
 
   /// Sets counts, temperature and supply of the frame of that number; numbers rise.
   void read(std::uint64_t number, RawFrame& frame);
 
  private:
   Rehearsal(const ArrayDescription& array, simulation::ConductiveRubber rubber, simulation::ReadoutCircuit circuit,
-            std::uint64_t seed, double rate_hz);
+            std::uint64_t seed, double rate_hz, std::shared_ptr<GuideVoice> guide);
   void move_hand(double seconds);
-  void put_on(const GuideVoice::Words& words);
+  void put_on(const GuideWords& words);
 
+  std::shared_ptr<GuideVoice> guide_;
   simulation::ConductiveRubber rubber_;
   simulation::ReadoutCircuit circuit_;
   simulation::Adc adc_;
@@ -79,4 +54,4 @@ class Rehearsal {
   std::vector<double> ratio_;
 };
 
-}  // namespace dermis::app
+}  // namespace dermis::sources

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "contact_loop.hpp"
+#include "sources/contact_loop.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "dermis/simulation/simulator.hpp"
 
-namespace dermis::app {
+namespace dermis::sources {
 namespace {
 
 constexpr double kSceneRateHz = 100.0;
@@ -85,4 +85,4 @@ void ContactLoop::read(double seconds, RawFrame& frame) {
   }
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::sources

@@ -12,7 +12,7 @@
 #include "dermis/core/random.hpp"
 #include "dermis/core/result.hpp"
 
-namespace dermis::app {
+namespace dermis::sources {
 
 /// The scene "contacts" to be read at any moment, over and over: simulated beforehand at 100 frames/s without the noise
 /// of the instruments, interpolated in between, and with fresh noise at each reading. Not thread-safe.
@@ -38,4 +38,4 @@ class ContactLoop {
   std::vector<double> supply_v_;
 };
 
-}  // namespace dermis::app
+}  // namespace dermis::sources

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "rehearsal.hpp"
+#include "sources/rehearsal.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -8,11 +8,8 @@
 
 #include "dermis/simulation/scene.hpp"
 
-namespace dermis::app {
+namespace dermis::sources {
 namespace {
-
-using calibration::GuideHint;
-using calibration::GuideStage;
 
 constexpr double kCelsius = 22.0;
 constexpr double kDefaultSupplyV = 5.0;
@@ -22,24 +19,11 @@ constexpr simulation::EnvironmentOptions kEnvironment;
 
 }  // namespace
 
-GuideVoice& guide_voice() {
-  static GuideVoice voice;
-  return voice;
-}
-
-void GuideVoice::say(const calibration::GuideState& state, Nanos hold_time) {
-  const std::lock_guard lock(mutex_);
-  words_ = {state.stage, state.hint, state.taxel, state.weight_n, hold_time};
-}
-
-GuideVoice::Words GuideVoice::words() const {
-  const std::lock_guard lock(mutex_);
-  return words_;
-}
-
 Rehearsal::Rehearsal(const ArrayDescription& array, simulation::ConductiveRubber rubber,
-                     simulation::ReadoutCircuit circuit, std::uint64_t seed, double rate_hz)
-    : rubber_(std::move(rubber)),
+                     simulation::ReadoutCircuit circuit, std::uint64_t seed, double rate_hz,
+                     std::shared_ptr<GuideVoice> guide)
+    : guide_(std::move(guide)),
+      rubber_(std::move(rubber)),
       circuit_(std::move(circuit)),
       adc_(array.readout, kEnvironment.adc_noise_lsb),
       random_(seed),
@@ -49,16 +33,18 @@ Rehearsal::Rehearsal(const ArrayDescription& array, simulation::ConductiveRubber
       siemens_(array.taxel_count()),
       ratio_(array.taxel_count()) {}
 
-Result<Rehearsal> Rehearsal::create(const ArrayDescription& array, std::uint64_t seed, double rate_hz) {
+Result<Rehearsal> Rehearsal::create(const ArrayDescription& array, std::uint64_t seed, double rate_hz,
+                                    std::shared_ptr<GuideVoice> guide) {
   Result<simulation::ConductiveRubber> rubber = simulation::ConductiveRubber::create({}, array.rows, array.cols, seed);
   if (!rubber) return rubber.error();
   Result<simulation::ReadoutCircuit> circuit = simulation::ReadoutCircuit::create(array);
   if (!circuit) return circuit.error();
-  guide_voice().listen();
-  return Rehearsal(array, *std::move(rubber), *std::move(circuit), seed, rate_hz);
+  if (!guide) guide = std::make_shared<GuideVoice>();
+  guide->listen();
+  return Rehearsal(array, *std::move(rubber), *std::move(circuit), seed, rate_hz, std::move(guide));
 }
 
-void Rehearsal::put_on(const GuideVoice::Words& words) {
+void Rehearsal::put_on(const GuideWords& words) {
   const bool is_mistake = ++presses_ % kPressesToAMistake == 0;
   pressed_ = (words.taxel + (is_mistake ? 1 : 0)) % force_n_.size();
   force_n_[*pressed_] = words.weight_n;
@@ -66,16 +52,15 @@ void Rehearsal::put_on(const GuideVoice::Words& words) {
 }
 
 void Rehearsal::move_hand(double seconds) {
-  const GuideVoice::Words words = guide_voice().words();
+  const GuideWords words = guide_->words();
   const double while_s = std::chrono::duration<double>(words.hold_time).count();
-  const bool is_asked = words.stage == GuideStage::pressing && words.hint != GuideHint::release;
   seconds_ += seconds;
   if (!pressed_) {
-    if (is_asked && seconds_ > while_s && words.taxel < force_n_.size()) put_on(words);
+    if (words.press && seconds_ > while_s && words.taxel < force_n_.size()) put_on(words);
     return;
   }
-  const bool sees_mistake = words.hint == GuideHint::other_taxel && seconds_ > while_s + kSeesMistakeSeconds;
-  told_seconds_ = is_asked ? 0.0 : told_seconds_ + seconds;
+  const bool sees_mistake = words.other_taxel && seconds_ > while_s + kSeesMistakeSeconds;
+  told_seconds_ = words.press ? 0.0 : told_seconds_ + seconds;
   if (!sees_mistake && told_seconds_ <= 0.5 * while_s) return;
   force_n_[*pressed_] = 0.0;
   pressed_.reset();
@@ -96,4 +81,4 @@ void Rehearsal::read(std::uint64_t number, RawFrame& frame) {
   adc_.convert(ratio_, supply_v_, random_, frame.counts);
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::sources
