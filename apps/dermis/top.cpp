@@ -16,8 +16,7 @@
 
 #include "array_view.hpp"
 #include "commands.hpp"
-#include "open_source.hpp"
-#include "pacer.hpp"
+#include "dermis/sources/pacer.hpp"
 #include "stop_flag.hpp"
 #include "top_screen.hpp"
 
@@ -90,7 +89,7 @@ class Watcher {
 
  private:
   void run() {
-    Pacer pacer(&stop_flag());
+    sources::Pacer pacer(&stop_flag());
     std::optional<Nanos> first;
     while (!stop_flag().load()) {
       const Result<bool> more = view_.next();
@@ -101,7 +100,7 @@ class Watcher {
         return;
       }
       if (!first) first = view_.raw().time;
-      if (!is_live(options_.from) && !pacer.wait_until(span(*first, view_.raw().time))) return;
+      if (!view_.is_live() && !pacer.wait_until(sources::due_after(*first, view_.raw().time))) return;
       take();
     }
   }

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/status_messages.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "dermis/compensation/line_faults.hpp"
+
+namespace dermis::serve {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+double seconds(Nanos span) {
+  return std::chrono::duration<double>(span).count();
+}
+
+}  // namespace
+
+messages::ArrayStatistics statistics_message(const std::string& name, const live::ArrayStatistics& array) {
+  messages::ArrayStatistics out;
+  out.name = name;
+  out.ended = array.ended;
+  out.error = array.error;
+  out.frames = array.frames;
+  out.rejected = array.rejected;
+  out.lost = array.source.lost_frames;
+  out.damaged = array.source.damaged_frames;
+  out.rate_hz = array.source.rate_hz;
+  out.jitter_s = seconds(array.source.jitter);
+  out.latency_p50_s = array.latency_p50 > Nanos{} ? seconds(array.latency_p50) : kUnknown;
+  out.latency_p99_s = array.latency_p99 > Nanos{} ? seconds(array.latency_p99) : kUnknown;
+  out.temperature_celsius = array.temperature_celsius.value_or(kUnknown);
+  out.supply_v = array.supply_v.value_or(kUnknown);
+  return out;
+}
+
+messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::Model& model,
+                                      const live::ArrayStatistics& statistics) {
+  messages::Diagnosis diagnosis;
+  diagnosis.name = name;
+  diagnosis.hardware_id = model.array.name;
+  for (const compensation::LineFault& fault : statistics.faults) {
+    diagnosis.values.emplace_back(compensation::place_name(fault, model.array), compensation::to_string(fault.kind));
+  }
+  std::string dead;
+  for (std::size_t k = 0; k < model.networks.taxel_count(); ++k) {
+    if (model.networks.dead[k] != 0) dead += (dead.empty() ? "" : " ") + model.array.taxel_name(k);
+  }
+  if (!dead.empty()) diagnosis.values.emplace_back("dead since calibration", dead);
+  if (!statistics.error.empty()) {
+    diagnosis.level = messages::Diagnosis::Level::error;
+    diagnosis.message = statistics.error;
+  } else if (statistics.ended) {
+    diagnosis.level = messages::Diagnosis::Level::stale;
+    diagnosis.message = "the source has ended";
+  } else if (!statistics.faults.empty()) {
+    diagnosis.level = messages::Diagnosis::Level::warning;
+    diagnosis.message = fmt::format("{} fault{}", statistics.faults.size(), statistics.faults.size() == 1 ? "" : "s");
+  } else {
+    diagnosis.message = dead.empty() ? "healthy" : "dead taxels";
+  }
+  return diagnosis;
+}
+
+namespace {
+
+messages::CalibrationState::Stage stage_of(calibration::GuideStage stage) {
+  using calibration::GuideStage;
+  using Stage = messages::CalibrationState::Stage;
+  switch (stage) {
+    case GuideStage::none: return Stage::none;
+    case GuideStage::unloaded: return Stage::unloaded;
+    case GuideStage::pressing: return Stage::pressing;
+    case GuideStage::fitting: return Stage::fitting;
+    case GuideStage::done: return Stage::done;
+    case GuideStage::failed: return Stage::failed;
+  }
+  return Stage::none;
+}
+
+messages::CalibrationState::Hint hint_of(calibration::GuideHint hint) {
+  using calibration::GuideHint;
+  using Hint = messages::CalibrationState::Hint;
+  switch (hint) {
+    case GuideHint::none: return Hint::none;
+    case GuideHint::press: return Hint::press;
+    case GuideHint::hold: return Hint::hold;
+    case GuideHint::release: return Hint::release;
+    case GuideHint::other_taxel: return Hint::other_taxel;
+    case GuideHint::unsteady: return Hint::unsteady;
+    case GuideHint::too_short: return Hint::too_short;
+    case GuideHint::several: return Hint::several;
+  }
+  return Hint::none;
+}
+
+}  // namespace
+
+messages::CalibrationState calibration_message(CalibrationProgress progress) {
+  messages::CalibrationState state;
+  calibration::GuideState& guide = progress.state;
+  state.array = std::move(progress.array);
+  state.stage = stage_of(guide.stage);
+  state.message = std::move(guide.message);
+  state.taxel = static_cast<std::uint32_t>(guide.taxel);
+  state.weight_n = guide.weight_n;
+  state.reading = guide.reading;
+  state.hold_share = guide.hold_share;
+  state.presses_done = static_cast<std::uint32_t>(guide.presses_done);
+  state.presses_total = static_cast<std::uint32_t>(guide.presses_total);
+  state.median_relative_error = guide.median_relative_error.value_or(kUnknown);
+  state.taxel_presses = std::move(guide.taxel_presses);
+  state.hint = hint_of(guide.hint);
+  if (guide.pressed_taxel) state.pressed_taxel = static_cast<std::uint32_t>(*guide.pressed_taxel);
+  state.unpressed_relative_error = guide.unpressed_relative_error.value_or(kUnknown);
+  return state;
+}
+
+}  // namespace dermis::serve
