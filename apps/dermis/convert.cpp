@@ -162,21 +162,19 @@ Status convert(const ConvertOptions& options) {
 
 }  // namespace
 
-void add_convert(CLI::App& app, Action& action) {
+void add_convert(Command& command) {
   auto options = std::make_shared<ConvertOptions>();
-  CLI::App* command =
-      app.add_subcommand("convert", "Frames from one file format to another, by the ending of the name");
-  command->add_option("in", options->in, ".csv, .mcap, .h5, .hdf5 (of dermis or WiReSens) or .npy")->required();
-  command->add_option("out", options->out, "The same, or .wiresens.hdf5")->required();
-  command->add_option("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");
-  command->add_option("--rate", options->rate_hz, "Frames a second of a .npy file, which has no times [Hz]");
-  auto* rows = command
-                   ->add_option("--rows", options->rows,
-                                "Rows of the frames: checked, and needed for a .npy file of two dimensions")
-                   ->check(not_negative);
-  auto* cols = command->add_option("--cols", options->cols, "Columns of the frames")->check(not_negative)->needs(rows);
-  rows->needs(cols);
-  command->callback([&action, options] { action = [options] { return convert(*options); }; });
+  command.option("in", options->in, ".csv, .mcap, .h5, .hdf5 (of dermis or WiReSens) or .npy").required();
+  command.option("out", options->out, "The same, or .wiresens.hdf5").required();
+  command.option("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");
+  command.option("--rate", options->rate_hz, "Frames a second of a .npy file, which has no times [Hz]");
+  const Option rows =
+      command
+          .option("--rows", options->rows, "Rows of the frames: checked, and needed for a .npy file of two dimensions")
+          .not_negative();
+  const Option cols = command.option("--cols", options->cols, "Columns of the frames").not_negative().needs(rows);
+  rows.needs(cols);
+  command.action([options] { return convert(*options); });
 }
 
 }  // namespace dermis::app

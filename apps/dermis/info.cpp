@@ -233,12 +233,11 @@ Status print_info(const InfoOptions& options) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Action& action) {
+void add_info(Command& command) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = app.add_subcommand("info", "What a recording or another file of frames holds");
-  command->add_option("file", options->file, ".mcap, .csv, .h5, .hdf5 or .npy")->required();
-  command->add_flag("--json", options->json, "As JSON");
-  command->callback([&action, options] { action = [options] { return print_info(*options); }; });
+  command.option("file", options->file, ".mcap, .csv, .h5, .hdf5 or .npy").required();
+  command.flag("--json", options->json, "As JSON");
+  command.action([options] { return print_info(*options); });
 }
 
 }  // namespace dermis::app

@@ -10,8 +10,8 @@
 #include "dermis/acquisition/device_source.hpp"
 #include "dermis/acquisition/source_uri.hpp"
 #include "dermis/recordings/frame_files.hpp"
-#include "live_line.hpp"
 #include "simulated_device.hpp"
+#include "status_line.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {

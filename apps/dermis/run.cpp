@@ -10,9 +10,9 @@
 #include "dermis/files/forces_csv.hpp"
 #include "dermis/files/frames_csv.hpp"
 #include "dermis/preprocessing/phase.hpp"
-#include "live_line.hpp"
 #include "open_source.hpp"
 #include "seconds.hpp"
+#include "status_line.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
@@ -148,16 +148,15 @@ Status run(const RunOptions& options) {
 
 }  // namespace
 
-void add_run(CLI::App& app, Action& action) {
+void add_run(Command& command) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Raw counts -> newtons per taxel");
-  command->add_option("--model", options->model, "Model file of 'dermis calibrate'")->required();
-  command->add_option("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device")->required();
-  command->add_option("--out", options->out, "forces.csv to write")->required();
-  command->add_option("--sigma", options->sigma, "Also write the standard deviation of every force [N] to this CSV");
-  command->add_option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
-      ->capture_default_str();
-  command->callback([&action, options] { action = [options] { return run(*options); }; });
+  command.option("--model", options->model, "Model file of 'dermis calibrate'").required();
+  command.option("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device").required();
+  command.option("--out", options->out, "forces.csv to write").required();
+  command.option("--sigma", options->sigma, "Also write the standard deviation of every force [N] to this CSV");
+  command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
+      .shows_default();
+  command.action([options] { return run(*options); });
 }
 
 }  // namespace dermis::app

@@ -159,14 +159,13 @@ Status top(const TopOptions& options) {
 
 }  // namespace
 
-void add_top(CLI::App& app, Action& action) {
+void add_top(Command& command) {
   auto options = std::make_shared<TopOptions>();
-  CLI::App* command = app.add_subcommand("top", "A live heat map in the terminal, until Ctrl-C");
-  command->add_option("--from", options->from, "URI of a device or of the simulator, or a recording")->required();
-  command->add_option("--model", options->model, "Model file: shows newtons and contacts instead of counts");
-  command->add_option("--high", options->high,
-                      "End of the colour scale [N, or counts]; without it, one that has covered all so far");
-  command->callback([&action, options] { action = [options] { return top(*options); }; });
+  command.option("--from", options->from, "URI of a device or of the simulator, or a recording").required();
+  command.option("--model", options->model, "Model file: shows newtons and contacts instead of counts");
+  command.option("--high", options->high,
+                 "End of the colour scale [N, or counts]; without it, one that has covered all so far");
+  command.action([options] { return top(*options); });
 }
 
 }  // namespace dermis::app

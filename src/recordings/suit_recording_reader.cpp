@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dermis/files/input.hpp"
+#include "dermis/files/taxel_text.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 #include "recordings/recording_description.hpp"
 
@@ -17,10 +18,6 @@ namespace {
 /// Log times of the files of others may have 64 bits.
 Nanos time_of(std::uint64_t log_time) {
   return Nanos(static_cast<std::int64_t>(log_time & std::numeric_limits<std::int64_t>::max()));
-}
-
-std::string files::size_text(const FrameShape& shape) {
-  return std::to_string(shape.rows) + "x" + std::to_string(shape.cols);
 }
 
 /// An array that is being read.

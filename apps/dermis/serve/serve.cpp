@@ -6,9 +6,9 @@
 #include <string>
 
 #include "commands.hpp"
-#include "live_line.hpp"
 #include "serve/serve_session.hpp"
 #include "serve/served_suit.hpp"
+#include "status_line.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
@@ -55,20 +55,16 @@ Status serve(ServeOptions& options) {
 
 }  // namespace
 
-void add_serve(CLI::App& app, Action& action) {
+void add_serve(Command& command) {
   auto options = std::make_shared<ServeOptions>();
-  CLI::App* command = app.add_subcommand("serve", "Show an array or a suit live in the browser and stream it");
-  command->add_option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
-  command->add_option("--model", options->place.model, "Its model, or the array.toml of an array to be calibrated");
-  command->add_option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
-  command->add_option("--record", options->record, "Record from the beginning, .mcap");
-  command->add_option("--host", options->server.host, "Address to serve at; all but loopback need a token")
-      ->capture_default_str();
-  command->add_option("--port", options->server.port, "Port; 0: any that is free")
-      ->check(not_negative)
-      ->capture_default_str();
-  command->add_option("--token", options->server.token, "Asked of every client");
-  command->callback([&action, options] { action = [options] { return serve(*options); }; });
+  command.option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
+  command.option("--model", options->place.model, "Its model, or the array.toml of an array to be calibrated");
+  command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
+  command.option("--record", options->record, "Record from the beginning, .mcap");
+  command.option("--host", options->server.host, "Address to serve at; all but loopback need a token").shows_default();
+  command.option("--port", options->server.port, "Port; 0: any that is free").not_negative().shows_default();
+  command.option("--token", options->server.token, "Asked of every client");
+  command.action([options] { return serve(*options); });
 }
 
 }  // namespace dermis::app

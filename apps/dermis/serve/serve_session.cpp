@@ -10,8 +10,8 @@
 
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/content_hash.hpp"
-#include "live_line.hpp"
 #include "pacer.hpp"
+#include "status_line.hpp"
 #include "stop_flag.hpp"
 #include "viewer/viewer_assets.hpp"
 
