@@ -68,7 +68,7 @@ class ForceTables {
 /// Frames whose forces are not what a user expects.
 class Troubles {
  public:
-  /// `place` tells where the frame is from.
+  /// `place` says where the frame is from.
   template <typename Place>
   void count(const ForceFrame& force, preprocessing::Rejection rejection, Place place) {
     ++frames_;
@@ -80,7 +80,7 @@ class Troubles {
 
   [[nodiscard]] std::size_t frames() const { return frames_; }
 
-  void tell() const {
+  void report() const {
     if (rejected_ > 0) {
       say(fmt::format("{} of {} frames rejected, the first: {}", rejected_, frames_, first_rejection_));
     }
@@ -142,7 +142,7 @@ Status run(const RunOptions& options) {
   // What a device gave until it failed is worth having; a file that is wrong is to be mended.
   if (!status && !is_live(options.in)) return status;
   if (Status committed = tables->commit(); !committed) return committed;
-  troubles.tell();
+  troubles.report();
   return status;
 }
 
