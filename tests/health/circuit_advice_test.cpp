@@ -50,8 +50,8 @@ TEST(CircuitAdvice, the_best_load_has_the_least_mean_and_the_loads_rise) {
   ASSERT_TRUE(advice.loads[advice.best].precision);
   const double least = advice.loads[advice.best].precision->mean;
   for (std::size_t k = 0; k < advice.loads.size(); ++k) {
-    if (k > 0) EXPECT_LT(advice.loads[k - 1].load_ohm, advice.loads[k].load_ohm);
-    if (advice.loads[k].precision) EXPECT_GE(advice.loads[k].precision->mean, least);
+    EXPECT_GT(advice.loads[k].load_ohm, k == 0 ? 0.0 : advice.loads[k - 1].load_ohm);
+    EXPECT_GE(advice.loads[k].precision.value_or(Precision{least}).mean, least);
   }
   ASSERT_TRUE(advice.present);
   EXPECT_LE(least, advice.present->mean);
