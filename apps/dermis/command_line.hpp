@@ -9,7 +9,7 @@
 #include "dermis/core/result.hpp"
 
 // All of CLI11 that the commands see: its headers cost seconds in every file that includes them.
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): its name
 class App;
 class Option;
 }  // namespace CLI

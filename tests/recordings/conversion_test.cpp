@@ -27,7 +27,7 @@ class Conversion : public testing::Test {
       frames_[k].acquisition.sequence = k;
       frames_[k].counts.assign(kShape.taxel_count(), static_cast<float>(k));
     }
-    const auto sink = create_frames(in_, kShape, {.name = "hand"});
+    const auto sink = create_frames(in_, kShape, {"hand", {}, {}});
     ASSERT_TRUE(sink);
     ASSERT_TRUE(support::write_all(**sink, frames_));
   }
