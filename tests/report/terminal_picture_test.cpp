@@ -51,7 +51,7 @@ TEST(TerminalPicture, letters_stand_for_colours_where_there_are_none) {
   const auto lines = lines_of(terminal_screen(picture(), {4, 60}, TerminalColours::without));
   ASSERT_EQ(lines.size(), 4U);
   EXPECT_EQ(lines[0], "chest  2x3  100.0 frames/s  4 lost  1 damaged");
-  EXPECT_EQ(lines[1], "0   ..::--==++++**##%%@@ 10 N");
+  EXPECT_EQ(lines[1], "0  ..:::--==++**###%%@ 10 N");
   EXPECT_EQ(lines[2], "  ..::");  // each taxel is two columns wide
   EXPECT_EQ(lines[3], "++@@??");  // no value: a question mark
 }
