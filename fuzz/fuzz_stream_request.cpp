@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
        },
        [](const Parameter&) -> dermis::Status { return dermis::Done{}; }},
       {{"/echo", [](std::string_view request) -> dermis::Result<std::string> { return std::string(request); }}},
-      Playback{{}, dermis::Nanos(1), [](const PlaybackControl&) { return PlaybackState{}; }}};
+      PlaybackService{{}, dermis::Nanos(1), [](const dermis::PlaybackCommand&) { return dermis::PlaybackStatus{}; }}};
   std::vector<Question> questions;
   Client client(
       offer, true, 1U << 20U, [](ChannelId, int) {},

@@ -34,10 +34,10 @@ Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, cons
   if (!model.empty()) {
     if (const Status opened = view->open_model(model); !opened) return opened.error();
   }
-  view->describe(from);
   Result<std::unique_ptr<FrameSource>> source = open_source(from, view->model_ ? &view->model_->array : nullptr);
   if (!source) return source.error();
   view->source_ = *std::move(source);
+  view->describe(from);
   return view;
 }
 
@@ -62,9 +62,9 @@ void ArrayView::set_array(const ArrayDescription& array) {
 /// By the model, else by what the file says of itself.
 void ArrayView::describe(const std::string& from) {
   if (model_) return set_array(model_->array);
-  const recordings::FrameNotes notes = notes_of_source(from);
+  const recordings::FrameNotes notes = notes_of_source(*source_, from);
   name_ = notes.name;
-  if (name_.empty()) name_ = is_live(from) ? from : std::filesystem::path(from).filename().string();
+  if (name_.empty()) name_ = is_live() ? from : std::filesystem::path(from).filename().string();
   if (notes.array_toml.empty()) return;
   const Result<ArrayDescription> array = files::array_from_toml(notes.array_toml, from);
   if (array) set_array(*array);

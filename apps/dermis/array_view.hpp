@@ -41,6 +41,7 @@ class ArrayView {
   /// End of a colour scale that covers the largest of the values: of forces, force_scale(); of counts, that of the ADC,
   /// as described or as it must be.
   [[nodiscard]] double scale(double largest) const;
+  [[nodiscard]] bool is_live() const { return source_->is_live(); }
   [[nodiscard]] bool has_model() const noexcept { return model_.has_value(); }
   [[nodiscard]] SourceStatistics statistics() const { return source_->statistics(); }
 

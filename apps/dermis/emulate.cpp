@@ -15,8 +15,8 @@
 #include "dermis/acquisition/byte_stream.hpp"
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/acquisition/source_uri.hpp"
+#include "dermis/sources/pacer.hpp"
 #include "open_source.hpp"
-#include "pacer.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
@@ -87,7 +87,7 @@ class Device {
     if (Status sent = send_bytes(); !sent) return sent;
     const bool keeps_bytes = transport_ != Transport::pseudo_terminal;
     std::array<std::uint8_t, 256> ignored{};
-    Pacer pacer(&stop_flag());
+    sources::Pacer pacer(&stop_flag());
     while (!keeps_bytes && !stopped() && pacer.elapsed() < kTimeToTake) {
       if (stream_->read(ignored, kTick).end != ByteStream::End::none) break;
       pacer.wait_until(pacer.elapsed() + kTick);
@@ -131,7 +131,7 @@ class Device {
 
 /// Plays the frames of a source once, in their own time or at a rate.
 Status play(FrameSource& source, const EmulateOptions& options, Device& device) {
-  std::optional<Pacer> pacer;
+  std::optional<sources::Pacer> pacer;
   Nanos first_time{};
   std::uint64_t number = 0;
   RawFrame frame;
@@ -146,7 +146,7 @@ Status play(FrameSource& source, const EmulateOptions& options, Device& device) 
       number = 0;
     }
     const Nanos due = options.rate_hz ? Nanos(std::llround(1e9 * static_cast<double>(number) / *options.rate_hz))
-                                      : span(first_time, frame.time);
+                                      : sources::due_after(first_time, frame.time);
     if (!pacer->wait_until(due)) return Done{};
     if (Status asked = device.wait_for_request(); !asked) return asked;
     if (Status sent = device.send(frame); !sent) return sent;

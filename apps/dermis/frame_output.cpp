@@ -16,7 +16,6 @@
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/recording.hpp"
-#include "open_source.hpp"
 
 namespace dermis::app {
 namespace {
@@ -93,8 +92,8 @@ Result<std::unique_ptr<FrameSink>> create_live_recording(const FrameOutput& outp
 
 }  // namespace
 
-recordings::FrameNotes notes_of_source(const std::string& from) {
-  if (is_live(from)) return {};
+recordings::FrameNotes notes_of_source(const FrameSource& source, const std::string& from) {
+  if (source.is_live()) return {};
   const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(from);
   return notes ? *notes : recordings::FrameNotes{};
 }

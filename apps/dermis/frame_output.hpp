@@ -23,8 +23,8 @@ struct FrameOutput {
   recordings::FrameNotes notes;             ///< What the source says, where array and model do not.
 };
 
-/// What a file of frames says of them; nothing of a device.
-[[nodiscard]] recordings::FrameNotes notes_of_source(const std::string& from);
+/// What the file of frames that `source` reads from says of them; nothing of a device.
+[[nodiscard]] recordings::FrameNotes notes_of_source(const FrameSource& source, const std::string& from);
 
 /// What create_recording() would find wrong with the path whatever the frames are: to be told before a device is waited
 /// for.

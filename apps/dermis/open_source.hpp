@@ -13,15 +13,9 @@
 
 namespace dermis::app {
 
-/// Where frames come from, for --from and --in: the URI of a device or of the simulator, or a file of frames. Given an
-/// array, the frames must have its shape. Sources end where stop_flag() is set; what a user should know goes to stderr.
+/// sources::open_source() for --from and --in: live sources end where stop_flag() is set, and what a user should know
+/// goes to stderr.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const ArrayDescription* array);
-
-/// True where the source is a device, or a simulated one, that sends as time goes by.
-[[nodiscard]] bool is_live(const std::string& from);
-
-/// True where it is a device, or bytes of one: it gives what it has received before it ends by stop_flag().
-[[nodiscard]] bool is_device(const std::string& from);
 
 /// A model at work on a source.
 struct Operation {

@@ -65,7 +65,6 @@ Status record(const RecordOptions& options) {
   acquisition::RecorderOptions recorder;
   recorder.frames = options.frames;
   recorder.stop = &stop;
-  recorder.source_stops = is_device(options.from);
   if (options.seconds) {
     const Result<Nanos> duration = nanos_from_seconds(*options.seconds, "--seconds");
     if (!duration) return duration.error();
@@ -74,11 +73,12 @@ Status record(const RecordOptions& options) {
   const Result<Known> known = read_known(options);
   if (!known) return known.error();
   const ArrayDescription* array = known->array ? &*known->array : nullptr;
-  const FrameOutput output{options.out, array, known->model ? &*known->model : nullptr, options.model,
-                           notes_of_source(options.from)};
+  FrameOutput output{options.out, array, known->model ? &*known->model : nullptr, options.model, {}};
   if (Status possible = check_output(output); !possible) return possible;
   Result<std::unique_ptr<FrameSource>> source = open_source(options.from, array);
   if (!source) return source.error();
+  output.notes = notes_of_source(**source, options.from);
+  recorder.source_stops = (*source)->is_live();
 
   LiveLine line;
   recorder.progress = [&](const acquisition::RecorderProgress& progress) { line.show(with_queue(progress)); };

@@ -7,9 +7,9 @@
 #include "commands.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "dermis/sources/pacer.hpp"
 #include "frame_output.hpp"
 #include "open_source.hpp"
-#include "pacer.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
@@ -38,13 +38,13 @@ class Tempo {
   /// False where it is to stop.
   bool wait_for(Nanos time) {
     if (!(speed_ > 0.0)) return !stop_->load();
-    return pacer_.wait_until(span(first_time_, time, speed_));
+    return pacer_.wait_until(sources::due_after(first_time_, time, speed_));
   }
 
  private:
   double speed_;
   Nanos first_time_;
-  Pacer pacer_;
+  sources::Pacer pacer_;
   const std::atomic<bool>* stop_;
 };
 
@@ -68,7 +68,7 @@ Status replay(const ReplayOptions& options) {
   if (!*more) return bad_input("'" + options.recording + "': has no frame to replay");
 
   const FrameOutput output{options.out, array, model ? &*model : nullptr, options.model,
-                           notes_of_source(options.recording)};
+                           notes_of_source(**source, options.recording)};
   Result<std::unique_ptr<FrameSink>> sink = create_sink(output, *(*source)->shape());
   if (!sink) return sink.error();
   Tempo tempo(options.speed, frame.time, &stop_flag());

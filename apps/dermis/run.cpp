@@ -8,7 +8,6 @@
 
 #include "commands.hpp"
 #include "dermis/files/forces_csv.hpp"
-#include "dermis/files/frames_csv.hpp"
 #include "dermis/preprocessing/phase.hpp"
 #include "open_source.hpp"
 #include "seconds.hpp"
@@ -28,10 +27,10 @@ struct RunOptions {
   double settle_s = 0.0;
 };
 
-/// Line of a table, number of a frame of anything else.
+/// Where the source does not tell it, by the number of the frame.
 std::string place_of(const std::string& in, const FrameSource& source, std::size_t frame) {
-  const auto* table = dynamic_cast<const files::FramesCsvReader*>(&source);
-  return table != nullptr ? fmt::format("{}:{}", in, table->line()) : fmt::format("{}: frame {}", in, frame);
+  const std::string place = source.place();
+  return place.empty() ? fmt::format("{}: frame {}", in, frame) : place;
 }
 
 /// forces.csv and, where it is asked for, the table of their standard deviations.
@@ -105,12 +104,12 @@ class Troubles {
 /// An error of the source comes in `source_status`, one of the tables is returned.
 Status solve(const RunOptions& options, Operation& operation, preprocessing::PhaseSelector& phase, ForceTables& tables,
              Troubles& troubles, Status& source_status) {
+  const bool is_live = operation.frames->is_live();
   std::optional<LiveLine> line;
-  if (is_live(options.in)) line.emplace();
-  const bool source_stops = is_device(options.in);
+  if (is_live) line.emplace();
   RawFrame raw;
   ForceFrame force;
-  for (std::size_t read = 1; source_stops || !stop_flag().load(); ++read) {
+  for (std::size_t read = 1; is_live || !stop_flag().load(); ++read) {
     const Result<bool> more = operation.frames->next(raw);
     if (!more) source_status = more.error();
     if (!more || !*more) break;
@@ -140,7 +139,7 @@ Status run(const RunOptions& options) {
   Status status = Done{};
   if (Status solved = solve(options, **operation, phase, *tables, troubles, status); !solved) return solved;
   // What a device gave until it failed is worth having; a file that is wrong is to be mended.
-  if (!status && !is_live(options.in)) return status;
+  if (!status && !(*operation)->frames->is_live()) return status;
   if (Status committed = tables->commit(); !committed) return committed;
   troubles.report();
   return status;

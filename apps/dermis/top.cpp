@@ -17,8 +17,7 @@
 #include "array_view.hpp"
 #include "commands.hpp"
 #include "dermis/report/terminal_picture.hpp"
-#include "open_source.hpp"
-#include "pacer.hpp"
+#include "dermis/sources/pacer.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
@@ -91,7 +90,7 @@ class Watcher {
 
  private:
   void run() {
-    Pacer pacer(&stop_flag());
+    sources::Pacer pacer(&stop_flag());
     std::optional<Nanos> first;
     while (!stop_flag().load()) {
       const Result<bool> more = view_.next();
@@ -102,7 +101,7 @@ class Watcher {
         return;
       }
       if (!first) first = view_.raw().time;
-      if (!is_live(options_.from) && !pacer.wait_until(span(*first, view_.raw().time))) return;
+      if (!view_.is_live() && !pacer.wait_until(sources::due_after(*first, view_.raw().time))) return;
       update();
     }
   }

@@ -103,6 +103,8 @@ class DeviceSource final : public FrameSource {
     return known ? known : options_.shape;
   }
 
+  [[nodiscard]] bool is_live() const override { return true; }
+
   [[nodiscard]] SourceStatistics statistics() const override {
     const DecoderCounts& counts = decoder_->counts();
     SourceStatistics statistics;
@@ -353,22 +355,26 @@ class DeviceSource final : public FrameSource {
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSource>> open_device(const std::string& uri, const DeviceOptions& options) {
-  Result<SourceUri> parsed = parse_source_uri(uri);
-  if (!parsed) return parsed.error();
-  ProtocolOptions& protocol = parsed->protocol;
+Result<std::unique_ptr<FrameSource>> open_device(SourceUri uri, const DeviceOptions& options) {
+  ProtocolOptions& protocol = uri.protocol;
   if (options.shape && protocol.shape && *protocol.shape != *options.shape) {
-    return bad_input("'" + uri + "': rows and cols are " + shape_text(*protocol.shape) + ", expected are " +
+    return bad_input("'" + uri.text + "': rows and cols are " + shape_text(*protocol.shape) + ", expected are " +
                      shape_text(*options.shape));
   }
   if (!protocol.shape) protocol.shape = options.shape;
   Result<std::unique_ptr<Decoder>> decoder = make_decoder(protocol);
-  if (!decoder) return bad_input("'" + uri + "': " + decoder.error().message);
-  Result<std::unique_ptr<ByteStream>> stream = make_source_stream(*parsed);
+  if (!decoder) return bad_input("'" + uri.text + "': " + decoder.error().message);
+  Result<std::unique_ptr<ByteStream>> stream = make_source_stream(uri);
   if (!stream) return stream.error();
-  auto source = std::make_unique<DeviceSource>(std::move(*parsed), options, std::move(*stream), std::move(*decoder));
+  auto source = std::make_unique<DeviceSource>(std::move(uri), options, std::move(*stream), std::move(*decoder));
   if (const Status opened = source->open(); !opened) return opened.error();
   return std::unique_ptr<FrameSource>(std::move(source));
+}
+
+Result<std::unique_ptr<FrameSource>> open_device(const std::string& uri, const DeviceOptions& options) {
+  Result<SourceUri> parsed = parse_source_uri(uri);
+  if (!parsed) return parsed.error();
+  return open_device(*std::move(parsed), options);
 }
 
 }  // namespace dermis::acquisition

@@ -43,8 +43,12 @@ Result<bool> CsvReader::next_line(std::string_view& line) {
   return false;
 }
 
+std::string CsvReader::place() const {
+  return name_ + ":" + std::to_string(std::max<std::size_t>(line_number_, 1));
+}
+
 Error CsvReader::error(std::string_view message) const {
-  return bad_input(name_ + ":" + std::to_string(std::max<std::size_t>(line_number_, 1)) + ": " + std::string(message));
+  return bad_input(place() + ": " + std::string(message));
 }
 
 bool CsvReader::take_raw_line(std::string_view& line) {

@@ -24,6 +24,9 @@ class CsvReader {
   /// Number of the last line, from 1.
   [[nodiscard]] std::size_t line_number() const noexcept { return line_number_; }
 
+  /// Of the last line: "name:line".
+  [[nodiscard]] std::string place() const;
+
   /// Bad input at the last line: "name:line: message".
   [[nodiscard]] Error error(std::string_view message) const;
 

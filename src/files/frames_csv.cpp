@@ -237,8 +237,8 @@ std::optional<FrameShape> FramesCsvReader::shape() const {
   return state_->header.shape;
 }
 
-std::size_t FramesCsvReader::line() const noexcept {
-  return state_->csv.line_number();
+std::string FramesCsvReader::place() const {
+  return state_->csv.place();
 }
 
 FramesCsvWriter::FramesCsvWriter(AtomicFile file, std::size_t taxel_count, const FramesCsvColumns& columns)

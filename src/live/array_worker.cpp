@@ -60,9 +60,9 @@ ArrayWorker::ArrayWorker(std::size_t index, LiveArray array, std::unique_ptr<pip
       array_(std::move(array)),
       options_(options),
       pipeline_(std::move(pipeline)),
-      track_drift_(options.track_drift),
-      tracker_(array_.model->array, options.contacts) {
-  pipeline_->drift().set_options({.track = track_drift_});
+      settings_(options.settings),
+      tracker_(array_.model->array, settings_.contacts) {
+  pipeline_->drift().set_options(settings_.drift);
 }
 
 void ArrayWorker::start() {
@@ -80,12 +80,8 @@ void ArrayWorker::request(const Change& change) {
   has_requests_.store(true, std::memory_order_release);
 }
 
-void ArrayWorker::set_contact_options(const fusion::ContactOptions& options) {
-  request([&](Requests& requests) { requests.contacts = options; });
-}
-
-void ArrayWorker::set_track_drift(bool track) {
-  request([&](Requests& requests) { requests.track_drift = track; });
+void ArrayWorker::set_settings(const LiveSettings& settings) {
+  request([&](Requests& requests) { requests.settings = settings; });
 }
 
 void ArrayWorker::set_zero(ZeroRequest zero) {
@@ -114,9 +110,9 @@ void ArrayWorker::take_requests() {
     has_requests_.store(false, std::memory_order_relaxed);
   }
   if (asked.pipeline) pipeline_ = std::move(asked.pipeline);
-  if (asked.contacts) tracker_.set_options(*asked.contacts);
-  track_drift_ = asked.track_drift.value_or(track_drift_);
-  pipeline_->drift().set_options({.track = track_drift_});
+  settings_ = asked.settings.value_or(settings_);
+  tracker_.set_options(settings_.contacts);
+  pipeline_->drift().set_options(settings_.drift);
   if (asked.zero == ZeroRequest::tare) pipeline_->drift().tare();
   if (asked.zero == ZeroRequest::reset) pipeline_->drift().reset();
 }

@@ -31,8 +31,7 @@ class ArrayWorker {
   void join();
   [[nodiscard]] bool ended() const noexcept { return ended_.load(std::memory_order_acquire); }
 
-  void set_contact_options(const fusion::ContactOptions& options);
-  void set_track_drift(bool track);
+  void set_settings(const LiveSettings& settings);
   void set_zero(ZeroRequest request);
   [[nodiscard]] Status set_model(const pipeline::Model& model);
   [[nodiscard]] ArrayStatistics statistics() const;
@@ -40,8 +39,7 @@ class ArrayWorker {
  private:
   /// What other threads ask for; the worker takes it between two frames.
   struct Requests {
-    std::optional<fusion::ContactOptions> contacts;
-    std::optional<bool> track_drift;
+    std::optional<LiveSettings> settings;
     ZeroRequest zero = ZeroRequest::keep;
     std::unique_ptr<pipeline::Pipeline> pipeline;
   };
@@ -73,7 +71,7 @@ class ArrayWorker {
 
   // Of the worker's thread alone.
   std::unique_ptr<pipeline::Pipeline> pipeline_;
-  bool track_drift_;
+  LiveSettings settings_;
   fusion::ContactTracker tracker_;
   Nanos last_time_{};
   RawFrame raw_;

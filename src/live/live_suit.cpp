@@ -15,8 +15,7 @@ namespace dermis::live {
 
 class LiveSuit::Implementation {
  public:
-  explicit Implementation(LiveOptions options)
-      : options_(std::move(options)), contacts_(options_.contacts), track_drift_(options_.track_drift) {}
+  explicit Implementation(LiveOptions options) : options_(std::move(options)) {}
 
   Status add(LiveArray array) {
     const std::string place = fmt::format("array '{}': ", array.name);
@@ -31,24 +30,14 @@ class LiveSuit::Implementation {
     for (const auto& worker : workers_) worker->join();
   }
 
-  void set_contact_options(const fusion::ContactOptions& options) {
+  void set_settings(const LiveSettings& settings) {
     const std::lock_guard lock(mutex_);
-    contacts_ = options;
-    for (const auto& worker : workers_) worker->set_contact_options(options);
+    options_.settings = settings;
+    for (const auto& worker : workers_) worker->set_settings(settings);
   }
-  fusion::ContactOptions contact_options() const {
+  LiveSettings settings() const {
     const std::lock_guard lock(mutex_);
-    return contacts_;
-  }
-
-  void set_track_drift(bool track) {
-    const std::lock_guard lock(mutex_);
-    track_drift_ = track;
-    for (const auto& worker : workers_) worker->set_track_drift(track);
-  }
-  bool track_drift() const {
-    const std::lock_guard lock(mutex_);
-    return track_drift_;
+    return options_.settings;
   }
 
   void set_zero(std::optional<std::size_t> array, ZeroRequest request) {
@@ -63,16 +52,14 @@ class LiveSuit::Implementation {
   const std::vector<std::unique_ptr<ArrayWorker>>& workers() const { return workers_; }
 
  private:
-  const LiveOptions options_;
+  LiveOptions options_;
   std::vector<std::unique_ptr<ArrayWorker>> workers_;
-  mutable std::mutex mutex_;
-  fusion::ContactOptions contacts_;
-  bool track_drift_;
+  mutable std::mutex mutex_;  // Of the settings.
 };
 
 Result<std::unique_ptr<LiveSuit>> LiveSuit::create(std::vector<LiveArray> arrays, LiveOptions options) {
   if (arrays.empty()) return bad_input("a suit needs at least one array");
-  if (const Status valid = options.contacts.validate(); !valid) return valid.error();
+  if (const Status valid = options.settings.validate(); !valid) return valid.error();
   auto implementation = std::make_unique<Implementation>(std::move(options));
   for (LiveArray& array : arrays) {
     if (const Status added = implementation->add(std::move(array)); !added) return added.error();
@@ -99,21 +86,13 @@ bool LiveSuit::ended() const noexcept {
   return std::all_of(workers.begin(), workers.end(), [](const auto& worker) { return worker->ended(); });
 }
 
-void LiveSuit::set_contact_options(const fusion::ContactOptions& options) {
-  assert(options.validate());
-  implementation_->set_contact_options(options);
+void LiveSuit::set_settings(const LiveSettings& settings) {
+  assert(settings.validate());
+  implementation_->set_settings(settings);
 }
 
-fusion::ContactOptions LiveSuit::contact_options() const {
-  return implementation_->contact_options();
-}
-
-void LiveSuit::set_track_drift(bool track) {
-  implementation_->set_track_drift(track);
-}
-
-bool LiveSuit::track_drift() const {
-  return implementation_->track_drift();
+LiveSettings LiveSuit::settings() const {
+  return implementation_->settings();
 }
 
 void LiveSuit::tare(std::optional<std::size_t> array) {

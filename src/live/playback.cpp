@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "dermis/recordings/recording.hpp"
@@ -265,6 +266,7 @@ class Playback::Source final : public FrameSource {
     return shape.taxel_count() == 0 ? std::nullopt : std::optional(shape);
   }
   SourceStatistics statistics() const override { return playback_->statistics(track_); }
+  bool is_live() const override { return true; }
 
  private:
   std::shared_ptr<Implementation> playback_;

@@ -89,8 +89,8 @@ void Client::tell_parameters(std::span<const Parameter> all) {
   if (!followed.empty()) queue_.push_text(parameter_values_text(followed, {}));
 }
 
-void Client::tell_playback(const PlaybackState& state, std::string_view request_id) {
-  if (is_sdk_) queue_.push_binary(playback_state(state, request_id));
+void Client::tell_playback(const PlaybackStatus& status, const PlaybackRequest& answered) {
+  if (is_sdk_) queue_.push_binary(playback_state(status, answered));
 }
 
 void Client::tell_status(int level, std::string_view message) {
@@ -179,8 +179,8 @@ void Client::handle(const ServiceCall& request) {
 void Client::handle(const PlaybackRequest& request) {
   if (!offer_.playback) return;
   ask_([&offer = offer_, request]() -> Answer {
-    return [state = offer.playback->control(request.control), id = request.id](Client& client) {
-      client.tell_playback(state, id);
+    return [request, status = offer.playback->control(request.command)](Client& client) {
+      client.tell_playback(status, request);
     };
   });
 }

@@ -23,7 +23,7 @@ namespace dermis::stream {
 struct Offer {
   Handlers handlers;
   std::vector<Service> services;
-  std::optional<Playback> playback;
+  std::optional<PlaybackService> playback;
 };
 
 /// Told when the number of subscriptions to a channel changes, by +1 or -1.
@@ -58,7 +58,8 @@ class Client {
   /// Queues the message where the client has subscribed to the channel; messages and drops are counted on.
   void publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, ServerStatistics& statistics);
   void tell_parameters(std::span<const Parameter> all);
-  void tell_playback(const PlaybackState& state, std::string_view request_id = {});
+  /// `answered`: the request that it answers, if it answers one.
+  void tell_playback(const PlaybackStatus& status, const PlaybackRequest& answered = {});
   void tell_status(int level, std::string_view message);
 
   [[nodiscard]] OutgoingQueue& queue() noexcept { return queue_; }

@@ -199,18 +199,18 @@ Result<ClientRequest> parse_service_call(BinaryReader reader) {
 Result<ClientRequest> parse_playback_control(BinaryReader reader) {
   const auto command = reader.read<std::uint8_t>();
   PlaybackRequest request;
-  PlaybackControl& control = request.control;
-  control.play = command == 0;
-  control.speed = reader.read<float>();
+  request.command.play = command == 0;
+  const auto speed = reader.read<float>();
   const bool seeks = reader.read<std::uint8_t>() != 0;
   const auto nanos = reader.read<std::uint64_t>();
   request.id = reader.read_text(reader.read<std::uint32_t>());
   if (!reader.good() || command > 1) return bad_input("a playback control that is none");
-  const bool speed_is_good = control.speed > 0.0F && control.speed <= 1e6F;
+  const bool speed_is_good = speed > 0.0F && speed <= 1e6F;
   if (!speed_is_good) return bad_input("a playback control with a speed that is not above 0");
+  request.command.speed = static_cast<double>(speed);
   if (seeks) {
     if (nanos > static_cast<std::uint64_t>(Nanos::max().count())) return bad_input("a seek to a time out of range");
-    control.seek = Nanos(static_cast<std::int64_t>(nanos));
+    request.command.seek = Nanos(static_cast<std::int64_t>(nanos));
   }
   return ClientRequest(std::move(request));
 }
@@ -248,6 +248,15 @@ void append(std::vector<std::uint8_t>& bytes, T value) {
 
 void append_text(std::vector<std::uint8_t>& bytes, std::string_view text) {
   bytes.insert(bytes.end(), text.begin(), text.end());
+}
+
+std::uint8_t code_of(PlaybackStatus::State state) {
+  switch (state) {
+    case PlaybackStatus::State::playing: return 0;
+    case PlaybackStatus::State::paused: return 1;
+    case PlaybackStatus::State::ended: break;
+  }
+  return 3;  // 2 is "buffering"
 }
 
 }  // namespace
@@ -368,15 +377,15 @@ std::vector<std::uint8_t> service_response(const ServiceCall& call, std::string_
   return bytes;
 }
 
-std::vector<std::uint8_t> playback_state(const PlaybackState& state, std::string_view id) {
+std::vector<std::uint8_t> playback_state(const PlaybackStatus& status, const PlaybackRequest& answered) {
   std::vector<std::uint8_t> bytes;
   append(bytes, kPlaybackState);
-  append(bytes, static_cast<std::uint8_t>(state.status));
-  append(bytes, static_cast<std::uint64_t>(state.now.count()));
-  append(bytes, state.speed);
-  append(bytes, static_cast<std::uint8_t>(state.did_seek ? 1 : 0));
-  append(bytes, static_cast<std::uint32_t>(id.size()));
-  append_text(bytes, id);
+  append(bytes, code_of(status.state));
+  append(bytes, static_cast<std::uint64_t>(status.now.count()));
+  append(bytes, static_cast<float>(status.speed));
+  append(bytes, static_cast<std::uint8_t>(answered.command.seek ? 1 : 0));
+  append(bytes, static_cast<std::uint32_t>(answered.id.size()));
+  append_text(bytes, answered.id);
   return bytes;
 }
 

@@ -54,8 +54,8 @@ struct ServiceCall {
   std::string request;
 };
 struct PlaybackRequest {
-  PlaybackControl control;
-  std::string id;  ///< Given back with the state that answers it.
+  PlaybackCommand command{};
+  std::string id{};  ///< Given back with the status that answers it.
 };
 /// A request of a capability that is not offered: ignored.
 struct OtherRequest {};
@@ -92,7 +92,7 @@ struct ServerInfo {
 using MessageDataHeader = std::array<std::uint8_t, 13>;
 [[nodiscard]] MessageDataHeader message_data_header(std::uint32_t subscription, Nanos log_time);
 [[nodiscard]] std::vector<std::uint8_t> service_response(const ServiceCall& call, std::string_view response);
-/// `id`: of the request that it answers; empty: of none.
-[[nodiscard]] std::vector<std::uint8_t> playback_state(const PlaybackState& state, std::string_view id);
+/// Says with the id of the request that it answers whether that has sought; of no request, both are empty.
+[[nodiscard]] std::vector<std::uint8_t> playback_state(const PlaybackStatus& status, const PlaybackRequest& answered);
 
 }  // namespace dermis::stream

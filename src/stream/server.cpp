@@ -327,7 +327,7 @@ Server::~Server() = default;
 
 Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options, std::vector<Asset> assets,
                                                Handlers handlers, std::vector<Service> services,
-                                               std::optional<Playback> playback) {
+                                               std::optional<PlaybackService> playback) {
   if (Status valid = options.validate(); !valid) return valid.error();
   auto implementation = std::make_unique<Implementation>(
       options, std::move(assets), Offer{std::move(handlers), std::move(services), std::move(playback)});
@@ -367,8 +367,8 @@ void Server::parameters_changed() {
   implementation_->parameters_changed();
 }
 
-void Server::playback_changed(const PlaybackState& state) {
-  implementation_->tell_clients([state](Client& client) { client.tell_playback(state); });
+void Server::playback_changed(const PlaybackStatus& status) {
+  implementation_->tell_clients([status](Client& client) { client.tell_playback(status); });
 }
 
 void Server::status(int level, std::string_view message) {

@@ -35,5 +35,12 @@ TEST(FrameSource, is_read_to_its_end_through_the_interface) {
   EXPECT_EQ(counts, (std::vector<float>{0.0F, 1.0F}));
 }
 
+TEST(FrameSource, is_a_file_of_numbered_frames_unless_it_says_otherwise) {
+  const std::unique_ptr<FrameSource> source = std::make_unique<TwoFrames>();
+  EXPECT_FALSE(source->is_live());
+  EXPECT_EQ(source->place(), "");
+  EXPECT_EQ(source->statistics(), SourceStatistics{});
+}
+
 }  // namespace
 }  // namespace dermis

@@ -108,11 +108,11 @@ TEST(FramesCsvReader, tells_the_line_of_the_last_frame) {
                                             "frames.csv", FrameShape{1, 1});
   ASSERT_TRUE(reader);
   RawFrame frame;
-  EXPECT_EQ((*reader)->line(), 1U);
+  EXPECT_EQ((*reader)->place(), "frames.csv:1");
   ASSERT_TRUE((*reader)->next(frame));
-  EXPECT_EQ((*reader)->line(), 2U);
+  EXPECT_EQ((*reader)->place(), "frames.csv:2");
   ASSERT_TRUE((*reader)->next(frame));
-  EXPECT_EQ((*reader)->line(), 4U);
+  EXPECT_EQ((*reader)->place(), "frames.csv:4");
 }
 
 TEST(FramesCsvReader, refuses_an_empty_file) {

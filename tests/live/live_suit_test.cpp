@@ -313,7 +313,7 @@ TEST(LiveSuit, tare_takes_what_an_array_shows_for_nothing_until_it_is_reset) {
   stop = true;
 }
 
-TEST(LiveSuit, contact_options_reach_every_array_at_work) {
+TEST(LiveSuit, settings_reach_every_array_at_work) {
   const SharedModel model = model_of(6, 6);
   const std::vector<double> newtons = press_around(*model, 2, 2);
   std::atomic<bool> stop = false;
@@ -323,14 +323,14 @@ TEST(LiveSuit, contact_options_reach_every_array_at_work) {
                                options_with(collector));
   const auto contacts = [&](std::size_t array) { return collector.of(array).contacts.size(); };
   wait_for([&] { return contacts(0) == 1 && contacts(1) == 1; });
-  fusion::ContactOptions options;
-  options.onset_force_n = 100.0;
-  suit->set_contact_options(options);
+  LiveSettings settings = suit->settings();
+  EXPECT_TRUE(settings.drift.track);
+  settings.contacts.onset_force_n = 100.0;
+  settings.drift.track = false;
+  suit->set_settings(settings);
   wait_for([&] { return contacts(0) == 0 && contacts(1) == 0; });
-  EXPECT_EQ(suit->contact_options().onset_force_n, 100.0);
-  EXPECT_TRUE(suit->track_drift());
-  suit->set_track_drift(false);
-  EXPECT_FALSE(suit->track_drift());
+  EXPECT_EQ(suit->settings().contacts.onset_force_n, 100.0);
+  EXPECT_FALSE(suit->settings().drift.track);
   stop = true;
 }
 
@@ -369,7 +369,7 @@ TEST(LiveSuit, refuses_arrays_that_cannot_work) {
   EXPECT_EQ(message(arrays_of(array_of("a", source_of(model, newtons), damaged))),
             "array 'a': the model's networks do not fit its array, or hold values out of range");
   LiveOptions options;
-  options.contacts.onset_sigma = 0.0;
+  options.settings.contacts.onset_sigma = 0.0;
   EXPECT_TRUE(message(arrays_of(array_of("a", source_of(model, newtons), model)), options)
                   .starts_with("contacts.onset_sigma: "));
 }

@@ -105,14 +105,20 @@ TEST(FoxgloveProtocol, reads_playback_controls) {
   const Result<ClientRequest> request =
       parse_binary_request(bytes_of({3, 0, 0, 0, 0, 0x40, 1, 2, 1, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 'x'}));
   ASSERT_TRUE(request);
-  const auto& [control, id] = std::get<PlaybackRequest>(*request);
+  const auto& [command, id] = std::get<PlaybackRequest>(*request);
   EXPECT_EQ(id, "x");
-  EXPECT_TRUE(control.play);
-  EXPECT_EQ(control.speed, 2.0F);
-  EXPECT_EQ(control.seek, Nanos(258));
+  EXPECT_EQ(command, (PlaybackCommand{.play = true, .speed = 2.0, .seek = Nanos(258)}));
   EXPECT_FALSE(parse_binary_request(bytes_of({3, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}))) << "speed 0";
   EXPECT_FALSE(parse_binary_request(bytes_of({3, 0, 0, 0, 0xc0, 0x7f, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0})))
       << "NaN";
+}
+
+TEST(FoxgloveProtocol, tells_how_a_playback_is) {
+  const PlaybackStatus ended{PlaybackStatus::State::ended, Nanos(258), 2.0};
+  EXPECT_EQ(playback_state(ended, {.command = {.seek = Nanos(1)}, .id = "x"}),
+            bytes_of({5, 3, 2, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x40, 1, 1, 0, 0, 0, 'x'}));
+  const PlaybackStatus paused{PlaybackStatus::State::paused, Nanos(1), 1.0};
+  EXPECT_EQ(playback_state(paused, {}), bytes_of({5, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x80, 0x3f, 0, 0, 0, 0, 0}));
 }
 
 TEST(FoxgloveProtocol, says_what_it_offers) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "dermis/acquisition/source_uri.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
 
@@ -19,7 +20,7 @@ struct DeviceOptions {
   std::function<void(const std::string&)> notice{};  ///< Told what a user should know while it goes on; one line.
 };
 
-/// Opens a device by its URI (source_uri.hpp) as a source of frames. Each frame carries when its last byte had come;
+/// Opens a device as a source of frames. Each frame carries when its last byte had come;
 /// the device's clock, where it has one, is mapped to the host's (clock_mapping.hpp).
 ///
 /// A serial device that is unplugged, or a TCP connection that ends, is waited for (reconnect_s, 10 s by default); a
@@ -27,6 +28,9 @@ struct DeviceOptions {
 /// end at their end, tcp-listen waits for its first device without limit.
 /// Fails, with one line that says what to do, where the device is not there, busy, in use or not permitted, where the
 /// shapes disagree, and where bytes come that are no frames of the protocol for 5 s.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_device(SourceUri uri, const DeviceOptions& options);
+
+/// The same by the text of its URI; fails on one that parse_source_uri() refuses, too.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_device(const std::string& uri, const DeviceOptions& options);
 
 }  // namespace dermis::acquisition

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
@@ -50,6 +51,13 @@ class FrameSource {
   [[nodiscard]] virtual std::optional<FrameShape> shape() const = 0;
 
   [[nodiscard]] virtual SourceStatistics statistics() const { return {}; }
+
+  /// True of a device, be it real, simulated or played: frames are there when they come. False of a file, whose frames
+  /// are read at any pace.
+  [[nodiscard]] virtual bool is_live() const { return false; }
+
+  /// Where the last frame stands, for messages: "frames.csv:17". Empty where only its number tells.
+  [[nodiscard]] virtual std::string place() const { return {}; }
 };
 
 }  // namespace dermis

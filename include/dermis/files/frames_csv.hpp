@@ -41,8 +41,8 @@ class FramesCsvReader final : public FrameSource {
   [[nodiscard]] Result<bool> next(RawFrame& frame) override;
   [[nodiscard]] std::optional<FrameShape> shape() const override;
 
-  /// Line of the last frame, from 1 for the header.
-  [[nodiscard]] std::size_t line() const noexcept;
+  /// "frames.csv:17", the line of the last frame.
+  [[nodiscard]] std::string place() const override;
 
  private:
   struct State;

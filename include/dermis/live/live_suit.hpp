@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dermis/compensation/line_faults.hpp"
+#include "dermis/compensation/offset_drift.hpp"
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
@@ -55,9 +56,17 @@ struct ArrayStatistics {
   std::optional<double> supply_v;             ///< as measured.
 };
 
+/// How all arrays of a suit work; may be changed meanwhile.
+struct LiveSettings {
+  fusion::ContactOptions contacts{};
+  compensation::OffsetDriftOptions drift{.track = true};
+
+  /// Names the first field that is out of its range, as "contacts.onset_sigma: ...".
+  [[nodiscard]] Status validate() const { return contacts.validate(); }
+};
+
 struct LiveOptions {
-  fusion::ContactOptions contacts;
-  bool track_drift = true;
+  LiveSettings settings{};
   /// Called for every frame of every array, on the thread of that array, several at once: it must be quick and
   /// thread-safe, and not call the suit.
   std::function<void(const ArrayResult&)> on_result{};
@@ -83,11 +92,9 @@ class LiveSuit {
   /// True where no array works any more.
   [[nodiscard]] bool ended() const noexcept;
 
-  /// `options` must be valid.
-  void set_contact_options(const fusion::ContactOptions& options);
-  [[nodiscard]] fusion::ContactOptions contact_options() const;
-  void set_track_drift(bool track);
-  [[nodiscard]] bool track_drift() const;
+  /// `settings` must be valid.
+  void set_settings(const LiveSettings& settings);
+  [[nodiscard]] LiveSettings settings() const;
   /// Of one array, or of all: takes what they show from now on for unloaded (compensation::OffsetDrift::tare).
   void tare(std::optional<std::size_t> array = {});
   /// Back to the zero of the calibration.

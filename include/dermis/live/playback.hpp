@@ -3,32 +3,17 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
+#include "dermis/core/playback.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 
 namespace dermis::live {
-
-/// What a playback is to do from now on.
-struct PlaybackCommand {
-  bool play = true;             ///< After the end, from the beginning again, unless it is to seek.
-  double speed = 1.0;           ///< Times the recorded pace: taken between 0.01 and 100.
-  std::optional<Nanos> seek{};  ///< Taken between the first and the last frame.
-};
-
-struct PlaybackStatus {
-  enum class State : std::uint8_t { playing, paused, ended };
-  State state = State::playing;
-  Nanos now{};  ///< In the times of the recording.
-  double speed = 1.0;
-};
 
 /// Plays the arrays of a recording on one clock, at the pace of their frame times. After a seek, each array gives its
 /// first frame of that time or later at once, also while paused. Where a consumer is slower than the pace, the clock

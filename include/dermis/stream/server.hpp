@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dermis/core/frames.hpp"
+#include "dermis/core/playback.hpp"
 #include "dermis/core/result.hpp"
 
 /// HTTP and WebSocket on one port; the stream is the Foxglove WebSocket protocol (docs/stream.md).
@@ -69,23 +70,11 @@ struct Service {
   std::function<Result<std::string>(std::string_view request)> call;
 };
 
-/// The playback of a recording, as Foxglove's playbackControl has it.
-struct PlaybackState {
-  enum class Status : std::uint8_t { playing = 0, paused = 1, buffering = 2, ended = 3 };
-  Status status = Status::playing;
-  Nanos now{};
-  float speed = 1.0F;
-  bool did_seek = false;
-};
-struct PlaybackControl {
-  bool play = true;
-  float speed = 1.0F;
-  std::optional<Nanos> seek{};
-};
-struct Playback {
+/// The playback of a recording, which clients control.
+struct PlaybackService {
   Nanos start{};  ///< Time of the first and of
   Nanos end{};    ///< the last frame.
-  std::function<PlaybackState(const PlaybackControl&)> control{};
+  std::function<PlaybackStatus(const PlaybackCommand&)> control{};
 };
 
 struct ServerStatistics {
@@ -105,7 +94,7 @@ class Server {
   [[nodiscard]] static Result<std::unique_ptr<Server>> create(const ServerOptions& options, std::vector<Asset> assets,
                                                               Handlers handlers = {},
                                                               std::vector<Service> services = {},
-                                                              std::optional<Playback> playback = {});
+                                                              std::optional<PlaybackService> playback = {});
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
   /// As stop().
@@ -132,7 +121,7 @@ class Server {
 
   /// Tells the clients that follow them that parameters have changed.
   void parameters_changed();
-  void playback_changed(const PlaybackState& state);
+  void playback_changed(const PlaybackStatus& status);
   /// A line that clients show to their users; level as Foxglove's: 0 info, 1 warning, 2 error.
   void status(int level, std::string_view message);
 

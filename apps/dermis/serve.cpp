@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+
+#include <atomic>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "commands.hpp"
+#include "dermis/serve/session.hpp"
+#include "status_line.hpp"
+#include "stop_flag.hpp"
+#include "viewer/viewer_assets.hpp"
+
+namespace dermis::app {
+namespace {
+
+struct ServeOptions {
+  serve::SuitPlace place;
+  serve::SessionOptions session;
+};
+
+Status check(const ServeOptions& options) {
+  const serve::SuitPlace& place = options.place;
+  if (place.suit.empty() && (place.from.empty() || place.model.empty())) {
+    return bad_input("serve: give --from and --model, or --suit");
+  }
+  if (!place.suit.empty() && !place.model.empty()) return bad_input("--model: suit.toml names the models");
+  const std::string& record = options.session.record;
+  if (!record.empty() && !record.ends_with(".mcap")) return bad_input("--record: end it in .mcap");
+  return options.session.server.validate();
+}
+
+std::string address(const stream::ServerOptions& server, std::uint16_t port) {
+  const bool is_ipv6 = server.host.find(':') != std::string::npos;
+  std::string url = fmt::format("http://{}:{}/", is_ipv6 ? "[" + server.host + "]" : server.host, port);
+  if (!server.token.empty()) url += "?token=" + server.token;
+  return url;
+}
+
+Status serve_suit(ServeOptions& options) {
+  if (Status possible = check(options); !possible) return possible;
+  const std::atomic<bool>& stop = stop_flag();
+  Result<serve::ServedSuit> suit = serve::open_suit(options.place, {.stop = &stop, .notice = say});
+  if (!suit) return suit.error();
+  const std::size_t arrays = suit->arrays.size();
+  const std::string what = arrays == 1 ? suit->arrays.front().name : fmt::format("{} arrays", arrays);
+  const std::span<const stream::Asset> page = viewer::assets();
+  options.session.page.assign(page.begin(), page.end());
+  options.session.server.notice = say;
+  const Result<std::unique_ptr<serve::Session>> session = serve::Session::create(*std::move(suit), options.session);
+  if (!session) return session.error();
+  say(fmt::format("serving {} at {} (Ctrl-C ends it)", what, address(options.session.server, (*session)->port())));
+  return (*session)->run(stop);
+}
+
+}  // namespace
+
+void add_serve(Command& command) {
+  auto options = std::make_shared<ServeOptions>();
+  command.option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
+  command.option("--model", options->place.model, "Its model, or the array.toml of an array to be calibrated");
+  command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
+  command.option("--record", options->session.record, "Record from the beginning, .mcap");
+  command.option("--host", options->session.server.host, "Address to serve at; all but loopback need a token")
+      .shows_default();
+  command.option("--port", options->session.server.port, "Port; 0: any that is free").not_negative().shows_default();
+  command.option("--token", options->session.server.token, "Asked of every client");
+  command.action([options] { return serve_suit(*options); });
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/core/surface.hpp"
+#include "dermis/live/playback.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/sources/guide_voice.hpp"
+#include "dermis/sources/open_source.hpp"
+
+/// An array or a suit served live: the stream of docs/stream.md with its parameters, services and recordings.
+namespace dermis::serve {
+
+/// The frame in which all arrays sit, as messages name it.
+inline constexpr const char* kSuitFrame = "suit";
+
+/// An array to be served.
+struct ServedArray {
+  std::string name;  ///< Unique in the suit; a letter, then letters, digits and '_': topics are /<name>/raw, ...
+  std::unique_ptr<FrameSource> source;
+  std::shared_ptr<const pipeline::Model> model;
+  ArraySurface surface;
+  Pose suit_from_array{};
+  ArrayDescription description;  ///< As calibration takes it: parts of the circuit may still be unknown.
+  std::string model_path{};      ///< Of the model or its array.toml: a calibration saves into that folder.
+};
+
+/// What is to be served.
+struct ServedSuit {
+  std::string name = "suit";
+  std::vector<ServedArray> arrays;             ///< At least one.
+  std::unique_ptr<live::Playback> playback{};  ///< Of the recording from which all sources come; null: they are live.
+  /// Heard by the simulated hands among the sources. Not null.
+  std::shared_ptr<sources::GuideVoice> guide = std::make_shared<sources::GuideVoice>();
+};
+
+/// One flat array, named as its model says. Fails where the model's array is not valid.
+[[nodiscard]] Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, pipeline::Model model);
+
+/// What is to be opened: one source with its model, or a suit.
+struct SuitPlace {
+  std::string from{};   ///< URI or recording; of a suit: a recording of it, or empty for its own sources.
+  std::string model{};  ///< Model file, or the array.toml of an array to be calibrated, where `suit` is empty.
+  std::string suit{};   ///< suit.toml
+};
+
+/// Opens all that the place names. Of the options, `array` and `guide` are not used. Fails where a file or a source
+/// cannot be opened, and where they do not fit each other.
+[[nodiscard]] Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions options = {});
+
+}  // namespace dermis::serve

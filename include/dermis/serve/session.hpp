@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/serve/served_suit.hpp"
+#include "dermis/stream/server.hpp"
+
+namespace dermis::serve {
+
+struct SessionOptions {
+  /// `notice` must be thread-safe: arrays and recordings tell it their lines, too.
+  stream::ServerOptions server{};
+  std::vector<stream::Asset> page{};  ///< What browsers are shown; empty: there is the stream alone.
+  /// A recording to begin with, .mcap; those that clients begin take their names from it. Empty: none.
+  std::string record{};
+};
+
+/// A suit at work and the server that shows it.
+class Session {
+ public:
+  /// Binds the port and begins to answer clients. Fails where the arrays cannot work, and as stream::Server and the
+  /// recording do.
+  [[nodiscard]] static Result<std::unique_ptr<Session>> create(ServedSuit suit, const SessionOptions& options = {});
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+  ~Session();
+
+  [[nodiscard]] std::uint16_t port() const noexcept;
+
+  /// Runs all arrays until `stop` is set, which must end sources that wait, too; a recording is complete then. Fails
+  /// where it could not be written. To be called once.
+  [[nodiscard]] Status run(const std::atomic<bool>& stop);
+
+ private:
+  class Implementation;
+  explicit Session(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::serve

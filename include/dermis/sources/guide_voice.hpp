@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <mutex>
+
+#include "dermis/core/frames.hpp"
+
+namespace dermis::sources {
+
+/// What a person at an array that is being calibrated is to do now.
+struct GuideWords {
+  bool press = false;        ///< The weight is to lie on the taxel; else nothing is to lie on the array.
+  bool other_taxel = false;  ///< Another taxel is pressed instead.
+  std::size_t taxel = 0;     ///< Row-major.
+  double weight_n = 0.0;
+  Nanos hold_time{};  ///< How long a weight is to lie.
+};
+
+/// Between a calibration that asks for presses and the simulated hand that does them (sim:rehearsal). Thread-safe.
+class GuideVoice {
+ public:
+  /// There is a hand that listens.
+  void listen() { has_listener_.store(true, std::memory_order_relaxed); }
+  [[nodiscard]] bool has_listener() const { return has_listener_.load(std::memory_order_relaxed); }
+
+  void say(const GuideWords& words);
+
+  /// Those that were said last; at first, nothing is to be pressed.
+  [[nodiscard]] GuideWords words() const;
+
+ private:
+  std::atomic<bool> has_listener_ = false;
+  mutable std::mutex mutex_;
+  GuideWords words_;
+};
+
+}  // namespace dermis::sources

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::serve {
+
+/// An array that can be served and calibrated, whether it was calibrated before or not.
+struct ModelOrArray {
+  pipeline::Model model;   ///< calibration::uncalibrated_model() of an array without one.
+  ArrayDescription array;  ///< As a calibration takes it: parts of the circuit may still be unknown.
+};
+
+/// A model file, or an array.toml (by its ending .toml).
+[[nodiscard]] Result<ModelOrArray> read_model_or_array(const std::string& path);
+
+}  // namespace dermis::serve

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/serve/served_suit.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "dermis/acquisition/source_uri.hpp"
+#include "dermis/files/suit_toml.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/sources/open_source.hpp"
+#include "serve/model_or_array.hpp"
+
+namespace dermis::serve {
+namespace {
+
+/// A name that topics may have, as suit.toml asks for.
+std::string topic_name(const std::string& name) {
+  std::string topic;
+  for (const char letter : name) {
+    topic += std::isalnum(static_cast<unsigned char>(letter)) != 0 ? letter : '_';
+  }
+  const bool begins_with_letter = !topic.empty() && std::isalpha(static_cast<unsigned char>(topic.front())) != 0;
+  return begins_with_letter ? topic : "array_" + topic;
+}
+
+/// Models, read once each.
+class Models {
+ public:
+  struct Known {
+    std::shared_ptr<const pipeline::Model> model;
+    ArrayDescription description;
+  };
+
+  Result<Known> read(const std::string& path) {
+    const auto known = read_.find(path);
+    if (known != read_.end()) return known->second;
+    Result<ModelOrArray> read = read_model_or_array(path);
+    if (!read) return read.error();
+    Known fresh{std::make_shared<const pipeline::Model>(std::move(read->model)), std::move(read->array)};
+    read_[path] = fresh;
+    return fresh;
+  }
+
+ private:
+  std::map<std::string, Known> read_;
+};
+
+/// As suit.toml tells, or one flat array.
+Result<SuitDescription> describe(const SuitPlace& place) {
+  if (!place.suit.empty()) return files::read_suit(place.suit);
+  SuitArray array;
+  array.from = place.from;
+  array.model = place.model;
+  SuitDescription suit;
+  suit.arrays.push_back(std::move(array));
+  return suit;
+}
+
+Result<ServedArray> open_array(const SuitArray& described, Models& models) {
+  Result<Models::Known> known = models.read(described.model);
+  if (!known) return known.error();
+  const ArrayDescription& array = known->model->array;
+  std::string name = described.name.empty() ? topic_name(array.name) : described.name;
+  Result<ArraySurface> surface =
+      ArraySurface::create(array, described.shape, described.base_from_array, described.mirrored);
+  if (!surface) return bad_input(fmt::format("array '{}': {}", name, surface.error().message));
+  return ServedArray{std::move(name),
+                     nullptr,
+                     std::move(known->model),
+                     *std::move(surface),
+                     described.base_from_array,
+                     std::move(known->description),
+                     described.model};
+}
+
+bool is_recording(const std::string& from) {
+  if (acquisition::is_source_uri(from)) return false;
+  return from.substr(0, from.find('#')).ends_with(".mcap");
+}
+
+Result<std::unique_ptr<FrameSource>> open_live(const std::string& from, const ServedArray& array,
+                                               sources::SourceOptions options) {
+  if (is_recording(from)) {
+    return bad_input(fmt::format("'{}': a recording is served with --from {} --suit suit.toml", from, from));
+  }
+  if (!acquisition::is_source_uri(from)) {
+    return bad_input(
+        fmt::format("'{}': only devices and recordings are served; make a recording of it first "
+                    "(dermis convert {} it.mcap)",
+                    from, from));
+  }
+  const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
+  if (!uri) return uri.error();
+  if (uri->transport == acquisition::Transport::simulation && !uri->rate_hz) {
+    return bad_input(fmt::format("'{}': say how many frames a second it sends, such as {}{}rate=100", from, from,
+                                 from.find('?') == std::string::npos ? "?" : "&"));
+  }
+  options.array = &array.model->array;
+  return sources::open_source(*uri, options);
+}
+
+/// Index in the recording of each array of the suit.
+Status open_playback(const std::string& from, ServedSuit& suit) {
+  Result<std::unique_ptr<live::Playback>> playback = live::Playback::open(from);
+  if (!playback) return playback.error();
+  const std::vector<recordings::RecordedArray>& recorded = (*playback)->arrays();
+  for (ServedArray& array : suit.arrays) {
+    const auto same = [&](const recordings::RecordedArray& other) { return topic_name(other.name) == array.name; };
+    auto found = std::find_if(recorded.begin(), recorded.end(), same);
+    if (found == recorded.end() && suit.arrays.size() == 1 && recorded.size() == 1) found = recorded.begin();
+    if (found == recorded.end()) return bad_input(fmt::format("'{}': holds no array '{}'", from, array.name));
+    const FrameShape shape{array.model->array.rows, array.model->array.cols};
+    if (found->shape != shape) {
+      return bad_input(fmt::format("'{}': array '{}' has {}x{} taxels, its model {}x{}", from, array.name,
+                                   found->shape.rows, found->shape.cols, shape.rows, shape.cols));
+    }
+    array.source = (*playback)->source(static_cast<std::size_t>(found - recorded.begin()));
+  }
+  suit.playback = *std::move(playback);
+  return Done{};
+}
+
+Status open_sources(const SuitPlace& place, const SuitDescription& described, const sources::SourceOptions& options,
+                    ServedSuit& suit) {
+  if (is_recording(place.from)) return open_playback(place.from, suit);
+  for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
+    Result<std::unique_ptr<FrameSource>> source = open_live(described.arrays[k].from, suit.arrays[k], options);
+    if (!source) return source.error();
+    suit.arrays[k].source = *std::move(source);
+  }
+  return Done{};
+}
+
+}  // namespace
+
+Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, pipeline::Model model) {
+  Result<ArraySurface> surface = ArraySurface::create(model.array);
+  if (!surface) return surface.error();
+  ArrayDescription description = model.array;
+  std::string name = topic_name(description.name);
+  ServedSuit suit;
+  suit.arrays.push_back({std::move(name),
+                         std::move(source),
+                         std::make_shared<const pipeline::Model>(std::move(model)),
+                         *std::move(surface),
+                         {},
+                         std::move(description)});
+  return suit;
+}
+
+Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions options) {
+  const Result<SuitDescription> described = describe(place);
+  if (!described) return described.error();
+  ServedSuit suit;
+  suit.name = described->name;
+  Models models;
+  for (const SuitArray& one : described->arrays) {
+    Result<ServedArray> array = open_array(one, models);
+    if (!array) return array.error();
+    suit.arrays.push_back(*std::move(array));
+  }
+  options.guide = suit.guide;
+  if (Status opened = open_sources(place, *described, options, suit); !opened) return opened.error();
+  return suit;
+}
+
+}  // namespace dermis::serve

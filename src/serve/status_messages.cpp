@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/status_messages.hpp"
+
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "dermis/health/fault_words.hpp"
+
+namespace dermis::serve {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+double seconds(Nanos span) {
+  return std::chrono::duration<double>(span).count();
+}
+
+}  // namespace
+
+messages::ArrayStatistics statistics_message(const std::string& name, const live::ArrayStatistics& array) {
+  messages::ArrayStatistics out;
+  out.name = name;
+  out.ended = array.ended;
+  out.error = array.error;
+  out.frames = array.frames;
+  out.rejected = array.rejected;
+  out.lost = array.source.lost_frames;
+  out.damaged = array.source.damaged_frames;
+  out.rate_hz = array.source.rate_hz;
+  out.jitter_s = seconds(array.source.jitter);
+  out.latency_p50_s = array.latency_p50 > Nanos{} ? seconds(array.latency_p50) : kUnknown;
+  out.latency_p99_s = array.latency_p99 > Nanos{} ? seconds(array.latency_p99) : kUnknown;
+  out.temperature_celsius = array.temperature_celsius.value_or(kUnknown);
+  out.supply_v = array.supply_v.value_or(kUnknown);
+  return out;
+}
+
+messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::Model& model,
+                                      const live::ArrayStatistics& statistics) {
+  messages::Diagnosis diagnosis;
+  diagnosis.name = name;
+  diagnosis.hardware_id = model.array.name;
+  health::Condition condition = health::condition_of(model, statistics.faults);
+  diagnosis.values = std::move(condition.details);
+  if (!statistics.error.empty()) {
+    diagnosis.level = messages::Diagnosis::Level::error;
+    diagnosis.message = statistics.error;
+  } else if (statistics.ended) {
+    diagnosis.level = messages::Diagnosis::Level::stale;
+    diagnosis.message = "the source has ended";
+  } else {
+    if (!statistics.faults.empty()) diagnosis.level = messages::Diagnosis::Level::warning;
+    diagnosis.message = std::move(condition.message);
+  }
+  return diagnosis;
+}
+
+messages::CalibrationState calibration_message(CalibrationProgress progress) {
+  messages::CalibrationState state;
+  calibration::GuideState& guide = progress.state;
+  state.array = std::move(progress.array);
+  state.stage = static_cast<messages::CalibrationState::Stage>(guide.stage);
+  state.message = std::move(guide.message);
+  state.taxel = static_cast<std::uint32_t>(guide.taxel);
+  state.weight_n = guide.weight_n;
+  state.reading = guide.reading;
+  state.hold_share = guide.hold_share;
+  state.presses_done = static_cast<std::uint32_t>(guide.presses_done);
+  state.presses_total = static_cast<std::uint32_t>(guide.presses_total);
+  state.median_relative_error = guide.median_relative_error.value_or(kUnknown);
+  state.taxel_presses = std::move(guide.taxel_presses);
+  state.hint = static_cast<std::uint8_t>(guide.hint);
+  if (guide.pressed_taxel) state.pressed_taxel = static_cast<std::uint32_t>(*guide.pressed_taxel);
+  state.unpressed_relative_error = guide.unpressed_relative_error.value_or(kUnknown);
+  return state;
+}
+
+}  // namespace dermis::serve

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/status_publisher.hpp"
+
+#include <chrono>
+#include <optional>
+#include <utility>
+
+#include "dermis/messages/live_messages.hpp"
+#include "serve/status_messages.hpp"
+
+namespace dermis::serve {
+
+StatusPublisher::StatusPublisher(const SuitAtWork& work, stream::Server& server) : work_(work), server_(server) {
+  const auto add = [&](const char* topic, const messages::MessageType& type) {
+    return server_.add_channel(topic, type.name, type.definition);
+  };
+  channels_.health = add("/health", messages::diagnostics_type());
+  channels_.statistics = add("/statistics", messages::statistics_type());
+  channels_.transforms = add("/tf", messages::transforms_type());
+  channels_.calibration = add("/calibration", messages::calibration_state_type());
+}
+
+void StatusPublisher::publish(std::int64_t tick) {
+  if (tick % 3 == 0) publish_calibration();
+  if (tick % 3 == 1) publish_playback();
+  if (tick % 15 == 2) publish_statistics();
+  if (tick % 30 == 5) publish_health();
+  if (tick % 30 == 20) publish_transforms();
+}
+
+Nanos StatusPublisher::now() const {
+  if (work_.suit.playback) return work_.suit.playback->status().now;
+  return std::chrono::system_clock::now().time_since_epoch();
+}
+
+void StatusPublisher::publish_message(stream::ChannelId channel) {
+  server_.publish(channel, now(), message_);
+}
+
+void StatusPublisher::publish_statistics() {
+  if (!server_.has_subscribers(channels_.statistics)) return;
+  messages::Statistics statistics;
+  statistics.time = now();
+  for (std::size_t k = 0; k < work_.suit.arrays.size(); ++k) {
+    statistics.arrays.push_back(statistics_message(work_.suit.arrays[k].name, work_.live.statistics(k)));
+  }
+  statistics.recording = work_.recorder.recording();
+  statistics.recording_file = work_.recorder.path();
+  statistics.recording_frames = work_.recorder.frames();
+  const stream::ServerStatistics server = server_.statistics();
+  statistics.clients = static_cast<std::uint32_t>(server.clients);
+  statistics.client_drops = server.dropped;
+  messages::encode_statistics(statistics, kSuitFrame, message_);
+  publish_message(channels_.statistics);
+}
+
+void StatusPublisher::publish_health() {
+  if (!server_.has_subscribers(channels_.health)) return;
+  std::vector<messages::Diagnosis> diagnoses;
+  for (std::size_t k = 0; k < work_.suit.arrays.size(); ++k) {
+    diagnoses.push_back(diagnosis_message(work_.suit.arrays[k].name, *work_.models.of(k), work_.live.statistics(k)));
+  }
+  messages::encode_diagnostics(diagnoses, now(), kSuitFrame, message_);
+  publish_message(channels_.health);
+}
+
+void StatusPublisher::publish_transforms() {
+  if (!server_.has_subscribers(channels_.transforms)) return;
+  std::vector<messages::Transform> transforms;
+  for (const ServedArray& array : work_.suit.arrays) {
+    transforms.push_back({kSuitFrame, array.name, array.suit_from_array});
+  }
+  messages::encode_transforms(transforms, now(), message_);
+  publish_message(channels_.transforms);
+}
+
+void StatusPublisher::publish_calibration() {
+  if (!server_.has_subscribers(channels_.calibration)) return;
+  std::optional<CalibrationProgress> progress = work_.calibration.progress();
+  if (!progress) return;
+  messages::CalibrationState state = calibration_message(*std::move(progress));
+  state.time = now();
+  messages::encode_calibration_state(state, kSuitFrame, message_);
+  publish_message(channels_.calibration);
+}
+
+/// The clock of a recording, ten times a second while it runs and once when it stands still.
+void StatusPublisher::publish_playback() {
+  if (!work_.suit.playback) return;
+  const PlaybackStatus status = work_.suit.playback->status();
+  if (status != last_playback_) server_.playback_changed(status);
+  last_playback_ = status;
+}
+
+}  // namespace dermis::serve

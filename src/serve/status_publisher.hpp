@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/playback.hpp"
+#include "dermis/live/live_suit.hpp"
+#include "dermis/serve/served_suit.hpp"
+#include "dermis/stream/server.hpp"
+#include "serve/calibration_services.hpp"
+#include "serve/models_in_use.hpp"
+#include "serve/suit_recorder.hpp"
+
+namespace dermis::serve {
+
+/// What there is to tell of.
+struct SuitAtWork {
+  const ServedSuit& suit;
+  const ModelsInUse& models;
+  const live::LiveSuit& live;
+  const SuitRecorder& recorder;
+  const CalibrationServices& calibration;
+};
+
+/// The channels of docs/stream.md that tell how the work goes, and where a playback is. Not thread-safe.
+class StatusPublisher {
+ public:
+  static constexpr int kTicksPerSecond = 30;
+
+  /// The parts of `work` and `server` must outlive it.
+  StatusPublisher(const SuitAtWork& work, stream::Server& server);
+
+  /// To be called for each tick: publishes what is due with it.
+  void publish(std::int64_t tick);
+
+ private:
+  struct Channels {
+    stream::ChannelId health = 0;
+    stream::ChannelId statistics = 0;
+    stream::ChannelId transforms = 0;
+    stream::ChannelId calibration = 0;
+  };
+
+  [[nodiscard]] Nanos now() const;
+  void publish_statistics();
+  void publish_health();
+  void publish_transforms();
+  void publish_calibration();
+  void publish_playback();
+  void publish_message(stream::ChannelId channel);
+
+  const SuitAtWork work_;
+  stream::Server& server_;
+  Channels channels_;
+  PlaybackStatus last_playback_{};
+  std::vector<std::uint8_t> message_;
+};
+
+}  // namespace dermis::serve

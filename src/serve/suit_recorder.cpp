@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/suit_recorder.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <utility>
+
+namespace dermis::serve {
+
+std::string recording_name(const std::string& wanted, bool is_first, std::chrono::system_clock::time_point now) {
+  if (is_first && !wanted.empty()) return wanted;
+  const std::filesystem::path pattern(wanted.empty() ? "dermis.mcap" : wanted);
+  const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch());
+  const std::string stamp = fmt::format(
+      "{:%Y%m%d-%H%M%S}-{:03}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)), since_epoch.count() % 1000);
+  const std::string name = pattern.stem().string() + "-" + stamp + pattern.extension().string();
+  return (pattern.parent_path() / name).string();
+}
+
+SuitRecorder::SuitRecorder(std::string wanted, Arrays arrays, Failed failed)
+    : wanted_(std::move(wanted)), arrays_(std::move(arrays)), failed_(std::move(failed)) {}
+
+SuitRecorder::~SuitRecorder() {
+  static_cast<void>(end());
+}
+
+Status SuitRecorder::begin() {
+  const std::lock_guard switching(switch_mutex_);
+  if (recording_) return bad_input("a recording goes on: " + path());
+  await_closing();
+  const std::string path = recording_name(wanted_, this->path().empty(), std::chrono::system_clock::now());
+  Result<std::unique_ptr<recordings::SuitRecordingWriter>> writer =
+      recordings::SuitRecordingWriter::create(path, arrays_());
+  if (!writer) return writer.error();
+  const std::unique_lock lock(writer_mutex_);
+  writer_ = *std::move(writer);
+  path_ = path;
+  outcome_ = Done{};
+  frames_ = 0;
+  recording_ = true;
+  return Done{};
+}
+
+void SuitRecorder::stop() {
+  const std::unique_lock lock(writer_mutex_);
+  if (!writer_) return;
+  closing_ = std::thread([this, writer = std::move(writer_)] { close(*writer); });
+  recording_ = false;
+}
+
+/// A recording that failed is told so here, too: once, and by a thread that nobody waits for.
+void SuitRecorder::close(recordings::SuitRecordingWriter& writer) {
+  outcome_ = writer.commit();
+  if (!outcome_) failed_(outcome_.error().message);
+}
+
+Status SuitRecorder::end() {
+  const std::lock_guard switching(switch_mutex_);
+  stop();
+  await_closing();
+  return std::exchange(outcome_, Done{});
+}
+
+void SuitRecorder::await_closing() {
+  std::thread closing;
+  {
+    const std::unique_lock lock(writer_mutex_);  // stop() may just be setting it
+    closing.swap(closing_);
+  }
+  if (closing.joinable()) closing.join();
+}
+
+void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
+  if (!recording_) return;
+  {
+    const std::shared_lock lock(writer_mutex_);
+    if (!writer_) return;
+    if (writer_->write(array, raw)) {
+      ++frames_;
+      return;
+    }
+  }
+  stop();
+}
+
+std::string SuitRecorder::path() const {
+  const std::shared_lock lock(writer_mutex_);
+  return path_;
+}
+
+}  // namespace dermis::serve

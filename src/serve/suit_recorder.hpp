@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <shared_mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/recordings/suit_recording.hpp"
+
+namespace dermis::serve {
+
+/// The name of a recording: the first has the one that is wanted; the next, and all where none is wanted, the time in
+/// it, as "rec-20261122-101500-123.mcap", so that nothing is overwritten.
+[[nodiscard]] std::string recording_name(const std::string& wanted, bool is_first,
+                                         std::chrono::system_clock::time_point now);
+
+/// Records every frame of all arrays, as the device said it, from begin() to stop(): the model gives the forces again,
+/// and they would be four fifths of the bytes. Loses nothing: where the disk cannot follow, the arrays wait for it.
+/// Thread-safe.
+class SuitRecorder {
+ public:
+  using Arrays = std::function<std::vector<recordings::RecordedArray>()>;
+  using Failed = std::function<void(const std::string& why)>;
+
+  /// `wanted`: the path of the first recording, or empty. `arrays` tells begin() what is recorded; `failed` is told, on
+  /// the thread that closes the file, why a recording ended.
+  SuitRecorder(std::string wanted, Arrays arrays, Failed failed);
+  SuitRecorder(const SuitRecorder&) = delete;
+  SuitRecorder& operator=(const SuitRecorder&) = delete;
+  /// As end().
+  ~SuitRecorder();
+
+  /// Fails where the file cannot be made, or a recording goes on.
+  [[nodiscard]] Status begin();
+  /// Takes no more frames; the file is closed in the background.
+  void stop();
+  /// stop(), and waits for it; the outcome of the recording. Done where there is none.
+  [[nodiscard]] Status end();
+
+  /// Takes part in the recording that goes on, if there is one. Each array is written by one thread.
+  void write(std::size_t array, const RawFrame& raw);
+
+  [[nodiscard]] bool recording() const noexcept { return recording_.load(); }
+  /// Of the present or the last recording.
+  [[nodiscard]] std::string path() const;
+  [[nodiscard]] std::uint64_t frames() const noexcept { return frames_.load(); }
+
+ private:
+  void close(recordings::SuitRecordingWriter& writer);
+  void await_closing();
+
+  const std::string wanted_;
+  const Arrays arrays_;
+  const Failed failed_;
+  std::mutex switch_mutex_;  // One begin() or end() at a time.
+  std::atomic<bool> recording_{false};
+  std::atomic<std::uint64_t> frames_{0};
+  Status outcome_ = Done{};  // Of closing_, once it has ended.
+
+  mutable std::shared_mutex writer_mutex_;  // Of what follows; shared by those who write.
+  std::unique_ptr<recordings::SuitRecordingWriter> writer_;
+  std::thread closing_;
+  std::string path_;
+};
+
+}  // namespace dermis::serve

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/random.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::sources {
+
+/// The scene "contacts" to be read at any moment, over and over: simulated beforehand at 100 frames/s without the noise
+/// of the instruments, interpolated in between, and with fresh noise at each reading. Not thread-safe.
+class ContactLoop {
+ public:
+  /// `frames`: length of the scene; by default 2000 (20 s), or fewer of more than 6000 taxels.
+  [[nodiscard]] static Result<ContactLoop> create(const ArrayDescription& array, std::uint64_t seed,
+                                                  std::optional<std::size_t> frames);
+
+  /// Counts, temperature and supply `seconds` >= 0 after the beginning of the first loop.
+  void read(double seconds, RawFrame& frame);
+
+ private:
+  ContactLoop(const Readout& readout, std::size_t taxels, std::uint64_t seed);
+  void append(const RawFrame& exact, double temperature_celsius, double supply_v);
+
+  Readout readout_;
+  std::size_t taxels_;
+  Random random_;
+  std::vector<float> noise_;  // Normal numbers [counts]; a frame takes them from a random place on.
+  std::vector<float> ratio_;  // [frames, taxels] reading over supply
+  std::vector<double> temperature_celsius_;
+  std::vector<double> supply_v_;
+};
+
+}  // namespace dermis::sources

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "sources/rehearsal.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "dermis/simulation/scene.hpp"
+
+namespace dermis::sources {
+namespace {
+
+constexpr double kCelsius = 22.0;
+constexpr double kDefaultSupplyV = 5.0;
+constexpr std::uint64_t kPressesToAMistake = 8;
+constexpr double kSeesMistakeSeconds = 0.6;  // the page hears ten times a second
+constexpr simulation::EnvironmentOptions kEnvironment;
+
+}  // namespace
+
+Rehearsal::Rehearsal(const ArrayDescription& array, simulation::ConductiveRubber rubber,
+                     simulation::ReadoutCircuit circuit, std::uint64_t seed, double rate_hz,
+                     std::shared_ptr<GuideVoice> guide)
+    : guide_(std::move(guide)),
+      rubber_(std::move(rubber)),
+      circuit_(std::move(circuit)),
+      adc_(array.readout, kEnvironment.adc_noise_lsb),
+      random_(seed),
+      frame_seconds_(1.0 / rate_hz),
+      supply_v_(array.readout.supply_v.value_or(kDefaultSupplyV)),
+      force_n_(array.taxel_count()),
+      siemens_(array.taxel_count()),
+      ratio_(array.taxel_count()) {}
+
+Result<Rehearsal> Rehearsal::create(const ArrayDescription& array, std::uint64_t seed, double rate_hz,
+                                    std::shared_ptr<GuideVoice> guide) {
+  Result<simulation::ConductiveRubber> rubber = simulation::ConductiveRubber::create({}, array.rows, array.cols, seed);
+  if (!rubber) return rubber.error();
+  Result<simulation::ReadoutCircuit> circuit = simulation::ReadoutCircuit::create(array);
+  if (!circuit) return circuit.error();
+  if (!guide) guide = std::make_shared<GuideVoice>();
+  guide->listen();
+  return Rehearsal(array, *std::move(rubber), *std::move(circuit), seed, rate_hz, std::move(guide));
+}
+
+void Rehearsal::put_on(const GuideWords& words) {
+  const bool is_mistake = ++presses_ % kPressesToAMistake == 0;
+  pressed_ = (words.taxel + (is_mistake ? 1 : 0)) % force_n_.size();
+  force_n_[*pressed_] = words.weight_n;
+  seconds_ = 0.0;
+}
+
+void Rehearsal::move_hand(double seconds) {
+  const GuideWords words = guide_->words();
+  const double while_s = std::chrono::duration<double>(words.hold_time).count();
+  seconds_ += seconds;
+  if (!pressed_) {
+    if (words.press && seconds_ > while_s && words.taxel < force_n_.size()) put_on(words);
+    return;
+  }
+  const bool sees_mistake = words.other_taxel && seconds_ > while_s + kSeesMistakeSeconds;
+  told_seconds_ = words.press ? 0.0 : told_seconds_ + seconds;
+  if (!sees_mistake && told_seconds_ <= 0.5 * while_s) return;
+  force_n_[*pressed_] = 0.0;
+  pressed_.reset();
+  seconds_ = 0.0;
+  told_seconds_ = 0.0;
+}
+
+void Rehearsal::read(std::uint64_t number, RawFrame& frame) {
+  const double seconds = frame_seconds_ * static_cast<double>(number + 1 - next_);
+  next_ = number + 1;
+  move_hand(seconds);
+  rubber_.press(force_n_, seconds);
+  rubber_.read(kCelsius, siemens_);
+  circuit_.ratios(siemens_, ratio_);
+  frame.temperature_celsius = kCelsius + kEnvironment.temperature_noise_celsius * random_.normal();
+  frame.supply_v = supply_v_ * (1.0 + kEnvironment.supply_noise * random_.normal());
+  frame.counts.resize(ratio_.size());
+  adc_.convert(ratio_, supply_v_, random_, frame.counts);
+}
+
+}  // namespace dermis::sources

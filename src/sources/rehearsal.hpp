@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/random.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/simulation/adc.hpp"
+#include "dermis/simulation/readout_circuit.hpp"
+#include "dermis/simulation/rubber.hpp"
+#include "dermis/sources/guide_voice.hpp"
+
+namespace dermis::sources {
+
+/// A simulated array under the hand of somebody who does what the guide says, so that it can be tried without an array:
+/// puts the weight on after a while of the length of a hold, and takes it off when told. Every eighth press begins on
+/// the taxel beside. Not thread-safe.
+class Rehearsal {
+ public:
+  /// `guide` null: nobody asks for anything.
+  [[nodiscard]] static Result<Rehearsal> create(const ArrayDescription& array, std::uint64_t seed, double rate_hz,
+                                                std::shared_ptr<GuideVoice> guide);
+
+  /// Sets counts, temperature and supply of the frame of that number; numbers rise.
+  void read(std::uint64_t number, RawFrame& frame);
+
+ private:
+  Rehearsal(const ArrayDescription& array, simulation::ConductiveRubber rubber, simulation::ReadoutCircuit circuit,
+            std::uint64_t seed, double rate_hz, std::shared_ptr<GuideVoice> guide);
+  void move_hand(double seconds);
+  void put_on(const GuideWords& words);
+
+  std::shared_ptr<GuideVoice> guide_;
+  simulation::ConductiveRubber rubber_;
+  simulation::ReadoutCircuit circuit_;
+  simulation::Adc adc_;
+  Random random_;
+  double frame_seconds_;
+  double supply_v_;
+  std::uint64_t next_ = 0;
+  std::uint64_t presses_ = 0;
+  double seconds_ = 0.0;       // since the hand moved
+  double told_seconds_ = 0.0;  // since it was told to take the weight off
+  std::optional<std::size_t> pressed_;
+  std::vector<double> force_n_;
+  std::vector<double> siemens_;
+  std::vector<double> ratio_;
+};
+
+}  // namespace dermis::sources

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "sources/simulated_source.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dermis/files/array_toml.hpp"
+#include "dermis/simulation/simulator.hpp"
+#include "sources/contact_loop.hpp"
+#include "sources/rehearsal.hpp"
+#include "sources/simulated_device.hpp"
+
+namespace dermis::sources {
+namespace {
+
+constexpr std::size_t kMaxFrames = 1000;
+constexpr std::size_t kMaxTaxelFrames = 4'000'000;  // a scene is simulated within seconds
+constexpr std::size_t kLeastFrames = 16;
+constexpr std::string_view kRehearsal = "rehearsal";
+
+/// The array of examples/chest.
+ArrayDescription reference_array(const FrameShape& shape) {
+  ArrayDescription array;
+  array.name = "chest";
+  array.rows = shape.rows;
+  array.cols = shape.cols;
+  array.taxel_area_m2 = 38.48e-6;
+  array.readout.drive_ohm.assign(shape.rows, 20.0);
+  array.readout.load_ohm.assign(shape.cols, 200.0);
+  array.readout.adc_reference_v = 5.0;
+  array.readout.supply_v = 5.0;
+  return array;
+}
+
+Result<ArrayDescription> array_of(const acquisition::SourceUri& uri, const ArrayDescription* given) {
+  Result<ArrayDescription> array = reference_array(uri.array_shape.value_or(FrameShape{16, 16}));
+  if (!uri.array.empty()) {
+    array = files::read_array(uri.array);
+    if (!array) return array;
+  } else if (given != nullptr) {
+    const bool agrees = !uri.array_shape || *uri.array_shape == FrameShape{given->rows, given->cols};
+    if (agrees) return *given;
+  }
+  if (uri.array_shape && *uri.array_shape != FrameShape{array->rows, array->cols}) {
+    return bad_input(
+        fmt::format("'{}': the array of {} has {}x{} taxels", uri.text, uri.array, array->rows, array->cols));
+  }
+  return array;
+}
+
+/// A scene once, as fast as it is read.
+class UnpacedScene final : public FrameSource {
+ public:
+  UnpacedScene(std::unique_ptr<simulation::Simulator> simulator, const std::atomic<bool>* stop)
+      : simulator_(std::move(simulator)), stop_(stop) {}
+
+  Result<bool> next(RawFrame& frame) override {
+    if (stop_ != nullptr && stop_->load()) return false;
+    return simulator_->next(frame);
+  }
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return simulator_->shape(); }
+  [[nodiscard]] bool is_live() const override { return true; }
+
+ private:
+  std::unique_ptr<simulation::Simulator> simulator_;
+  const std::atomic<bool>* stop_;
+};
+
+Result<std::unique_ptr<simulation::Simulator>> simulate_scene(const acquisition::SourceUri& uri,
+                                                              const ArrayDescription& array) {
+  return simulation::Simulator::create(array, {}, uri.path, uri.seed, uri.frames);
+}
+
+/// The first frames of a scene, over and over.
+Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescription& array) {
+  const Result<std::unique_ptr<simulation::Simulator>> simulator = simulate_scene(uri, array);
+  if (!simulator) return simulator.error();
+  const std::size_t most = std::clamp(kMaxTaxelFrames / array.taxel_count(), kLeastFrames, kMaxFrames);
+  std::vector<RawFrame> frames;
+  while (frames.size() < most) {
+    RawFrame frame;
+    const Result<bool> more = (*simulator)->next(frame);
+    if (!more) return more.error();
+    if (!*more) break;
+    frames.push_back(std::move(frame));
+  }
+  return MakeFrame([frames = std::move(frames)](std::uint64_t number, RawFrame& frame) {
+    const RawFrame& simulated = frames[number % frames.size()];
+    frame.temperature_celsius = simulated.temperature_celsius;
+    frame.supply_v = simulated.supply_v;
+    frame.counts = simulated.counts;
+  });
+}
+
+Result<MakeFrame> contact_loop(const acquisition::SourceUri& uri, const ArrayDescription& array) {
+  Result<ContactLoop> created = ContactLoop::create(array, uri.seed, uri.frames);
+  if (!created) return created.error();
+  return MakeFrame([loop = *std::move(created), rate_hz = *uri.rate_hz](std::uint64_t number, RawFrame& frame) mutable {
+    loop.read(static_cast<double>(number) / rate_hz, frame);
+  });
+}
+
+Result<MakeFrame> rehearsal(const acquisition::SourceUri& uri, const ArrayDescription& array,
+                            std::shared_ptr<GuideVoice> guide) {
+  Result<Rehearsal> created = Rehearsal::create(array, uri.seed, *uri.rate_hz, std::move(guide));
+  if (!created) return created.error();
+  return MakeFrame([rehearsal = *std::move(created)](std::uint64_t number, RawFrame& frame) mutable {
+    rehearsal.read(number, frame);
+  });
+}
+
+Result<MakeFrame> frames_of(const acquisition::SourceUri& uri, const ArrayDescription& array,
+                            const SourceOptions& options) {
+  if (uri.path == kRehearsal) return rehearsal(uri, array, options.guide);
+  return uri.path == "contacts" ? contact_loop(uri, array) : scene_loop(uri, array);
+}
+
+Result<std::unique_ptr<FrameSource>> open_scene(const acquisition::SourceUri& uri, const ArrayDescription& array,
+                                                const SourceOptions& options) {
+  if (uri.rate_hz) {
+    Result<MakeFrame> frames = frames_of(uri, array, options);
+    if (!frames) return frames.error();
+    return std::unique_ptr<FrameSource>(std::make_unique<SimulatedDevice>(
+        *std::move(frames), FrameShape{array.rows, array.cols}, *uri.rate_hz, options.stop));
+  }
+  if (uri.path == kRehearsal) return bad_input("needs a rate, as in sim:rehearsal?rate=100");
+  Result<std::unique_ptr<simulation::Simulator>> simulator = simulate_scene(uri, array);
+  if (!simulator) return simulator.error();
+  return std::unique_ptr<FrameSource>(std::make_unique<UnpacedScene>(*std::move(simulator), options.stop));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> open_simulation(const acquisition::SourceUri& uri, const SourceOptions& options) {
+  const Result<ArrayDescription> array = array_of(uri, options.array);
+  if (!array) return array.error();
+  if (array->has_unknown_circuit()) {
+    return bad_input("'" + uri.text + "': a circuit that is to be fitted cannot be simulated; name it in array.toml");
+  }
+  Result<std::unique_ptr<FrameSource>> source = open_scene(uri, *array, options);
+  if (!source) return bad_input("'" + uri.text + "': " + source.error().message);
+  const ArrayDescription* const expected = options.array;
+  if (expected != nullptr && (expected->rows != array->rows || expected->cols != array->cols)) {
+    return bad_input(fmt::format("'{}': has {}x{} taxels, the array {}x{}", uri.text, array->rows, array->cols,
+                                 expected->rows, expected->cols));
+  }
+  return source;
+}
+
+}  // namespace dermis::sources

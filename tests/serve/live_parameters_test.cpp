@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/live_parameters.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "serve/small_suit.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace dermis::serve {
+namespace {
+
+using stream::ParameterValue;
+
+/// The parameters of two arrays, "left" and "right".
+class Parameters : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::vector<live::LiveArray> arrays;
+    for (ServedArray& array : suit_.arrays) {
+      arrays.push_back({array.name, std::move(array.source), array.model, array.surface});
+    }
+    live_ = live::LiveSuit::create(std::move(arrays), {}).value();
+    stream::ServerOptions options;
+    options.port = 0;
+    server_ = stream::Server::create(options, {}).value();
+    broadcaster_.emplace(suit_, *server_);
+    parameters_.emplace(suit_, *live_, *broadcaster_, recorder_);
+  }
+
+  std::map<std::string, ParameterValue> all() const {
+    std::map<std::string, ParameterValue> values;
+    for (const stream::Parameter& parameter : parameters_->all()) values[parameter.name] = parameter.value;
+    return values;
+  }
+
+  /// The line of the error; empty where there is none.
+  std::string set(const std::string& name, const ParameterValue& value) {
+    const Status set = parameters_->set({name, value});
+    return set ? "" : set.error().message;
+  }
+
+  const support::TemporaryFolder folder_;
+  const std::atomic<bool> stop_ = true;
+  ServedSuit suit_ = small_suit({"left", "right"}, stop_);
+  SuitRecorder recorder_{folder_.file("rec.mcap"),
+                         [] {
+                           return std::vector<recordings::RecordedArray>{{.name = "left", .shape = {kRows, kCols}}};
+                         },
+                         [](const std::string& why) { ADD_FAILURE() << why; }};
+  std::unique_ptr<live::LiveSuit> live_;
+  std::unique_ptr<stream::Server> server_;
+  std::optional<Broadcaster> broadcaster_;
+  std::optional<LiveParameters> parameters_;
+};
+
+TEST_F(Parameters, begin_with_the_defaults) {
+  const fusion::ContactOptions contacts;
+  const std::map<std::string, ParameterValue> expected = {{"/contacts/onset_sigma", contacts.onset_sigma},
+                                                          {"/contacts/onset_force_n", contacts.onset_force_n},
+                                                          {"/contacts/release_share", contacts.release_share},
+                                                          {"/drift/track", true},
+                                                          {"/left/tare", false},
+                                                          {"/recording", false},
+                                                          {"/recording/file", std::string()},
+                                                          {"/right/tare", false},
+                                                          {"/stream/rate_hz", 60.0},
+                                                          {"/tare", false}};
+  EXPECT_EQ(all(), expected);
+}
+
+TEST_F(Parameters, are_as_they_were_set) {
+  const std::map<std::string, ParameterValue> wanted = {{"/contacts/onset_sigma", 7.0},
+                                                        {"/contacts/onset_force_n", 1.5},
+                                                        {"/contacts/release_share", 0.25},
+                                                        {"/drift/track", false},
+                                                        {"/stream/rate_hz", 30.0}};
+  for (const auto& [name, value] : wanted) EXPECT_EQ(set(name, value), "");
+  const auto now = all();
+  for (const auto& [name, value] : wanted) EXPECT_EQ(now.at(name), value) << name;
+  EXPECT_EQ(live_->settings().contacts.onset_force_n, 1.5);
+  EXPECT_FALSE(live_->settings().drift.track);
+  EXPECT_EQ(broadcaster_->rate_hz(), 30.0);
+}
+
+TEST_F(Parameters, that_are_wrong_are_refused_in_one_line_and_change_nothing) {
+  const auto before = all();
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const std::vector<std::pair<stream::Parameter, std::string>> wrong = {
+      {{"/stream/rate_hz", 0.5}, "/stream/rate_hz: must be 1 to 1000"},
+      {{"/stream/rate_hz", 1001.0}, "/stream/rate_hz: must be 1 to 1000"},
+      {{"/stream/rate_hz", kNaN}, "/stream/rate_hz: must be 1 to 1000"},
+      {{"/contacts/onset_sigma", 0.0}, "contacts.onset_sigma: "},
+      {{"/contacts/onset_force_n", -1.0}, "contacts.onset_force_n: "},
+      {{"/contacts/release_share", 1.5}, "contacts.release_share: "},
+      {{"/contacts/release_share", kNaN}, "contacts.release_share: "},
+      {{"/contacts/onset", 1.0}, "/contacts/onset: there is no such parameter that takes a number"},
+      {{"/tare", 1.0}, "/tare: there is no such parameter that takes a number"},
+      {{"/back/tare", true}, "/back/tare: there is no such parameter that is true or false"},
+      {{"/stream/rate_hz", true}, "/stream/rate_hz: there is no such parameter that is true or false"},
+      {{"/recording/file", std::string("x.mcap")}, "/recording/file: takes a number or true and false"},
+      {{"/tare", {}}, "/tare: takes a number or true and false"},
+      {{"/tare", std::vector<double>{1.0}}, "/tare: takes a number or true and false"}};
+  for (const auto& [parameter, message] : wrong) {
+    const std::string refused = set(parameter.name, parameter.value);
+    EXPECT_TRUE(!refused.empty() && refused.starts_with(message)) << parameter.name << ": " << refused;
+    EXPECT_EQ(refused.find('\n'), std::string::npos);
+  }
+  EXPECT_EQ(all(), before);
+}
+
+TEST_F(Parameters, the_tare_of_the_suit_is_that_of_all_its_arrays) {
+  EXPECT_EQ(set("/left/tare", true), "");
+  EXPECT_EQ(all().at("/left/tare"), ParameterValue(true));
+  EXPECT_EQ(all().at("/right/tare"), ParameterValue(false));
+  EXPECT_EQ(all().at("/tare"), ParameterValue(false));
+  EXPECT_EQ(set("/right/tare", true), "");
+  EXPECT_EQ(all().at("/tare"), ParameterValue(true));
+  EXPECT_EQ(set("/tare", false), "");
+  EXPECT_EQ(all().at("/left/tare"), ParameterValue(false));
+}
+
+TEST_F(Parameters, an_array_with_another_model_is_not_tared) {
+  EXPECT_EQ(set("/tare", true), "");
+  parameters_->forget_tare(1);
+  EXPECT_EQ(all().at("/left/tare"), ParameterValue(true));
+  EXPECT_EQ(all().at("/right/tare"), ParameterValue(false));
+}
+
+TEST_F(Parameters, begin_and_end_recordings) {
+  EXPECT_EQ(set("/recording", false), "") << "there is none";
+  EXPECT_EQ(set("/recording", true), "");
+  EXPECT_EQ(set("/recording", true), "") << "it goes on";
+  EXPECT_EQ(all().at("/recording"), ParameterValue(true));
+  EXPECT_EQ(all().at("/recording/file"), ParameterValue(folder_.file("rec.mcap")));
+  EXPECT_EQ(set("/recording", false), "");
+  EXPECT_EQ(all().at("/recording"), ParameterValue(false));
+  EXPECT_EQ(set("/recording", true), "");
+  EXPECT_NE(all().at("/recording/file"), ParameterValue(folder_.file("rec.mcap")));
+}
+
+}  // namespace
+}  // namespace dermis::serve

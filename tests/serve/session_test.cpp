@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/serve/session.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "dermis/recordings/suit_recording.hpp"
+#include "serve/small_suit.hpp"
+#include "serve/stream_client.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace dermis::serve {
+namespace {
+
+using nlohmann::json;
+using support::TemporaryFolder;
+
+constexpr std::uint64_t kSeed = 3;
+
+SessionOptions options_with(const std::string& record = {}) {
+  SessionOptions options;
+  options.server.port = 0;
+  options.record = record;
+  return options;
+}
+
+/// A session at work.
+class Work {
+ public:
+  explicit Work(std::unique_ptr<Session> session) : session_(std::move(session)) {
+    thread_ = std::thread([this] { outcome_ = session_->run(stop_); });
+  }
+  Work(const Work&) = delete;
+  Work& operator=(const Work&) = delete;
+  ~Work() { static_cast<void>(end()); }
+
+  std::uint16_t port() const { return session_->port(); }
+  Status end() {
+    stop_ = true;
+    if (thread_.joinable()) thread_.join();
+    return outcome_;
+  }
+
+ private:
+  std::unique_ptr<Session> session_;
+  std::atomic<bool> stop_ = false;
+  Status outcome_ = Done{};
+  std::thread thread_;
+};
+
+std::unique_ptr<Session> session_of(ServedSuit suit, const SessionOptions& options) {
+  Result<std::unique_ptr<Session>> session = Session::create(std::move(suit), options);
+  EXPECT_TRUE(session) << session.error().message;
+  return *std::move(session);
+}
+
+json value_of(const std::string& parameters, const std::string& name) {
+  for (const json& parameter : json::parse(parameters)) {
+    if (parameter["name"] == name) return parameter["value"];
+  }
+  ADD_FAILURE() << "no " << name << " in " << parameters;
+  return {};
+}
+
+/// Frames of each array in a complete recording.
+std::vector<std::size_t> recorded_frames(const std::string& path) {
+  const auto reader = recordings::SuitRecordingReader::open(path);
+  EXPECT_TRUE(reader) << reader.error().message;
+  EXPECT_TRUE((*reader)->complete());
+  std::vector<std::size_t> frames((*reader)->arrays().size());
+  std::size_t array = 0;
+  RawFrame frame;
+  for (auto more = (*reader)->next(array, frame); more && *more; more = (*reader)->next(array, frame)) ++frames[array];
+  return frames;
+}
+
+/// An array under a hand that does what the guide says, as fast as it is read.
+class GuidedArray final : public FrameSource {
+ public:
+  GuidedArray(const ArrayDescription& array, std::shared_ptr<sources::GuideVoice> voice)
+      : handled_(array, {}, kSeed), voice_(std::move(voice)), force_n_(array.taxel_count()) {
+    voice_->listen();
+  }
+
+  Result<bool> next(RawFrame& frame) override {
+    const sources::GuideWords words = voice_->words();
+    force_n_.assign(force_n_.size(), 0.0);
+    if (words.press) force_n_[words.taxel] = words.weight_n;
+    frame = handled_.frame(force_n_);
+    return true;
+  }
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return FrameShape{kRows, kCols}; }
+
+ private:
+  calibration::HandledArray handled_;
+  std::shared_ptr<sources::GuideVoice> voice_;
+  std::vector<double> force_n_;
+};
+
+TEST(Session, streams_every_topic_of_all_arrays) {
+  const std::atomic<bool> never = false;
+  Work work(session_of(small_suit({"left", "right"}, never), options_with()));
+  StreamClient client(work.port());
+  const std::vector<std::string> topics = {"/left/raw",    "/left/conductance", "/left/force",
+                                           "/right/force", "/suit/points",      "/contacts",
+                                           "/health",      "/statistics",       "/tf"};
+  client.subscribe(topics);
+  for (const std::string& topic : topics) EXPECT_FALSE(client.next_message(topic).bytes.empty()) << topic;
+}
+
+TEST(Session, takes_parameters_from_its_clients) {
+  const std::atomic<bool> never = false;
+  Work work(session_of(small_suit({"left", "right"}, never), options_with()));
+  StreamClient client(work.port());
+  EXPECT_EQ(value_of(client.set_parameter("/stream/rate_hz", "10.0"), "/stream/rate_hz"), 10.0);
+  EXPECT_EQ(value_of(client.set_parameter("/left/tare", "true"), "/left/tare"), true);
+  const std::string all = client.parameters();
+  EXPECT_EQ(value_of(all, "/stream/rate_hz"), 10.0);
+  EXPECT_EQ(value_of(all, "/right/tare"), false);
+}
+
+TEST(Session, records_from_its_beginning_and_again_when_a_client_asks) {
+  const TemporaryFolder folder;
+  const std::atomic<bool> never = false;
+  Work work(session_of(small_suit({"left", "right"}, never), options_with(folder.file("rec.mcap"))));
+  StreamClient client(work.port());
+  client.subscribe({"/left/force", "/right/force"});
+  for (const char* const topic : {"/left/force", "/right/force"}) static_cast<void>(client.next_message(topic));
+  client.set_parameter("/recording", "false");
+  client.set_parameter("/recording", "true");
+  const std::string second = value_of(client.parameters(), "/recording/file");
+  EXPECT_NE(second, folder.file("rec.mcap"));
+  client.subscribe({"/statistics"});
+  for (int k = 0; k < 2; ++k) static_cast<void>(client.next_message("/statistics"));
+  ASSERT_TRUE(work.end());
+  for (const std::string& path : {folder.file("rec.mcap"), second}) {
+    const std::vector<std::size_t> frames = recorded_frames(path);
+    ASSERT_EQ(frames.size(), 2U) << path;
+    EXPECT_GT(frames[0], 0U) << path;
+    EXPECT_GT(frames[1], 0U) << path;
+  }
+}
+
+TEST(Session, calibrates_an_array_at_work_and_takes_the_model_into_use) {
+  const TemporaryFolder folder;
+  const auto model = std::make_shared<const pipeline::Model>(support::hand_made_model(kRows, kCols));
+  ServedSuit suit;
+  auto source = std::make_unique<GuidedArray>(model->array, suit.guide);
+  suit.arrays.push_back({"chest",
+                         std::move(source),
+                         model,
+                         ArraySurface::create(model->array).value(),
+                         {},
+                         model->array,
+                         folder.file("chest.toml")});
+  Work work(session_of(std::move(suit), options_with()));
+  StreamClient client(work.port());
+  client.subscribe({"/calibration"});
+  const std::string plan = R"({"weights_n": [2, 5, 10], "taxels": "all", "unloaded_s": 0.5, "hold_s": 0.2})";
+  ASSERT_EQ(client.call("/calibration/start", plan), "{}");
+  EXPECT_FALSE(client.next_message("/calibration").bytes.empty());
+  client.set_parameter("/tare", "true");
+  std::string saved;
+  do {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    saved = client.call("/calibration/save", "{}");
+  } while (saved == "the model is not ready; finish first");
+  const std::string file = json::parse(saved)["file"];
+  EXPECT_TRUE(std::filesystem::exists(folder.file(file)));
+  EXPECT_EQ(value_of(client.parameters(), "/tare"), false) << "the new model begins at its own zero";
+}
+
+TEST(Session, plays_a_recording_on_its_own_clock) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("rec.mcap");
+  {
+    const auto writer = recordings::SuitRecordingWriter::create(path, {{.name = "chest", .shape = {kRows, kCols}}});
+    calibration::HandledArray handled(support::hand_made_model(kRows, kCols).array, {}, kSeed);
+    for (int k = 0; k < 300; ++k) {
+      ASSERT_TRUE((*writer)->write(0, handled.frame(std::vector<double>(kRows * kCols))));
+    }
+    ASSERT_TRUE((*writer)->commit());
+  }
+  const std::atomic<bool> never = false;
+  ServedSuit suit = small_suit({"chest"}, never);
+  suit.playback = live::Playback::open(path).value();
+  suit.arrays[0].source = suit.playback->source(0);
+  Work work(session_of(std::move(suit), options_with()));
+  StreamClient client(work.port());
+  client.subscribe({"/chest/force", "/statistics"});
+  for (const char* const topic : {"/chest/force", "/statistics"}) {
+    EXPECT_LE(client.next_message(topic).time, std::chrono::seconds(3)) << topic;
+  }
+  EXPECT_TRUE(work.end());
+}
+
+TEST(Session, refuses_a_port_that_is_taken_and_an_address_that_needs_a_token) {
+  const std::atomic<bool> never = false;
+  const std::unique_ptr<Session> first = session_of(small_suit({"chest"}, never), options_with());
+  SessionOptions options;
+  options.server.port = first->port();
+  EXPECT_FALSE(Session::create(small_suit({"chest"}, never), options));
+  options.server.host = "0.0.0.0";
+  EXPECT_FALSE(Session::create(small_suit({"chest"}, never), options));
+}
+
+TEST(Session, refuses_arrays_that_cannot_work_and_recordings_that_cannot_be_written) {
+  const std::atomic<bool> never = false;
+  ServedSuit suit = small_suit({"chest"}, never);
+  suit.arrays[0].model = std::make_shared<const pipeline::Model>(support::hand_made_model(kRows, kCols + 1));
+  const auto misfit = Session::create(std::move(suit), options_with());
+  ASSERT_FALSE(misfit);
+  EXPECT_TRUE(misfit.error().message.starts_with("array 'chest': ")) << misfit.error().message;
+  const auto nowhere = Session::create(small_suit({"chest"}, never), options_with("/nowhere/rec.mcap"));
+  ASSERT_FALSE(nowhere);
+  EXPECT_NE(nowhere.error().message.find("/nowhere/rec.mcap"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dermis::serve

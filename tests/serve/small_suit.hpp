@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "calibration/simulated_user.hpp"
+#include "dermis/serve/served_suit.hpp"
+#include "support/hand_made_model.hpp"
+
+namespace dermis::serve {
+
+inline constexpr std::size_t kRows = 3;
+inline constexpr std::size_t kCols = 4;
+
+/// An array that nobody touches, 500 frames a second until it is to stop.
+class UntouchedArray final : public FrameSource {
+ public:
+  UntouchedArray(const ArrayDescription& array, const std::atomic<bool>& stop)
+      : handled_(array, {}, 1), force_n_(array.taxel_count()), stop_(stop) {}
+
+  Result<bool> next(RawFrame& frame) override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    frame = handled_.frame(force_n_);
+    return !stop_;
+  }
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return FrameShape{kRows, kCols}; }
+
+ private:
+  calibration::HandledArray handled_;
+  std::vector<double> force_n_;
+  const std::atomic<bool>& stop_;
+};
+
+/// Arrays of these names.
+inline ServedSuit small_suit(const std::vector<std::string>& names, const std::atomic<bool>& stop) {
+  ServedSuit suit;
+  for (const std::string& name : names) {
+    const auto model = std::make_shared<const pipeline::Model>(support::hand_made_model(kRows, kCols));
+    suit.arrays.push_back({name,
+                           std::make_unique<UntouchedArray>(model->array, stop),
+                           model,
+                           ArraySurface::create(model->array).value(),
+                           {},
+                           model->array});
+  }
+  return suit;
+}
+
+}  // namespace dermis::serve

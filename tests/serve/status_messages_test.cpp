@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/status_messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "support/hand_made_model.hpp"
+
+namespace dermis::serve {
+namespace {
+
+using Level = messages::Diagnosis::Level;
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+TEST(StatusMessages, statistics_are_those_of_the_array_and_its_source) {
+  live::ArrayStatistics array;
+  array.source.lost_frames = 1;
+  array.source.damaged_frames = 2;
+  array.source.rate_hz = 99.5;
+  array.source.jitter = std::chrono::microseconds(300);
+  array.frames = 3;
+  array.rejected = 4;
+  array.latency_p50 = std::chrono::milliseconds(1);
+  array.latency_p99 = std::chrono::milliseconds(2);
+  array.temperature_celsius = 25.0;
+  array.supply_v = 5.0;
+  array.ended = true;
+  array.error = "the cable is torn";
+  const messages::ArrayStatistics message = statistics_message("chest", array);
+  EXPECT_EQ(message.name, "chest");
+  EXPECT_TRUE(message.ended);
+  EXPECT_EQ(message.error, "the cable is torn");
+  EXPECT_EQ((std::vector<std::uint64_t>{message.lost, message.damaged, message.frames, message.rejected}),
+            (std::vector<std::uint64_t>{1, 2, 3, 4}));
+  EXPECT_EQ(message.rate_hz, 99.5);
+  EXPECT_DOUBLE_EQ(message.jitter_s, 300e-6);
+  EXPECT_DOUBLE_EQ(message.latency_p50_s, 1e-3);
+  EXPECT_DOUBLE_EQ(message.latency_p99_s, 2e-3);
+  EXPECT_EQ(message.temperature_celsius, 25.0);
+  EXPECT_EQ(message.supply_v, 5.0);
+}
+
+TEST(StatusMessages, what_is_not_known_is_not_a_number) {
+  const messages::ArrayStatistics message = statistics_message("chest", {});
+  EXPECT_TRUE(std::isnan(message.latency_p50_s));
+  EXPECT_TRUE(std::isnan(message.latency_p99_s));
+  EXPECT_TRUE(std::isnan(message.temperature_celsius));
+  EXPECT_TRUE(std::isnan(message.supply_v));
+}
+
+TEST(StatusMessages, a_whole_array_is_healthy) {
+  const messages::Diagnosis diagnosis = diagnosis_message("chest", support::hand_made_model(3, 4), {});
+  EXPECT_EQ(diagnosis.level, Level::ok);
+  EXPECT_EQ(diagnosis.name, "chest");
+  EXPECT_EQ(diagnosis.hardware_id, "hand made");
+  EXPECT_EQ(diagnosis.message, "healthy");
+  EXPECT_EQ(diagnosis.values, Values{});
+}
+
+TEST(StatusMessages, dead_taxels_are_named_and_no_warning) {
+  pipeline::Model model = support::hand_made_model(3, 4);
+  model.networks.dead[1] = 1;
+  model.networks.dead[4] = 1;
+  const messages::Diagnosis diagnosis = diagnosis_message("chest", model, {});
+  EXPECT_EQ(diagnosis.level, Level::ok);
+  EXPECT_EQ(diagnosis.message, "dead taxels");
+  EXPECT_EQ(diagnosis.values, (Values{{"dead since calibration", "r0c1 r1c0"}}));
+}
+
+TEST(StatusMessages, faults_of_lines_are_a_warning_each_with_its_place) {
+  live::ArrayStatistics statistics;
+  statistics.faults.push_back({.kind = compensation::LineFaultKind::silent_row, .place = 1});
+  const pipeline::Model model = support::hand_made_model(3, 4);
+  EXPECT_EQ(diagnosis_message("chest", model, statistics).message, "1 fault");
+  statistics.faults.push_back({.kind = compensation::LineFaultKind::silent_column, .place = 2});
+  const messages::Diagnosis diagnosis = diagnosis_message("chest", model, statistics);
+  EXPECT_EQ(diagnosis.level, Level::warning);
+  EXPECT_EQ(diagnosis.message, "2 faults");
+  EXPECT_EQ(diagnosis.values, (Values{{"row 1",
+                                       "is open or shorted to 0 V since frame 0: check the wire or crimp of row 1; its "
+                                       "4 taxels are masked, the rest is still good"},
+                                      {"column 2",
+                                       "is open or shorted to 0 V since frame 0: check the wire or crimp of column 2; "
+                                       "its 3 taxels are masked, the rest is still good"}}));
+}
+
+TEST(StatusMessages, what_ended_the_source_comes_before_faults) {
+  live::ArrayStatistics statistics;
+  statistics.faults.push_back({.kind = compensation::LineFaultKind::silent_row, .place = 1});
+  statistics.ended = true;
+  const pipeline::Model model = support::hand_made_model(3, 4);
+  EXPECT_EQ(diagnosis_message("chest", model, statistics).level, Level::stale);
+  EXPECT_EQ(diagnosis_message("chest", model, statistics).message, "the source has ended");
+  statistics.error = "the cable is torn";
+  EXPECT_EQ(diagnosis_message("chest", model, statistics).level, Level::error);
+  EXPECT_EQ(diagnosis_message("chest", model, statistics).message, "the cable is torn");
+}
+
+TEST(StatusMessages, a_calibration_is_told_with_all_that_the_guide_says) {
+  calibration::GuideState guide;
+  guide.stage = calibration::GuideStage::pressing;
+  guide.hint = calibration::GuideHint::other_taxel;
+  guide.message = "press r1c1";
+  guide.taxel = 5;
+  guide.weight_n = 2.0;
+  guide.reading = 3.0;
+  guide.hold_share = 0.5;
+  guide.pressed_taxel = 6;
+  guide.presses_done = 7;
+  guide.presses_total = 8;
+  guide.median_relative_error = 0.01;
+  guide.unpressed_relative_error = 0.02;
+  guide.taxel_presses = {1, 0, 2};
+  const messages::CalibrationState message = calibration_message({"chest", guide});
+  EXPECT_EQ(message.array, "chest");
+  EXPECT_EQ(message.stage, messages::CalibrationState::Stage::pressing);
+  EXPECT_EQ(message.hint, 4);
+  EXPECT_EQ(message.message, "press r1c1");
+  EXPECT_EQ(message.taxel, 5U);
+  EXPECT_EQ(message.weight_n, 2.0);
+  EXPECT_EQ(message.reading, 3.0);
+  EXPECT_EQ(message.hold_share, 0.5);
+  EXPECT_EQ(message.pressed_taxel, 6U);
+  EXPECT_EQ(message.presses_done, 7U);
+  EXPECT_EQ(message.presses_total, 8U);
+  EXPECT_EQ(message.median_relative_error, 0.01);
+  EXPECT_EQ(message.unpressed_relative_error, 0.02);
+  EXPECT_EQ(message.taxel_presses, (std::vector<std::uint8_t>{1, 0, 2}));
+}
+
+TEST(StatusMessages, errors_that_no_fit_has_told_are_not_numbers) {
+  const messages::CalibrationState message = calibration_message({"chest", {}});
+  EXPECT_EQ(message.stage, messages::CalibrationState::Stage::none);
+  EXPECT_FALSE(message.pressed_taxel);
+  EXPECT_TRUE(std::isnan(message.median_relative_error));
+  EXPECT_TRUE(std::isnan(message.unpressed_relative_error));
+}
+
+}  // namespace
+}  // namespace dermis::serve
