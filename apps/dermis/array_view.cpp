@@ -52,7 +52,7 @@ Status ArrayView::open_model(const std::string& path) {
   return Done{};
 }
 
-void ArrayView::take_array(const ArrayDescription& array) {
+void ArrayView::set_array(const ArrayDescription& array) {
   name_ = array.name;
   row_pitch_m_ = array.row_pitch_m;
   col_pitch_m_ = array.col_pitch_m;
@@ -61,13 +61,13 @@ void ArrayView::take_array(const ArrayDescription& array) {
 
 /// By the model, else by what the file says of itself.
 void ArrayView::describe(const std::string& from) {
-  if (model_) return take_array(model_->array);
+  if (model_) return set_array(model_->array);
   const recordings::FrameNotes notes = notes_of_source(*source_, from);
   name_ = notes.name;
   if (name_.empty()) name_ = is_live() ? from : std::filesystem::path(from).filename().string();
   if (notes.array_toml.empty()) return;
   const Result<ArrayDescription> array = files::array_from_toml(notes.array_toml, from);
-  if (array) take_array(*array);
+  if (array) set_array(*array);
 }
 
 Result<bool> ArrayView::next() {

@@ -49,7 +49,7 @@ class ArrayView {
   ArrayView() = default;
   [[nodiscard]] Status open_model(const std::string& model);
   void describe(const std::string& from);
-  void take_array(const ArrayDescription& array);
+  void set_array(const ArrayDescription& array);
 
   std::unique_ptr<FrameSource> source_;
   std::optional<pipeline::Model> model_;

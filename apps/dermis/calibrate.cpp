@@ -20,8 +20,8 @@
 #include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recordings/frame_files.hpp"
-#include "progress.hpp"
 #include "seconds.hpp"
+#include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
@@ -222,19 +222,18 @@ Status calibrate(const CalibrateOptions& options) {
 
 }  // namespace
 
-void add_calibrate(CLI::App& app, Action& action) {
+void add_calibrate(Command& command) {
   auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* command = app.add_subcommand("calibrate", "Frames with known loads -> a model");
-  command->add_option("--array", options->array, "array.toml: size, pitch and readout circuit")->required();
-  command->add_option("--frames", options->frames, "frames.csv: raw counts")->required();
-  command->add_option("--loads", options->loads, "loads.csv: which load pressed where in which frame")->required();
-  command->add_option("--out", options->out, "Model file to write (safetensors)")->required();
-  command->add_option("--bank", options->bank,
-                      "Also train the paper's bank of N-N-N-1 networks and write it here (16x16: minutes, 135 MB)");
-  command->add_option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
-      ->capture_default_str();
-  command->add_flag("--json", options->json, "Print the report as JSON");
-  command->callback([&action, options] { action = [options] { return calibrate(*options); }; });
+  command.option("--array", options->array, "array.toml: size, pitch and readout circuit").required();
+  command.option("--frames", options->frames, "frames.csv: raw counts").required();
+  command.option("--loads", options->loads, "loads.csv: which load pressed where in which frame").required();
+  command.option("--out", options->out, "Model file to write (safetensors)").required();
+  command.option("--bank", options->bank,
+                 "Also train the paper's bank of N-N-N-1 networks and write it here (16x16: minutes, 135 MB)");
+  command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
+      .shows_default();
+  command.flag("--json", options->json, "Print the report as JSON");
+  command.action([options] { return calibrate(*options); });
 }
 
 }  // namespace dermis::app

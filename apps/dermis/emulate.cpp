@@ -196,21 +196,19 @@ Status emulate(const EmulateOptions& options) {
 
 }  // namespace
 
-void add_emulate(CLI::App& app, Action& action) {
+void add_emulate(Command& command) {
   auto options = std::make_shared<EmulateOptions>();
-  CLI::App* command = app.add_subcommand("emulate", "Play a device from a recording, to develop without hardware");
   std::string names;
   for (const std::string& name : acquisition::protocol_names()) {
     if (name != "auto") names += (names.empty() ? "" : " | ") + name;
   }
-  command->add_option("--protocol", options->protocol, names)->required();
-  command->add_option("--in", options->in, "Frames to send: a recording, another file of frames, or sim:SCENE")
-      ->required();
-  command->add_option("--to", options->to, "pty: | tcp-listen://HOST:PORT | tcp:// | udp:// | serial:// | stdout:")
-      ->capture_default_str();
-  command->add_option("--rate", options->rate_hz, "Frames a second instead of the recorded pace");
-  command->add_flag("--loop", options->loop, "Begin again at the end");
-  command->callback([&action, options] { action = [options] { return emulate(*options); }; });
+  command.option("--protocol", options->protocol, names).required();
+  command.option("--in", options->in, "Frames to send: a recording, another file of frames, or sim:SCENE").required();
+  command.option("--to", options->to, "pty: | tcp-listen://HOST:PORT | tcp:// | udp:// | serial:// | stdout:")
+      .shows_default();
+  command.option("--rate", options->rate_hz, "Frames a second instead of the recorded pace");
+  command.flag("--loop", options->loop, "Begin again at the end");
+  command.action([options] { return emulate(*options); });
 }
 
 }  // namespace dermis::app

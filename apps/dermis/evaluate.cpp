@@ -87,16 +87,15 @@ Status evaluate(const EvaluateOptions& options) {
 
 }  // namespace
 
-void add_evaluate(CLI::App& app, Action& action) {
+void add_evaluate(Command& command) {
   auto options = std::make_shared<EvaluateOptions>();
-  CLI::App* command = app.add_subcommand("evaluate", "Accuracy against known loads, beside the baseline estimators");
-  command->add_option("--model", options->model, "Model file of 'dermis calibrate'")->required();
-  command->add_option("--frames", options->frames, "frames.csv: raw counts")->required();
-  command->add_option("--loads", options->loads, "loads.csv: the truth")->required();
-  command->add_option("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
-  command->add_flag("--json", options->json, "Print the result as JSON");
-  command->add_option("--report", options->report, "Folder for an HTML report with pictures");
-  command->callback([&action, options] { action = [options] { return evaluate(*options); }; });
+  command.option("--model", options->model, "Model file of 'dermis calibrate'").required();
+  command.option("--frames", options->frames, "frames.csv: raw counts").required();
+  command.option("--loads", options->loads, "loads.csv: the truth").required();
+  command.option("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
+  command.flag("--json", options->json, "Print the result as JSON");
+  command.option("--report", options->report, "Folder for an HTML report with pictures");
+  command.action([options] { return evaluate(*options); });
 }
 
 }  // namespace dermis::app

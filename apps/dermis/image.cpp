@@ -173,24 +173,23 @@ Status image(const ImageOptions& options) {
 
 }  // namespace
 
-void add_image(CLI::App& app, Action& action) {
+void add_image(Command& command) {
   auto options = std::make_shared<ImageOptions>();
-  CLI::App* command = app.add_subcommand("image", "A frame as PNG or SVG, or some seconds as an animated PNG");
-  command->add_option("--in", options->in, "A recording, another file of frames, or the URI of a device")->required();
-  command->add_option("--model", options->model, "Model file: draws newtons and contacts instead of counts");
-  command->add_option("--out", options->out, "Picture to write: .png or .svg")->required();
-  auto* frame = command->add_option("--frame", options->frame, "Number of the frame, from 0")->check(not_negative);
-  auto* at = command->add_option("--at", options->at_s, "The frame at this time after the first [s]")->excludes(frame);
-  auto* from = command->add_option("--from", options->from_s, "Begin of an animation after the first frame [s]")
-                   ->excludes(frame)
-                   ->excludes(at);
-  auto* to = command->add_option("--to", options->to_s, "Its end [s]")->excludes(frame)->excludes(at);
-  from->needs(to);
-  command->add_option(
+  command.option("--in", options->in, "A recording, another file of frames, or the URI of a device").required();
+  command.option("--model", options->model, "Model file: draws newtons and contacts instead of counts");
+  command.option("--out", options->out, "Picture to write: .png or .svg").required();
+  const Option frame = command.option("--frame", options->frame, "Number of the frame, from 0").not_negative();
+  const Option at = command.option("--at", options->at_s, "The frame at this time after the first [s]").excludes(frame);
+  const Option from = command.option("--from", options->from_s, "Begin of an animation after the first frame [s]")
+                          .excludes(frame)
+                          .excludes(at);
+  const Option to = command.option("--to", options->to_s, "Its end [s]").excludes(frame).excludes(at);
+  from.needs(to);
+  command.option(
       "--high", options->high,
       "End of the colour scale [N, or counts]; without it, 1, 2, 5, 10, ... N that cover what is drawn, or all "
       "counts of the ADC");
-  command->callback([&action, options] { action = [options] { return image(*options); }; });
+  command.action([options] { return image(*options); });
 }
 
 }  // namespace dermis::app

@@ -2,10 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,115 +10,17 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "dermis/recordings/frame_files.hpp"
-#include "dermis/recordings/recording.hpp"
+#include "dermis/recordings/frame_file_info.hpp"
 
 namespace dermis::app {
 namespace {
 
-using recordings::FrameFormat;
-
-/// Before 2000, a time is no clock time but counted from an origin of its own: that of a simulation.
-constexpr Nanos kEarliestClock = std::chrono::sys_days(std::chrono::year(2000) / 1 / 1).time_since_epoch();
+using recordings::FrameFileInfo;
 
 struct InfoOptions {
   std::string file;
   bool json = false;
 };
-
-/// What a file of frames holds; empty where the format cannot tell.
-struct Info {
-  std::string format;
-  std::uint64_t bytes = 0;
-  std::uint64_t frames = 0;
-  std::optional<FrameShape> shape;
-  std::optional<double> duration_s;
-  std::optional<Nanos> start_utc;
-  std::optional<std::uint64_t> lost;
-  bool complete = true;
-  std::optional<std::pair<double, double>> temperature_celsius;  ///< Lowest and highest.
-  recordings::FrameNotes notes;
-  std::string compression;
-  std::string software;
-  std::vector<recordings::RecordedArrayInfo> arrays;  ///< Where there are several.
-  std::vector<recordings::RecordingTopic> topics;
-};
-
-Result<Info> info_of_recording(const std::string& path) {
-  Result<recordings::RecordingInfo> recording = recordings::recording_info(path);
-  if (!recording) return recording.error();
-  Info info;
-  info.frames = recording->frames;
-  info.duration_s = recording->duration_s;
-  if (recording->frames > 0 && recording->start_utc >= kEarliestClock) info.start_utc = recording->start_utc;
-  info.lost = recording->lost;
-  info.complete = recording->complete;
-  if (recording->arrays.size() > 1) {
-    info.arrays = std::move(recording->arrays);
-  } else {
-    const recordings::RecordedArrayInfo& array = recording->arrays.front();
-    info.shape = array.shape;
-    info.notes = {array.name, array.array_toml, array.model_hash};
-  }
-  info.compression = recording->compression;
-  info.software = recording->software_version;
-  info.topics = std::move(recording->topics);
-  return info;
-}
-
-void take(const RawFrame& frame, Info& info) {
-  if (info.frames++ == 0 && frame.acquisition.arrival_utc >= kEarliestClock)
-    info.start_utc = frame.acquisition.arrival_utc;
-  if (!frame.temperature_celsius || std::isnan(*frame.temperature_celsius)) return;
-  const double celsius = *frame.temperature_celsius;
-  auto& range = info.temperature_celsius;
-  if (!range) range.emplace(celsius, celsius);
-  range = {std::min(range->first, celsius), std::max(range->second, celsius)};
-}
-
-/// Reads all frames.
-Result<Info> info_of_frames(const std::string& path, FrameFormat format) {
-  const bool is_timed = format != FrameFormat::npy;
-  const Result<std::unique_ptr<FrameSource>> source =
-      recordings::open_frames(path, {.rate_hz = is_timed ? std::nullopt : std::optional(1e3)});
-  if (!source) return source.error();
-  Result<recordings::FrameNotes> notes = recordings::read_frame_notes(path);
-  if (!notes) return notes.error();
-  Info info;
-  info.notes = std::move(*notes);
-  info.shape = (*source)->shape();
-  RawFrame frame;
-  Nanos first{};
-  while (true) {
-    const Result<bool> more = (*source)->next(frame);
-    if (!more) return more.error();
-    if (!*more) break;
-    if (info.frames == 0) first = frame.time;
-    take(frame, info);
-  }
-  if (is_timed) info.duration_s = std::chrono::duration<double>(info.frames > 0 ? frame.time - first : Nanos{}).count();
-  if (format == FrameFormat::hdf5) info.lost = (*source)->statistics().lost_frames;
-  return info;
-}
-
-Result<Info> info_of(const std::string& path) {
-  const Result<FrameFormat> format = recordings::recognise_frames(path);
-  if (!format) return format.error();
-  Result<Info> info = *format == FrameFormat::mcap ? info_of_recording(path) : info_of_frames(path, *format);
-  if (!info) return info;
-  info->format = to_string(*format);
-  std::error_code is_no_file;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, is_no_file);
-  if (!is_no_file) info->bytes = bytes;
-  return info;
-}
-
-/// Of one array: several have rates of their own.
-std::optional<double> rate_hz(const Info& info) {
-  if (!info.arrays.empty()) return std::nullopt;
-  if (!info.duration_s || !(*info.duration_s > 0.0) || info.frames < 2) return std::nullopt;
-  return static_cast<double>(info.frames - 1) / *info.duration_s;
-}
 
 /// "2026-11-21T22:15:03.250Z"
 std::string utc_text(Nanos since_1970) {
@@ -156,13 +55,13 @@ Json array_json(const recordings::RecordedArrayInfo& array) {
           {"model_hash", or_null(array.model_hash)}};
 }
 
-void print_json(const std::string& file, const Info& info) {
+void print_json(const std::string& file, const FrameFileInfo& info) {
   Json json = {{"file", file},
-               {"format", info.format},
+               {"format", recordings::to_string(info.format)},
                {"size_bytes", info.bytes},
                {"frames", info.frames},
                {"duration_s", or_null(info.duration_s)},
-               {"rate_hz", or_null(rate_hz(info))},
+               {"rate_hz", or_null(info.rate_hz())},
                {"start_utc", or_null(info.start_utc ? utc_text(*info.start_utc) : std::string())},
                {"rows", info.shape ? Json(info.shape->rows) : Json(nullptr)},
                {"cols", info.shape ? Json(info.shape->cols) : Json(nullptr)},
@@ -197,13 +96,13 @@ std::string array_text(const recordings::RecordedArrayInfo& array) {
   return text;
 }
 
-void print_text(const Info& info) {
-  print_line("format", info.format + (info.compression.empty() ? "" : ", " + info.compression));
+void print_text(const FrameFileInfo& info) {
+  print_line("format", recordings::to_string(info.format) + (info.compression.empty() ? "" : ", " + info.compression));
   print_line("size", fmt::format("{} bytes", info.bytes));
   print_line("frames", std::to_string(info.frames));
   if (info.shape) print_line("taxels", fmt::format("{}x{}", info.shape->rows, info.shape->cols));
   print_line("duration", info.duration_s ? fmt::format("{:.3f} s", *info.duration_s) : "not known: no times");
-  if (const std::optional<double> rate = rate_hz(info)) print_line("rate", fmt::format("{:.3f} Hz", *rate));
+  if (const std::optional<double> rate = info.rate_hz()) print_line("rate", fmt::format("{:.3f} Hz", *rate));
   if (info.start_utc) print_line("start", utc_text(*info.start_utc));
   if (info.lost) print_line("lost", fmt::format("{} frames", *info.lost));
   print_line("complete", info.complete ? "yes" : "no: 'dermis recover' makes it so");
@@ -221,7 +120,7 @@ void print_text(const Info& info) {
 }
 
 Status print_info(const InfoOptions& options) {
-  const Result<Info> info = info_of(options.file);
+  const Result<FrameFileInfo> info = recordings::frame_file_info(options.file);
   if (!info) return info.error();
   if (options.json) {
     print_json(options.file, *info);
@@ -233,12 +132,11 @@ Status print_info(const InfoOptions& options) {
 
 }  // namespace
 
-void add_info(CLI::App& app, Action& action) {
+void add_info(Command& command) {
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* command = app.add_subcommand("info", "What a recording or another file of frames holds");
-  command->add_option("file", options->file, ".mcap, .csv, .h5, .hdf5 or .npy")->required();
-  command->add_flag("--json", options->json, "As JSON");
-  command->callback([&action, options] { action = [options] { return print_info(*options); }; });
+  command.option("file", options->file, ".mcap, .csv, .h5, .hdf5 or .npy").required();
+  command.flag("--json", options->json, "As JSON");
+  command.action([options] { return print_info(*options); });
 }
 
 }  // namespace dermis::app

@@ -3,24 +3,42 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 
-#include <CLI/App.hpp>
-#include <CLI/Config.hpp>
-#include <CLI/Formatter.hpp>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
-#include <string>
 
 #include "commands.hpp"
-#include "dermis/core/version.hpp"
-#include "live_line.hpp"
+#include "status_line.hpp"
 
+namespace dermis::app {
 namespace {
 
 constexpr int kExitFailed = 1;
 constexpr int kExitBadInput = 2;
+
+constexpr std::array kCommands{
+    CommandEntry{"simulate",
+                 "Simulate an array: frames.csv and loads.csv (the truth); contacts.csv of the scene contacts",
+                 add_simulate},
+    CommandEntry{"calibrate", "Frames with known loads -> a model", add_calibrate},
+    CommandEntry{"run", "Raw counts -> newtons per taxel", add_run},
+    CommandEntry{"evaluate", "Accuracy against known loads, beside the baseline estimators", add_evaluate},
+    CommandEntry{"circuit", "Compute a readout circuit: for people who design one", add_circuit},
+    CommandEntry{"doctor", "Health of an array, in plain words: line faults, noise, drift", add_doctor},
+    CommandEntry{"paper", "Reproduce the equations, figures and claims of the paper", add_paper},
+    CommandEntry{"record", "Record a device, or anything else that gives frames", add_record},
+    CommandEntry{"replay", "Play a recording at the pace of its frames, as counts or newtons", add_replay},
+    CommandEntry{"emulate", "Play a device from a recording, to develop without hardware", add_emulate},
+    CommandEntry{"convert", "Frames from one file format to another, by the ending of the name", add_convert},
+    CommandEntry{"info", "What a recording or another file of frames holds", add_info},
+    CommandEntry{"recover", "Make a cut or damaged recording complete, and tell what is lost", add_recover},
+    CommandEntry{"image", "A frame as PNG or SVG, or some seconds as an animated PNG", add_image},
+    CommandEntry{"top", "A live heat map in the terminal, until Ctrl-C", add_top},
+    CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", add_serve},
+};
 
 /// A file that is opened must not become the standard error of a process that was started without one.
 void fill_standard_descriptors() {
@@ -29,68 +47,40 @@ void fill_standard_descriptors() {
   }
 }
 
-std::string first_line(const std::string& text) {
-  return text.substr(0, text.find('\n'));
+/// The action's own output is complete only when it has left the process.
+Status perform(const Action& action) {
+  Status status = action();
+  if (status && std::fflush(stdout) != 0) {
+    return failed(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
+  }
+  return status;
+}
+
+int exit_status(const Error& error) {
+  say(fmt::format("dermis: {}", error.message));
+  return error.kind == ErrorKind::bad_input ? kExitBadInput : kExitFailed;
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{"dermis: calibrated force (newtons) from resistive tactile arrays", "dermis"};
-  app.set_version_flag("--version", DERMIS_VERSION);
-  app.require_subcommand(0, 1);
-  dermis::app::Action action;
-  dermis::app::add_simulate(app, action);
-  dermis::app::add_calibrate(app, action);
-  dermis::app::add_run(app, action);
-  dermis::app::add_evaluate(app, action);
-  dermis::app::add_circuit(app, action);
-  dermis::app::add_doctor(app, action);
-  dermis::app::add_paper(app, action);
-  dermis::app::add_record(app, action);
-  dermis::app::add_replay(app, action);
-  dermis::app::add_emulate(app, action);
-  dermis::app::add_convert(app, action);
-  dermis::app::add_info(app, action);
-  dermis::app::add_recover(app, action);
-  dermis::app::add_image(app, action);
-  dermis::app::add_top(app, action);
-  dermis::app::add_serve(app, action);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    dermis::app::say(fmt::format("dermis: {} (see dermis --help)", first_line(error.what())));
-    return kExitBadInput;
-  }
-  if (!action) {
-    dermis::app::say(
-        "dermis: name a command: simulate, calibrate, run, evaluate, circuit, doctor, paper, record, replay, "
-        "emulate, convert, info, recover, image, top or serve (see dermis --help)");
-    return kExitBadInput;
-  }
-  dermis::Status status = action();
-  if (status && std::fflush(stdout) != 0) {
-    status = dermis::failed(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
-  }
-  if (status) return 0;
-  dermis::app::say(fmt::format("dermis: {}", status.error().message));
-  return status.error().kind == dermis::ErrorKind::bad_input ? kExitBadInput : kExitFailed;
+  const Result<Action> action = parse_command_line(argc, argv, kCommands);
+  if (!action) return exit_status(action.error());
+  if (!*action) return 0;
+  const Status status = perform(*action);
+  return status ? 0 : exit_status(status.error());
 }
 
 }  // namespace
-
-std::string dermis::app::not_negative(const std::string& text) {
-  return text.starts_with('-') ? "must not be negative" : "";
-}
+}  // namespace dermis::app
 
 int main(int argc, char** argv) {
-  fill_standard_descriptors();
+  dermis::app::fill_standard_descriptors();
   // A write beyond a size limit or to a closed pipe becomes an error of write() instead of the end of the process.
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    return run(argc, argv);
+    return dermis::app::run(argc, argv);
   } catch (const std::exception& error) {  // out of memory and the like
     dermis::app::say(fmt::format("dermis: {}", error.what()));
-    return kExitFailed;
+    return dermis::app::kExitFailed;
   }
 }

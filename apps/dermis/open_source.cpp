@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "dermis/sources/open_source.hpp"
-#include "live_line.hpp"
+#include "status_line.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {

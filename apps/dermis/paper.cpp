@@ -15,7 +15,7 @@
 #include "dermis/paper/bank_reproduction.hpp"
 #include "dermis/paper/paper_report.hpp"
 #include "dermis/paper/peaks_reproduction.hpp"
-#include "progress.hpp"
+#include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
@@ -140,14 +140,13 @@ Status paper(const PaperOptions& options) {
 
 }  // namespace
 
-void add_paper(CLI::App& app, Action& action) {
+void add_paper(Command& command) {
   auto options = std::make_shared<PaperOptions>();
-  CLI::App* command = app.add_subcommand("paper", "Reproduce the equations, figures and claims of the paper");
-  command->add_option("--report", options->report, "Folder for an HTML report with pictures");
-  command->add_flag("--json", options->json, "Print the result as JSON");
-  command->add_flag("--quick", options->quick,
-                    "A 4x4 array and few steps: shows that everything works, not what the paper says");
-  command->callback([&action, options] { action = [options] { return paper(*options); }; });
+  command.option("--report", options->report, "Folder for an HTML report with pictures");
+  command.flag("--json", options->json, "Print the result as JSON");
+  command.flag("--quick", options->quick,
+               "A 4x4 array and few steps: shows that everything works, not what the paper says");
+  command.action([options] { return paper(*options); });
 }
 
 }  // namespace dermis::app

@@ -11,9 +11,9 @@
 #include "dermis/files/array_toml.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "frame_output.hpp"
-#include "live_line.hpp"
 #include "open_source.hpp"
 #include "seconds.hpp"
+#include "status_line.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
@@ -102,20 +102,19 @@ Status record(const RecordOptions& options) {
 
 }  // namespace
 
-void add_record(CLI::App& app, Action& action) {
+void add_record(Command& command) {
   auto options = std::make_shared<RecordOptions>();
-  CLI::App* command = app.add_subcommand("record", "Record a device, or anything else that gives frames");
-  command->add_option("--from", options->from, "URI of a device or of the simulator (docs/devices.md), or a file")
-      ->required();
-  command->add_option("--out", options->out, "Recording to write: .mcap, or another format of frames")->required();
-  command->add_option("--array", options->array, "array.toml, to keep with the frames");
-  command->add_option("--model", options->model, "Record the forces of this model, too");
-  auto* frames = command->add_option("--frames", options->frames, "Stop after so many frames")->check(not_negative);
+  command.option("--from", options->from, "URI of a device or of the simulator (docs/devices.md), or a file")
+      .required();
+  command.option("--out", options->out, "Recording to write: .mcap, or another format of frames").required();
+  command.option("--array", options->array, "array.toml, to keep with the frames");
+  command.option("--model", options->model, "Record the forces of this model, too");
+  const Option frames = command.option("--frames", options->frames, "Stop after so many frames").not_negative();
   command
-      ->add_option("--seconds", options->seconds,
-                   "Stop so long after the first frame, or after the start where none comes [s]")
-      ->excludes(frames);
-  command->callback([&action, options] { action = [options] { return record(*options); }; });
+      .option("--seconds", options->seconds,
+              "Stop so long after the first frame, or after the start where none comes [s]")
+      .excludes(frames);
+  command.action([options] { return record(*options); });
 }
 
 }  // namespace dermis::app

@@ -44,12 +44,11 @@ Status recover(const RecoverOptions& options) {
 
 }  // namespace
 
-void add_recover(CLI::App& app, Action& action) {
+void add_recover(Command& command) {
   auto options = std::make_shared<RecoverOptions>();
-  CLI::App* command = app.add_subcommand("recover", "Make a cut or damaged recording complete, and tell what is lost");
-  command->add_option("in", options->in, "Recording (.mcap); it is not changed")->required();
-  command->add_option("--out", options->out, "Recording to write (.mcap)")->required();
-  command->callback([&action, options] { action = [options] { return recover(*options); }; });
+  command.option("in", options->in, "Recording (.mcap); it is not changed").required();
+  command.option("--out", options->out, "Recording to write (.mcap)").required();
+  command.action([options] { return recover(*options); });
 }
 
 }  // namespace dermis::app

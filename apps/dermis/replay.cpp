@@ -82,15 +82,13 @@ Status replay(const ReplayOptions& options) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, Action& action) {
+void add_replay(Command& command) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = app.add_subcommand("replay", "Play a recording at the pace of its frames, as counts or newtons");
-  command->add_option("recording", options->recording, "Recording (.mcap) or another file of frames")->required();
-  command->add_option("--speed", options->speed, "Times the recorded pace; 0: as fast as it goes")
-      ->capture_default_str();
-  command->add_option("--model", options->model, "Model file: replays the forces");
-  command->add_option("--out", options->out, "frames.csv, or forces.csv with --model; or .mcap")->capture_default_str();
-  command->callback([&action, options] { action = [options] { return replay(*options); }; });
+  command.option("recording", options->recording, "Recording (.mcap) or another file of frames").required();
+  command.option("--speed", options->speed, "Times the recorded pace; 0: as fast as it goes").shows_default();
+  command.option("--model", options->model, "Model file: replays the forces");
+  command.option("--out", options->out, "frames.csv, or forces.csv with --model; or .mcap").shows_default();
+  command.action([options] { return replay(*options); });
 }
 
 }  // namespace dermis::app

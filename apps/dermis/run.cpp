@@ -9,9 +9,9 @@
 #include "commands.hpp"
 #include "dermis/files/forces_csv.hpp"
 #include "dermis/preprocessing/phase.hpp"
-#include "live_line.hpp"
 #include "open_source.hpp"
 #include "seconds.hpp"
+#include "status_line.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
@@ -67,7 +67,7 @@ class ForceTables {
 /// Frames whose forces are not what a user expects.
 class Troubles {
  public:
-  /// `place` tells where the frame is from.
+  /// `place` says where the frame is from.
   template <typename Place>
   void count(const ForceFrame& force, preprocessing::Rejection rejection, Place place) {
     ++frames_;
@@ -79,7 +79,7 @@ class Troubles {
 
   [[nodiscard]] std::size_t frames() const { return frames_; }
 
-  void tell() const {
+  void report() const {
     if (rejected_ > 0) {
       say(fmt::format("{} of {} frames rejected, the first: {}", rejected_, frames_, first_rejection_));
     }
@@ -141,22 +141,21 @@ Status run(const RunOptions& options) {
   // What a device gave until it failed is worth having; a file that is wrong is to be mended.
   if (!status && !(*operation)->frames->is_live()) return status;
   if (Status committed = tables->commit(); !committed) return committed;
-  troubles.tell();
+  troubles.report();
   return status;
 }
 
 }  // namespace
 
-void add_run(CLI::App& app, Action& action) {
+void add_run(Command& command) {
   auto options = std::make_shared<RunOptions>();
-  CLI::App* command = app.add_subcommand("run", "Raw counts -> newtons per taxel");
-  command->add_option("--model", options->model, "Model file of 'dermis calibrate'")->required();
-  command->add_option("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device")->required();
-  command->add_option("--out", options->out, "forces.csv to write")->required();
-  command->add_option("--sigma", options->sigma, "Also write the standard deviation of every force [N] to this CSV");
-  command->add_option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
-      ->capture_default_str();
-  command->callback([&action, options] { action = [options] { return run(*options); }; });
+  command.option("--model", options->model, "Model file of 'dermis calibrate'").required();
+  command.option("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device").required();
+  command.option("--out", options->out, "forces.csv to write").required();
+  command.option("--sigma", options->sigma, "Also write the standard deviation of every force [N] to this CSV");
+  command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
+      .shows_default();
+  command.action([options] { return run(*options); });
 }
 
 }  // namespace dermis::app

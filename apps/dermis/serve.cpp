@@ -9,7 +9,7 @@
 
 #include "commands.hpp"
 #include "dermis/serve/session.hpp"
-#include "live_line.hpp"
+#include "status_line.hpp"
 #include "stop_flag.hpp"
 #include "viewer/viewer_assets.hpp"
 
@@ -57,20 +57,17 @@ Status serve_suit(ServeOptions& options) {
 
 }  // namespace
 
-void add_serve(CLI::App& app, Action& action) {
+void add_serve(Command& command) {
   auto options = std::make_shared<ServeOptions>();
-  CLI::App* command = app.add_subcommand("serve", "Show an array or a suit live in the browser and stream it");
-  command->add_option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
-  command->add_option("--model", options->place.model, "Its model, or the array.toml of an array to be calibrated");
-  command->add_option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
-  command->add_option("--record", options->session.record, "Record from the beginning, .mcap");
-  command->add_option("--host", options->session.server.host, "Address to serve at; all but loopback need a token")
-      ->capture_default_str();
-  command->add_option("--port", options->session.server.port, "Port; 0: any that is free")
-      ->check(not_negative)
-      ->capture_default_str();
-  command->add_option("--token", options->session.server.token, "Asked of every client");
-  command->callback([&action, options] { action = [options] { return serve_suit(*options); }; });
+  command.option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
+  command.option("--model", options->place.model, "Its model, or the array.toml of an array to be calibrated");
+  command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
+  command.option("--record", options->session.record, "Record from the beginning, .mcap");
+  command.option("--host", options->session.server.host, "Address to serve at; all but loopback need a token")
+      .shows_default();
+  command.option("--port", options->session.server.port, "Port; 0: any that is free").not_negative().shows_default();
+  command.option("--token", options->session.server.token, "Asked of every client");
+  command.action([options] { return serve_suit(*options); });
 }
 
 }  // namespace dermis::app

@@ -14,7 +14,7 @@
 #include "dermis/files/frames_csv.hpp"
 #include "dermis/files/loads_csv.hpp"
 #include "dermis/simulation/simulator.hpp"
-#include "progress.hpp"
+#include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
@@ -102,22 +102,19 @@ Status simulate(const SimulateOptions& options) {
 
 }  // namespace
 
-void add_simulate(CLI::App& app, Action& action) {
+void add_simulate(Command& command) {
   auto options = std::make_shared<SimulateOptions>();
-  CLI::App* command = app.add_subcommand(
-      "simulate", "Simulate an array: frames.csv and loads.csv (the truth); contacts.csv of the scene contacts");
-  command->add_option("--array", options->array, "array.toml: size, pitch and readout circuit")->required();
+  command.option("--array", options->array, "array.toml: size, pitch and readout circuit").required();
   std::string scenes;
   for (const std::string& name : simulation::scene_names()) scenes += (scenes.empty() ? "" : " | ") + name;
-  command->add_option("--scene", options->scene, scenes)->required();
-  command->add_option("--out", options->out, "Folder for frames.csv, loads.csv and contacts.csv")->required();
-  command->add_option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise")
-      ->check(not_negative)
-      ->capture_default_str();
-  command->add_option("--frames", options->frames, "Length of the scenes multitouch, contacts and idle")
-      ->check(not_negative);
-  command->add_option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
-  command->callback([&action, options] { action = [options] { return simulate(*options); }; });
+  command.option("--scene", options->scene, scenes).required();
+  command.option("--out", options->out, "Folder for frames.csv, loads.csv and contacts.csv").required();
+  command.option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise")
+      .not_negative()
+      .shows_default();
+  command.option("--frames", options->frames, "Length of the scenes multitouch, contacts and idle").not_negative();
+  command.option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
+  command.action([options] { return simulate(*options); });
 }
 
 }  // namespace dermis::app

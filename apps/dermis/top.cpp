@@ -16,9 +16,9 @@
 
 #include "array_view.hpp"
 #include "commands.hpp"
+#include "dermis/report/terminal_picture.hpp"
 #include "dermis/sources/pacer.hpp"
 #include "stop_flag.hpp"
-#include "top_screen.hpp"
 
 namespace dermis::app {
 namespace {
@@ -31,18 +31,19 @@ struct TopOptions {
   std::optional<double> high;
 };
 
-TerminalColours colours_of_terminal() {
+report::TerminalColours colours_of_terminal() {
   const auto value = [](const char* name) {
     const char* const text = std::getenv(name);
     return std::string_view(text == nullptr ? "" : text);
   };
   const std::string_view term = value("TERM");
-  if (!value("NO_COLOR").empty() || term.empty() || term == "dumb") return TerminalColours::without;
-  if (value("COLORTERM") == "truecolor" || value("COLORTERM") == "24bit") return TerminalColours::rgb;
-  return term.find("256color") == std::string_view::npos ? TerminalColours::without : TerminalColours::cube;
+  if (!value("NO_COLOR").empty() || term.empty() || term == "dumb") return report::TerminalColours::without;
+  if (value("COLORTERM") == "truecolor" || value("COLORTERM") == "24bit") return report::TerminalColours::rgb;
+  return term.find("256color") == std::string_view::npos ? report::TerminalColours::without
+                                                         : report::TerminalColours::cube;
 }
 
-TerminalSize size_of_terminal() {
+report::TerminalSize size_of_terminal() {
   winsize size{};
   if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || size.ws_col == 0) return {};
   return {size.ws_row, size.ws_col};
@@ -78,9 +79,9 @@ class Watcher {
     thread_.join();
   }
 
-  [[nodiscard]] TopState state() const {
+  [[nodiscard]] report::TerminalPicture picture() const {
     const std::scoped_lock lock(mutex_);
-    return state_;
+    return picture_;
   }
   [[nodiscard]] Status status() const {
     const std::scoped_lock lock(mutex_);
@@ -96,47 +97,48 @@ class Watcher {
       if (!more || !*more) {
         const std::scoped_lock lock(mutex_);
         if (!more) status_ = more.error();
-        state_.has_ended = true;
+        picture_.has_ended = true;
         return;
       }
       if (!first) first = view_.raw().time;
       if (!view_.is_live() && !pacer.wait_until(sources::due_after(*first, view_.raw().time))) return;
-      take();
+      update();
     }
   }
 
   /// The scale grows where it must, and never shrinks.
-  void take() {
+  void update() {
     largest_ = std::max(largest_, largest_of(view_.values()));
     const std::scoped_lock lock(mutex_);
-    state_.name = view_.name();
-    state_.unit = view_.unit();
-    state_.shape = view_.shape();
-    state_.values = view_.values();
-    state_.high = options_.high.value_or(view_.scale(largest_));
-    state_.has_contacts = view_.has_model();
-    state_.report = view_.contacts();
-    state_.statistics = view_.statistics();
+    picture_.name = view_.name();
+    picture_.unit = view_.unit();
+    picture_.shape = view_.shape();
+    picture_.values = view_.values();
+    picture_.high = options_.high.value_or(view_.scale(largest_));
+    picture_.has_contacts = view_.has_model();
+    picture_.report = view_.contacts();
+    picture_.statistics = view_.statistics();
   }
 
   ArrayView& view_;
   const TopOptions& options_;
   double largest_ = 0.0;
   mutable std::mutex mutex_;  ///< Of the next two.
-  TopState state_;
+  report::TerminalPicture picture_;
   Status status_ = Done{};
   std::thread thread_;
 };
 
 Status show(ArrayView& view, const TopOptions& options) {
-  const TerminalColours colours = colours_of_terminal();
+  const report::TerminalColours colours = colours_of_terminal();
   const OtherScreen screen;
   const Watcher watcher(view, options);
   while (!stop_flag().load()) {
-    const TopState state = watcher.state();
-    const std::string picture =
-        state.values.empty() ? "waiting for the first frame\x1b[K" : top_screen(state, size_of_terminal(), colours);
-    if (!put("\x1b[H" + picture + "\x1b[J")) break;
+    const report::TerminalPicture picture = watcher.picture();
+    const std::string screen_text = picture.values.empty()
+                                        ? "waiting for the first frame\x1b[K"
+                                        : report::terminal_screen(picture, size_of_terminal(), colours);
+    if (!put("\x1b[H" + screen_text + "\x1b[J")) break;
     if (Status status = watcher.status(); !status) return status;
     std::this_thread::sleep_for(kRedrawTime);
   }
@@ -158,14 +160,13 @@ Status top(const TopOptions& options) {
 
 }  // namespace
 
-void add_top(CLI::App& app, Action& action) {
+void add_top(Command& command) {
   auto options = std::make_shared<TopOptions>();
-  CLI::App* command = app.add_subcommand("top", "A live heat map in the terminal, until Ctrl-C");
-  command->add_option("--from", options->from, "URI of a device or of the simulator, or a recording")->required();
-  command->add_option("--model", options->model, "Model file: shows newtons and contacts instead of counts");
-  command->add_option("--high", options->high,
-                      "End of the colour scale [N, or counts]; without it, one that has covered all so far");
-  command->callback([&action, options] { action = [options] { return top(*options); }; });
+  command.option("--from", options->from, "URI of a device or of the simulator, or a recording").required();
+  command.option("--model", options->model, "Model file: shows newtons and contacts instead of counts");
+  command.option("--high", options->high,
+                 "End of the colour scale [N, or counts]; without it, one that has covered all so far");
+  command.action([options] { return top(*options); });
 }
 
 }  // namespace dermis::app

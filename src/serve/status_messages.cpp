@@ -2,13 +2,11 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "serve/status_messages.hpp"
 
-#include <fmt/core.h>
-
 #include <chrono>
 #include <limits>
 #include <utility>
 
-#include "dermis/compensation/line_faults.hpp"
+#include "dermis/health/fault_words.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -44,25 +42,17 @@ messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::M
   messages::Diagnosis diagnosis;
   diagnosis.name = name;
   diagnosis.hardware_id = model.array.name;
-  for (const compensation::LineFault& fault : statistics.faults) {
-    diagnosis.values.emplace_back(compensation::place_name(fault, model.array), compensation::to_string(fault.kind));
-  }
-  std::string dead;
-  for (std::size_t k = 0; k < model.networks.taxel_count(); ++k) {
-    if (model.networks.dead[k] != 0) dead += (dead.empty() ? "" : " ") + model.array.taxel_name(k);
-  }
-  if (!dead.empty()) diagnosis.values.emplace_back("dead since calibration", dead);
+  health::Condition condition = health::condition_of(model, statistics.faults);
+  diagnosis.values = std::move(condition.details);
   if (!statistics.error.empty()) {
     diagnosis.level = messages::Diagnosis::Level::error;
     diagnosis.message = statistics.error;
   } else if (statistics.ended) {
     diagnosis.level = messages::Diagnosis::Level::stale;
     diagnosis.message = "the source has ended";
-  } else if (!statistics.faults.empty()) {
-    diagnosis.level = messages::Diagnosis::Level::warning;
-    diagnosis.message = fmt::format("{} fault{}", statistics.faults.size(), statistics.faults.size() == 1 ? "" : "s");
   } else {
-    diagnosis.message = dead.empty() ? "healthy" : "dead taxels";
+    if (!statistics.faults.empty()) diagnosis.level = messages::Diagnosis::Level::warning;
+    diagnosis.message = std::move(condition.message);
   }
   return diagnosis;
 }

@@ -82,7 +82,12 @@ TEST(StatusMessages, faults_of_lines_are_a_warning_each_with_its_place) {
   const messages::Diagnosis diagnosis = diagnosis_message("chest", model, statistics);
   EXPECT_EQ(diagnosis.level, Level::warning);
   EXPECT_EQ(diagnosis.message, "2 faults");
-  EXPECT_EQ(diagnosis.values, (Values{{"row 1", "silent_row"}, {"column 2", "silent_column"}}));
+  EXPECT_EQ(diagnosis.values, (Values{{"row 1",
+                                       "is open or shorted to 0 V since frame 0: check the wire or crimp of row 1; its "
+                                       "4 taxels are masked, the rest is still good"},
+                                      {"column 2",
+                                       "is open or shorted to 0 V since frame 0: check the wire or crimp of column 2; "
+                                       "its 3 taxels are masked, the rest is still good"}}));
 }
 
 TEST(StatusMessages, what_ended_the_source_comes_before_faults) {

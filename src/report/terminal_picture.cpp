@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "top_screen.hpp"
+#include "dermis/report/terminal_picture.hpp"
 
 #include <fmt/format.h>
 
@@ -12,13 +12,13 @@
 
 #include "dermis/report/heat_map.hpp"
 
-namespace dermis::app {
+namespace dermis::report {
 namespace {
 
 constexpr std::size_t kPanelColumns = 34;
 constexpr std::size_t kPanelGap = 2;
 constexpr std::size_t kHeadLines = 2;  // Header and colour scale.
-constexpr report::Colour kNothing{70, 70, 74};
+constexpr Colour kNothing{70, 70, 74};
 constexpr std::string_view kLevels = " .:-=+*#%@";
 
 /// Values on a grid of square pixels.
@@ -29,8 +29,8 @@ struct Grid {
 };
 
 /// As many pixels a taxel, or taxels a pixel, as fit.
-Grid grid_of(const TopState& state, std::size_t most_rows, std::size_t most_cols) {
-  const auto [rows, cols] = state.shape;
+Grid grid_of(const TerminalPicture& picture, std::size_t most_rows, std::size_t most_cols) {
+  const auto [rows, cols] = picture.shape;
   const std::size_t times = std::min(most_rows / rows, most_cols / cols);
   Grid grid;
   if (times >= 1) {
@@ -44,7 +44,7 @@ Grid grid_of(const TopState& state, std::size_t most_rows, std::size_t most_cols
   grid.values.assign(grid.rows * grid.cols, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t y = 0; y < std::max(grid.rows, rows); ++y) {
     for (std::size_t x = 0; x < std::max(grid.cols, cols); ++x) {
-      const double value = state.values[(times >= 1 ? y / times : y) * cols + (times >= 1 ? x / times : x)];
+      const double value = picture.values[(times >= 1 ? y / times : y) * cols + (times >= 1 ? x / times : x)];
       const std::size_t row = times >= 1 ? y : y * grid.rows / rows;
       const std::size_t col = times >= 1 ? x : x * grid.cols / cols;
       double& pixel = grid.values[row * grid.cols + col];
@@ -61,9 +61,9 @@ class Line {
 
   void text(std::string_view words) {
     reset();
-    const std::size_t taken = std::min(words.size(), most_columns_ - width_);
-    text_ += words.substr(0, taken);
-    width_ += taken;
+    const std::size_t fitting = std::min(words.size(), most_columns_ - width_);
+    text_ += words.substr(0, fitting);
+    width_ += fitting;
   }
   void go_to(std::size_t column) {
     reset();
@@ -71,20 +71,20 @@ class Line {
     width_ = std::max(width_, column);
   }
   /// A block with an upper and a lower half.
-  void halves(report::Colour upper, report::Colour lower) {
+  void halves(Colour upper, Colour lower) {
     if (width_ == most_columns_) return;
     set("38", code(upper), foreground_);
     set("48", code(lower), background_);
     text_ += "\u2580";
     ++width_;
   }
-  [[nodiscard]] std::string take() && {
+  [[nodiscard]] std::string finished() && {
     reset();
     return std::move(text_) + "\x1b[K";
   }
 
  private:
-  [[nodiscard]] std::string code(report::Colour colour) const {
+  [[nodiscard]] std::string code(Colour colour) const {
     if (colours_ == TerminalColours::rgb) return fmt::format("2;{};{};{}", colour.red, colour.green, colour.blue);
     const auto level = [](std::uint8_t part) { return (static_cast<unsigned>(part) * 5U + 127U) / 255U; };
     return fmt::format("5;{}", 16U + 36U * level(colour.red) + 6U * level(colour.green) + level(colour.blue));
@@ -111,13 +111,13 @@ class Line {
 
 class Screen {
  public:
-  Screen(const TopState& state, const TerminalSize& size, TerminalColours colours)
-      : state_(state), size_(size), colours_(colours) {
-    const bool has_panel = state.has_contacts && size.columns >= kPanelColumns + kPanelGap + state.shape.cols;
+  Screen(const TerminalPicture& picture, const TerminalSize& size, TerminalColours colours)
+      : picture_(picture), size_(size), colours_(colours) {
+    const bool has_panel = picture.has_contacts && size.columns >= kPanelColumns + kPanelGap + picture.shape.cols;
     const std::size_t columns = size.columns - (has_panel ? kPanelColumns + kPanelGap : 0);
     const std::size_t lines = size.lines > kHeadLines ? size.lines - kHeadLines : 0;
     const bool has_colours = colours != TerminalColours::without;
-    grid_ = grid_of(state, has_colours ? 2 * lines : lines, has_colours ? columns : columns / 2);
+    grid_ = grid_of(picture, has_colours ? 2 * lines : lines, has_colours ? columns : columns / 2);
     panel_column_ = has_panel ? (has_colours ? grid_.cols : 2 * grid_.cols) + kPanelGap : size.columns;
   }
 
@@ -132,7 +132,7 @@ class Screen {
         painted.go_to(panel_column_);
         painted.text(panel[line]);
       }
-      text += "\r\n" + std::move(painted).take();
+      text += "\r\n" + std::move(painted).finished();
     }
     return text;
   }
@@ -140,13 +140,13 @@ class Screen {
  private:
   std::string header() const {
     Line line(colours_, size_.columns);
-    const SourceStatistics& statistics = state_.statistics;
+    const SourceStatistics& statistics = picture_.statistics;
     std::string words =
-        fmt::format("{}  {}x{}  {:.1f} frames/s  {} lost  {} damaged", state_.name, state_.shape.rows,
-                    state_.shape.cols, statistics.rate_hz, statistics.lost_frames, statistics.damaged_frames);
-    if (state_.has_ended) words += "  ended";
+        fmt::format("{}  {}x{}  {:.1f} frames/s  {} lost  {} damaged", picture_.name, picture_.shape.rows,
+                    picture_.shape.cols, statistics.rate_hz, statistics.lost_frames, statistics.damaged_frames);
+    if (picture_.has_ended) words += "  ended";
     line.text(words);
-    return std::move(line).take();
+    return std::move(line).finished();
   }
 
   std::string scale() const {
@@ -155,10 +155,10 @@ class Screen {
     line.text("0 ");
     for (std::size_t i = 0; i < kSteps; ++i) {
       const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(kSteps);
-      paint_pixel(share * state_.high, share * state_.high, line);
+      paint_pixel(share * picture_.high, share * picture_.high, line);
     }
-    line.text(fmt::format(" {:g} {}", state_.high, state_.unit));
-    return std::move(line).take();
+    line.text(fmt::format(" {:g} {}", picture_.high, picture_.unit));
+    return std::move(line).finished();
   }
 
   void paint_pixel(double upper, double lower, Line& line) const {
@@ -169,13 +169,13 @@ class Screen {
     }
   }
 
-  [[nodiscard]] report::Colour colour_of(double value) const {
-    return std::isfinite(value) ? report::sequential_colour(value / state_.high) : kNothing;
+  [[nodiscard]] Colour colour_of(double value) const {
+    return std::isfinite(value) ? sequential_colour(value / picture_.high) : kNothing;
   }
 
   [[nodiscard]] char letter_of(double value) const {
     if (!std::isfinite(value)) return '?';
-    const double level = std::clamp(value / state_.high, 0.0, 1.0) * static_cast<double>(kLevels.size() - 1);
+    const double level = std::clamp(value / picture_.high, 0.0, 1.0) * static_cast<double>(kLevels.size() - 1);
     return kLevels[static_cast<std::size_t>(std::lround(level))];
   }
 
@@ -193,9 +193,9 @@ class Screen {
 
   [[nodiscard]] std::vector<std::string> panel_lines() const {
     std::vector<std::string> lines;
-    lines.push_back(fmt::format("total {:7.2f} N", state_.report.total_force_n));
+    lines.push_back(fmt::format("total {:7.2f} N", picture_.report.total_force_n));
     lines.emplace_back();
-    for (const Contact& contact : state_.report.contacts) {
+    for (const Contact& contact : picture_.report.contacts) {
       if (contact.phase == ContactPhase::release) continue;
       lines.push_back(fmt::format("#{:<4} {:7.2f} N  {:6.1f} {:6.1f} mm", contact.id, contact.force_n,
                                   1e3 * contact.position.x, 1e3 * contact.position.y));
@@ -203,7 +203,7 @@ class Screen {
     return lines;
   }
 
-  const TopState& state_;
+  const TerminalPicture& picture_;
   TerminalSize size_;
   TerminalColours colours_;
   Grid grid_;
@@ -212,8 +212,8 @@ class Screen {
 
 }  // namespace
 
-std::string top_screen(const TopState& state, const TerminalSize& size, TerminalColours colours) {
-  return Screen(state, size, colours).paint();
+std::string terminal_screen(const TerminalPicture& picture, const TerminalSize& size, TerminalColours colours) {
+  return Screen(picture, size, colours).paint();
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::report

@@ -9,7 +9,7 @@
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frame_source.hpp"
 
-namespace dermis::app {
+namespace dermis::report {
 
 enum class TerminalColours {
   rgb,      ///< 24 bits.
@@ -22,11 +22,11 @@ struct TerminalSize {
   std::size_t columns = 80;
 };
 
-/// What `dermis top` shows of an array.
-struct TopState {
+/// What is shown of an array.
+struct TerminalPicture {
   std::string name;
   std::string unit;
-  FrameShape shape;
+  FrameShape shape;            ///< 1x1 at least.
   std::vector<double> values;  ///< Of the taxels; NaN where there is none.
   double high = 1.0;           ///< End of the colour scale.
   bool has_contacts = false;   ///< There is a model.
@@ -37,6 +37,7 @@ struct TopState {
 
 /// The whole screen: what is written to a terminal of that size at its home position. Taxels are squares of half
 /// blocks; where they do not fit, each stands for the largest of its neighbours. The last line has no end.
-[[nodiscard]] std::string top_screen(const TopState& state, const TerminalSize& size, TerminalColours colours);
+[[nodiscard]] std::string terminal_screen(const TerminalPicture& picture, const TerminalSize& size,
+                                          TerminalColours colours);
 
-}  // namespace dermis::app
+}  // namespace dermis::report

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "live_line.hpp"
+#include "status_line.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -10,8 +10,6 @@
 
 namespace dermis::app {
 namespace {
-
-constexpr std::chrono::seconds kPlainPeriod{5};
 
 std::mutex stderr_mutex;
 bool line_is_open = false;
@@ -29,30 +27,47 @@ void say(const std::string& text) {
   std::fputs((text + "\n").c_str(), stderr);
 }
 
-LiveLine::LiveLine()
-    : is_terminal_(isatty(STDERR_FILENO) == 1), next_plain_(std::chrono::steady_clock::now() + kPlainPeriod) {}
+StatusLine::StatusLine() : is_terminal_(isatty(STDERR_FILENO) == 1) {}
 
-LiveLine::~LiveLine() {
+StatusLine::~StatusLine() {
   end();
 }
 
-void LiveLine::show(const std::string& text) {
-  if (is_terminal_) {
-    const std::lock_guard lock(stderr_mutex);
-    std::fputs(fmt::format("\r{:<79}", text).c_str(), stderr);
-    std::fflush(stderr);
-    line_is_open = true;
-    return;
+void StatusLine::redraw(const std::string& text) {
+  const std::lock_guard lock(stderr_mutex);
+  std::fputs(("\r" + text).c_str(), stderr);
+  std::fflush(stderr);
+  line_is_open = true;
+}
+
+void StatusLine::end() {
+  const std::lock_guard lock(stderr_mutex);
+  end_line();
+}
+
+void Progress::show(const std::string& stage, double share) {
+  constexpr int kBarWidth = 40;
+  constexpr int kTerminalSteps = 100;
+  constexpr int kPlainSteps = 4;
+  if (stage != stage_) {
+    line_.end();
+    stage_ = stage;
+    last_shown_ = -1;
   }
+  const int step = static_cast<int>(share * (line_.is_terminal() ? kTerminalSteps : kPlainSteps));
+  if (step <= last_shown_) return;
+  last_shown_ = step;
+  if (!line_.is_terminal()) return say(fmt::format("{}: {} %", stage, step * 100 / kPlainSteps));
+  const int filled = step * kBarWidth / kTerminalSteps;
+  line_.redraw(fmt::format("{:<12} [{:#<{}}{:.<{}}] {:3} %", stage, "", filled, "", kBarWidth - filled, step));
+}
+
+void LiveLine::show(const std::string& text) {
+  if (line_.is_terminal()) return line_.redraw(fmt::format("{:<79}", text));
   const auto now = std::chrono::steady_clock::now();
   if (now < next_plain_) return;
   next_plain_ = now + kPlainPeriod;
   say(text);
-}
-
-void LiveLine::end() {
-  const std::lock_guard lock(stderr_mutex);
-  end_line();
 }
 
 std::string summary(std::uint64_t frames, const SourceStatistics& source) {

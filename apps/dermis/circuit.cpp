@@ -6,16 +6,18 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "circuit/advise.hpp"
-#include "circuit/known_circuit.hpp"
 #include "commands.hpp"
 #include "dermis/compensation/crosstalk.hpp"
+#include "dermis/files/array_toml.hpp"
 #include "dermis/files/taxel_tables_csv.hpp"
+#include "dermis/health/circuit_advice.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
+#include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
@@ -37,6 +39,30 @@ struct InvertOptions {
   std::string sigma;  ///< Empty: not written.
   std::optional<double> noise_ratio;
 };
+
+struct AdviseOptions {
+  std::string array;
+  std::vector<double> range_ohm;  ///< Least and greatest resistance of a taxel.
+  bool json = false;
+};
+
+/// The error with the name of the file before it.
+Error in_file(const std::string& path, const Error& error) {
+  return {error.kind, path + ": " + error.message};
+}
+
+/// An array with a circuit that can be computed.
+Result<ArrayDescription> read_known_circuit(const std::string& path) {
+  Result<ArrayDescription> array = files::read_array(path);
+  if (!array) return array;
+  if (array->readout.circuit == Circuit::none) {
+    return bad_input(path + ": circuit = \"none\" has nothing to compute; name the circuit and its resistances");
+  }
+  if (array->has_unknown_circuit()) {
+    return bad_input(path + ": a circuit that is to be fitted cannot be computed; give its resistances in ohm");
+  }
+  return array;
+}
 
 /// Conductances and their 1-sigma of one frame after another.
 class Inverter {
@@ -82,7 +108,7 @@ class Inverter {
 
 Result<double> noise_ratio(const InvertOptions& options, const ArrayDescription& array) {
   if (!options.noise_ratio) {
-    const Result<double> noise = adc_noise_ratio(array);
+    const Result<double> noise = health::adc_noise_ratio(array);
     return noise ? *noise : Result<double>(in_file(options.array, noise.error()));
   }
   if (std::isfinite(*options.noise_ratio) && *options.noise_ratio > 0.0) return *options.noise_ratio;
@@ -154,40 +180,72 @@ Status circuit_invert(const InvertOptions& options) {
                   options.readings, first_unsolved_line, unsolved, frames, options.out));
 }
 
+nlohmann::ordered_json precision_json(const std::optional<health::Precision>& precision) {
+  if (!precision) return nullptr;
+  return {
+      {"mean", precision->mean}, {"median", precision->median}, {"p95", precision->p95}, {"worst", precision->worst}};
+}
+
+void print_json(const health::CircuitAdvice& advice) {
+  nlohmann::ordered_json json = {{"noise_ratio", advice.noise_ratio},
+                                 {"best_load_ohm", advice.loads[advice.best].load_ohm},
+                                 {"best", precision_json(advice.loads[advice.best].precision)},
+                                 {"present", precision_json(advice.present)},
+                                 {"ideal_drivers", precision_json(advice.ideal_drivers)},
+                                 {"most_drive_ohm", nullptr},
+                                 {"loads", nlohmann::ordered_json::array()}};
+  if (advice.ideal_drivers) json["most_drive_ohm"] = advice.most_drive_ohm;
+  for (const health::LoadChoice& choice : advice.loads) {
+    json["loads"].push_back({{"load_ohm", choice.load_ohm}, {"precision", precision_json(choice.precision)}});
+  }
+  fmt::print("{}\n", json.dump(2));
+}
+
+Status circuit_advise(const AdviseOptions& options) {
+  const health::TaxelRange taxels{options.range_ohm[0], options.range_ohm[1]};
+  constexpr double kMostOhm = 1e12;
+  if (!(taxels.least_ohm > 0.0 && taxels.least_ohm < taxels.most_ohm && taxels.most_ohm <= kMostOhm)) {
+    return bad_input("--range: must be two resistances of a taxel in ohm, more than 0, the least first");
+  }
+  const Result<ArrayDescription> array = read_known_circuit(options.array);
+  if (!array) return array.error();
+  Progress progress;
+  const Result<health::CircuitAdvice> advice =
+      health::advise_circuit(*array, taxels, [&](double share) { progress.show("advice", share); });
+  if (!advice) return in_file(options.array, advice.error());
+  progress.show("advice", 1.0);
+  options.json ? print_json(*advice) : fmt::print("{}", health::describe(*advice, *array));
+  return Done{};
+}
+
 }  // namespace
 
-void add_circuit(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("circuit", "Compute a readout circuit: for people who design one");
-  command->require_subcommand(1);
-
+void add_circuit(Command& command) {
   auto forward_options = std::make_shared<ForwardOptions>();
-  CLI::App* forward = command->add_subcommand("forward", "Conductances (siemens) -> readings over the supply");
-  forward->add_option("--array", forward_options->array, "array.toml: size and readout circuit")->required();
-  forward->add_option("--conductance", forward_options->conductance, "CSV of siemens, rows x columns")->required();
-  forward->add_option("--out", forward_options->out, "CSV of readings to write")->required();
-  forward->callback(
-      [&action, forward_options] { action = [forward_options] { return circuit_forward(*forward_options); }; });
+  Command forward = command.subcommand("forward", "Conductances (siemens) -> readings over the supply");
+  forward.option("--array", forward_options->array, "array.toml: size and readout circuit").required();
+  forward.option("--conductance", forward_options->conductance, "CSV of siemens, rows x columns").required();
+  forward.option("--out", forward_options->out, "CSV of readings to write").required();
+  forward.action([forward_options] { return circuit_forward(*forward_options); });
 
   auto invert_options = std::make_shared<InvertOptions>();
-  CLI::App* invert = command->add_subcommand("invert", "Readings over the supply -> conductances (siemens)");
-  invert->add_option("--array", invert_options->array, "array.toml: size and readout circuit")->required();
-  invert->add_option("--readings", invert_options->readings, "CSV of readings, rows x columns")->required();
-  invert->add_option("--out", invert_options->out, "CSV of siemens to write")->required();
-  invert->add_option("--sigma", invert_options->sigma, "CSV of the 1-sigma of each conductance to write [S]");
-  invert->add_option("--noise", invert_options->noise_ratio,
-                     "Standard deviation of a reading over the supply (default: that of the array's ADC)");
-  invert->callback(
-      [&action, invert_options] { action = [invert_options] { return circuit_invert(*invert_options); }; });
+  Command invert = command.subcommand("invert", "Readings over the supply -> conductances (siemens)");
+  invert.option("--array", invert_options->array, "array.toml: size and readout circuit").required();
+  invert.option("--readings", invert_options->readings, "CSV of readings, rows x columns").required();
+  invert.option("--out", invert_options->out, "CSV of siemens to write").required();
+  invert.option("--sigma", invert_options->sigma, "CSV of the 1-sigma of each conductance to write [S]");
+  invert.option("--noise", invert_options->noise_ratio,
+                "Standard deviation of a reading over the supply (default: that of the array's ADC)");
+  invert.action([invert_options] { return circuit_invert(*invert_options); });
 
   auto advise_options = std::make_shared<AdviseOptions>();
-  CLI::App* advise = command->add_subcommand("advise", "Load and drive resistances that give the smallest error");
-  advise->add_option("--array", advise_options->array, "array.toml: size, readout circuit and ADC")->required();
-  advise->add_option("--range", advise_options->range_ohm, "Least and greatest resistance of a taxel [ohm]")
-      ->expected(2)
-      ->required();
-  advise->add_flag("--json", advise_options->json, "Print the result as JSON");
-  advise->callback(
-      [&action, advise_options] { action = [advise_options] { return circuit_advise(*advise_options); }; });
+  Command advise = command.subcommand("advise", "Load and drive resistances that give the smallest error");
+  advise.option("--array", advise_options->array, "array.toml: size, readout circuit and ADC").required();
+  advise.option("--range", advise_options->range_ohm, "Least and greatest resistance of a taxel [ohm]")
+      .takes(2)
+      .required();
+  advise.flag("--json", advise_options->json, "Print the result as JSON");
+  advise.action([advise_options] { return circuit_advise(*advise_options); });
 }
 
 }  // namespace dermis::app

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "circuit/advice.hpp"
-
-#include <fmt/core.h>
+#include "dermis/health/circuit_advice.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +10,7 @@
 #include "dermis/core/random.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 
-namespace dermis::app {
+namespace dermis::health {
 namespace {
 
 constexpr std::size_t kSparsePatterns = 4;
@@ -29,8 +27,7 @@ struct Pattern {
 /// Everything at its greatest resistance but the pressed taxels.
 class PatternMaker {
  public:
-  PatternMaker(const ArrayDescription& array, double least_ohm, double most_ohm)
-      : array_(array), least_ohm_(least_ohm), most_ohm_(most_ohm) {}
+  PatternMaker(const ArrayDescription& array, const TaxelRange& taxels) : array_(array), taxels_(taxels) {}
 
   std::vector<Pattern> make() {
     std::vector<Pattern> patterns;
@@ -41,7 +38,7 @@ class PatternMaker {
     patterns.push_back(random([this](std::size_t row, std::size_t) { return row == array_.rows / 2; }));
     patterns.push_back(random([this](std::size_t, std::size_t col) { return col == array_.cols / 2; }));
     Pattern firm = random([](std::size_t row, std::size_t col) { return row == 0 && col == 0; });
-    firm.siemens[0] = 1.0 / least_ohm_;
+    firm.siemens[0] = 1.0 / taxels_.least_ohm;
     patterns.push_back(std::move(firm));
     return patterns;
   }
@@ -49,20 +46,19 @@ class PatternMaker {
  private:
   template <typename IsPressed>
   Pattern random(const IsPressed& is_pressed) {
-    Pattern pattern{std::vector<double>(array_.taxel_count(), 1.0 / most_ohm_), {}};
+    Pattern pattern{std::vector<double>(array_.taxel_count(), 1.0 / taxels_.most_ohm), {}};
     for (std::size_t row = 0; row < array_.rows; ++row) {
       for (std::size_t col = 0; col < array_.cols; ++col) {
         if (!is_pressed(row, col)) continue;
         pattern.pressed.push_back(array_.index(row, col));
-        pattern.siemens[array_.index(row, col)] = 1.0 / random_.log_uniform(least_ohm_, most_ohm_);
+        pattern.siemens[array_.index(row, col)] = 1.0 / random_.log_uniform(taxels_.least_ohm, taxels_.most_ohm);
       }
     }
     return pattern;
   }
 
   const ArrayDescription& array_;
-  double least_ohm_;
-  double most_ohm_;
+  const TaxelRange& taxels_;
   Random random_{1};
 };
 
@@ -78,10 +74,9 @@ Precision precision_of(std::vector<double> errors) {
 /// Judges circuits that differ in their resistances.
 class Judge {
  public:
-  Judge(const ArrayDescription& array, double least_ohm, double most_ohm, double noise_ratio,
-        std::function<void()> judged)
+  Judge(const ArrayDescription& array, const TaxelRange& taxels, double noise_ratio, std::function<void()> judged)
       : judged_(std::move(judged)),
-        patterns_(PatternMaker(array, least_ohm, most_ohm).make()),
+        patterns_(PatternMaker(array, taxels).make()),
         noise_ratio_(noise_ratio),
         reading_(array.taxel_count()),
         siemens_(array.taxel_count()),
@@ -151,7 +146,7 @@ bool is_better(const LoadChoice& a, const LoadChoice& b) {
   return a.precision->mean < b.precision->mean;
 }
 
-Status try_loads(const ArrayDescription& array, const std::vector<double>& ohms, Judge& judge, Advice& advice) {
+Status try_loads(const ArrayDescription& array, const std::vector<double>& ohms, Judge& judge, CircuitAdvice& advice) {
   for (const double ohm : ohms) {
     const Result<std::optional<Precision>> precision = judge.judge(with_load(array, ohm));
     if (!precision) return precision.error();
@@ -183,13 +178,26 @@ Result<double> most_drive(const ArrayDescription& array, double ideal_mean, doub
 
 }  // namespace
 
-Result<Advice> advise(const ArrayDescription& array, double least_ohm, double most_ohm, double noise_ratio,
-                      const std::function<void(double share)>& progress) {
-  const std::vector<double> coarse = series(3, least_ohm / 100.0, 10.0 * most_ohm);
+Result<double> adc_noise_ratio(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
+  if (readout.adc_reference_v && !readout.supply_v) {
+    return bad_input("readout.supply_v: is missing; the noise of an ADC with a reference in volts depends on it");
+  }
+  const double full_scale = readout.adc_reference_v ? *readout.adc_reference_v / *readout.supply_v : 1.0;
+  return readout.adc_noise_counts * full_scale / readout.full_scale_counts();
+}
+
+Result<CircuitAdvice> advise_circuit(const ArrayDescription& array, const TaxelRange& taxels,
+                                     const std::function<void(double share)>& progress) {
+  const Result<double> noise_ratio = adc_noise_ratio(array);
+  if (!noise_ratio) return noise_ratio.error();
+  const std::vector<double> coarse = series(3, taxels.least_ohm / 100.0, 10.0 * taxels.most_ohm);
   const double expected = static_cast<double>(coarse.size()) + kBisections + kOtherTrials;
   double judged = 0.0;
-  Judge judge(array, least_ohm, most_ohm, noise_ratio, [&] { progress(std::min(1.0, judged++ / expected)); });
-  Advice advice;
+  Judge judge(array, taxels, *noise_ratio, [&] { progress(std::min(1.0, judged++ / expected)); });
+  CircuitAdvice advice;
+  advice.taxels = taxels;
+  advice.noise_ratio = *noise_ratio;
   const Result<std::optional<Precision>> present = judge.judge(array);
   if (!present) return present.error();
   advice.present = *present;
@@ -208,10 +216,10 @@ Result<Advice> advise(const ArrayDescription& array, double least_ohm, double mo
   if (!ideal) return ideal.error();
   advice.ideal_drivers = *ideal;
   if (!advice.ideal_drivers) return advice;
-  const Result<double> drive = most_drive(best, advice.ideal_drivers->mean, most_ohm, judge);
+  const Result<double> drive = most_drive(best, advice.ideal_drivers->mean, taxels.most_ohm, judge);
   if (!drive) return drive.error();
   advice.most_drive_ohm = *drive;
   return advice;
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::health

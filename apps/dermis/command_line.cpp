@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "command_line.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "dermis/core/version.hpp"
+
+namespace dermis::app {
+namespace {
+
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+/// "simulate, calibrate, ... or serve"
+std::string names_of(std::span<const CommandEntry> commands) {
+  std::string names = commands.front().name;
+  for (const CommandEntry& command : commands.subspan(1)) {
+    names += (&command == &commands.back() ? " or " : ", ") + std::string(command.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+Option Option::required() const {
+  option_->required();
+  return *this;
+}
+
+Option Option::not_negative() const {
+  option_->check(
+      [](const std::string& text) -> std::string { return text.starts_with('-') ? "must not be negative" : ""; });
+  return *this;
+}
+
+Option Option::shows_default() const {
+  option_->capture_default_str();
+  return *this;
+}
+
+Option Option::takes(int values) const {
+  option_->expected(values);
+  return *this;
+}
+
+Option Option::excludes(Option other) const {
+  option_->excludes(other.option_);
+  return *this;
+}
+
+Option Option::needs(Option other) const {
+  option_->needs(other.option_);
+  return *this;
+}
+
+template <typename Value>
+Option Command::option(const std::string& name, Value& value, const std::string& help) {
+  return Option(app_.add_option(name, value, help));
+}
+
+template Option Command::option(const std::string&, std::string&, const std::string&);
+template Option Command::option(const std::string&, double&, const std::string&);
+template Option Command::option(const std::string&, std::uint16_t&, const std::string&);
+template Option Command::option(const std::string&, std::uint64_t&, const std::string&);
+template Option Command::option(const std::string&, std::vector<double>&, const std::string&);
+template Option Command::option(const std::string&, std::optional<double>&, const std::string&);
+template Option Command::option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
+
+Option Command::flag(const std::string& name, bool& value, const std::string& help) {
+  return Option(app_.add_flag(name, value, help));
+}
+
+Command Command::subcommand(const std::string& name, const std::string& summary) {
+  app_.require_subcommand(1);
+  return {*app_.add_subcommand(name, summary), chosen_};
+}
+
+void Command::action(Action action) {
+  app_.callback([&chosen = chosen_, action = std::move(action)] { chosen = action; });
+}
+
+Result<Action> parse_command_line(int argc, char** argv, std::span<const CommandEntry> commands) {
+  CLI::App app{"dermis: calibrated force (newtons) from resistive tactile arrays", "dermis"};
+  app.set_version_flag("--version", DERMIS_VERSION);
+  app.require_subcommand(0, 1);
+  Action chosen;
+  for (const CommandEntry& entry : commands) {
+    Command command(*app.add_subcommand(entry.name, entry.summary), chosen);
+    entry.add(command);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() != 0) return bad_input(first_line(error.what()) + " (see dermis --help)");
+    app.exit(error);  // prints what was asked for
+    return Action();
+  }
+  if (!chosen) return bad_input(fmt::format("name a command: {} (see dermis --help)", names_of(commands)));
+  return chosen;
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "dermis/core/result.hpp"
+
+// All of CLI11 that the commands see: its headers cost seconds in every file that includes them.
+namespace CLI {  // NOLINT(readability-identifier-naming): its name
+class App;
+class Option;
+}  // namespace CLI
+
+namespace dermis::app {
+
+/// What the chosen command does.
+using Action = std::function<Status()>;
+
+/// An option of a command, to say more of it.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  Option required() const;
+  Option not_negative() const;     ///< CLI11 would wrap a negative count round.
+  Option shows_default() const;    ///< The help names the value that it has without the option.
+  Option takes(int values) const;  ///< So many values, not one.
+  Option excludes(Option other) const;
+  Option needs(Option other) const;
+
+ private:
+  CLI::Option* option_;
+};
+
+/// A command whose options are being declared. What they are parsed into must live as long as the action.
+class Command {
+ public:
+  Command(CLI::App& app, Action& chosen) : app_(app), chosen_(chosen) {}
+
+  /// `name`: "--in", or "in" for an argument that is known by its place. For a Value of std::string, double,
+  /// std::uint16_t, std::uint64_t, std::vector<double>, or std::optional of double or std::uint64_t.
+  template <typename Value>
+  Option option(const std::string& name, Value& value, const std::string& help);
+  Option flag(const std::string& name, bool& value, const std::string& help);
+
+  /// A command of this command, of which the user must name one.
+  Command subcommand(const std::string& name, const std::string& summary);
+
+  void action(Action action);
+
+ private:
+  CLI::App& app_;
+  Action& chosen_;
+};
+
+struct CommandEntry {
+  const char* name;
+  const char* summary;
+  void (*add)(Command& command);  ///< Declares its options and its action.
+};
+
+/// The action of the command line; empty where --help or --version has been printed, and nothing is left to do.
+[[nodiscard]] Result<Action> parse_command_line(int argc, char** argv, std::span<const CommandEntry> commands);
+
+}  // namespace dermis::app

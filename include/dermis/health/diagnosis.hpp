@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/health/fault_words.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::health {
+
+struct TemperatureRange {
+  double coldest_celsius = 0.0;
+  double hottest_celsius = 0.0;
+};
+
+/// What the frames of an array say about its health.
+struct Diagnosis {
+  std::size_t frames = 0;
+  std::size_t frames_rejected = 0;
+  std::size_t frames_unsolved = 0;                ///< Their readings do not fit the circuit of the array.
+  std::map<std::string, std::size_t> rejections;  ///< Frames by the reason.
+  double seconds = 0.0;                           ///< From the first to the last frame that was not rejected [s].
+  std::optional<double> noise_counts;             ///< Of a reading; empty: something touched the array all the time.
+  double saturated_share = 0.0;                   ///< Of all readings, 0 ... 1.
+  std::optional<double> offset_drift;             ///< Of the unloaded conductance, relative; empty: not known.
+  std::optional<TemperatureRange> temperature;    ///< Empty: no frame carried one.
+  double worst_misfit_sigma = 0.0;                ///< Of a solved reading [standard deviations].
+  std::vector<std::string> blind_lines;           ///< Read too little unloaded for a break to be seen: "row 3".
+  std::vector<FaultHistory> faults;               ///< In the order in which they were found.
+  std::vector<std::string> findings;              ///< What is wrong, a sentence each, worst first.
+
+  [[nodiscard]] bool is_healthy() const noexcept { return findings.empty(); }
+};
+
+/// The diagnosis of frames of `model`'s array as lines of text: the measured values, then the findings or "healthy".
+[[nodiscard]] std::string describe(const Diagnosis& diagnosis, const pipeline::Model& model);
+
+}  // namespace dermis::health

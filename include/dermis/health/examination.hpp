@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/health/diagnosis.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/pipeline/pipeline.hpp"
+
+namespace dermis::health {
+
+/// Examines an array by the frames of one stream, in whatever way it is touched: line faults, noise and drift of the
+/// unloaded taxels, saturation, temperature, misfit of the circuit. Keeps 8 bytes a frame. Not thread-safe.
+class Examination {
+ public:
+  /// `model` must outlive the examination.
+  explicit Examination(const pipeline::Model& model);
+  Examination(Examination&&) noexcept;
+  Examination& operator=(Examination&&) noexcept;
+  ~Examination();
+
+  /// A frame that `pipeline`, made of the same model, has just processed.
+  void add(const RawFrame& raw, const pipeline::Pipeline& pipeline);
+
+  /// Of all frames so far; `pipeline`: the one that processed them.
+  [[nodiscard]] Diagnosis diagnosis(const pipeline::Pipeline& pipeline) const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::health

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dermis/compensation/line_faults.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::health {
+
+/// A fault and the frames in which it stood.
+struct FaultHistory {
+  compensation::LineFault fault;       ///< As it was last seen.
+  std::optional<std::size_t> until{};  ///< First frame without it; empty while it stands.
+};
+
+/// What the fault is, since when, what to look at, and what is lost, to be read after place_name(): "is open since
+/// frame 120: check the wire or crimp of row 3; its 16 taxels are masked, the rest is still good".
+[[nodiscard]] std::string describe(const FaultHistory& history, const ArrayDescription& array);
+
+/// How an array at work is at this moment, in short.
+struct Condition {
+  std::string message;  ///< "healthy", "dead taxels" (since calibration) or "2 faults".
+  /// Each fault by its place_name() with what describe() says of it, then the names of the taxels that are dead since
+  /// calibration.
+  std::vector<std::pair<std::string, std::string>> details;
+};
+
+/// `faults`: those that stand.
+[[nodiscard]] Condition condition_of(const pipeline::Model& model, std::span<const compensation::LineFault> faults);
+
+}  // namespace dermis::health

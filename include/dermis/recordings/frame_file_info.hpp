@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/recording.hpp"
+
+namespace dermis::recordings {
+
+/// What a file of frames holds; empty where its format cannot say.
+struct FrameFileInfo {
+  FrameFormat format = FrameFormat::csv;
+  std::uint64_t bytes = 0;  ///< 0 of a pipe.
+  std::uint64_t frames = 0;
+  std::optional<FrameShape> shape;
+  std::optional<double> duration_s;  ///< From the time of the first to that of the last frame.
+  std::optional<Nanos> start_utc;    ///< Time of the first, since 1970.
+  std::optional<std::uint64_t> lost;
+  bool complete = true;                                          ///< Written to its end.
+  std::optional<std::pair<double, double>> temperature_celsius;  ///< Lowest and highest.
+  FrameNotes notes;
+  std::string compression;  ///< Of a recording.
+  std::string software;
+  std::vector<RecordedArrayInfo> arrays;  ///< Where there are several: shape and notes are then theirs.
+  std::vector<RecordingTopic> topics;
+
+  /// Frames a second of one array: several have rates of their own.
+  [[nodiscard]] std::optional<double> rate_hz() const;
+};
+
+/// Of a recording from its summary, where it has one; of other files by reading all frames.
+[[nodiscard]] Result<FrameFileInfo> frame_file_info(const std::string& path);
+
+}  // namespace dermis::recordings

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/health/diagnosis.hpp"
+
+#include <fmt/core.h>
+
+namespace dermis::health {
+namespace {
+
+std::string frames_text(const Diagnosis& diagnosis) {
+  std::string text =
+      fmt::format("{}, {} rejected, {:.1f} s", diagnosis.frames, diagnosis.frames_rejected, diagnosis.seconds);
+  if (!(diagnosis.seconds > 0.0)) return text;
+  const std::size_t accepted = diagnosis.frames - diagnosis.frames_rejected;
+  return text + fmt::format(", {:.1f} frames/s", static_cast<double>(accepted - 1) / diagnosis.seconds);
+}
+
+std::string temperature_text(const Diagnosis& diagnosis, const TemperatureSpan& calibrated) {
+  const std::string measured = diagnosis.temperature
+                                   ? fmt::format("{:.1f} to {:.1f} C", diagnosis.temperature->coldest_celsius,
+                                                 diagnosis.temperature->hottest_celsius)
+                                   : "unknown";
+  return measured + fmt::format(", calibrated {:.1f} to {:.1f} C",
+                                calibrated.centre_celsius - calibrated.half_span_celsius,
+                                calibrated.centre_celsius + calibrated.half_span_celsius);
+}
+
+}  // namespace
+
+std::string describe(const Diagnosis& diagnosis, const pipeline::Model& model) {
+  const ArrayDescription& array = model.array;
+  std::string text = fmt::format("array        {}, {} x {}, {}\n", array.name, array.rows, array.cols,
+                                 to_string(array.readout.circuit));
+  text += fmt::format("frames       {}\n", frames_text(diagnosis));
+  text += fmt::format(
+      "noise        {}, calibrated {:.2f} counts\n",
+      diagnosis.noise_counts ? fmt::format("{:.2f} counts", *diagnosis.noise_counts) : "unknown (touched all the time)",
+      array.readout.adc_noise_counts);
+  text += fmt::format("saturated    {:.2f} % of all readings\n", 100.0 * diagnosis.saturated_share);
+  text += fmt::format("unloaded     {}\n", diagnosis.offset_drift ? fmt::format("{:+.1f} % against the calibration",
+                                                                                100.0 * *diagnosis.offset_drift)
+                                                                  : "unknown");
+  text += fmt::format("temperature  {}\n", temperature_text(diagnosis, model.networks.unloaded.temperature));
+  text += fmt::format("circuit      {} frames unsolved, worst misfit {:.2f} standard deviations\n",
+                      diagnosis.frames_unsolved, diagnosis.worst_misfit_sigma);
+  if (!diagnosis.blind_lines.empty()) {
+    text += fmt::format("blind        {} of {} lines read too little unloaded for a break to be seen\n",
+                        diagnosis.blind_lines.size(), array.rows + array.cols);
+  }
+  text += "\n";
+  for (const std::string& finding : diagnosis.findings) text += finding + "\n";
+  return diagnosis.is_healthy() ? text + "healthy\n" : text;
+}
+
+}  // namespace dermis::health

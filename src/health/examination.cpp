@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/health/examination.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "health/findings.hpp"
+#include "health/noise_meter.hpp"
+#include "health/offset_meter.hpp"
+#include "health/unloaded_taxels.hpp"
+
+namespace dermis::health {
+namespace {
+
+using compensation::LineFault;
+
+constexpr double kTouchedSigmas = 3.0;
+constexpr double kSurelyTouchedSigmas = 20.0;  // of calibrated noise: noise that has grown is no touch
+
+bool same(const LineFault& a, const LineFault& b) {
+  return a.kind == b.kind && a.place == b.place && a.frame == b.frame;
+}
+
+/// Of the faults so far, which stand and which have gone at this frame.
+void follow(std::span<const LineFault> present, std::size_t frame, std::vector<FaultHistory>& faults) {
+  for (FaultHistory& known : faults) {
+    const auto is_same = [&](const LineFault& fault) { return same(fault, known.fault); };
+    const auto now = std::find_if(present.begin(), present.end(), is_same);
+    if (now != present.end()) known.fault = *now;
+    if (now == present.end() && !known.until) known.until = frame;
+  }
+  for (const LineFault& fault : present) {
+    const auto is_open = [&](const FaultHistory& known) { return !known.until && same(fault, known.fault); };
+    if (std::none_of(faults.begin(), faults.end(), is_open)) faults.push_back({fault});
+  }
+}
+
+/// Lines that would not be missed, while nothing presses them.
+std::vector<std::string> blind_lines(const compensation::LineFaultMonitor& monitor, const ArrayDescription& array) {
+  std::vector<std::string> lines;
+  for (std::size_t row = 0; row < array.rows; ++row) {
+    if (!monitor.sees_silent_row(row)) lines.push_back(fmt::format("row {}", row));
+  }
+  for (std::size_t col = 0; col < array.cols; ++col) {
+    if (!monitor.sees_silent_column(col)) lines.push_back(fmt::format("column {}", col));
+  }
+  return lines;
+}
+
+}  // namespace
+
+class Examination::Implementation {
+ public:
+  explicit Implementation(const pipeline::Model& model)
+      : model_(model), unloaded_(model), offsets_(model.array.taxel_count()), deviation_(model.array.taxel_count()) {}
+
+  void add(const RawFrame& raw, const pipeline::Pipeline& pipeline) {
+    const std::size_t frame = counted_.frames++;
+    const ConductanceFrame& conductance = pipeline.conductance();
+    if (has(conductance.status, FrameStatus::rejected)) {
+      ++counted_.frames_rejected;
+      ++counted_.rejections[preprocessing::to_string(pipeline.rejection())];
+      return;
+    }
+    if (!first_time_) first_time_ = raw.time;
+    last_time_ = raw.time;
+    follow_temperature(raw);
+    follow(pipeline.line_faults().faults(), frame, counted_.faults);
+    const auto& taxels = pipeline.conditioned().taxels;
+    saturated_ += static_cast<std::size_t>(std::count(taxels.begin(), taxels.end(), TaxelStatus::saturated));
+    if (has(conductance.status, FrameStatus::not_converged)) {
+      ++counted_.frames_unsolved;
+      return;
+    }
+    counted_.worst_misfit_sigma = std::max(counted_.worst_misfit_sigma, conductance.residual_sigma);
+    unloaded_.expect(conductance);
+    follow_noise(conductance);
+    follow_offsets(conductance);
+  }
+
+  [[nodiscard]] Diagnosis diagnosis(const pipeline::Pipeline& pipeline) const {
+    Diagnosis diagnosis = counted_;
+    if (first_time_) diagnosis.seconds = std::chrono::duration<double>(last_time_ - *first_time_).count();
+    const std::optional<double> noise = noise_.ratio();
+    if (noise) diagnosis.noise_counts = *noise * model_.array.readout.adc_noise_counts;
+    diagnosis.saturated_share = saturated_share();
+    diagnosis.offset_drift = offsets_.drift();
+    diagnosis.blind_lines = blind_lines(pipeline.line_faults(), model_.array);
+    diagnosis.findings = findings_of(diagnosis, model_);
+    return diagnosis;
+  }
+
+ private:
+  void follow_temperature(const RawFrame& raw) {
+    if (!raw.temperature_celsius) return;
+    const double celsius = *raw.temperature_celsius;
+    const TemperatureRange range = counted_.temperature.value_or(TemperatureRange{celsius, celsius});
+    counted_.temperature = {std::min(range.coldest_celsius, celsius), std::max(range.hottest_celsius, celsius)};
+  }
+
+  void follow_noise(const ConductanceFrame& conductance) {
+    for (std::size_t taxel = 0; taxel < deviation_.size(); ++taxel) {
+      const bool is_noise = conductance.taxels[taxel] == TaxelStatus::ok && conductance.siemens[taxel] > 0.0 &&
+                            !unloaded_.is_near_touch(conductance, taxel, kSurelyTouchedSigmas);
+      deviation_[taxel] =
+          is_noise ? (conductance.siemens[taxel] - unloaded_.expected(taxel)) / conductance.sigma_siemens[taxel]
+                   : std::numeric_limits<double>::quiet_NaN();
+    }
+    noise_.add(deviation_);
+  }
+
+  /// Frames in which neither the taxel nor one of its neighbours is touched tell what it conducts unloaded.
+  void follow_offsets(const ConductanceFrame& conductance) {
+    for (std::size_t taxel = 0; taxel < deviation_.size(); ++taxel) {
+      if (conductance.taxels[taxel] != TaxelStatus::ok || !(unloaded_.expected(taxel) > 0.0)) continue;
+      if (unloaded_.is_near_touch(conductance, taxel, kTouchedSigmas)) continue;
+      offsets_.add(taxel, conductance.siemens[taxel] / unloaded_.expected(taxel));
+    }
+  }
+
+  [[nodiscard]] double saturated_share() const {
+    const std::size_t accepted = counted_.frames - counted_.frames_rejected;
+    return static_cast<double>(saturated_) /
+           static_cast<double>(std::max<std::size_t>(accepted * model_.array.taxel_count(), 1));
+  }
+
+  const pipeline::Model& model_;
+  Diagnosis counted_;  // what is counted frame by frame
+  std::optional<Nanos> first_time_;
+  Nanos last_time_{};
+  std::size_t saturated_ = 0;  // readings
+  UnloadedTaxels unloaded_;
+  NoiseMeter noise_;
+  OffsetMeter offsets_;
+  std::vector<double> deviation_;  // from the unloaded conductance, in standard deviations [taxels]
+};
+
+Examination::Examination(const pipeline::Model& model) : implementation_(std::make_unique<Implementation>(model)) {}
+Examination::Examination(Examination&&) noexcept = default;
+Examination& Examination::operator=(Examination&&) noexcept = default;
+Examination::~Examination() = default;
+
+void Examination::add(const RawFrame& raw, const pipeline::Pipeline& pipeline) {
+  implementation_->add(raw, pipeline);
+}
+
+Diagnosis Examination::diagnosis(const pipeline::Pipeline& pipeline) const {
+  return implementation_->diagnosis(pipeline);
+}
+
+}  // namespace dermis::health

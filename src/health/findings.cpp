@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "health/findings.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "dermis/fusion/force_fusion.hpp"
+
+namespace dermis::health {
+namespace {
+
+constexpr double kMuchNoise = 1.5;          // times what the model says
+constexpr double kMuchOffsetDrift = 0.3;    // of the unloaded conductance, common to the array
+constexpr double kMuchSaturation = 0.01;    // of all readings
+constexpr double kTemperatureMargin = 1.0;  // sensor noise [C]
+
+bool leaves_calibrated_range(const TemperatureRange& temperature, const fusion::ForceNetworks& networks) {
+  if (networks.shape.inputs != fusion::kInputsWithTemperature) return false;
+  const TemperatureSpan& calibrated = networks.unloaded.temperature;
+  const double half_span = calibrated.half_span_celsius + kTemperatureMargin;
+  return temperature.coldest_celsius < calibrated.centre_celsius - half_span ||
+         temperature.hottest_celsius > calibrated.centre_celsius + half_span;
+}
+
+}  // namespace
+
+std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline::Model& model) {
+  const ArrayDescription& array = model.array;
+  std::vector<std::string> found;
+  for (const FaultHistory& history : diagnosis.faults) {
+    found.push_back(place_name(history.fault, array) + " " + describe(history, array));
+  }
+  if (diagnosis.frames == diagnosis.frames_rejected) found.emplace_back("no frame could be used");
+  if (diagnosis.frames_unsolved > 0) {
+    found.push_back(fmt::format("{} frames do not fit the circuit of the array: check readout in array.toml",
+                                diagnosis.frames_unsolved));
+  }
+  for (const auto& [reason, count] : diagnosis.rejections) {
+    found.push_back(fmt::format("{} frames rejected: {}", count, reason));
+  }
+  if (diagnosis.noise_counts && *diagnosis.noise_counts > kMuchNoise * array.readout.adc_noise_counts) {
+    found.push_back(
+        fmt::format("the readings have {:.1f} counts of noise, {:.1f} were calibrated: check grounding and supply",
+                    *diagnosis.noise_counts, array.readout.adc_noise_counts));
+  }
+  if (diagnosis.saturated_share > kMuchSaturation) {
+    found.push_back(fmt::format("{:.1f} % of the readings stand at the end of the ADC: forces there are lower bounds",
+                                100.0 * diagnosis.saturated_share));
+  }
+  if (diagnosis.offset_drift && std::abs(*diagnosis.offset_drift) > kMuchOffsetDrift) {
+    found.push_back(fmt::format("unloaded taxels conduct {:+.0f} % against the calibration: calibrate again",
+                                100.0 * *diagnosis.offset_drift));
+  }
+  if (diagnosis.temperature && leaves_calibrated_range(*diagnosis.temperature, model.networks)) {
+    found.emplace_back("the temperature leaves the calibrated range: forces there are those at its end");
+  }
+  return found;
+}
+
+}  // namespace dermis::health

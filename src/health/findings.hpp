@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dermis/health/diagnosis.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::health {
+
+/// What is wrong by the values of the diagnosis, in plain words, a sentence each, worst first.
+[[nodiscard]] std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline::Model& model);
+
+}  // namespace dermis::health

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "health/offset_meter.hpp"
+
+#include <utility>
+
+#include "dermis/core/quantile.hpp"
+
+namespace dermis::health {
+
+std::optional<double> OffsetMeter::drift() const {
+  constexpr std::size_t kLeastFrames = 10;
+  std::vector<double> drifts;
+  for (std::size_t taxel = 0; taxel < share_.size(); ++taxel) {
+    const auto frames = static_cast<double>(frames_[taxel]);
+    if (frames_[taxel] >= kLeastFrames) drifts.push_back(share_[taxel] / frames - 1.0);
+  }
+  if (drifts.empty()) return std::nullopt;
+  return upper_median(std::move(drifts));
+}
+
+}  // namespace dermis::health

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace dermis::health {
+
+/// How far the unloaded taxels have moved from their calibration.
+class OffsetMeter {
+ public:
+  explicit OffsetMeter(std::size_t taxels) : share_(taxels), frames_(taxels) {}
+
+  /// What a taxel that nothing touches conducts, over what it was calibrated to conduct unloaded.
+  void add(std::size_t taxel, double share) {
+    share_[taxel] += share;
+    ++frames_[taxel];
+  }
+
+  /// Median over the taxels, relative; empty where none was unloaded long enough.
+  [[nodiscard]] std::optional<double> drift() const;
+
+ private:
+  std::vector<double> share_;        // sum over the frames [taxels]
+  std::vector<std::size_t> frames_;  // [taxels]
+};
+
+}  // namespace dermis::health

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/recordings/frame_file_info.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+namespace dermis::recordings {
+namespace {
+
+/// Before 2000, a time is no clock time but counted from an origin of its own: that of a simulation.
+constexpr Nanos kEarliestClock = std::chrono::sys_days(std::chrono::year(2000) / 1 / 1).time_since_epoch();
+
+Result<FrameFileInfo> info_of_recording(const std::string& path) {
+  Result<RecordingInfo> recording = recording_info(path);
+  if (!recording) return recording.error();
+  FrameFileInfo info;
+  info.frames = recording->frames;
+  info.duration_s = recording->duration_s;
+  if (recording->frames > 0 && recording->start_utc >= kEarliestClock) info.start_utc = recording->start_utc;
+  info.lost = recording->lost;
+  info.complete = recording->complete;
+  if (recording->arrays.size() > 1) {
+    info.arrays = std::move(recording->arrays);
+  } else {
+    const RecordedArrayInfo& array = recording->arrays.front();
+    info.shape = array.shape;
+    info.notes = {array.name, array.array_toml, array.model_hash};
+  }
+  info.compression = recording->compression;
+  info.software = recording->software_version;
+  info.topics = std::move(recording->topics);
+  return info;
+}
+
+void add(const RawFrame& frame, FrameFileInfo& info) {
+  if (info.frames++ == 0 && frame.acquisition.arrival_utc >= kEarliestClock) {
+    info.start_utc = frame.acquisition.arrival_utc;
+  }
+  if (!frame.temperature_celsius || std::isnan(*frame.temperature_celsius)) return;
+  const double celsius = *frame.temperature_celsius;
+  auto& range = info.temperature_celsius;
+  if (!range) range.emplace(celsius, celsius);
+  range = {std::min(range->first, celsius), std::max(range->second, celsius)};
+}
+
+Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format) {
+  const bool is_timed = format != FrameFormat::npy;
+  const Result<std::unique_ptr<FrameSource>> source =
+      open_frames(path, {.rate_hz = is_timed ? std::nullopt : std::optional(1e3)});
+  if (!source) return source.error();
+  Result<FrameNotes> notes = read_frame_notes(path);
+  if (!notes) return notes.error();
+  FrameFileInfo info;
+  info.notes = std::move(*notes);
+  info.shape = (*source)->shape();
+  RawFrame frame;
+  Nanos first{};
+  while (true) {
+    const Result<bool> more = (*source)->next(frame);
+    if (!more) return more.error();
+    if (!*more) break;
+    if (info.frames == 0) first = frame.time;
+    add(frame, info);
+  }
+  if (is_timed) info.duration_s = std::chrono::duration<double>(info.frames > 0 ? frame.time - first : Nanos{}).count();
+  if (format == FrameFormat::hdf5) info.lost = (*source)->statistics().lost_frames;
+  return info;
+}
+
+}  // namespace
+
+std::optional<double> FrameFileInfo::rate_hz() const {
+  if (!arrays.empty()) return std::nullopt;
+  if (!duration_s || !(*duration_s > 0.0) || frames < 2) return std::nullopt;
+  return static_cast<double>(frames - 1) / *duration_s;
+}
+
+Result<FrameFileInfo> frame_file_info(const std::string& path) {
+  const Result<FrameFormat> format = recognise_frames(path);
+  if (!format) return format.error();
+  Result<FrameFileInfo> info = *format == FrameFormat::mcap ? info_of_recording(path) : info_of_frames(path, *format);
+  if (!info) return info;
+  info->format = *format;
+  std::error_code is_no_file;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, is_no_file);
+  if (!is_no_file) info->bytes = bytes;
+  return info;
+}
+
+}  // namespace dermis::recordings

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/health/examination.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <limits>
+#include <vector>
+
+#include "dermis/simulation/adc.hpp"
+#include "dermis/simulation/line_faults.hpp"
+#include "support/hand_made_model.hpp"
+
+namespace dermis::health {
+namespace {
+
+constexpr std::uint64_t kSeed = 3;
+
+/// An array of 8 x 8 taxels that is measured a hundred times a second, and what is out of order about it.
+struct Measurement {
+  pipeline::Model model = support::hand_made_model(8, 8);
+  simulation::LineFaults faults;
+  double noise_lsb = 1.0;
+  double unloaded_share = 1.0;  ///< Of the conductance that was calibrated.
+  double celsius = 25.0;
+  std::vector<double> newtons = std::vector<double>(64);
+  std::size_t frames = 200;
+
+  Measurement() {
+    model.array.readout.adc_bits = 16;
+    model.array.readout.load_ohm.assign(8, 2000.0);
+  }
+
+  [[nodiscard]] RawFrame frame(std::size_t number) const {
+    std::vector<double> siemens(newtons.size());
+    for (std::size_t k = 0; k < siemens.size(); ++k) {
+      siemens[k] = support::siemens_under(model, k, newtons[k], celsius) * (newtons[k] > 0.0 ? 1.0 : unloaded_share);
+    }
+    std::vector<double> ratio(siemens.size());
+    simulation::FaultyCircuit::create(model.array, faults)->ratios(siemens, number, ratio);
+    RawFrame raw;
+    raw.time = number * std::chrono::milliseconds(10);
+    raw.temperature_celsius = celsius;
+    raw.supply_v = 5.0;
+    raw.counts.resize(siemens.size());
+    Random random(kSeed + number);
+    simulation::Adc(model.array.readout, noise_lsb).convert(ratio, 5.0, random, raw.counts);
+    return raw;
+  }
+};
+
+/// A pipeline and its examination, frame by frame.
+class Examined {
+ public:
+  explicit Examined(const pipeline::Model& model)
+      : pipeline_(pipeline::Pipeline::create(model).value()), examination_(model) {}
+
+  void add(const RawFrame& raw) {
+    pipeline_.process(raw, force_);
+    examination_.add(raw, pipeline_);
+  }
+  [[nodiscard]] Diagnosis diagnosis() const { return examination_.diagnosis(pipeline_); }
+
+ private:
+  pipeline::Pipeline pipeline_;
+  Examination examination_;
+  ForceFrame force_;
+};
+
+Diagnosis examine(const Measurement& measurement) {
+  Examined examined(measurement.model);
+  for (std::size_t number = 0; number < measurement.frames; ++number) examined.add(measurement.frame(number));
+  return examined.diagnosis();
+}
+
+bool says(const Diagnosis& diagnosis, const std::string& words) {
+  for (const std::string& finding : diagnosis.findings) {
+    if (finding.find(words) != std::string::npos) return true;
+  }
+  return false;
+}
+
+TEST(Examination, an_array_as_it_was_calibrated_is_healthy) {
+  const Diagnosis diagnosis = examine(Measurement());
+  EXPECT_TRUE(diagnosis.is_healthy()) << diagnosis.findings.front();
+  EXPECT_EQ(diagnosis.frames, 200U);
+  EXPECT_EQ(diagnosis.frames_rejected, 0U);
+  EXPECT_EQ(diagnosis.frames_unsolved, 0U);
+  EXPECT_NEAR(diagnosis.seconds, 1.99, 1e-9);
+  ASSERT_TRUE(diagnosis.noise_counts);
+  EXPECT_NEAR(*diagnosis.noise_counts, 1.04, 0.1);  // with the rounding of the ADC
+  ASSERT_TRUE(diagnosis.offset_drift);
+  EXPECT_NEAR(*diagnosis.offset_drift, 0.0, 0.02);
+  ASSERT_TRUE(diagnosis.temperature);
+  EXPECT_EQ(diagnosis.temperature->coldest_celsius, 25.0);
+  EXPECT_EQ(diagnosis.temperature->hottest_celsius, 25.0);
+  EXPECT_TRUE(diagnosis.blind_lines.empty());
+}
+
+TEST(Examination, an_open_row_is_found_with_its_place_and_its_first_frame) {
+  Measurement measurement;
+  measurement.faults.open_rows = {2};
+  measurement.faults.from_frame = 50;
+  const Diagnosis diagnosis = examine(measurement);
+  ASSERT_EQ(diagnosis.faults.size(), 1U);
+  EXPECT_EQ(diagnosis.faults[0].fault.kind, compensation::LineFaultKind::silent_row);
+  EXPECT_EQ(diagnosis.faults[0].fault.place, 2U);
+  EXPECT_EQ(diagnosis.faults[0].fault.frame, 50U);
+  EXPECT_FALSE(diagnosis.faults[0].until);
+  ASSERT_EQ(diagnosis.findings.size(), 1U);
+  EXPECT_EQ(diagnosis.findings[0], "row 2 " + describe(diagnosis.faults[0], measurement.model.array));
+}
+
+TEST(Examination, a_fault_that_goes_has_an_end) {
+  Measurement measurement;
+  measurement.faults.open_columns = {5};
+  measurement.faults.from_frame = 50;
+  measurement.faults.until_frame = 100;
+  const Diagnosis diagnosis = examine(measurement);
+  ASSERT_EQ(diagnosis.faults.size(), 1U);
+  ASSERT_TRUE(diagnosis.faults[0].until);
+  EXPECT_GE(*diagnosis.faults[0].until, 100U);
+  EXPECT_LE(*diagnosis.faults[0].until, 120U);
+  EXPECT_TRUE(says(diagnosis, "loose contact"));
+}
+
+TEST(Examination, noise_that_has_grown_is_found_and_contacts_are_no_noise) {
+  Measurement measurement;
+  measurement.newtons[27] = 20.0;
+  EXPECT_TRUE(examine(measurement).is_healthy());
+  measurement.noise_lsb = 4.0;
+  const Diagnosis diagnosis = examine(measurement);
+  EXPECT_NEAR(diagnosis.noise_counts.value_or(0.0), 4.0, 0.4);
+  EXPECT_TRUE(says(diagnosis, "the readings have 4.0 counts of noise, 1.0 were calibrated"));
+}
+
+TEST(Examination, noise_is_not_known_where_everything_is_touched) {
+  Measurement measurement;
+  measurement.newtons.assign(64, 5.0);
+  const Diagnosis diagnosis = examine(measurement);
+  EXPECT_FALSE(diagnosis.noise_counts);
+  EXPECT_FALSE(diagnosis.offset_drift);
+}
+
+TEST(Examination, unloaded_taxels_that_have_moved_ask_for_a_calibration) {
+  Measurement measurement;
+  measurement.unloaded_share = 1.5;
+  const Diagnosis diagnosis = examine(measurement);
+  EXPECT_NEAR(diagnosis.offset_drift.value_or(0.0), 0.5, 0.05);
+  EXPECT_TRUE(says(diagnosis, "unloaded taxels conduct +50 % against the calibration: calibrate again"));
+}
+
+TEST(Examination, a_temperature_beyond_the_calibration_is_found_with_a_margin_of_one_degree) {
+  Measurement measurement;
+  measurement.celsius = 45.9;
+  EXPECT_FALSE(says(examine(measurement), "the temperature leaves the calibrated range"));
+  measurement.celsius = 46.1;
+  EXPECT_TRUE(says(examine(measurement), "the temperature leaves the calibrated range"));
+}
+
+TEST(Examination, readings_at_the_end_of_the_adc_are_counted) {
+  Measurement measurement;
+  measurement.model.array.readout.adc_reference_v = 1.0;
+  measurement.model.array.readout.supply_v = 5.0;
+  measurement.newtons[9] = 40.0;
+  const Diagnosis diagnosis = examine(measurement);
+  EXPECT_DOUBLE_EQ(diagnosis.saturated_share, 1.0 / 64.0);
+  EXPECT_TRUE(says(diagnosis, "1.6 % of the readings stand at the end of the ADC"));
+}
+
+TEST(Examination, rejected_frames_are_counted_by_their_reason) {
+  const Measurement measurement;
+  Examined examined(measurement.model);
+  RawFrame raw = measurement.frame(0);
+  raw.counts[5] = std::numeric_limits<float>::quiet_NaN();
+  raw.counts.resize(63);
+  examined.add(raw);
+  const Diagnosis none = examined.diagnosis();
+  EXPECT_EQ(none.frames_rejected, 1U);
+  EXPECT_EQ(none.seconds, 0.0);
+  EXPECT_FALSE(none.temperature);
+  EXPECT_TRUE(says(none, "no frame could be used"));
+  examined.add(measurement.frame(1));
+  const Diagnosis diagnosis = examined.diagnosis();
+  EXPECT_EQ(diagnosis.frames, 2U);
+  ASSERT_EQ(diagnosis.rejections.size(), 1U);
+  EXPECT_EQ(diagnosis.rejections.begin()->second, 1U);
+  EXPECT_TRUE(says(diagnosis, "1 frames rejected: " + diagnosis.rejections.begin()->first));
+  EXPECT_FALSE(says(diagnosis, "no frame could be used"));
+}
+
+TEST(Examination, lines_that_read_too_little_unloaded_are_blind) {
+  Measurement measurement;
+  measurement.model.array.readout.adc_bits = 8;
+  measurement.model.array.readout.load_ohm.assign(8, 20.0);
+  measurement.frames = 20;
+  const Diagnosis diagnosis = examine(measurement);
+  EXPECT_EQ(diagnosis.blind_lines.size(), 16U);
+  EXPECT_EQ(diagnosis.blind_lines.front(), "row 0");
+  EXPECT_EQ(diagnosis.blind_lines.back(), "column 7");
+}
+
+}  // namespace
+}  // namespace dermis::health
