@@ -15,6 +15,7 @@
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis_wire.h"
+#include "support/places.hpp"
 
 namespace dermis::acquisition {
 namespace {
@@ -268,7 +269,7 @@ TEST(Firmware, sends_what_the_library_sends) {
 }
 
 TEST(Firmware, the_example_sends_frames) {
-  std::FILE* output = popen(DERMIS_FIRMWARE_EXAMPLE, "r");  // NOLINT(cert-env33-c): the path is of the build
+  std::FILE* output = popen(support::firmware_example().c_str(), "r");  // NOLINT(cert-env33-c): the path is of the build
   ASSERT_NE(output, nullptr);
   Bytes bytes(100000);
   bytes.resize(std::fread(bytes.data(), 1, bytes.size(), output));

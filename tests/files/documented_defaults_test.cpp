@@ -14,13 +14,14 @@
 #include <vector>
 
 #include "dermis/files/array_toml.hpp"
+#include "support/places.hpp"
 
 namespace dermis::files {
 namespace {
 
 /// Key and what the column "default" says, without its backticks; one row for each key of a row that names several.
 std::vector<std::pair<std::string, std::string>> documented_keys() {
-  std::ifstream page(DERMIS_DOCS "/file-formats.md");
+  std::ifstream page(support::project_folder() / "docs/file-formats.md");
   std::vector<std::pair<std::string, std::string>> keys;
   const std::regex row(R"(^\| (`[^|]*`) \|[^|]*\| ([^|]*) \|.*)");
   const std::regex name("`([a-z_.]+)`");

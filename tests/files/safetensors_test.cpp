@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "support/mutations.hpp"
+#include "support/places.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::files {
@@ -70,7 +71,7 @@ TEST(Safetensors, writes_the_same_bytes_for_the_same_content) {
 TEST(Safetensors, agrees_with_an_independent_reader) {
   const support::TemporaryFolder folder;
   ASSERT_TRUE(write_safetensors(folder.file("m"), example()));
-  const std::filesystem::path script = std::filesystem::path(__FILE__).parent_path() / "read_safetensors.py";
+  const std::filesystem::path script = support::project_folder() / "tests/files/read_safetensors.py";
   const std::string command = "/usr/bin/python3 " + script.string() + " " + folder.file("m");
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> output(::popen(command.c_str(), "r"), &::pclose);
   ASSERT_NE(output, nullptr);

@@ -17,6 +17,7 @@
 #include "dermis/core/random.hpp"
 #include "dermis/network/perceptron.hpp"
 #include "support/dense_solve.hpp"
+#include "support/places.hpp"
 
 namespace dermis::network {
 namespace {
@@ -299,7 +300,7 @@ struct GoldenFit {
 
 GoldenFit read_golden_fit() {
   GoldenFit fit;
-  std::ifstream file(std::filesystem::path(__FILE__).parent_path() / "golden" / "perceptron_fit.csv");
+  std::ifstream file(support::project_folder() / "tests/network/golden/perceptron_fit.csv");
   for (std::string line; std::getline(file, line);) {
     std::istringstream cells(line);
     std::string kind;

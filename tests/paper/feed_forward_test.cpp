@@ -20,6 +20,7 @@
 #include "dermis/paper/error_measures.hpp"
 #include "paper/reference_network.hpp"
 #include "support/allocation_guard.hpp"
+#include "support/places.hpp"
 #include "support/simd_targets.hpp"
 
 namespace dermis::paper {
@@ -530,7 +531,7 @@ Activation activation_of(const std::string& text) {
 
 std::vector<GoldenNetwork> read_golden_networks() {
   std::vector<GoldenNetwork> networks;
-  std::ifstream file(std::filesystem::path(__FILE__).parent_path() / "golden" / "feed_forward.csv");
+  std::ifstream file(support::project_folder() / "tests/paper/golden/feed_forward.csv");
   for (std::string line; std::getline(file, line);) {
     std::istringstream cells(line);
     std::string kind;

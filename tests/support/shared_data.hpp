@@ -5,12 +5,14 @@
 #include <filesystem>
 #include <string>
 
+#include "support/places.hpp"
+
 namespace dermis::support {
 
 /// A folder of recordings of real arrays. Where it is not there, tests of them GTEST_SKIP() << not_checked(folder),
 /// which ctest lists in its summary.
 inline std::filesystem::path shared_data(const char* folder) {
-  return std::filesystem::path(DERMIS_SHARED_DATA) / folder;
+  return shared_data_folder() / folder;
 }
 
 inline std::string not_checked(const std::filesystem::path& folder) {

@@ -68,7 +68,7 @@ void DriftingDriverDetector::judge(const Observation& seen, FaultList& faults) n
 void DriftingDriverDetector::compare_with_last(const Observation& seen, std::size_t line, FaultList& faults) noexcept {
   const double rise = seen.sums.driven_siemens()[line] - last_line_siemens_[line];
   auto [now, last, variance, unloaded_siemens] = untouched_pair(seen, line);
-  if (std::abs(rise) < kPressedShare * unloaded_siemens || !(variance > 0.0)) return;
+  if (std::abs(rise) < kTouchedShare * unloaded_siemens || !(variance > 0.0)) return;
   Driver& driver = drivers_[line];
   if (driver.fallen.pairs + driver.risen.pairs == 0.0) {
     driver.first_frame = seen.frame;

@@ -80,7 +80,7 @@ double GroundedLineDetector::evidence_at(const Observation& seen, const LineFaul
   const std::size_t taxel = taxel_on_line(array_, axis, fault.place, place);
   const double unloaded_siemens = seen.unloaded.siemens()[taxel];
   const double pressed_siemens = seen.conductance.siemens[taxel] - common_share_ * unloaded_siemens;
-  if (pressed_siemens < kPressedShare * unloaded_siemens) return 0.0;
+  if (pressed_siemens < kTouchedShare * unloaded_siemens) return 0.0;
   const Sums untouched = sums_on(seen, crossing(axis), place);
   const double difference = taken_share(seen, axis, place, pressed_siemens) * untouched.expected;
   const double doubt = kDoubtOfEstimate * difference;

@@ -76,7 +76,7 @@ double StuckTaxelDetector::count_repetitions(const Observation& seen, const Coun
     const double count = scale.zero + scale.per_ratio * ratio;
     const double interior = (count > 0.5 ? 1.0 : 0.0) * (count < most ? 1.0 : 0.0);
     const double repeated = std::abs(count - last_counts[taxel]) < kSameCount ? interior : 0.0;
-    const double pressed = ratio > kPressedShare * unloaded[taxel] + least_pressed ? 1.0 : 0.0;
+    const double pressed = ratio > kTouchedShare * unloaded[taxel] + least_pressed ? 1.0 : 0.0;
     last_counts[taxel] = count;
     idle += interior * (1.0 - pressed);
     idle_repeated += repeated * (1.0 - pressed);

@@ -67,7 +67,7 @@ SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observati
   for (std::size_t col = 0; col < array_.cols; ++col) {
     const std::size_t own = array_.index(row, col);
     if ((faults.causes(own) & ~kRowCause) != 0 || seen.conditioned.taxels[own] != TaxelStatus::ok) continue;
-    if (ratio[own] < kPressedSigmas * sigma + kPressedShare * seen.unloaded.ratio()[own]) continue;
+    if (ratio[own] < kPressedSigmas * sigma + kTouchedShare * seen.unloaded.ratio()[own]) continue;
     const ColumnComparison press = compare_in_column(seen, row, col, faults);
     found.fails += press.fails;
     if (!press.shows) continue;
@@ -95,7 +95,7 @@ SuppliedRowDetector::ColumnComparison SuppliedRowDetector::compare_in_column(con
     if (other == row || (faults.causes(taxel) & (kRowCause | kStuckCause)) != 0) continue;
     const double more = ratio[taxel] - ratio[own];
     ++others;
-    if (more < kPressedShare * seen.unloaded.ratio()[taxel] + kEqualSigmas * deviation) ++alike;
+    if (more < kTouchedShare * seen.unloaded.ratio()[taxel] + kEqualSigmas * deviation) ++alike;
     if (more < -kEqualSigmas * deviation) is_least = false;
     if (more < -kDifferentSigmas * deviation) ++found.fails;
   }

@@ -78,7 +78,7 @@ void UnloadedTaxels::expect_beside_no_press(const ConditionedFrame& conditioned)
 void UnloadedTaxels::find_pressed_lines(const ConditionedFrame& conditioned) noexcept {
   for (const Axis axis : kAxes) std::fill(pressed_lines_[axis].begin(), pressed_lines_[axis].end(), std::uint8_t{0});
   for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {
-    const double most = kPressedShare * ratio_[taxel] + kMostSigmas * conditioned.sigma_ratio;
+    const double most = touched_above(ratio_[taxel], conditioned.sigma_ratio, kMostSigmas);
     if (conditioned.ratio[taxel] <= most) continue;
     pressed_lines_.row[taxel / array_.cols] = 1;
     pressed_lines_.column[taxel % array_.cols] = 1;

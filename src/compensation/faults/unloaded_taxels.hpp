@@ -10,11 +10,11 @@
 #include "compensation/faults/line_sums.hpp"
 #include "dermis/core/axis.hpp"
 #include "dermis/core/frames.hpp"
+#include "dermis/core/touch.hpp"
 
 namespace dermis::compensation {
 
 inline constexpr double kUnloadedShare = 0.3;  // of the unloaded conductance: temperature, memory, age leave at least
-inline constexpr double kPressedShare = 3.0;   // of the unloaded conductance, or more: a load
 
 /// What taxels read that nothing presses.
 class UnloadedTaxels {
@@ -36,7 +36,7 @@ class UnloadedTaxels {
 
   /// Most that an unloaded taxel may come out with, at this standard deviation of its conductance.
   [[nodiscard]] double most_siemens(std::size_t taxel, double sigma_siemens) const noexcept {
-    return kPressedShare * siemens_[taxel] + kMostSigmas * sigma_siemens;
+    return touched_above(siemens_[taxel], sigma_siemens, kMostSigmas);
   }
 
  private:
