@@ -19,8 +19,8 @@
 #include "dermis/core/random.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "support/allocation_guard.hpp"
-#include "support/shared_data.hpp"
 #include "support/reference_array.hpp"
+#include "support/shared_data.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -145,7 +145,7 @@ std::vector<FaultCase> fault_cases(const ArrayDescription& array) {
   };
 }
 
-TEST(LineFaultMonitor, FindsAndLocatesEveryFaultAndSeesItHeal) {
+TEST(LineFaultMonitor, finds_and_locates_every_fault_and_sees_it_heal) {
   constexpr std::size_t kFrom = 15;
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
     for (const std::size_t size : {8UL, 16UL}) {
@@ -180,7 +180,7 @@ TEST(LineFaultMonitor, FindsAndLocatesEveryFaultAndSeesItHeal) {
   }
 }
 
-TEST(LineFaultMonitor, FindsSilentLinesThatNothingTouches) {
+TEST(LineFaultMonitor, finds_silent_lines_that_nothing_touches) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance, Circuit::flexitac, Circuit::none}) {
     for (const bool row : {true, false}) {
       SCOPED_TRACE(testing::Message() << to_string(circuit) << (row ? " row" : " column"));
@@ -203,7 +203,7 @@ TEST(LineFaultMonitor, FindsSilentLinesThatNothingTouches) {
   }
 }
 
-TEST(LineFaultMonitor, NoFalseAlarmOnHealthyArrays) {
+TEST(LineFaultMonitor, no_false_alarm_on_healthy_arrays) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance, Circuit::flexitac, Circuit::none}) {
     for (const char* scene : {"multitouch", "idle"}) {
       const ArrayDescription array = reference_circuit(8, 8, circuit);
@@ -217,7 +217,7 @@ TEST(LineFaultMonitor, NoFalseAlarmOnHealthyArrays) {
 
 /// Offsets that stay up after a press, loops, 1/f noise, temperatures that halve and double the conductance, and an
 /// unloaded conductance that was calibrated too high or too low.
-TEST(LineFaultMonitor, MemoryOfTheMaterialIsNoFault) {
+TEST(LineFaultMonitor, memory_of_the_material_is_no_fault) {
   simulation::RubberOptions rubber;
   rubber.hysteresis = 0.2;
   rubber.creep = 0.1;
@@ -243,7 +243,7 @@ TEST(LineFaultMonitor, MemoryOfTheMaterialIsNoFault) {
   }
 }
 
-TEST(LineFaultMonitor, SaysWhereItIsBlind) {
+TEST(LineFaultMonitor, says_where_it_is_blind) {
   for (const double unloaded_ohm : {200e3, 10e6}) {
     Rig rig(reference_circuit(16, 16), "idle", 2, 40, {}, unloaded_ohm);
     EXPECT_FALSE(rig.monitor().sees_silent_row(3)) << "before the first frame";
@@ -254,7 +254,7 @@ TEST(LineFaultMonitor, SaysWhereItIsBlind) {
   }
 }
 
-TEST(LineFaultMonitor, TwoFramesWithoutReadingsAreNoFault) {
+TEST(LineFaultMonitor, two_frames_without_readings_are_no_fault) {
   Rig rig(reference_circuit(8, 8), "idle", 3, 40);
   for (int frame = 0; frame < 10; ++frame) ASSERT_TRUE(rig.next());
   std::fill(rig.conditioned().ratio.begin(), rig.conditioned().ratio.end(), 0.0);
@@ -264,14 +264,14 @@ TEST(LineFaultMonitor, TwoFramesWithoutReadingsAreNoFault) {
   EXPECT_EQ(rig.changes(), 0);
 }
 
-TEST(LineFaultMonitor, RepeatedFramesAreNoStuckTaxels) {
+TEST(LineFaultMonitor, repeated_frames_are_no_stuck_taxels) {
   Rig rig(reference_circuit(8, 8), "multitouch", 3, 2);
   ASSERT_TRUE(rig.next());
   for (int frame = 0; frame < 200; ++frame) rig.process();
   EXPECT_EQ(rig.changes(), 0);
 }
 
-TEST(LineFaultMonitor, MeasuresADriftingDriver) {
+TEST(LineFaultMonitor, measures_a_drifting_driver) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
     LineFaults faults;
     faults.drifting_rows = {5};
@@ -287,7 +287,7 @@ TEST(LineFaultMonitor, MeasuresADriftingDriver) {
   }
 }
 
-TEST(LineFaultMonitor, TellsAnOpenRowFromOneShortedToGround) {
+TEST(LineFaultMonitor, tells_an_open_row_from_one_shorted_to_ground) {
   for (const bool grounded : {false, true}) {
     LineFaults faults;
     (grounded ? faults.grounded_rows : faults.open_rows) = {6};
@@ -316,7 +316,7 @@ std::vector<std::vector<double>> read_counts(const std::filesystem::path& path) 
 
 /// Hour-long recordings of six vendor modules that warm up unloaded (13 x 6 and 14 x 6 taxels, circuit unknown). The
 /// unloaded readings are those of the first frames, as a calibration would take them.
-TEST(LineFaultMonitor, FindsNothingOnRealModulesThatWarmUp) {
+TEST(LineFaultMonitor, finds_nothing_on_real_modules_that_warm_up) {
   const std::filesystem::path folder = support::shared_data("dsa_recordings");
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << support::not_checked(folder);
   constexpr std::size_t kCalibrationFrames = 50;
@@ -373,7 +373,7 @@ std::pair<double, double> error_ratios(const ArrayDescription& array, const Line
           quantile(error_faulty, 0.95) / quantile(error_healthy, 0.95)};
 }
 
-TEST(FaultySolve, HealthyTaxelsStayRightBesideAnOpenLine) {
+TEST(FaultySolve, healthy_taxels_stay_right_beside_an_open_line) {
   struct Case {
     Circuit circuit;
     LineFaults faults;
@@ -406,7 +406,7 @@ TEST(FaultySolve, HealthyTaxelsStayRightBesideAnOpenLine) {
 
 /// Not as exact: a supply that leaks into every scan doubles the noise at least, and what flows into a column at the
 /// supply or at 0 V is only estimated.
-TEST(FaultySolve, HealthyTaxelsStayUsableBesideALineAtARail) {
+TEST(FaultySolve, healthy_taxels_stay_usable_beside_a_line_at_a_rail) {
   LineFaults supplied_row;
   supplied_row.supplied_rows = {5};
   EXPECT_LE(error_ratios(reference_circuit(16, 16), supplied_row, 1).first, 3.0);
@@ -418,7 +418,7 @@ TEST(FaultySolve, HealthyTaxelsStayUsableBesideALineAtARail) {
   EXPECT_LE(error_ratios(reference_circuit(16, 16), grounded_column, 3).first, 4.0);
 }
 
-TEST(FaultySolve, EveryCircuitStaysFiniteWithEveryFault) {
+TEST(FaultySolve, every_circuit_stays_finite_with_every_fault) {
   std::vector<ArrayDescription> arrays = {reference_circuit(6, 5), reference_circuit(6, 5, Circuit::flexitac),
                                           reference_circuit(6, 5, Circuit::none), reference_circuit(2, 2),
                                           reference_circuit(1, 3)};
@@ -455,7 +455,7 @@ TEST(FaultySolve, EveryCircuitStaysFiniteWithEveryFault) {
   }
 }
 
-TEST(FaultySolve, AllocatesNothing) {
+TEST(FaultySolve, allocates_nothing) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
   LineFaults faults;
   faults.from_frame = 5;

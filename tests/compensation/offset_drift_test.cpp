@@ -138,7 +138,7 @@ simulation::RubberOptions leaky_rubber() {
   return options;
 }
 
-TEST(OffsetDrift, LeavesFramesAloneUntilItIsAskedTo) {
+TEST(OffsetDrift, leaves_frames_alone_until_it_is_asked_to) {
   Skin skin;
   OffsetDrift drift(kShape, skin.calibration());
   EXPECT_FALSE(drift.options().track);
@@ -151,7 +151,7 @@ TEST(OffsetDrift, LeavesFramesAloneUntilItIsAskedTo) {
   EXPECT_EQ(copy(drift.offsets()), std::vector<double>(kTaxels, 0.0));
 }
 
-TEST(OffsetDrift, APressOfTenMinutesLosesNothingWhileItWarmsUpByTenCelsius) {
+TEST(OffsetDrift, a_press_of_ten_minutes_loses_nothing_while_it_warms_up_by_ten_celsius) {
   for (const double unloaded_ohm : {200e3, 5e3}) {
     simulation::RubberOptions options;
     options.unloaded_ohm = unloaded_ohm;
@@ -176,7 +176,7 @@ TEST(OffsetDrift, APressOfTenMinutesLosesNothingWhileItWarmsUpByTenCelsius) {
   }
 }
 
-TEST(OffsetDrift, AWrongOffsetOfIdleTaxelsIsFound) {
+TEST(OffsetDrift, a_wrong_offset_of_idle_taxels_is_found) {
   Skin skin(leaky_rubber());
   OffsetDrift drift = tracking(skin);
   Random random(3);
@@ -186,7 +186,7 @@ TEST(OffsetDrift, AWrongOffsetOfIdleTaxelsIsFound) {
   EXPECT_LT(rms(skin.live(drift, 100.0, 50.0)), 0.1 * before);
 }
 
-TEST(OffsetDrift, SlowNoiseOfIdleTaxelsShrinks) {
+TEST(OffsetDrift, slow_noise_of_idle_taxels_shrinks) {
   simulation::RubberOptions options = leaky_rubber();
   options.pink_noise = 1e-5;
   Skin skin(options);
@@ -205,7 +205,7 @@ TEST(OffsetDrift, SlowNoiseOfIdleTaxelsShrinks) {
   EXPECT_LT(tracked, 0.8 * untracked);
 }
 
-TEST(OffsetDrift, ALoadThatGrowsSlowlyIsNotEaten) {
+TEST(OffsetDrift, a_load_that_grows_slowly_is_not_eaten) {
   for (const double unloaded_ohm : {200e3, 5e3}) {
     simulation::RubberOptions options;
     options.unloaded_ohm = unloaded_ohm;
@@ -225,7 +225,7 @@ TEST(OffsetDrift, ALoadThatGrowsSlowlyIsNotEaten) {
   }
 }
 
-TEST(OffsetDrift, FollowingAloneTakesNoMoreThanItsRangeHoweverSlowlyItIsLed) {
+TEST(OffsetDrift, following_alone_takes_no_more_than_its_range_however_slowly_it_is_led) {
   Skin skin(leaky_rubber());
   OffsetDrift drift = tracking(skin);
   const double unloaded = skin.unloaded(at(4, 4));
@@ -234,7 +234,7 @@ TEST(OffsetDrift, FollowingAloneTakesNoMoreThanItsRangeHoweverSlowlyItIsLed) {
   EXPECT_LE(drift.offsets()[at(4, 4)], 0.5 * unloaded + 3.3 * kSigmaSiemens);
 }
 
-TEST(OffsetDrift, TareTakesALoadForZeroAndAPressOnItReadsRight) {
+TEST(OffsetDrift, tare_takes_a_load_for_zero_and_a_press_on_it_reads_right) {
   simulation::RubberOptions options;
   options.exponent = 1.0;
   options.exponent_spread = 0.0;
@@ -253,7 +253,7 @@ TEST(OffsetDrift, TareTakesALoadForZeroAndAPressOnItReadsRight) {
   EXPECT_NEAR(skin.newtons(0, skin.live(drift, 2.0, 100.0)[0]), 0.5, 0.01);
 }
 
-TEST(OffsetDrift, TareOfAnArrayThatIsAtZeroAddsNoNoise) {
+TEST(OffsetDrift, tare_of_an_array_that_is_at_zero_adds_no_noise) {
   Skin skin;
   OffsetDrift drift(kShape, skin.calibration());
   for (const double rate_hz : {100.0, 5.0}) {
@@ -264,7 +264,7 @@ TEST(OffsetDrift, TareOfAnArrayThatIsAtZeroAddsNoNoise) {
   }
 }
 
-TEST(OffsetDrift, ATareIsFollowedAndTheTaredLoadMayLeaveAndComeBack) {
+TEST(OffsetDrift, a_tare_is_followed_and_the_tared_load_may_leave_and_come_back) {
   Skin skin;
   OffsetDrift drift = tracking(skin);
   skin.force_n[at(5, 5)] = 1.0;
@@ -279,7 +279,7 @@ TEST(OffsetDrift, ATareIsFollowedAndTheTaredLoadMayLeaveAndComeBack) {
   EXPECT_NEAR(skin.newtons(at(5, 5), skin.live(drift, 5.0, 10.0)[at(5, 5)]), 0.0, 0.02);
 }
 
-TEST(OffsetDrift, RubberThatCreepsBackIsNotTakenForDrift) {
+TEST(OffsetDrift, rubber_that_creeps_back_is_not_taken_for_drift) {
   simulation::RubberOptions options = leaky_rubber();
   options.creep = 0.1;
   Skin skin(options);
@@ -296,7 +296,7 @@ TEST(OffsetDrift, RubberThatCreepsBackIsNotTakenForDrift) {
   EXPECT_NEAR(drift.offsets()[at(3, 3)], offsets[at(3, 3)], 0.1 * skin.unloaded(at(3, 3)));
 }
 
-TEST(OffsetDrift, WhatReadsLessThanAnyLoadCanIsFollowedHoweverFarItIs) {
+TEST(OffsetDrift, what_reads_less_than_any_load_can_is_followed_however_far_it_is) {
   Skin skin(leaky_rubber());
   OffsetDrift drift = tracking(skin);
   skin.offset_error[at(1, 1)] = -0.6 * skin.unloaded(at(1, 1));
@@ -304,7 +304,7 @@ TEST(OffsetDrift, WhatReadsLessThanAnyLoadCanIsFollowedHoweverFarItIs) {
   EXPECT_NEAR(excess[at(1, 1)], 0.0, 0.02 * skin.unloaded(at(1, 1)));
 }
 
-TEST(OffsetDrift, TaxelsInTroubleKeepTheirOffsetAndTheOthersGoOn) {
+TEST(OffsetDrift, taxels_in_trouble_keep_their_offset_and_the_others_go_on) {
   Skin skin(leaky_rubber());
   OffsetDrift drift = tracking(skin);
   std::fill(skin.offset_error.begin(), skin.offset_error.end(), 0.05 * skin.unloaded(0));
@@ -322,7 +322,7 @@ TEST(OffsetDrift, TaxelsInTroubleKeepTheirOffsetAndTheOthersGoOn) {
   EXPECT_NEAR(drift.offsets()[at(7, 0)], 0.05 * skin.unloaded(0), 0.01 * skin.unloaded(0));
 }
 
-TEST(OffsetDrift, ATareSkipsTaxelsThatSayNothing) {
+TEST(OffsetDrift, a_tare_skips_taxels_that_say_nothing) {
   Skin skin;
   OffsetDrift drift(kShape, skin.calibration());
   std::fill(skin.force_n.begin(), skin.force_n.end(), 1.0);
@@ -337,7 +337,7 @@ TEST(OffsetDrift, ATareSkipsTaxelsThatSayNothing) {
   EXPECT_GT(drift.offsets()[6], 0.0);
 }
 
-TEST(OffsetDrift, ClocksMayJump) {
+TEST(OffsetDrift, clocks_may_jump) {
   Skin skin(leaky_rubber());
   OffsetDrift drift = tracking(skin);
   skin.live(drift, 30.0, 10.0);
@@ -355,14 +355,14 @@ TEST(OffsetDrift, ClocksMayJump) {
   EXPECT_GT(drift.offsets()[0], offsets[0] + 0.01 * skin.unloaded(0)) << "and it goes on";
 }
 
-TEST(OffsetDrift, FollowsAnArrayThatIsReadEveryTenSeconds) {
+TEST(OffsetDrift, follows_an_array_that_is_read_every_ten_seconds) {
   Skin skin(leaky_rubber());
   OffsetDrift drift = tracking(skin);
   std::fill(skin.offset_error.begin(), skin.offset_error.end(), 0.05 * skin.unloaded(0));
   EXPECT_NEAR(skin.live(drift, 600.0, 0.1)[9], 0.0, 0.02 * skin.unloaded(0));
 }
 
-TEST(OffsetDrift, FramesOfAnotherShapePass) {
+TEST(OffsetDrift, frames_of_another_shape_pass) {
   OffsetDrift drift = tracking(Skin());
   ConductanceFrame frame;
   frame.siemens = {1.0, 2.0};
@@ -370,7 +370,7 @@ TEST(OffsetDrift, FramesOfAnotherShapePass) {
   EXPECT_EQ(frame.siemens, (std::vector<double>{1.0, 2.0}));
 }
 
-TEST(OffsetDrift, AllocatesNothing) {
+TEST(OffsetDrift, allocates_nothing) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
   Skin skin;
   OffsetDrift drift = tracking(skin);

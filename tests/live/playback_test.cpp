@@ -57,7 +57,7 @@ std::size_t next_number(FrameSource& source) {
   return more && *more ? static_cast<std::size_t>(frame.counts[0]) : std::numeric_limits<std::size_t>::max();
 }
 
-TEST(Playback, BothArraysGiveAllFramesInOrderOnOneClock) {
+TEST(Playback, both_arrays_give_all_frames_in_order_on_one_clock) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 100);
   const auto playback = opened(folder.file("rec.mcap"));
@@ -87,7 +87,7 @@ TEST(Playback, BothArraysGiveAllFramesInOrderOnOneClock) {
   EXPECT_EQ(next_number(*sources[0]), 0U);
 }
 
-TEST(Playback, BeginsPausedWithTheFirstFramesAndShowsWhereItIsPut) {
+TEST(Playback, begins_paused_with_the_first_frames_and_shows_where_it_is_put) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 100);
   const auto playback = opened(folder.file("rec.mcap"));
@@ -108,7 +108,7 @@ TEST(Playback, BeginsPausedWithTheFirstFramesAndShowsWhereItIsPut) {
   EXPECT_EQ(playback->control({.play = false, .seek = Nanos::max()}).now, playback->end());
 }
 
-TEST(Playback, StopEndsSourcesThatWait) {
+TEST(Playback, stop_ends_sources_that_wait) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 10);
   const auto playback = opened(folder.file("rec.mcap"));
@@ -123,7 +123,7 @@ TEST(Playback, StopEndsSourcesThatWait) {
   playback->stop();
 }
 
-TEST(Playback, AWaitingSourceGoesOnWhenItIsToPlay) {
+TEST(Playback, a_waiting_source_goes_on_when_it_is_to_play) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 10);
   const auto playback = opened(folder.file("rec.mcap"));
@@ -136,7 +136,7 @@ TEST(Playback, AWaitingSourceGoesOnWhenItIsToPlay) {
   playback->control({.play = true, .speed = 0.5});
 }
 
-TEST(Playback, ASlowConsumerHoldsTheClockAndLosesNothing) {
+TEST(Playback, a_slow_consumer_holds_the_clock_and_loses_nothing) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 3000);
   const auto playback = opened(folder.file("rec.mcap"));
@@ -152,7 +152,7 @@ TEST(Playback, ASlowConsumerHoldsTheClockAndLosesNothing) {
   }
 }
 
-TEST(Playback, AnArrayThatComesLateOrThatNobodyTakesHoldsNothingUp) {
+TEST(Playback, an_array_that_comes_late_or_that_nobody_takes_holds_nothing_up) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 2500, 2400);
   for (const bool takes_back : {true, false}) {
@@ -167,7 +167,7 @@ TEST(Playback, AnArrayThatComesLateOrThatNobodyTakesHoldsNothingUp) {
   }
 }
 
-TEST(Playback, OneArrayOfARecordingIsChosenByItsName) {
+TEST(Playback, one_array_of_a_recording_is_chosen_by_its_name) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 10);
   const auto playback = opened(folder.file("rec.mcap") + "#back");
@@ -181,7 +181,7 @@ TEST(Playback, OneArrayOfARecordingIsChosenByItsName) {
   EXPECT_NE(wrong.error().message.find("has no array 'front'"), std::string::npos) << wrong.error().message;
 }
 
-TEST(Playback, OfNoFrameIsRefused) {
+TEST(Playback, of_no_frame_is_refused) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 0);
   const auto playback = Playback::open(folder.file("rec.mcap"));
@@ -189,7 +189,7 @@ TEST(Playback, OfNoFrameIsRefused) {
   EXPECT_EQ(playback.error().kind, ErrorKind::bad_input);
 }
 
-TEST(Playback, ADamagedRecordingGivesItsErrorToAllSources) {
+TEST(Playback, a_damaged_recording_gives_its_error_to_all_sources) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 35'000);  // two chunks
   std::string bytes = support::read_bytes(folder.file("rec.mcap"));

@@ -12,7 +12,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-TEST(Cdr, NumbersStandAtMultiplesOfTheirSizeBehindTheHeader) {
+TEST(Cdr, numbers_stand_at_multiples_of_their_size_behind_the_header) {
   Bytes bytes;
   CdrWriter writer(bytes);
   writer.write(std::uint8_t{1});
@@ -29,7 +29,7 @@ TEST(Cdr, NumbersStandAtMultiplesOfTheirSizeBehindTheHeader) {
   EXPECT_EQ(bytes, expected);
 }
 
-TEST(Cdr, TextsAndSequencesBeginWithTheirLength) {
+TEST(Cdr, texts_and_sequences_begin_with_their_length) {
   Bytes bytes;
   CdrWriter writer(bytes);
   writer.write_text("ab");
@@ -39,7 +39,7 @@ TEST(Cdr, TextsAndSequencesBeginWithTheirLength) {
   EXPECT_EQ(bytes, expected);
 }
 
-TEST(Cdr, WhatIsWrittenReadsBack) {
+TEST(Cdr, what_is_written_reads_back) {
   Bytes bytes{9, 9, 9};
   CdrWriter writer(bytes);
   writer.write(std::uint8_t{200});
@@ -62,7 +62,7 @@ TEST(Cdr, WhatIsWrittenReadsBack) {
   EXPECT_FALSE(reader.good());
 }
 
-TEST(Cdr, EveryCutMessageIsSeenAndReadsAsNothing) {
+TEST(Cdr, every_cut_message_is_seen_and_reads_as_nothing) {
   Bytes bytes;
   CdrWriter writer(bytes);
   writer.write(std::uint64_t{1});
@@ -78,7 +78,7 @@ TEST(Cdr, EveryCutMessageIsSeenAndReadsAsNothing) {
   }
 }
 
-TEST(Cdr, OtherRepresentationsAreRefused) {
+TEST(Cdr, other_representations_are_refused) {
   for (const std::uint8_t kind : Bytes{0, 2, 3, 7}) {  // big-endian, parameter lists, XCDR 2
     const Bytes bytes{0, kind, 0, 0, 1, 0, 0, 0};
     CdrReader reader(bytes);
@@ -87,7 +87,7 @@ TEST(Cdr, OtherRepresentationsAreRefused) {
   }
 }
 
-TEST(Cdr, ALengthBeyondTheMessageIsRefused) {
+TEST(Cdr, a_length_beyond_the_message_is_refused) {
   const Bytes bytes{0, 1, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF, 1, 2, 3, 4};
   CdrReader reader(bytes);
   EXPECT_TRUE(reader.read_bytes().empty());

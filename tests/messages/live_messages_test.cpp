@@ -233,7 +233,7 @@ TEST(LiveMessages, diagnoses_and_transforms_read_back) {
   EXPECT_EQ(read_by_definition(transforms_type(), message), json({{"transforms", json::array({transform})}}));
 }
 
-TEST(LiveMessages, ConductanceIsAGridLikeForce) {
+TEST(LiveMessages, conductance_is_a_grid_like_force) {
   ConductanceFrame frame;
   frame.time = kTime;
   frame.siemens = {1e-3, 2e-3};
@@ -248,7 +248,7 @@ TEST(LiveMessages, ConductanceIsAGridLikeForce) {
   EXPECT_EQ(last.back(), static_cast<std::uint8_t>(TaxelStatus::saturated));
 }
 
-TEST(LiveMessages, AllocateNothingOnceTheMessageHasItsSize) {
+TEST(LiveMessages, allocate_nothing_once_the_message_has_its_size) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
   const std::vector<TaxelPoint> points(256);
   ContactReport report;

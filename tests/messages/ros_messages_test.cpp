@@ -38,7 +38,7 @@ bool holds(const Bytes& message, const std::string& text) {
   return std::search(message.begin(), message.end(), text.begin(), text.end()) != message.end();
 }
 
-TEST(Image, IsLaidOutAsRosLaysItOut) {
+TEST(Image, is_laid_out_as_ros_lays_it_out) {
   Bytes message;
   encode_image(frame_of({1, 2, 258, 4, 5, 65535}, Nanos(7'000'000'009)), {2, 3}, "a", message);
   const Bytes expected{
@@ -49,7 +49,7 @@ TEST(Image, IsLaidOutAsRosLaysItOut) {
   EXPECT_EQ(message, expected);
 }
 
-TEST(Image, AllCountsReadBackWithTheirBits) {
+TEST(Image, all_counts_read_back_with_their_bits) {
   support::for_each_simd_target([] {
     Random random(1);
     for (std::size_t size = 1; size < 200; ++size) {
@@ -70,7 +70,7 @@ TEST(Image, AllCountsReadBackWithTheirBits) {
   });
 }
 
-TEST(Image, OneCountThatIsNoWordMakesAllFloats) {
+TEST(Image, one_count_that_is_no_word_makes_all_floats) {
   const auto signalling = std::bit_cast<float>(0x7FA00001U);
   for (const float odd : {kNan, -kNan, signalling, kInfinity, -kInfinity, -0.0F, -1.0F, 0.5F, 65535.5F, 65536.0F, 3e9F,
                           -3e9F, 1e-45F, 4294967296.0F}) {
@@ -91,7 +91,7 @@ TEST(Image, OneCountThatIsNoWordMakesAllFloats) {
   }
 }
 
-TEST(Image, TimesBeyondAStampTakeItsEnds) {
+TEST(Image, times_beyond_a_stamp_take_its_ends) {
   const auto stamp_of = [](Nanos time) {
     Bytes message;
     encode_image(frame_of({1}, time), {1, 1}, "", message);
@@ -108,7 +108,7 @@ TEST(Image, TimesBeyondAStampTakeItsEnds) {
 Bytes image_with(const char* encoding, std::uint8_t is_bigendian, std::uint32_t height, std::uint32_t width,
                  std::uint32_t step, const Bytes& data);
 
-TEST(Image, DecodesBigEndianAndPaddedRows) {
+TEST(Image, decodes_big_endian_and_padded_rows) {
   RawFrame frame;
   ASSERT_TRUE(decode_image(image_with("mono16", 1, 2, 2, 5, {1, 2, 0, 3, 99, 0, 4, 255, 255, 99}), frame));
   EXPECT_EQ(frame.counts, (std::vector<float>{258, 3, 4, 65535}));
@@ -116,7 +116,7 @@ TEST(Image, DecodesBigEndianAndPaddedRows) {
   EXPECT_EQ(frame.counts, std::vector<float>{1.0F});
 }
 
-TEST(Image, WhatIsNoImageIsRefused) {
+TEST(Image, what_is_no_image_is_refused) {
   RawFrame frame;
   const auto refusal = [&](const Bytes& message) {
     const Result<FrameShape> decoded = decode_image(message, frame);
@@ -132,7 +132,7 @@ TEST(Image, WhatIsNoImageIsRefused) {
   EXPECT_NE(refusal({}).find("no whole"), std::string::npos);
 }
 
-TEST(Temperature, ReadsBack) {
+TEST(Temperature, reads_back) {
   for (const double celsius : {23.456, -40.0, 0.0}) {
     Bytes message;
     encode_temperature(celsius, Nanos(5), "array", message);
@@ -143,7 +143,7 @@ TEST(Temperature, ReadsBack) {
   EXPECT_FALSE(decode_temperature(Bytes{0, 1, 0, 0}));
 }
 
-TEST(AcquisitionMessage, EveryFieldReadsBack) {
+TEST(AcquisitionMessage, every_field_reads_back) {
   Random random(2);
   for (int i = 0; i < 1000; ++i) {
     RawFrame frame;
@@ -181,7 +181,7 @@ ForceFrame random_forces(std::size_t taxel_count, std::uint64_t seed) {
   return frame;
 }
 
-TEST(Grid, ForcesReadBackWithTheirBits) {
+TEST(Grid, forces_read_back_with_their_bits) {
   for (const FrameShape shape : {FrameShape{1, 1}, {3, 5}, {64, 160}}) {
     const ForceFrame frame = random_forces(shape.taxel_count(), 3);
     Bytes message;
@@ -200,7 +200,7 @@ TEST(Grid, ForcesReadBackWithTheirBits) {
   }
 }
 
-TEST(Messages, AnyDamageIsAValueOrAnError) {
+TEST(Messages, any_damage_is_a_value_or_an_error) {
   const ForceFrame forces = random_forces(6, 4);
   RawFrame raw = frame_of({1, 2, 3, 4, 5, 6});
   std::vector<Bytes> messages(5);
@@ -229,7 +229,7 @@ TEST(Messages, AnyDamageIsAValueOrAnError) {
   }
 }
 
-TEST(Messages, AWarmBufferIsReused) {
+TEST(Messages, a_warm_buffer_is_reused) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "the sanitizer owns malloc";
   const FrameShape shape{64, 160};
   const ForceFrame forces = random_forces(shape.taxel_count(), 6);
@@ -249,7 +249,7 @@ TEST(Messages, AWarmBufferIsReused) {
   EXPECT_EQ(guard.count(), 0U);
 }
 
-TEST(MessageTypes, DefinitionsNameEveryTypeThatTheyUse) {
+TEST(MessageTypes, definitions_name_every_type_that_they_use) {
   for (const MessageType* type :
        {&image_type(), &temperature_type(), &grid_type(), &acquisition_type(), &frame_status_type()}) {
     std::size_t begin = 0;

@@ -25,7 +25,7 @@ std::size_t segments(const std::string& elements, const std::string& style) {
   return count;
 }
 
-TEST(NetworkDiagram, JoinsEachUnitToTheLayerBefore) {
+TEST(NetworkDiagram, joins_each_unit_to_the_layer_before) {
   const NetworkDiagram diagram{
       "2-5-1 <&>", {{"in", "", {"x", "y"}}, {"hidden", "log-sigmoid", {"1", "2", "3", "4", "5"}}, {"out", "", {"z"}}}};
   const Drawing drawing = network_diagram(diagram);
@@ -35,7 +35,7 @@ TEST(NetworkDiagram, JoinsEachUnitToTheLayerBefore) {
   EXPECT_EQ(occurrences(drawing.elements, "class=\"unit\""), 8U);
 }
 
-TEST(NetworkDiagram, SetsOffConnectionsOfOnePlace) {
+TEST(NetworkDiagram, sets_off_connections_of_one_place) {
   const std::vector<std::string> units = {"1", "2", "", "9"};
   NetworkDiagram diagram{"N-N-1", {{"in", "", units}, {"first", "", units}, {"out", "", {"F"}}}, true};
   const std::string elements = network_diagram(diagram).elements;
@@ -45,7 +45,7 @@ TEST(NetworkDiagram, SetsOffConnectionsOfOnePlace) {
   EXPECT_EQ(segments(network_diagram(diagram).elements, "link"), 12U);
 }
 
-TEST(NetworkDiagram, GrowsWithTheLargestLayer) {
+TEST(NetworkDiagram, grows_with_the_largest_layer) {
   NetworkDiagram diagram{"1-1", {{"in", "", {"x"}}, {"out", "", {"y"}}}};
   const double small = network_diagram(diagram).height;
   diagram.layers[0].units.assign(9, "x");

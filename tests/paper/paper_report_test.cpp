@@ -66,7 +66,7 @@ constexpr std::string_view kBank = "The relative error of the force is within";
 constexpr std::string_view kDermis = "The same for dermis";
 constexpr std::string_view kVoltages = "two values for three forces";
 
-TEST_F(PaperReportTest, WritesThePageAndEveryFigure) {
+TEST_F(PaperReportTest, writes_the_page_and_every_figure) {
   const PaperReproduction reproduction = sample_reproduction();
   ASSERT_TRUE(write_paper_report(directory_.string(), reproduction).has_value());
   std::set<std::string> names;
@@ -83,12 +83,12 @@ TEST_F(PaperReportTest, WritesThePageAndEveryFigure) {
   EXPECT_EQ(read(directory_ / "index.html"), paper_page(reproduction));
 }
 
-TEST_F(PaperReportTest, LoadsNothingFromElsewhere) {
+TEST_F(PaperReportTest, loads_nothing_from_elsewhere) {
   make(sample_reproduction());
   for (const char* part : {"<script", "src=", "href=", "@import", "url("}) EXPECT_FALSE(says(part)) << part;
 }
 
-TEST_F(PaperReportTest, NumbersItsFiguresAndNamesThoseOfThePaper) {
+TEST_F(PaperReportTest, numbers_its_figures_and_names_those_of_the_paper) {
   make(sample_reproduction());
   EXPECT_EQ(occurrences(page_, "<figcaption>"), 12U);
   EXPECT_TRUE(says("<b>Fig. 1. The network for Peaks (the paper&#39;s Fig. 5)."));
@@ -98,7 +98,7 @@ TEST_F(PaperReportTest, NumbersItsFiguresAndNamesThoseOfThePaper) {
   }
 }
 
-TEST_F(PaperReportTest, JudgesPeaks) {
+TEST_F(PaperReportTest, judges_peaks) {
   PaperReproduction reproduction = sample_reproduction();
   make(reproduction);
   EXPECT_EQ(verdict(kGradientDescent), "does not hold");
@@ -127,7 +127,7 @@ TEST_F(PaperReportTest, JudgesPeaks) {
   EXPECT_TRUE(says("with none of the sizes tried"));
 }
 
-TEST_F(PaperReportTest, CountsTheUnknowns) {
+TEST_F(PaperReportTest, counts_the_unknowns) {
   PaperReproduction reproduction = sample_reproduction();
   make(reproduction);
   EXPECT_EQ(verdict(kUnknowns), "holds");
@@ -143,7 +143,7 @@ TEST_F(PaperReportTest, CountsTheUnknowns) {
   EXPECT_TRUE(says("180 unknowns counted in the bank of 4 networks 4-4-4-1; the two formulas say the same."));
 }
 
-TEST_F(PaperReportTest, JudgesTheStructuredStart) {
+TEST_F(PaperReportTest, judges_the_structured_start) {
   PaperReproduction reproduction = sample_reproduction();
   make(reproduction);
   EXPECT_EQ(verdict(kStart), "holds");
@@ -166,7 +166,7 @@ TEST_F(PaperReportTest, JudgesTheStructuredStart) {
   EXPECT_EQ(verdict(kConvergence), "does not hold");
 }
 
-TEST_F(PaperReportTest, JudgesThePointsAgainstFivePercent) {
+TEST_F(PaperReportTest, judges_the_points_against_five_percent) {
   PaperReproduction reproduction = sample_reproduction();
   make(reproduction);
   EXPECT_EQ(verdict(kVoltage), "holds");
@@ -191,7 +191,7 @@ TEST_F(PaperReportTest, JudgesThePointsAgainstFivePercent) {
   EXPECT_TRUE(says("20\u00a0N: 5.01\u00a0%")) << "not rounded to 5 %";
 }
 
-TEST_F(PaperReportTest, CountsAnEstimatorWithoutForceAsWrong) {
+TEST_F(PaperReportTest, counts_an_estimator_without_force_as_wrong) {
   PaperReproduction reproduction = sample_reproduction();
   reproduction.points[3].dermis_newtons = kNan;
   reproduction.points[3].bank_newtons = kInfinity;
@@ -202,7 +202,7 @@ TEST_F(PaperReportTest, CountsAnEstimatorWithoutForceAsWrong) {
   EXPECT_TRUE(says("<td class=\"beyond\">no force</td>"));
 }
 
-TEST_F(PaperReportTest, SumsUpItsVerdicts) {
+TEST_F(PaperReportTest, sums_up_its_verdicts) {
   PaperReproduction reproduction = sample_reproduction();
   make(reproduction);
   EXPECT_TRUE(says("Of 10 statements, 6 hold, 1 holds on scaled targets only, 2 do not hold and 1 is not judged."));
@@ -211,7 +211,7 @@ TEST_F(PaperReportTest, SumsUpItsVerdicts) {
   EXPECT_TRUE(says("Of 10 statements, 7 hold, 1 holds on scaled targets only, 1 does not hold and 1 is not judged."));
 }
 
-TEST_F(PaperReportTest, SaysWhatIsMissing) {
+TEST_F(PaperReportTest, says_what_is_missing) {
   make({});
   EXPECT_TRUE(says("Of 10 statements, 10 are not judged."));
   for (const std::string_view claim : {kGradientDescent, kSize, kApproximation, kUnknowns, kStart, kConvergence,
@@ -226,7 +226,7 @@ TEST_F(PaperReportTest, SaysWhatIsMissing) {
   EXPECT_TRUE(fs::exists(directory_ / "paper_fig_10.svg"));
 }
 
-TEST_F(PaperReportTest, DrawsLongNoisyTrainingsWithFewPoints) {
+TEST_F(PaperReportTest, draws_long_noisy_trainings_with_few_points) {
   PaperReproduction reproduction = sample_reproduction();
   TrainingCurve curve{"Adam", {}, {}};
   Random random(1);
@@ -239,7 +239,7 @@ TEST_F(PaperReportTest, DrawsLongNoisyTrainingsWithFewPoints) {
   EXPECT_LT(fs::file_size(directory_ / "bank_training.svg"), 20000U);
 }
 
-TEST_F(PaperReportTest, TakesOddNumbers) {
+TEST_F(PaperReportTest, takes_odd_numbers) {
   for (const double odd : {kNan, kInfinity, -kInfinity, 0.0, -1.0, 1e308, 1e-308}) {
     SCOPED_TRACE(odd);
     PaperReproduction reproduction = sample_reproduction();
@@ -260,7 +260,7 @@ TEST_F(PaperReportTest, TakesOddNumbers) {
   }
 }
 
-TEST_F(PaperReportTest, TakesCurvesAndSurfacesThatDoNotFit) {
+TEST_F(PaperReportTest, takes_curves_and_surfaces_that_do_not_fit) {
   PaperReproduction reproduction = sample_reproduction();
   reproduction.peaks.output.pop_back();
   reproduction.peaks.adaptive_rate_curve.value.pop_back();
@@ -275,7 +275,7 @@ TEST_F(PaperReportTest, TakesCurvesAndSurfacesThatDoNotFit) {
   EXPECT_TRUE(says("1 of 1 point within"));
 }
 
-TEST_F(PaperReportTest, TakesAFewSamplesOfPeaks) {
+TEST_F(PaperReportTest, takes_a_few_samples_of_peaks) {
   PaperReproduction reproduction = sample_reproduction();
   for (const std::size_t side : {2U, 3U, 4U, 5U}) {
     reproduction.peaks.side = side;
@@ -285,14 +285,14 @@ TEST_F(PaperReportTest, TakesAFewSamplesOfPeaks) {
   }
 }
 
-TEST_F(PaperReportTest, ListsTheTimes) {
+TEST_F(PaperReportTest, lists_the_times) {
   make(sample_reproduction());
   EXPECT_TRUE(says("<tr><th>Peaks</th><td>41.2 s</td></tr>"));
   EXPECT_TRUE(says("<tr><th>structured start</th><td>3.1 ms</td></tr>"));
   EXPECT_TRUE(says("<tr><th>together</th><td>254 s</td></tr>"));
 }
 
-TEST_F(PaperReportTest, ShowsEstimatorsWithTheLegendOfTheirModel) {
+TEST_F(PaperReportTest, shows_estimators_with_the_legend_of_their_model) {
   PaperReproduction reproduction = sample_reproduction();
   make(reproduction);
   EXPECT_TRUE(says("All estimators on the same points"));
@@ -303,7 +303,7 @@ TEST_F(PaperReportTest, ShowsEstimatorsWithTheLegendOfTheirModel) {
   EXPECT_FALSE(says("one N-N-N-1 network a taxel"));
 }
 
-TEST_F(PaperReportTest, EscapesNames) {
+TEST_F(PaperReportTest, escapes_names) {
   PaperReproduction reproduction = sample_reproduction();
   reproduction.convergence[1].name = "<script>\xff";
   reproduction.start[0].where = "a&b";
@@ -313,7 +313,7 @@ TEST_F(PaperReportTest, EscapesNames) {
   EXPECT_TRUE(says("a&amp;b"));
 }
 
-TEST_F(PaperReportTest, NamesADirectoryThatCannotBeMade) {
+TEST_F(PaperReportTest, names_a_directory_that_cannot_be_made) {
   fs::create_directories(directory_);
   std::ofstream(directory_ / "file") << "text";
   const Status written = write_paper_report((directory_ / "file" / "report").string(), {});

@@ -31,13 +31,13 @@ Surface slope(std::size_t rows, std::size_t cols) {
   return surface;
 }
 
-TEST(SurfaceTest, DrawsAFacetBetweenEachFourSamples) {
+TEST(SurfaceTest, draws_a_facet_between_each_four_samples) {
   const std::string document = svg_document(surface(slope(4, 6)));
   EXPECT_EQ(xml_error(document), "");
   EXPECT_EQ(occurrences(document, "class=\"facet\""), 15U);
 }
 
-TEST(SurfaceTest, DrawsTheFarthestFacetFirst) {
+TEST(SurfaceTest, draws_the_farthest_facet_first) {
   Surface step = slope(3, 3);
   step.values = {-1.0, -1.0, 0.0, -1.0, -1.0, 0.0, 0.0, 0.0, 1.0};  // The near corner is low, the far one high.
   const std::string elements = surface(step).elements;
@@ -48,7 +48,7 @@ TEST(SurfaceTest, DrawsTheFarthestFacetFirst) {
   EXPECT_LT(far, near);
 }
 
-TEST(SurfaceTest, LeavesOutFacetsWithoutAHeight) {
+TEST(SurfaceTest, leaves_out_facets_without_a_height) {
   Surface holed = slope(4, 4);
   holed.values[5] = std::numeric_limits<double>::quiet_NaN();  // Four facets meet here,
   holed.values[15] = std::numeric_limits<double>::infinity();  // and this is a corner of one.
@@ -57,7 +57,7 @@ TEST(SurfaceTest, LeavesOutFacetsWithoutAHeight) {
   EXPECT_FALSE(has_bad_number(elements));
 }
 
-TEST(SurfaceTest, StaysInsideItsPicture) {
+TEST(SurfaceTest, stays_inside_its_picture) {
   Surface steep = slope(2, 2);
   steep.values = {1e30, -1e30, 5.0, -5.0};
   const std::string document = svg_document(surface(steep));

@@ -79,7 +79,7 @@ std::string small_file(McapCompression compression, std::vector<Message>* messag
   return support::read_bytes(path);
 }
 
-TEST(Mcap, WhatIsWrittenReadsBack) {
+TEST(Mcap, what_is_written_reads_back) {
   for (const McapCompression compression : kAll) {
     SCOPED_TRACE(to_string(compression));
     std::vector<Message> messages;
@@ -107,7 +107,7 @@ TEST(Mcap, WhatIsWrittenReadsBack) {
   }
 }
 
-TEST(Mcap, AFileThatIsCutReadsUpToItsLastWholeRecord) {
+TEST(Mcap, a_file_that_is_cut_reads_up_to_its_last_whole_record) {
   for (const McapCompression compression : kAll) {
     SCOPED_TRACE(to_string(compression));
     std::vector<Message> messages;
@@ -126,7 +126,7 @@ TEST(Mcap, AFileThatIsCutReadsUpToItsLastWholeRecord) {
   }
 }
 
-TEST(Mcap, NoByteThatChangesGoesUnseen) {
+TEST(Mcap, no_byte_that_changes_goes_unseen) {
   for (const McapCompression compression : kAll) {
     SCOPED_TRACE(to_string(compression));
     std::vector<Message> messages;
@@ -143,7 +143,7 @@ TEST(Mcap, NoByteThatChangesGoesUnseen) {
   }
 }
 
-TEST(Mcap, DamagedFilesGiveMessagesOrAOneLineError) {
+TEST(Mcap, damaged_files_give_messages_or_a_one_line_error) {
   for (const McapCompression compression : kAll) {
     const std::string bytes = small_file(compression);
     for (std::uint64_t seed = 0; seed < 3000; ++seed) {
@@ -168,7 +168,7 @@ std::string record_of(char opcode, const std::string& body) {
 
 const std::string kMagic = "\x89MCAP0\r\n";
 
-TEST(Mcap, SizesThatAFileOnlyClaimsTakeNoMemory) {
+TEST(Mcap, sizes_that_a_file_only_claims_take_no_memory) {
   const std::string zstd_frame("\x28\xB5\x2F\xFD\x00\x58\x01\x00\x00", 9);  // of no bytes
   const std::uint64_t claimed = std::uint64_t{64} << 20U;
   std::string chunk = little_endian(0, 16) + little_endian(claimed, 8) + little_endian(0, 4) + little_endian(4, 4) +
@@ -187,7 +187,7 @@ TEST(Mcap, SizesThatAFileOnlyClaimsTakeNoMemory) {
   EXPECT_TRUE(content.messages.empty());
 }
 
-TEST(Mcap, OtherFilesAreRefused) {
+TEST(Mcap, other_files_are_refused) {
   for (const std::string& bytes : {std::string(), std::string("\x89MCAP"), std::string("time_s,r0c0\n0,1\n")}) {
     const Content content = content_of(bytes);
     ASSERT_TRUE(content.error);
@@ -198,7 +198,7 @@ TEST(Mcap, OtherFilesAreRefused) {
   EXPECT_EQ(absent.error().kind, ErrorKind::bad_input);
 }
 
-TEST(Mcap, UnknownCompressionsAndChannelsAreNamed) {
+TEST(Mcap, unknown_compressions_and_channels_are_named) {
   const std::string chunk = little_endian(0, 16) + little_endian(0, 8) + little_endian(0, 4) + little_endian(3, 4) +
                             "bz2" + little_endian(0, 8);
   const Content bz2 = content_of(kMagic + record_of(6, chunk));
@@ -210,7 +210,7 @@ TEST(Mcap, UnknownCompressionsAndChannelsAreNamed) {
   EXPECT_NE(unknown.error->message.find("channel 7"), std::string::npos) << unknown.error->message;
 }
 
-TEST(Mcap, TheFileAppearsWhenItIsToldTo) {
+TEST(Mcap, the_file_appears_when_it_is_told_to) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
   support::write_bytes(path, "what was there");
@@ -234,7 +234,7 @@ TEST(Mcap, TheFileAppearsWhenItIsToldTo) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
-TEST(Mcap, AFolderThatIsNotThereIsNamed) {
+TEST(Mcap, a_folder_that_is_not_there_is_named) {
   const auto writer = McapWriter::create("/nowhere/rec.mcap", McapCompression::none);
   ASSERT_FALSE(writer);
   EXPECT_NE(writer.error().message.find("/nowhere/rec.mcap"), std::string::npos);

@@ -83,7 +83,7 @@ std::vector<RawFrame> read_all(const std::string& path) {
   return frames;
 }
 
-TEST(Recording, EveryFrameReadsBackWithTheSameBits) {
+TEST(Recording, every_frame_reads_back_with_the_same_bits) {
   for (const McapCompression compression : {McapCompression::none, McapCompression::lz4, McapCompression::zstd}) {
     const support::TemporaryFolder folder;
     const std::string path = folder.file("rec.mcap");
@@ -98,7 +98,7 @@ TEST(Recording, EveryFrameReadsBackWithTheSameBits) {
   }
 }
 
-TEST(Recording, TopicsAreNamesOfRos) {
+TEST(Recording, topics_are_names_of_ros) {
   const support::TemporaryFolder folder;
   for (const auto& [name, topic] :
        {std::pair{"left hand", "/left_hand/raw"}, {"3D", "/array_3D/raw"}, {"", "/array_/raw"}}) {
@@ -113,7 +113,7 @@ TEST(Recording, TopicsAreNamesOfRos) {
   }
 }
 
-TEST(Recording, DescriptionAndTotalsAreSaidAtOnceAndByReadingAll) {
+TEST(Recording, description_and_totals_are_said_at_once_and_by_reading_all) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
   RecordingOptions options;
@@ -163,7 +163,7 @@ TEST(Recording, DescriptionAndTotalsAreSaidAtOnceAndByReadingAll) {
   }
 }
 
-TEST(Recording, OfNoFrameIsComplete) {
+TEST(Recording, of_no_frame_is_complete) {
   const support::TemporaryFolder folder;
   record(folder.file("rec.mcap"), {});
   const auto reader = RecordingReader::open(folder.file("rec.mcap"));
@@ -180,7 +180,7 @@ TEST(Recording, OfNoFrameIsComplete) {
   EXPECT_EQ(info->duration_s, 0.0);
 }
 
-TEST(Recording, ForcesDoNotChangeTheFrames) {
+TEST(Recording, forces_do_not_change_the_frames) {
   const support::TemporaryFolder folder;
   const std::vector<RawFrame> frames = random_frames(20, 4);
   const auto writer = RecordingWriter::create(folder.file("rec.mcap"), kShape);
@@ -199,7 +199,7 @@ TEST(Recording, ForcesDoNotChangeTheFrames) {
   for (std::size_t i = 0; i < frames.size(); ++i) expect_same(again[i], frames[i]);
 }
 
-TEST(Recording, FramesAreInTheFileThoughNoneFollowsAndNothingIsCommitted) {
+TEST(Recording, frames_are_in_the_file_though_none_follows_and_nothing_is_committed) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
   support::write_bytes(path, "an old recording");
@@ -214,7 +214,7 @@ TEST(Recording, FramesAreInTheFileThoughNoneFollowsAndNothingIsCommitted) {
   for (std::size_t i = 0; i < frames.size(); ++i) expect_same(again[i], frames[i]);
 }
 
-TEST(Recording, ThatIsNotCommittedStaysOnlyWhereItIsLive) {
+TEST(Recording, that_is_not_committed_stays_only_where_it_is_live) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
   for (const bool live : {false, true}) {
@@ -236,7 +236,7 @@ TEST(Recording, ThatIsNotCommittedStaysOnlyWhereItIsLive) {
   }
 }
 
-TEST(Recording, ReplacesAnEarlierOneOnlyWhenItsOwnBytesAreOnTheDisk) {
+TEST(Recording, replaces_an_earlier_one_only_when_its_own_bytes_are_on_the_disk) {
   for (const bool live : {true, false}) {
     SCOPED_TRACE(live);
     const support::TemporaryFolder folder;
@@ -277,7 +277,7 @@ class SmallDisk {
   rlimit before_{};
 };
 
-TEST(Recording, AFullDiskLeavesWhatWasWritten) {
+TEST(Recording, a_full_disk_leaves_what_was_written) {
   constexpr FrameShape kLarge{64, 160};
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
@@ -304,7 +304,7 @@ TEST(Recording, AFullDiskLeavesWhatWasWritten) {
   }
 }
 
-TEST(Recording, ADiskThatIsFullFromTheBeginningLeavesTheOldFile) {
+TEST(Recording, a_disk_that_is_full_from_the_beginning_leaves_the_old_file) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
   support::write_bytes(path, "an old recording");
@@ -319,7 +319,7 @@ TEST(Recording, ADiskThatIsFullFromTheBeginningLeavesTheOldFile) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
-TEST(Recording, WarmWritingAllocatesNothing) {
+TEST(Recording, warm_writing_allocates_nothing) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "the sanitizer owns malloc";
   constexpr FrameShape kLarge{64, 160};
   const support::TemporaryFolder folder;
@@ -340,7 +340,7 @@ TEST(Recording, WarmWritingAllocatesNothing) {
   ASSERT_TRUE((*writer)->commit());
 }
 
-TEST(Recording, LogTimesNeverGoBack) {
+TEST(Recording, log_times_never_go_back) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
   std::vector<RawFrame> frames = random_frames(4, 10);
@@ -361,7 +361,7 @@ TEST(Recording, LogTimesNeverGoBack) {
   for (std::size_t i = 0; i < 4; ++i) expect_same(again[i], frames[i]);
 }
 
-TEST(Recording, StepsOfTheUtcClockMoveNoLogTime) {
+TEST(Recording, steps_of_the_utc_clock_move_no_log_time) {
   constexpr std::int64_t kBegin = 1'700'000'000'000'000'000;
   constexpr std::int64_t kHour = 3'600'000'000'000;
   const support::TemporaryFolder folder;
@@ -407,7 +407,7 @@ std::string recording_of_chunks(const support::TemporaryFolder& folder, std::siz
   return support::read_bytes(folder.file("rec.mcap"));
 }
 
-TEST(Recording, ATopicIsDeclaredWithItsFirstMessage) {
+TEST(Recording, a_topic_is_declared_with_its_first_message) {
   const support::TemporaryFolder folder;
   std::vector<RawFrame> frames;
   static_cast<void>(recording_of_chunks(folder, 4, frames));
@@ -432,7 +432,7 @@ TEST(Recording, ATopicIsDeclaredWithItsFirstMessage) {
   EXPECT_EQ(read_all(folder.file("rec.mcap")).at(2).temperature_celsius, 25.0);
 }
 
-TEST(Recovery, OfAnyCutKeepsAllWholeChunks) {
+TEST(Recovery, of_any_cut_keeps_all_whole_chunks) {
   const support::TemporaryFolder folder;
   std::vector<RawFrame> frames;
   const std::string bytes = recording_of_chunks(folder, 8, frames);
@@ -456,7 +456,7 @@ TEST(Recovery, OfAnyCutKeepsAllWholeChunks) {
   }
 }
 
-TEST(Recovery, OfAWholeFileLosesNothing) {
+TEST(Recovery, of_a_whole_file_loses_nothing) {
   const support::TemporaryFolder folder;
   const std::vector<RawFrame> frames = random_frames(50, 12);
   record(folder.file("rec.mcap"), frames);
@@ -471,7 +471,7 @@ TEST(Recovery, OfAWholeFileLosesNothing) {
   for (std::size_t i = 0; i < frames.size(); ++i) expect_same(again[i], frames[i]);
 }
 
-TEST(Recovery, LeavesOutDamagedChunksAndSaysHowManyMessagesTheyHad) {
+TEST(Recovery, leaves_out_damaged_chunks_and_says_how_many_messages_they_had) {
   const support::TemporaryFolder folder;
   std::vector<RawFrame> frames;
   const std::string bytes = recording_of_chunks(folder, 6, frames);
@@ -507,7 +507,7 @@ TEST(Recovery, LeavesOutDamagedChunksAndSaysHowManyMessagesTheyHad) {
   }
 }
 
-TEST(Recovery, RefusesToReplaceWhatItReads) {
+TEST(Recovery, refuses_to_replace_what_it_reads) {
   const support::TemporaryFolder folder;
   record(folder.file("rec.mcap"), random_frames(3, 13));
   const std::string before = support::read_bytes(folder.file("rec.mcap"));
@@ -517,7 +517,7 @@ TEST(Recovery, RefusesToReplaceWhatItReads) {
   EXPECT_EQ(support::read_bytes(folder.file("rec.mcap")), before);
 }
 
-TEST(Recovery, OfAnyDamageEndsWithAReadableFileOrAnError) {
+TEST(Recovery, of_any_damage_ends_with_a_readable_file_or_an_error) {
   const support::TemporaryFolder folder;
   record(folder.file("rec.mcap"), random_frames(30, 14));
   const std::string bytes = support::read_bytes(folder.file("rec.mcap"));
@@ -570,7 +570,7 @@ std::string begin_of_chunk(std::uint64_t bytes, std::uint32_t crc) {
          number_text(crc, 4) + number_text(0, 4) + number_text(bytes, 8);
 }
 
-TEST(Recovery, OfAFileMadeToKeepItBusyReadsABoundedMultipleOfTheFile) {
+TEST(Recovery, of_a_file_made_to_keep_it_busy_reads_a_bounded_multiple_of_the_file) {
   const std::string magic("\x89MCAP0\r\n");
   std::string overlapping = magic + '\0';
   for (int i = 0; i < 30'000; ++i) overlapping += begin_of_chunk(std::uint64_t{2} << 20U, 1);

@@ -91,7 +91,7 @@ std::vector<RecordedArray> large_arrays() {
   return {{.name = "a", .shape = {512, 512}}, {.name = "b", .shape = {512, 512}}};
 }
 
-TEST(SuitRecording, EveryFrameOfEveryArrayReadsBackWithTheSameBits) {
+TEST(SuitRecording, every_frame_of_every_array_reads_back_with_the_same_bits) {
   for (const McapCompression compression : {McapCompression::none, McapCompression::lz4, McapCompression::zstd}) {
     const support::TemporaryFolder folder;
     const std::vector<RecordedArray> arrays = three_arrays();
@@ -111,7 +111,7 @@ TEST(SuitRecording, EveryFrameOfEveryArrayReadsBackWithTheSameBits) {
   }
 }
 
-TEST(SuitRecording, OfOneArrayIsARecordingAsRecordingWriterMakesIt) {
+TEST(SuitRecording, of_one_array_is_a_recording_as_recording_writer_makes_it) {
   const support::TemporaryFolder folder;
   const std::vector<RecordedArray> arrays{three_arrays().front()};
   const std::vector<Written> all = interleaved(arrays, 1, 2);
@@ -127,7 +127,7 @@ TEST(SuitRecording, OfOneArrayIsARecordingAsRecordingWriterMakesIt) {
   EXPECT_EQ(support::read_bytes(folder.file("suit.mcap")), support::read_bytes(folder.file("one.mcap")));
 }
 
-TEST(SuitRecording, EachArrayHasAThreadThatWrites) {
+TEST(SuitRecording, each_array_has_a_thread_that_writes) {
   const support::TemporaryFolder folder;
   const std::vector<RecordedArray> arrays = three_arrays();
   const std::vector<Written> all = interleaved(arrays, 3000, 3);
@@ -149,7 +149,7 @@ TEST(SuitRecording, EachArrayHasAThreadThatWrites) {
   }
 }
 
-TEST(SuitRecording, AnArrayThatComesLateOrPausesKeepsTheOrderOfAll) {
+TEST(SuitRecording, an_array_that_comes_late_or_pauses_keeps_the_order_of_all) {
   const support::TemporaryFolder folder;
   const std::vector<RecordedArray> arrays = large_arrays();
   std::vector<Written> all = interleaved(arrays, 50, 4);
@@ -161,7 +161,7 @@ TEST(SuitRecording, AnArrayThatComesLateOrPausesKeepsTheOrderOfAll) {
   expect_same(read_suit(folder.file("rec.mcap")), all);
 }
 
-TEST(SuitRecording, LogTimesOfEachArrayRise) {
+TEST(SuitRecording, log_times_of_each_array_rise) {
   const support::TemporaryFolder folder;
   const std::vector<RecordedArray> arrays = three_arrays();
   std::vector<Written> all = interleaved(arrays, 200, 5);
@@ -181,7 +181,7 @@ TEST(SuitRecording, LogTimesOfEachArrayRise) {
   EXPECT_GE(last.size(), 6U);
 }
 
-TEST(SuitRecording, NamesThatGiveTheSameTopicsAreRefused) {
+TEST(SuitRecording, names_that_give_the_same_topics_are_refused) {
   const support::TemporaryFolder folder;
   std::vector<RecordedArray> arrays = three_arrays();
   arrays[2].name = "left_hand";
@@ -192,7 +192,7 @@ TEST(SuitRecording, NamesThatGiveTheSameTopicsAreRefused) {
   EXPECT_EQ(folder.file_count(), 0U);
 }
 
-TEST(SuitRecording, WhatIsToBeReadIsNamed) {
+TEST(SuitRecording, what_is_to_be_read_is_named) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
   record(path, three_arrays(), interleaved(three_arrays(), 20, 6));
@@ -205,7 +205,7 @@ TEST(SuitRecording, WhatIsToBeReadIsNamed) {
   EXPECT_EQ(wrong.error().message, path + ": has no array 'chets'; it has: 'chest', 'left-hand', 'back'");
 }
 
-TEST(SuitRecording, ATextNamesAFileAndAnArrayOfIt) {
+TEST(SuitRecording, a_text_names_a_file_and_an_array_of_it) {
   const support::TemporaryFolder folder;
   const auto place = [&](const std::string& name) {
     const RecordingPlace found = recording_place(folder.file(name));
@@ -220,7 +220,7 @@ TEST(SuitRecording, ATextNamesAFileAndAnArrayOfIt) {
   EXPECT_EQ(place("a.mcap#1.csv"), std::pair(std::string("a.mcap#1.csv"), std::string()));
 }
 
-TEST(SuitRecording, InformationIsSaidAtOnceAndByReadingAll) {
+TEST(SuitRecording, information_is_said_at_once_and_by_reading_all) {
   const support::TemporaryFolder folder;
   const std::vector<RecordedArray> arrays = three_arrays();
   const std::vector<Written> all = interleaved(arrays, 200, 7);
@@ -252,7 +252,7 @@ TEST(SuitRecording, InformationIsSaidAtOnceAndByReadingAll) {
   }
 }
 
-TEST(SuitRecording, OfNoFrameTellsItsArrays) {
+TEST(SuitRecording, of_no_frame_tells_its_arrays) {
   const support::TemporaryFolder folder;
   record(folder.file("rec.mcap"), three_arrays(), {});
   const Result<RecordingInfo> info = recording_info(folder.file("rec.mcap"));
@@ -268,7 +268,7 @@ TEST(SuitRecording, OfNoFrameTellsItsArrays) {
   EXPECT_FALSE(*more);
 }
 
-TEST(SuitRecording, OfAnyCutIsRecoveredWithItsTotals) {
+TEST(SuitRecording, of_any_cut_is_recovered_with_its_totals) {
   const support::TemporaryFolder folder;
   const std::vector<RecordedArray> arrays = three_arrays();
   const std::vector<Written> all = interleaved(arrays, 3000, 8);
@@ -295,7 +295,7 @@ TEST(SuitRecording, OfAnyCutIsRecoveredWithItsTotals) {
   }
 }
 
-TEST(SuitRecording, ThatIsDamagedIsReadOrGivesAnError) {
+TEST(SuitRecording, that_is_damaged_is_read_or_gives_an_error) {
   const support::TemporaryFolder folder;
   record(folder.file("rec.mcap"), three_arrays(), interleaved(three_arrays(), 30, 10));
   const std::string bytes = support::read_bytes(folder.file("rec.mcap"));
@@ -318,7 +318,7 @@ TEST(SuitRecording, ThatIsDamagedIsReadOrGivesAnError) {
   }
 }
 
-TEST(SuitRecording, SeekGoesOnWithTheFirstFramesOfATimeOrLater) {
+TEST(SuitRecording, seek_goes_on_with_the_first_frames_of_a_time_or_later) {
   const support::TemporaryFolder folder;
   const std::vector<RecordedArray> arrays = large_arrays();
   const std::vector<Written> all = interleaved(arrays, 50, 11);
@@ -349,7 +349,7 @@ TEST(SuitRecording, SeekGoesOnWithTheFirstFramesOfATimeOrLater) {
   }
 }
 
-TEST(SuitRecording, AFileThatIsNoneIsRefused) {
+TEST(SuitRecording, a_file_that_is_none_is_refused) {
   const support::TemporaryFolder folder;
   support::write_bytes(folder.file("rec.mcap"), "no recording");
   EXPECT_FALSE(SuitRecordingReader::open(folder.file("rec.mcap")));

@@ -55,7 +55,7 @@ const std::set<std::string> kAllFiles = {"index.html",
                                          "tactile_1.svg",
                                          "tactile_2.svg"};
 
-TEST_F(ReportTest, WritesThePageAndEveryFigure) {
+TEST_F(ReportTest, writes_the_page_and_every_figure) {
   EXPECT_EQ(write(sample_evaluation(16, 16, 300)), kAllFiles);
   EXPECT_TRUE(says("2,400 loaded taxels of at least 1 N, from 300 labelled frames."));
   EXPECT_TRUE(says("temperature_lookup"));
@@ -64,7 +64,7 @@ TEST_F(ReportTest, WritesThePageAndEveryFigure) {
   EXPECT_TRUE(says("BP networks of 2-4-1 units"));
 }
 
-TEST_F(ReportTest, ShowsHowSureItIsAndTheBound) {
+TEST_F(ReportTest, shows_how_sure_it_is_and_the_bound) {
   calibration::Evaluation evaluation = sample_evaluation(16, 16, 300);
   evaluation.bound = {20, 160, 0.0045, 0.0061, 1.34};
   write(evaluation);
@@ -73,19 +73,19 @@ TEST_F(ReportTest, ShowsHowSureItIsAndTheBound) {
       says("Cramer-Rao bound: 0.45 % of the force (median of 160 taxels of 20 frames); dermis scatters by 0.61 %"));
 }
 
-TEST_F(ReportTest, LoadsNothingFromElsewhere) {
+TEST_F(ReportTest, loads_nothing_from_elsewhere) {
   write(sample_evaluation(4, 4, 20));
   for (const char* part : {"<script", "src=", "href=", "@import", "url("}) EXPECT_FALSE(says(part)) << part;
 }
 
-TEST_F(ReportTest, ShowsThePaperLevelsAgainstActionPoints) {
+TEST_F(ReportTest, shows_the_paper_levels_against_action_points) {
   write(paper_sample());
   EXPECT_TRUE(says("action point"));
   EXPECT_TRUE(says("Largest relative error at 10, 20, 50 N: dermis "));
   EXPECT_TRUE(says(">16</text>"));
 }
 
-TEST_F(ReportTest, SaysWhatCouldNotBeJudged) {
+TEST_F(ReportTest, says_what_could_not_be_judged) {
   const std::set<std::string> names = write(totals_sample());
   EXPECT_EQ(names, (std::set<std::string>{"index.html", "calibration_vs_output.svg", "error_vs_force.svg"}));
   EXPECT_TRUE(says("200 totals over several taxels"));
@@ -96,17 +96,17 @@ TEST_F(ReportTest, SaysWhatCouldNotBeJudged) {
   EXPECT_TRUE(says("No single taxels were judged"));
 }
 
-TEST_F(ReportTest, TakesAnEmptyEvaluation) {
+TEST_F(ReportTest, takes_an_empty_evaluation) {
   EXPECT_EQ(write({}), std::set<std::string>{"index.html"});
   EXPECT_TRUE(says("No estimator was judged."));
 }
 
-TEST_F(ReportTest, TakesEstimatorsThatJudgedNothing) {
+TEST_F(ReportTest, takes_estimators_that_judged_nothing) {
   EXPECT_EQ(write(empty_sample(4, 4)), std::set<std::string>{"index.html"});
   EXPECT_TRUE(says("unloaded taxels only"));
 }
 
-TEST_F(ReportTest, TakesOneTaxelJudgedOnce) {
+TEST_F(ReportTest, takes_one_taxel_judged_once) {
   calibration::Evaluation evaluation = empty_sample(1, 1);
   evaluation.frames = 1;
   evaluation.frames_rejected = 1;
@@ -118,7 +118,7 @@ TEST_F(ReportTest, TakesOneTaxelJudgedOnce) {
   EXPECT_TRUE(says("<b>0 %</b>"));
 }
 
-TEST_F(ReportTest, SaysWhereAnEstimatorGivesNoForce) {
+TEST_F(ReportTest, says_where_an_estimator_gives_no_force) {
   calibration::Evaluation evaluation = sample_evaluation(32, 32, 50);
   for (auto& taxel : evaluation.taxels) {
     if (taxel.taxel % 3 == 0) taxel.newtons[0] = std::numeric_limits<float>::quiet_NaN();
@@ -133,7 +133,7 @@ TEST_F(ReportTest, SaysWhereAnEstimatorGivesNoForce) {
   EXPECT_TRUE(says("0.0 %</td>")) << "within 5 %";
 }
 
-TEST_F(ReportTest, ShowsOneEstimatorWithoutAnother) {
+TEST_F(ReportTest, shows_one_estimator_without_another) {
   calibration::Evaluation evaluation = sample_evaluation(4, 4, 20);
   evaluation.estimators.resize(1);
   for (auto& taxel : evaluation.taxels) taxel.newtons.resize(1);
@@ -143,7 +143,7 @@ TEST_F(ReportTest, ShowsOneEstimatorWithoutAnother) {
   EXPECT_FALSE(says("class=\"best\""));
 }
 
-TEST_F(ReportTest, MarksTheBestEvenWhereItIsABaseline) {
+TEST_F(ReportTest, marks_the_best_even_where_it_is_a_baseline) {
   calibration::Evaluation evaluation = sample_evaluation(4, 4, 20);
   evaluation.estimators[2].relative_error.median = 1e-4;
   write(evaluation);
@@ -151,7 +151,7 @@ TEST_F(ReportTest, MarksTheBestEvenWhereItIsABaseline) {
   EXPECT_TRUE(says("best other: 0.010 %"));
 }
 
-TEST_F(ReportTest, EscapesNames) {
+TEST_F(ReportTest, escapes_names) {
   calibration::Evaluation evaluation = sample_evaluation(4, 4, 20);
   evaluation.array.name = "</style><script>\xff";
   evaluation.estimators[1].name = "a&b<i>\"";
@@ -160,7 +160,7 @@ TEST_F(ReportTest, EscapesNames) {
   EXPECT_TRUE(says("a&amp;b&lt;i&gt;&quot;"));
 }
 
-TEST_F(ReportTest, ReplacesAnEarlierReport) {
+TEST_F(ReportTest, replaces_an_earlier_report) {
   write(sample_evaluation(4, 4, 20));
   const std::string first = page_;
   write(sample_evaluation(4, 4, 20));
@@ -168,7 +168,7 @@ TEST_F(ReportTest, ReplacesAnEarlierReport) {
   EXPECT_EQ(page_, evaluation_page(sample_evaluation(4, 4, 20), sample_model(sample_evaluation(4, 4, 20))));
 }
 
-TEST_F(ReportTest, NamesADirectoryThatCannotBeMade) {
+TEST_F(ReportTest, names_a_directory_that_cannot_be_made) {
   fs::create_directories(directory_);
   std::ofstream(directory_ / "file") << "text";
   const calibration::Evaluation evaluation = paper_sample();
@@ -180,7 +180,7 @@ TEST_F(ReportTest, NamesADirectoryThatCannotBeMade) {
   EXPECT_EQ(written.error().message.find('\n'), std::string::npos);
 }
 
-TEST_F(ReportTest, LeavesNothingHalfWritten) {
+TEST_F(ReportTest, leaves_nothing_half_written) {
   fs::create_directories(directory_ / "error_vs_force.svg");  // In the way of a file.
   const calibration::Evaluation evaluation = paper_sample();
   ASSERT_FALSE(write_evaluation_report(directory_.string(), evaluation, sample_model(evaluation)).has_value());

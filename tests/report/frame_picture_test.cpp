@@ -45,7 +45,7 @@ std::size_t pixels_with(const Pixels& pixels, Colour colour) {
   return count;
 }
 
-TEST(FramePicture, ATaxelHasTheColourOfItsValueOnTheScale) {
+TEST(FramePicture, a_taxel_has_the_colour_of_its_value_on_the_scale) {
   FramePicture picture = picture_of(4, 4);
   picture.values[5] = 2.5;
   const Colour half = sequential_colour(0.5);
@@ -56,7 +56,7 @@ TEST(FramePicture, ATaxelHasTheColourOfItsValueOnTheScale) {
   EXPECT_NE(frame_drawing(picture).elements.find(to_hex(half)), std::string::npos);
 }
 
-TEST(FramePicture, OfOneArrayHasOneSize) {
+TEST(FramePicture, of_one_array_has_one_size) {
   FramePicture picture = picture_of(16, 10);
   const Pixels empty = frame_pixels(picture);
   picture.title = "a longer name, (1/2)";
@@ -68,7 +68,7 @@ TEST(FramePicture, OfOneArrayHasOneSize) {
   EXPECT_EQ(full.rgb.size(), 3 * full.width * full.height);
 }
 
-TEST(FramePicture, ContactsCarryTheirForces) {
+TEST(FramePicture, contacts_carry_their_forces) {
   FramePicture picture = picture_of(16, 16);
   picture.contacts = {contact_at(0.05, 0.07)};
   EXPECT_NE(frame_drawing(picture).elements.find(">12.3 N<"), std::string::npos);
@@ -78,7 +78,7 @@ TEST(FramePicture, ContactsCarryTheirForces) {
   EXPECT_EQ(frame_drawing(picture).elements.find("12.3 N"), std::string::npos);
 }
 
-TEST(FramePicture, AnyValuesAndShapesAreDrawn) {
+TEST(FramePicture, any_values_and_shapes_are_drawn) {
   for (const auto& [rows, cols] : {std::pair<std::size_t, std::size_t>{1, 1}, {1, 300}, {300, 1}, {64, 160}}) {
     FramePicture picture = picture_of(rows, cols);
     picture.title = "\xc3\xbc<&\"'";

@@ -70,7 +70,7 @@ double oklab_distance(const Linear& one, const Linear& other) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-TEST(SequentialColour, GetsLighterInEvenSteps) {
+TEST(SequentialColour, gets_lighter_in_even_steps) {
   double before = lightness(sequential_colour(0.0));
   EXPECT_LT(before, 20.0);
   for (int i = 1; i <= 32; ++i) {
@@ -82,12 +82,12 @@ TEST(SequentialColour, GetsLighterInEvenSteps) {
   EXPECT_GT(before, 88.0);
 }
 
-TEST(SequentialColour, ClampsItsArgument) {
+TEST(SequentialColour, clamps_its_argument) {
   EXPECT_EQ(sequential_colour(-1.0).red, sequential_colour(0.0).red);
   EXPECT_EQ(sequential_colour(2.0).green, sequential_colour(1.0).green);
 }
 
-TEST(DivergingColour, DarkensEvenlyAndAlikeOnBothSides) {
+TEST(DivergingColour, darkens_evenly_and_alike_on_both_sides) {
   EXPECT_GT(lightness(diverging_colour(0.0)), 93.0);
   for (int i = 1; i <= 16; ++i) {
     const double negative = lightness(diverging_colour(-i / 16.0));
@@ -98,7 +98,7 @@ TEST(DivergingColour, DarkensEvenlyAndAlikeOnBothSides) {
   }
 }
 
-TEST(DivergingColour, TellsTheSignToAnyColourVision) {
+TEST(DivergingColour, tells_the_sign_to_any_colour_vision) {
   for (const auto& vision : kVisions) {
     for (int i = 4; i <= 16; ++i) {
       const double distance =
@@ -108,7 +108,7 @@ TEST(DivergingColour, TellsTheSignToAnyColourVision) {
   }
 }
 
-TEST(DivergingColour, StaysInsideTheGamut) {
+TEST(DivergingColour, stays_inside_the_gamut) {
   // Clipped components would bend the lightness; only the ends of a component's range could have been clipped.
   for (int i = -64; i <= 64; ++i) {
     const Colour colour = diverging_colour(i / 64.0);
@@ -119,7 +119,7 @@ TEST(DivergingColour, StaysInsideTheGamut) {
   }
 }
 
-TEST(DivergingColour, ClampsItsArgument) {
+TEST(DivergingColour, clamps_its_argument) {
   EXPECT_EQ(to_hex(diverging_colour(-7.0)), to_hex(diverging_colour(-1.0)));
   EXPECT_EQ(to_hex(diverging_colour(7.0)), to_hex(diverging_colour(1.0)));
 }
@@ -130,7 +130,7 @@ HeatMap map_of(std::size_t rows, std::size_t cols) {
   return map;
 }
 
-TEST(HeatMapTest, IsWellFormedForEverySize) {
+TEST(HeatMapTest, is_well_formed_for_every_size) {
   for (const auto& [rows, cols] : {std::pair{1U, 1U}, {16U, 16U}, {32U, 32U}, {1U, 64U}, {64U, 1U}, {200U, 300U}}) {
     const std::string document = svg_document(heat_map(map_of(rows, cols)));
     EXPECT_EQ(xml_error(document), "") << rows << " x " << cols;
@@ -138,7 +138,7 @@ TEST(HeatMapTest, IsWellFormedForEverySize) {
   }
 }
 
-TEST(HeatMapTest, CrossesOutWhatIsNotANumber) {
+TEST(HeatMapTest, crosses_out_what_is_not_a_number) {
   HeatMap map = map_of(3, 3);
   EXPECT_EQ(heat_map(map).elements.find("class=\"cross\""), std::string::npos);
   map.values[4] = std::numeric_limits<double>::quiet_NaN();
@@ -149,20 +149,20 @@ TEST(HeatMapTest, CrossesOutWhatIsNotANumber) {
   EXPECT_FALSE(has_bad_number(elements));
 }
 
-TEST(HeatMapTest, JoinsEqualNeighboursOfALargeArray) {
+TEST(HeatMapTest, joins_equal_neighbours_of_a_large_array) {
   HeatMap map = map_of(256, 256);
   map.values.assign(map.values.size(), 0.0);
   EXPECT_LT(heat_map(map).elements.size(), 30000U);
 }
 
-TEST(HeatMapTest, KeepsTheShapeOfTheTaxels) {
+TEST(HeatMapTest, keeps_the_shape_of_the_taxels) {
   HeatMap map = map_of(4, 4);
   const double square = heat_map(map).height;
   map.row_pitch = 0.6;
   EXPECT_LT(heat_map(map).height, square);
 }
 
-TEST(HeatMapTest, ShowsSignedValuesAroundTheMiddleOfItsScale) {
+TEST(HeatMapTest, shows_signed_values_around_the_middle_of_its_scale) {
   HeatMap map = map_of(1, 3);
   map.colours = Colours::diverging;
   map.values = {-10.0, 0.0, 10.0};
@@ -174,7 +174,7 @@ TEST(HeatMapTest, ShowsSignedValuesAroundTheMiddleOfItsScale) {
   EXPECT_NE(elements.find(">10</text>"), std::string::npos);
 }
 
-TEST(HeatMapTest, PutsTheFirstRowOfAFunctionAtTheBottom) {
+TEST(HeatMapTest, puts_the_first_row_of_a_function_at_the_bottom) {
   HeatMap map = map_of(2, 1);
   map.values = {0.0, 10.0};
   const auto top_of_high = [&] {
@@ -192,7 +192,7 @@ TEST(HeatMapTest, PutsTheFirstRowOfAFunctionAtTheBottom) {
   EXPECT_EQ(xml_error(svg_document(heat_map(map))), "");
 }
 
-TEST(HeatMapHigh, IsTheLargestFiniteValueOrOne) {
+TEST(HeatMapHigh, is_the_largest_finite_value_or_one) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(heat_map_high({1.0, nan, 7.0, std::numeric_limits<double>::infinity()}), 7.0);
   EXPECT_EQ(heat_map_high({}), 1.0);

@@ -16,7 +16,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Values = std::vector<double>;
 
-TEST(LinearTicks, AreExactMultiplesOfOneTwoOrFive) {
+TEST(LinearTicks, are_exact_multiples_of_one_two_or_five) {
   EXPECT_EQ(linear_ticks(0.0, 50.0, 6), (Values{0, 10, 20, 30, 40, 50}));
   EXPECT_EQ(linear_ticks(0.0, 1.0, 6), (Values{0.0, 0.2, 0.4, 0.6, 0.8, 1.0}));
   EXPECT_EQ(linear_ticks(-0.3, 0.3, 8), (Values{-0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3}));
@@ -24,11 +24,11 @@ TEST(LinearTicks, AreExactMultiplesOfOneTwoOrFive) {
   EXPECT_EQ(linear_ticks(0.0, 3e6, 4), (Values{0, 1e6, 2e6, 3e6}));
 }
 
-TEST(LinearTicks, HaveNoNegativeZero) {
+TEST(LinearTicks, have_no_negative_zero) {
   for (const double tick : linear_ticks(0.0, 7.0, 5)) EXPECT_FALSE(std::signbit(tick));
 }
 
-TEST(LogTicks, AreOneTwoFiveOrThinnedOutDecades) {
+TEST(LogTicks, are_one_two_five_or_thinned_out_decades) {
   EXPECT_EQ(log_ticks(1.0, 50.0), (Values{1, 2, 5, 10, 20, 50}));
   EXPECT_EQ(log_ticks(0.15, 3.0), (Values{0.2, 0.5, 1, 2}));
   EXPECT_EQ(log_ticks(0.001, 100.0), (Values{0.001, 0.01, 0.1, 1, 10, 100}));
@@ -39,7 +39,7 @@ TEST(LogTicks, AreOneTwoFiveOrThinnedOutDecades) {
   for (std::size_t i = 2; i < wide.size(); ++i) EXPECT_NEAR(wide[i] / wide[i - 1], wide[1] / wide[0], 1e-3);
 }
 
-TEST(NiceAxis, GoesFromTickToTickAroundTheValues) {
+TEST(NiceAxis, goes_from_tick_to_tick_around_the_values) {
   const Axis linear = nice_axis("x", Scale::linear, Values{0.3, 47.0, kNan, kInfinity});
   EXPECT_EQ(linear.low, 0.0);
   EXPECT_EQ(linear.high, 50.0);
@@ -48,7 +48,7 @@ TEST(NiceAxis, GoesFromTickToTickAroundTheValues) {
   EXPECT_EQ(logarithmic.high, 50.0);
 }
 
-TEST(NiceAxis, TakesAnyValues) {
+TEST(NiceAxis, takes_any_values) {
   const std::vector<Values> hard = {
       {},       {kNan}, {0.0},         {20.0},        {20.0, 20.0 + 1e-13}, {-1e300, 1e300},
       {1e-300}, {-5.0}, {1e-99, 1e99}, {-1e99, 1e99}, {0.0, 1e-320}};
@@ -64,7 +64,7 @@ TEST(NiceAxis, TakesAnyValues) {
   }
 }
 
-TEST(Axis, PlacesValues) {
+TEST(Axis, places_values) {
   const Axis linear{"x", Scale::linear, 10.0, 20.0, {}};
   EXPECT_DOUBLE_EQ(linear.position(12.5), 0.25);
   EXPECT_EQ(linear.position(-kInfinity), 0.0);
@@ -93,14 +93,14 @@ Plot hard_plot() {
   return plot;
 }
 
-TEST(Plot, DrawsOnlyFiniteNumbersAndEscapesText) {
+TEST(Plot, draws_only_finite_numbers_and_escapes_text) {
   const std::string document = svg_document(hard_plot().drawing());
   EXPECT_EQ(xml_error(document), "");
   EXPECT_FALSE(has_bad_number(document));
   EXPECT_NE(document.find("&lt;b&gt;"), std::string::npos);
 }
 
-TEST(Plot, BreaksLinesWhereAPointIsMissing) {
+TEST(Plot, breaks_lines_where_a_point_is_missing) {
   const Axis axis{"x", Scale::linear, 0.0, 10.0, {}};
   Plot plot("t", axis, axis, 300.0, 300.0);
   plot.reference("", {{0, 0}, {1, 1}, {kNan, 2}, {3, 3}, {4, 4}});
@@ -111,13 +111,13 @@ TEST(Plot, BreaksLinesWhereAPointIsMissing) {
   EXPECT_EQ(occurrences(path, "L"), 2U);
 }
 
-TEST(Plot, LabelsPlaces) {
+TEST(Plot, labels_places) {
   const std::string elements = hard_plot().drawing().elements;
   EXPECT_NE(elements.find("&lt;label&gt;"), std::string::npos);
   EXPECT_EQ(elements.find("nowhere"), std::string::npos);
 }
 
-TEST(Plot, MarksAFewPointsOfALine) {
+TEST(Plot, marks_a_few_points_of_a_line) {
   std::vector<Point> points;
   for (int i = 0; i <= 1000; ++i) points.push_back({0.01 * i, 5.0});
   const Axis axis{"x", Scale::linear, 0.0, 10.0, {}};
@@ -132,7 +132,7 @@ TEST(Plot, MarksAFewPointsOfALine) {
   EXPECT_LE(circles, 9U);
 }
 
-TEST(Plot, PutsEarlierSeriesAbove) {
+TEST(Plot, puts_earlier_series_above) {
   const Axis axis{"x", Scale::linear, 0.0, 10.0, {}};
   Plot plot("t", axis, axis, 300.0, 300.0);
   plot.curve("", 0, {{1, 1}});
@@ -141,7 +141,7 @@ TEST(Plot, PutsEarlierSeriesAbove) {
   EXPECT_GT(elements.find("class=\"s0\""), elements.find("class=\"s1\""));
 }
 
-TEST(Plot, GivesManySeriesALook) {
+TEST(Plot, gives_many_series_a_look) {
   const Axis axis{"x", Scale::linear, 0.0, 10.0, {}};
   Plot plot("t", axis, axis, 300.0, 500.0);
   for (std::size_t i = 0; i < 20; ++i) plot.curve("series " + std::to_string(i), i, {{1, 1}, {2, 2}});

@@ -62,7 +62,7 @@ std::vector<std::uint8_t> pixels_of(const std::string& compressed, std::size_t w
   return rgb;
 }
 
-TEST(Png, HoldsEveryPixel) {
+TEST(Png, holds_every_pixel) {
   for (const auto& [width, height] : {std::pair<std::size_t, std::size_t>{1, 1}, {7, 3}, {200, 150}}) {
     const Pixels pixels = gradient(width, height, 0);
     const auto chunks = chunks_of(png(pixels));
@@ -77,7 +77,7 @@ TEST(Png, HoldsEveryPixel) {
   }
 }
 
-TEST(AnimatedPng, HoldsEveryPictureInOrder) {
+TEST(AnimatedPng, holds_every_picture_in_order) {
   AnimatedPng moving;
   for (unsigned i = 0; i < 3; ++i) moving.add(gradient(20, 10, 50 * i), 40);
   EXPECT_EQ(moving.count(), 3U);

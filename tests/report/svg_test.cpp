@@ -9,12 +9,12 @@
 namespace dermis::report {
 namespace {
 
-TEST(EscapeXml, EscapesMarkupInElementsAndAttributes) {
+TEST(EscapeXml, escapes_markup_in_elements_and_attributes) {
   EXPECT_EQ(escape_xml("a<b> & \"c\" 'd'"), "a&lt;b&gt; &amp; &quot;c&quot; &#39;d&#39;");
   EXPECT_EQ(escape_xml(""), "");
 }
 
-TEST(EscapeXml, KeepsUtf8AndReplacesWhatXmlForbids) {
+TEST(EscapeXml, keeps_utf8_and_replaces_what_xml_forbids) {
   const std::string replaced = "\xEF\xBF\xBD";
   EXPECT_EQ(escape_xml("20 \u00b0C \u2264 \U0001F600\n"), "20 \u00b0C \u2264 \U0001F600\n");
   EXPECT_EQ(escape_xml(std::string("a\0b\x1b", 4)), "a" + replaced + "b" + replaced);
@@ -24,7 +24,7 @@ TEST(EscapeXml, KeepsUtf8AndReplacesWhatXmlForbids) {
   EXPECT_EQ(escape_xml("\xed\xa0\x80"), replaced + replaced + replaced) << "surrogate";
 }
 
-TEST(WellFormedChecker, FindsWhatIsWrong) {
+TEST(WellFormedChecker, finds_what_is_wrong) {
   EXPECT_EQ(xml_error("<?xml version=\"1.0\"?>\n<a><b x=\"1\"/>t</a>\n"), "");
   for (const char* bad : {"<a>", "<a></b>", "<a x=1/>", "<a x=\"<\"/>", "<a>&nbsp;</a>", "<a/><a/>",
                           "<a x=\"1\" x=\"2\"/>", "text", "<a>></a>", "<a x=\"1\"y=\"2\"/>"}) {
@@ -37,7 +37,7 @@ TEST(WellFormedChecker, FindsWhatIsWrong) {
 
 const Drawing kBox{10.0, 20.0, "a <box>", "<rect width=\"10\" height=\"20\"/>\n"};
 
-TEST(SvgDocument, IsWellFormedAndCarriesItsStyle) {
+TEST(SvgDocument, is_well_formed_and_carries_its_style) {
   const std::string document = svg_document(kBox);
   EXPECT_EQ(xml_error(document), "");
   EXPECT_NE(document.find("viewBox=\"0 0 10 20\""), std::string::npos);
@@ -46,7 +46,7 @@ TEST(SvgDocument, IsWellFormedAndCarriesItsStyle) {
   EXPECT_EQ(svg_element(kBox).find("<style>"), std::string::npos);
 }
 
-TEST(SideBySide, FillsRowsAndGrowsAroundThem) {
+TEST(SideBySide, fills_rows_and_grows_around_them) {
   const std::vector<Drawing> three = {kBox, {30.0, 5.0, "wide", ""}, kBox};
   const Drawing sheet = side_by_side(three, 2);
   EXPECT_EQ(sheet.width, 40.0);

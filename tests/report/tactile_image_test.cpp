@@ -10,7 +10,7 @@
 namespace dermis::report {
 namespace {
 
-TEST(TactileImage, ShowsFourStages) {
+TEST(TactileImage, shows_four_stages) {
   const ArrayDescription array = sample_array(16, 16);
   const std::vector<Drawing> panels = tactile_panels(array, sample_example(16, 16, 1));
   ASSERT_EQ(panels.size(), 4U);
@@ -22,7 +22,7 @@ TEST(TactileImage, ShowsFourStages) {
   EXPECT_FALSE(has_bad_number(document));
 }
 
-TEST(TactileImage, GivesBothForcesOneScale) {
+TEST(TactileImage, gives_both_forces_one_scale) {
   const ArrayDescription array = sample_array(1, 1);
   const calibration::TactileExample example{0, {0.5}, {1e-5}, {20.0F}, {40.0}};
   const std::vector<Drawing> panels = tactile_panels(array, example);
@@ -31,14 +31,14 @@ TEST(TactileImage, GivesBothForcesOneScale) {
   EXPECT_NE(panels[3].elements.find(">40</text>"), std::string::npos);
 }
 
-TEST(TactileImage, HasNoSiemensWithoutACircuit) {
+TEST(TactileImage, has_no_siemens_without_a_circuit) {
   ArrayDescription array = sample_array(2, 2);
   array.readout.circuit = Circuit::none;
   const calibration::TactileExample example{0, {0, 0, 0, 0.5}, {0, 0, 0, 0.4}, {0, 0, 0, 9.0F}, {0, 0, 0, 10.0}};
   EXPECT_EQ(tactile_panels(array, example)[1].description.find("S]"), std::string::npos);
 }
 
-TEST(TactileImage, TakesAFrameWithoutLoadAndWithoutForces) {
+TEST(TactileImage, takes_a_frame_without_load_and_without_forces) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const calibration::TactileExample example{0, {0, 0}, {0, 0}, {nan, nan}, {0, 0}};
   const std::string document = svg_document(tactile_image(sample_array(1, 2), example));

@@ -19,13 +19,13 @@ std::vector<float> convert(const Readout& readout, double noise_lsb, const std::
   return counts;
 }
 
-TEST(Adc, RoundsToTheNearestCount) {
+TEST(Adc, rounds_to_the_nearest_count) {
   const Readout ratiometric;
   const std::vector<double> ratio = {0.0, 0.49 / 4095.0, 0.51 / 4095.0, 2047.6 / 4095.0, 1.0};
   EXPECT_EQ(convert(ratiometric, 0.0, ratio, 3.7), (std::vector<float>{0, 0, 1, 2048, 4095}));
 }
 
-TEST(Adc, FixedReferenceFollowsTheSupplyAndRatiometricDoesNot) {
+TEST(Adc, fixed_reference_follows_the_supply_and_ratiometric_does_not) {
   Readout fixed;
   fixed.adc_reference_v = 5.0;
   EXPECT_EQ(convert(fixed, 0.0, {0.5}, 4.0), (std::vector<float>{1638}));
@@ -33,14 +33,14 @@ TEST(Adc, FixedReferenceFollowsTheSupplyAndRatiometricDoesNot) {
   EXPECT_EQ(convert(Readout{}, 0.0, {0.5}, 4.0), (std::vector<float>{2048}));
 }
 
-TEST(Adc, ClampsToItsRange) {
+TEST(Adc, clamps_to_its_range) {
   Readout readout;
   readout.adc_bits = 10;
   EXPECT_EQ(convert(readout, 0.0, {-0.2, 1.3}, 5.0), (std::vector<float>{0, 1023}));
   EXPECT_FALSE(std::signbit(convert(readout, 0.0, {-1e-6}, 5.0).front())) << "no ADC says -0";
 }
 
-TEST(Adc, NoiseHasTheAskedVarianceOnTopOfTheRounding) {
+TEST(Adc, noise_has_the_asked_variance_on_top_of_the_rounding) {
   constexpr std::size_t kReadings = 100'000;
   const auto counts = convert(Readout{}, 2.0, std::vector<double>(kReadings, 1000.0 / 4095.0), 5.0);
   double mean = 0.0;
@@ -51,7 +51,7 @@ TEST(Adc, NoiseHasTheAskedVarianceOnTopOfTheRounding) {
   EXPECT_NEAR(variance, 4.0 + 1.0 / 12.0, 5.0 * 4.0 * std::sqrt(2.0 / kReadings));
 }
 
-TEST(Adc, SameSeedGivesTheSameCounts) {
+TEST(Adc, same_seed_gives_the_same_counts) {
   const std::vector<double> ratio(100, 0.3);
   EXPECT_EQ(convert(Readout{}, 1.0, ratio, 5.0, 4), convert(Readout{}, 1.0, ratio, 5.0, 4));
   EXPECT_NE(convert(Readout{}, 1.0, ratio, 5.0, 4), convert(Readout{}, 1.0, ratio, 5.0, 5));

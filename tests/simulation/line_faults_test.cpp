@@ -54,7 +54,7 @@ void expect_near(const std::vector<double>& actual, const std::vector<double>& e
   }
 }
 
-TEST(LineFaults, WithoutAFaultTheCircuitReadsAsItShould) {
+TEST(LineFaults, without_a_fault_the_circuit_reads_as_it_should) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
     for (const IdleRows idle : {IdleRows::grounded, IdleRows::floating}) {
       const ArrayDescription array = make_array(circuit, idle);
@@ -66,7 +66,7 @@ TEST(LineFaults, WithoutAFaultTheCircuitReadsAsItShould) {
 
 /// The limits of a healthy circuit: an open row has a driver of infinite resistance, a row that is shorted to 0 V while
 /// others are driven has one of 0 ohm, an open column a load of infinite resistance.
-TEST(LineFaults, OpenLinesAreTheLimitOfALargeResistance) {
+TEST(LineFaults, open_lines_are_the_limit_of_a_large_resistance) {
   for (const IdleRows idle : {IdleRows::grounded, IdleRows::floating}) {
     ArrayDescription array = make_array(Circuit::divider, idle);
     const auto siemens = random_siemens(array, 2);
@@ -91,7 +91,7 @@ TEST(LineFaults, OpenLinesAreTheLimitOfALargeResistance) {
   }
 }
 
-TEST(LineFaults, GroundedRowIsADriverThatAlwaysGivesNothing) {
+TEST(LineFaults, grounded_row_is_a_driver_that_always_gives_nothing) {
   const ArrayDescription array = make_array(Circuit::divider);
   const auto siemens = random_siemens(array, 3);
   LineFaults faults;
@@ -105,7 +105,7 @@ TEST(LineFaults, GroundedRowIsADriverThatAlwaysGivesNothing) {
 }
 
 /// Superposition: every scan also holds what the supplied row contributes, which is what its own scan reads.
-TEST(LineFaults, SuppliedRowAddsItsOwnReadingToEveryScan) {
+TEST(LineFaults, supplied_row_adds_its_own_reading_to_every_scan) {
   const ArrayDescription array = make_array(Circuit::divider);
   const auto siemens = random_siemens(array, 4);
   LineFaults faults;
@@ -123,7 +123,7 @@ TEST(LineFaults, SuppliedRowAddsItsOwnReadingToEveryScan) {
 }
 
 /// Two columns that are one node are one column: the sum of their taxels, their loads in parallel.
-TEST(LineFaults, ShortedColumnsAreOneColumn) {
+TEST(LineFaults, shorted_columns_are_one_column) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
     const ArrayDescription array = make_array(circuit);
     const auto siemens = random_siemens(array, 5);
@@ -155,7 +155,7 @@ TEST(LineFaults, ShortedColumnsAreOneColumn) {
 }
 
 /// While one of two joined rows is driven its driver works against that of the other, which holds 0 V.
-TEST(LineFaults, ShortedRowsStandBetweenTheirDrivers) {
+TEST(LineFaults, shorted_rows_stand_between_their_drivers) {
   const ArrayDescription array = make_array(Circuit::divider);
   const auto siemens = random_siemens(array, 6);
   LineFaults faults;
@@ -183,7 +183,7 @@ TEST(LineFaults, ShortedRowsStandBetweenTheirDrivers) {
   }
 }
 
-TEST(LineFaults, EveryCircuitReadsFiniteNumbersWithEveryFault) {
+TEST(LineFaults, every_circuit_reads_finite_numbers_with_every_fault) {
   std::vector<ArrayDescription> arrays = {
       make_array(Circuit::divider), make_array(Circuit::divider, IdleRows::floating),
       make_array(Circuit::transimpedance), make_array(Circuit::transimpedance, IdleRows::floating),
@@ -215,7 +215,7 @@ TEST(LineFaults, EveryCircuitReadsFiniteNumbersWithEveryFault) {
   }
 }
 
-TEST(LineFaults, DriftGrowsUntilItsEnd) {
+TEST(LineFaults, drift_grows_until_its_end) {
   const ArrayDescription array = make_array(Circuit::divider);
   const auto siemens = random_siemens(array, 8);
   LineFaults faults;
@@ -230,7 +230,7 @@ TEST(LineFaults, DriftGrowsUntilItsEnd) {
   }
 }
 
-TEST(LineFaults, StuckAndDeadTaxels) {
+TEST(LineFaults, stuck_and_dead_taxels) {
   const ArrayDescription array = make_array(Circuit::divider);
   auto siemens = random_siemens(array, 9);
   LineFaults faults;
@@ -246,7 +246,7 @@ TEST(LineFaults, StuckAndDeadTaxels) {
   EXPECT_EQ(counts[array.index(3, 3)], 7.0F);
 }
 
-TEST(LineFaults, RefusesLinesThatTheArrayDoesNotHave) {
+TEST(LineFaults, refuses_lines_that_the_array_does_not_have) {
   const ArrayDescription array = make_array(Circuit::divider);
   LineFaults faults;
   faults.shorted_rows = {5};
@@ -260,7 +260,7 @@ TEST(LineFaults, RefusesLinesThatTheArrayDoesNotHave) {
   EXPECT_EQ(faults.validate(array).error().message, "faults.until_frame: must be above from_frame");
 }
 
-TEST(LineFaults, AreReadFromToml) {
+TEST(LineFaults, are_read_from_toml) {
   files::ConfigFile file =
       files::ConfigFile::parse("[faults]\nopen_rows = [3, 4]\ndead_taxels = [\"r1c1\"]\nfrom_frame = 20\n", "f")
           .value();

@@ -152,27 +152,27 @@ std::vector<double> nodal_voltages(const ArrayDescription& array, const std::vec
   return voltages;
 }
 
-TEST(ReadoutCircuit, SingleTaxelIsAVoltageDivider) {
+TEST(ReadoutCircuit, single_taxel_is_a_voltage_divider) {
   for (const IdleRows idle_rows : {IdleRows::grounded, IdleRows::floating}) {
     const ArrayDescription array = make_array(1, 1, Circuit::divider, idle_rows);
     EXPECT_NEAR(ratios(array, {1e-3})[0], 200.0 / (20.0 + 1000.0 + 200.0), 1e-15);
   }
 }
 
-TEST(ReadoutCircuit, PressureThatLowersTheReadingGivesTheComplement) {
+TEST(ReadoutCircuit, pressure_that_lowers_the_reading_gives_the_complement) {
   ArrayDescription array = make_array(1, 1, Circuit::divider, IdleRows::grounded);
   array.readout.pressure_raises_reading = false;
   EXPECT_NEAR(ratios(array, {1e-3})[0], 1.0 - 200.0 / 1220.0, 1e-15);
 }
 
-TEST(ReadoutCircuit, UnknownCircuitReadsConductanceWithoutCrosstalk) {
+TEST(ReadoutCircuit, unknown_circuit_reads_conductance_without_crosstalk) {
   ArrayDescription array = make_array(2, 2, Circuit::none, IdleRows::grounded);
   array.readout.drive_ohm.clear();
   array.readout.load_ohm.clear();
   EXPECT_EQ(ratios(array, {1e-3, 2e-3, 0.0, 4e-3}), (std::vector<double>{0.1, 0.2, 0.0, 0.4}));
 }
 
-TEST(ReadoutCircuit, FloatingTwoByTwoIsTheSeriesParallelCircuit) {
+TEST(ReadoutCircuit, floating_two_by_two_is_the_series_parallel_circuit) {
   // Row 0 driven through 0 ohm, row 1 floating: r00 to column 0, r01 to column 1, r10 + r11 as a bridge between them.
   ArrayDescription array = make_array(2, 2, Circuit::divider, IdleRows::floating);
   array.readout.drive_ohm = {0.0, 0.0};
@@ -188,14 +188,14 @@ TEST(ReadoutCircuit, FloatingTwoByTwoIsTheSeriesParallelCircuit) {
   EXPECT_NEAR(ratio[1], (bridge * g00 + a * g01) / determinant, 1e-14);
 }
 
-TEST(ReadoutCircuit, FloatingRowWithoutConductanceReadsZero) {
+TEST(ReadoutCircuit, floating_row_without_conductance_reads_zero) {
   const ArrayDescription array = make_array(2, 1, Circuit::divider, IdleRows::floating);
   const auto ratio = ratios(array, {0.0, 1e-3});
   EXPECT_EQ(ratio[0], 0.0);
   EXPECT_NEAR(ratio[1], 200.0 / 1220.0, 1e-15);
 }
 
-TEST(ReadoutCircuit, AgreesWithTheWholeNodalSystem) {
+TEST(ReadoutCircuit, agrees_with_the_whole_nodal_system) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     Random random(seed);
@@ -213,7 +213,7 @@ TEST(ReadoutCircuit, AgreesWithTheWholeNodalSystem) {
   }
 }
 
-TEST(ReadoutCircuit, GroundedDividerIsTheClosedForm) {
+TEST(ReadoutCircuit, grounded_divider_is_the_closed_form) {
   // T = D S^-1 G B^-1 with S = A - G B^-1 G^T: the row-side Schur complement, the library uses the column side.
   constexpr std::uint64_t kSeed = 11;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -246,7 +246,7 @@ TEST(ReadoutCircuit, GroundedDividerIsTheClosedForm) {
   }
 }
 
-TEST(ReadoutCircuit, ReciprocityHoldsWhenTheArrayIsReadAcross) {
+TEST(ReadoutCircuit, reciprocity_holds_when_the_array_is_read_across) {
   // v_j / (gd_k s_k) is a transfer resistance: driving column j and sensing row k gives the same.
   constexpr std::uint64_t kSeed = 12;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -271,7 +271,7 @@ TEST(ReadoutCircuit, ReciprocityHoldsWhenTheArrayIsReadAcross) {
   }
 }
 
-TEST(ReadoutCircuit, DriversOfZeroOhmAreTheLimitOfSmallOnes) {
+TEST(ReadoutCircuit, drivers_of_zero_ohm_are_the_limit_of_small_ones) {
   constexpr std::uint64_t kSeed = 13;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
@@ -288,7 +288,7 @@ TEST(ReadoutCircuit, DriversOfZeroOhmAreTheLimitOfSmallOnes) {
   }
 }
 
-TEST(ReadoutCircuit, TransimpedanceIsUndoneByTheRowDroopFormula) {
+TEST(ReadoutCircuit, transimpedance_is_undone_by_the_row_droop_formula) {
   // G = y / (1 - Ron Y): y apparent conductance, Y its sum over the row.
   for (const IdleRows idle_rows : {IdleRows::grounded, IdleRows::floating}) {
     constexpr std::uint64_t kSeed = 14;
@@ -312,7 +312,7 @@ TEST(ReadoutCircuit, TransimpedanceIsUndoneByTheRowDroopFormula) {
   }
 }
 
-TEST(ReadoutCircuit, LargeArraysObeyKirchhoff) {
+TEST(ReadoutCircuit, large_arrays_obey_kirchhoff) {
   // The current that leaves through the loads is the one that enters: checked from the readings and their row voltages.
   constexpr std::uint64_t kSeed = 15;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -340,13 +340,13 @@ TEST(ReadoutCircuit, LargeArraysObeyKirchhoff) {
   }
 }
 
-TEST(ReadoutCircuit, RefusesAnArrayWithoutItsResistors) {
+TEST(ReadoutCircuit, refuses_an_array_without_its_resistors) {
   ArrayDescription array = make_array(2, 2, Circuit::divider, IdleRows::grounded);
   array.readout.load_ohm.clear();
   EXPECT_EQ(ReadoutCircuit::create(array).error().kind, ErrorKind::bad_input);
 }
 
-TEST(ReadoutCircuit, SingleTaxelWithRealAmplifierIsALoop) {
+TEST(ReadoutCircuit, single_taxel_with_real_amplifier_is_a_loop) {
   // Supply - driver - taxel - switch - amplifier input, which stands at e = off a + I load/(1 + gain), a = gain/(1 +
   // gain): I = (1 - e)/(20 + 1000 + 50).
   for (const IdleRows idle_rows : {IdleRows::grounded, IdleRows::floating}) {
@@ -361,7 +361,7 @@ TEST(ReadoutCircuit, SingleTaxelWithRealAmplifierIsALoop) {
   }
 }
 
-TEST(ReadoutCircuit, SingleTaxelWithOneLoadIsAVoltageDivider) {
+TEST(ReadoutCircuit, single_taxel_with_one_load_is_a_voltage_divider) {
   for (const CircuitKind& kind : kCircuitKinds) {
     if (kind.circuit == Circuit::transimpedance) continue;
     SCOPED_TRACE(kind.name);
@@ -371,7 +371,7 @@ TEST(ReadoutCircuit, SingleTaxelWithOneLoadIsAVoltageDivider) {
   }
 }
 
-TEST(ReadoutCircuit, TwoTerminalsOfTwoByTwoSeeTheTaxelBesideTheOtherThree) {
+TEST(ReadoutCircuit, two_terminals_of_two_by_two_see_the_taxel_beside_the_other_three) {
   ArrayDescription array = make_array(2, 2, Circuit::divider, IdleRows::floating);
   array.readout.idle_columns = IdleColumns::floating;
   const double around = 500.0 + 250.0 + 2000.0;
@@ -380,7 +380,7 @@ TEST(ReadoutCircuit, TwoTerminalsOfTwoByTwoSeeTheTaxelBesideTheOtherThree) {
               200.0 / (20.0 + parallel + 200.0), 1e-15);
 }
 
-TEST(ReadoutCircuit, TwoTerminalsSeeAFirmTaxelBesideWeakOnesToTheLastDigits) {
+TEST(ReadoutCircuit, two_terminals_see_a_firm_taxel_beside_weak_ones_to_the_last_digits) {
   // 1 ohm beside a path of 3e12 ohm.
   ArrayDescription array = make_array(2, 2, Circuit::divider, IdleRows::floating);
   array.readout.idle_columns = IdleColumns::floating;
@@ -389,7 +389,7 @@ TEST(ReadoutCircuit, TwoTerminalsSeeAFirmTaxelBesideWeakOnesToTheLastDigits) {
   EXPECT_NEAR(ratio[3] * (20.0 + 1.0 / (1e-12 + 1.0 / (2e12 + 1.0)) + 200.0) / 200.0, 1.0, 1e-15);
 }
 
-TEST(ReadoutCircuit, FlexitacWithIdealDriversIsUndoneByItsClosedForm) {
+TEST(ReadoutCircuit, flexitac_with_ideal_drivers_is_undone_by_its_closed_form) {
   // G_rc = T_rc / (load_r (1 - sum_c T_rc)).
   constexpr std::uint64_t kSeed = 17;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -409,7 +409,7 @@ TEST(ReadoutCircuit, FlexitacWithIdealDriversIsUndoneByItsClosedForm) {
   }
 }
 
-TEST(ReadoutCircuit, FlexitacIsTheDividerWithFloatingColumnsReadAcross) {
+TEST(ReadoutCircuit, flexitac_is_the_divider_with_floating_columns_read_across) {
   constexpr std::uint64_t kSeed = 18;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   Random random(kSeed);
@@ -433,7 +433,7 @@ TEST(ReadoutCircuit, FlexitacIsTheDividerWithFloatingColumnsReadAcross) {
   }
 }
 
-TEST(ReadoutCircuit, SegmentOfARowLineStandsBeforeTheSecondTaxel) {
+TEST(ReadoutCircuit, segment_of_a_row_line_stands_before_the_second_taxel) {
   ArrayDescription array = make_array(1, 2, Circuit::divider, IdleRows::grounded);
   array.readout.row_segment_ohm = {30.0};
   const double first = 1.0 / (1000.0 + 200.0);
@@ -444,7 +444,7 @@ TEST(ReadoutCircuit, SegmentOfARowLineStandsBeforeTheSecondTaxel) {
   EXPECT_NEAR(ratio[1], line * 200.0 * second, 1e-15);
 }
 
-TEST(ReadoutCircuit, SegmentOfAColumnLineStandsBeforeTheSecondTaxel) {
+TEST(ReadoutCircuit, segment_of_a_column_line_stands_before_the_second_taxel) {
   ArrayDescription array = make_array(2, 1, Circuit::divider, IdleRows::grounded);
   array.readout.column_segment_ohm = {30.0};
   const double first = 1.0 / (1000.0 + 20.0);
@@ -461,7 +461,7 @@ void expect_same_readings(const std::vector<double>& readings, const std::vector
   }
 }
 
-TEST(ReadoutCircuit, FastSolutionOfTheGroundedDividerIsTheGeneralOneOnEveryMachine) {
+TEST(ReadoutCircuit, fast_solution_of_the_grounded_divider_is_the_general_one_on_every_machine) {
   support::for_each_simd_target([] {
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
       SCOPED_TRACE(testing::Message() << "seed " << seed);
@@ -486,7 +486,7 @@ TEST(ReadoutCircuit, FastSolutionOfTheGroundedDividerIsTheGeneralOneOnEveryMachi
   });
 }
 
-TEST(ReadoutCircuit, SinglePrecisionReadingsOfAnyCircuitAreThoseOfDouble) {
+TEST(ReadoutCircuit, single_precision_readings_of_any_circuit_are_those_of_double) {
   constexpr std::uint64_t kSeed = 31;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   for (const CircuitKind& kind : kCircuitKinds) {
@@ -504,7 +504,7 @@ TEST(ReadoutCircuit, SinglePrecisionReadingsOfAnyCircuitAreThoseOfDouble) {
   }
 }
 
-TEST(ReadoutCircuit, FastSolutionAllocatesNothing) {
+TEST(ReadoutCircuit, fast_solution_allocates_nothing) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "the sanitizer owns malloc";
   Random random(1);
   const ArrayDescription array = random_array({"divider", Circuit::divider}, 16, 16, random);
@@ -516,7 +516,7 @@ TEST(ReadoutCircuit, FastSolutionAllocatesNothing) {
   EXPECT_EQ(guard.count(), 0U);
 }
 
-TEST(ReadoutCircuit, DividerIsAnAmplifierBehindASwitchOfItsLoad) {
+TEST(ReadoutCircuit, divider_is_an_amplifier_behind_a_switch_of_its_load) {
   constexpr std::uint64_t kSeed = 19;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   for (const IdleRows idle_rows : {IdleRows::grounded, IdleRows::floating}) {
@@ -530,7 +530,7 @@ TEST(ReadoutCircuit, DividerIsAnAmplifierBehindASwitchOfItsLoad) {
   }
 }
 
-TEST(ReadoutCircuit, ReadingsAreLinearInTheOffsets) {
+TEST(ReadoutCircuit, readings_are_linear_in_the_offsets) {
   constexpr std::uint64_t kSeed = 20;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   for (const IdleRows idle_rows : {IdleRows::grounded, IdleRows::floating}) {
@@ -549,7 +549,7 @@ TEST(ReadoutCircuit, ReadingsAreLinearInTheOffsets) {
   }
 }
 
-TEST(ReadoutCircuit, SmallDefectsTendToTheIdealCircuit) {
+TEST(ReadoutCircuit, small_defects_tend_to_the_ideal_circuit) {
   constexpr std::uint64_t kSeed = 21;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   for (const CircuitKind& kind : kCircuitKinds) {
@@ -573,7 +573,7 @@ TEST(ReadoutCircuit, SmallDefectsTendToTheIdealCircuit) {
   }
 }
 
-TEST(ReadoutCircuit, ResistiveLinesLowerTheReadingsTowardsTheFarCorner) {
+TEST(ReadoutCircuit, resistive_lines_lower_the_readings_towards_the_far_corner) {
   // Equal taxels read the same on lines without resistance, and less and less along lines with it.
   for (const CircuitKind& kind : kCircuitKinds) {
     if (kind.has_real_amplifiers) continue;
@@ -589,7 +589,7 @@ TEST(ReadoutCircuit, ResistiveLinesLowerTheReadingsTowardsTheFarCorner) {
   }
 }
 
-TEST(ReadoutCircuit, TaxelsThatAreOpenReadAsTheArrayWithoutThem) {
+TEST(ReadoutCircuit, taxels_that_are_open_read_as_the_array_without_them) {
   // An array that is open but for the corner of r1c1 to r3c2 reads what that corner alone reads, and 0 elsewhere.
   constexpr std::uint64_t kSeed = 22;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
@@ -620,7 +620,7 @@ TEST(ReadoutCircuit, TaxelsThatAreOpenReadAsTheArrayWithoutThem) {
   }
 }
 
-TEST(ReadoutCircuit, RefusesACircuitThatIsNotKnown) {
+TEST(ReadoutCircuit, refuses_a_circuit_that_is_not_known) {
   ArrayDescription array = make_array(2, 2, Circuit::divider, IdleRows::grounded);
   array.readout.load_ohm[1] = kFitOhm;
   EXPECT_EQ(ReadoutCircuit::create(array).error().kind, ErrorKind::bad_input);
@@ -806,7 +806,7 @@ using SpiceCase = std::tuple<CircuitKind, bool, std::size_t>;
 
 class AgainstNgspice : public testing::TestWithParam<SpiceCase> {};
 
-TEST_P(AgainstNgspice, AgreesWithinOnePartInABillion) {
+TEST_P(AgainstNgspice, agrees_within_one_part_in_a_billion) {
   if (std::system("command -v ngspice > /dev/null") != 0) GTEST_SKIP() << "ngspice is not on the PATH";
   constexpr std::uint64_t kSeed = 16;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);

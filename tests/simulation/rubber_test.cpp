@@ -52,14 +52,14 @@ Moments moments(const std::vector<double>& values) {
   return {mean, std::sqrt(variance)};
 }
 
-TEST(Rubber, HasItsResistanceAtTenNewtons) {
+TEST(Rubber, has_its_resistance_at_ten_newtons) {
   const ConductiveRubber rubber = make_rubber(ideal_rubber());
   EXPECT_NEAR(rubber.conductance_from_force(0, 10.0, 20.0), 1.0 / 900.0 + 1.0 / 200e3, 1e-15);
   EXPECT_NEAR(rubber.conductance_from_force(0, 50.0, 20.0), std::pow(5.0, 0.9) / 900.0 + 1.0 / 200e3, 1e-15);
   EXPECT_DOUBLE_EQ(rubber.conductance_from_force(0, 0.0, 20.0), 1.0 / 200e3);
 }
 
-TEST(Rubber, ContactResistanceIsPartOfTheResistanceAtTenNewtons) {
+TEST(Rubber, contact_resistance_is_part_of_the_resistance_at_ten_newtons) {
   RubberOptions options = ideal_rubber();
   options.contact_ohm = 300.0;
   const ConductiveRubber rubber = make_rubber(options);
@@ -67,7 +67,7 @@ TEST(Rubber, ContactResistanceIsPartOfTheResistanceAtTenNewtons) {
   EXPECT_NEAR(rubber.conductance_from_force(0, 1e9, 20.0), 1.0 / 300.0 + 1.0 / 200e3, 1e-9);
 }
 
-TEST(Rubber, TemperatureScalesTheResistance) {
+TEST(Rubber, temperature_scales_the_resistance) {
   RubberOptions options = ideal_rubber();
   options.temperature_curvature = 2e-5;
   const ConductiveRubber rubber = make_rubber(options);
@@ -75,7 +75,7 @@ TEST(Rubber, TemperatureScalesTheResistance) {
   EXPECT_NEAR(rubber.conductance_from_force(0, 3.0, 50.0) / cold, std::exp(0.004 * 30.0 - 2e-5 * 900.0), 1e-12);
 }
 
-TEST(Rubber, InverseLawReturnsTheForce) {
+TEST(Rubber, inverse_law_returns_the_force) {
   RubberOptions options;
   options.contact_ohm = 150.0;
   options.temperature_curvature = 1e-5;
@@ -91,7 +91,7 @@ TEST(Rubber, InverseLawReturnsTheForce) {
   }
 }
 
-TEST(Rubber, InverseLawIsZeroWhenUnloadedAndInfiniteBeyondTheContact) {
+TEST(Rubber, inverse_law_is_zero_when_unloaded_and_infinite_beyond_the_contact) {
   RubberOptions options = ideal_rubber();
   options.contact_ohm = 100.0;
   const ConductiveRubber rubber = make_rubber(options);
@@ -99,7 +99,7 @@ TEST(Rubber, InverseLawIsZeroWhenUnloadedAndInfiniteBeyondTheContact) {
   EXPECT_EQ(rubber.force_from_conductance(0, 1.0 / 99.0, 20.0), std::numeric_limits<double>::infinity());
 }
 
-TEST(Rubber, TaxelsScatterAsAsked) {
+TEST(Rubber, taxels_scatter_as_asked) {
   RubberOptions options;
   options.unloaded_ohm = 1e12;
   const ConductiveRubber rubber = make_rubber(options, 64, 64);
@@ -122,7 +122,7 @@ TEST(Rubber, TaxelsScatterAsAsked) {
   EXPECT_NEAR(moments(coefficient).sd, 0.0008, 0.0008 * kSdOfSd);
 }
 
-TEST(Rubber, SeedOfThePieceAloneFixesItsTaxels) {
+TEST(Rubber, seed_of_the_piece_alone_fixes_its_taxels) {
   const RubberOptions options;
   const auto one = ConductiveRubber::create(options, 4, 4, 1).value();
   const auto same = ConductiveRubber::create(options, 4, 4, 2).value();
@@ -136,7 +136,7 @@ TEST(Rubber, SeedOfThePieceAloneFixesItsTaxels) {
   }
 }
 
-TEST(Rubber, HysteresisLoopIsAsWideAsAsked) {
+TEST(Rubber, hysteresis_loop_is_as_wide_as_asked) {
   RubberOptions options = ideal_rubber();
   options.hysteresis = 0.1;
   ConductiveRubber rubber = make_rubber(options);
@@ -146,7 +146,7 @@ TEST(Rubber, HysteresisLoopIsAsWideAsAsked) {
   EXPECT_NEAR(felt_force(rubber), 10.5, 1e-9);
 }
 
-TEST(Rubber, HysteresisTurnsAroundOverItsReach) {
+TEST(Rubber, hysteresis_turns_around_over_its_reach) {
   RubberOptions options = ideal_rubber();
   options.hysteresis = 0.2;
   ConductiveRubber rubber = make_rubber(options);
@@ -156,7 +156,7 @@ TEST(Rubber, HysteresisTurnsAroundOverItsReach) {
   EXPECT_NEAR(felt_force(rubber), 25.0 * (1.0 - 0.1 * loop), 1e-9);
 }
 
-TEST(Rubber, HysteresisDependsOnForcesNotOnTime) {
+TEST(Rubber, hysteresis_depends_on_forces_not_on_time) {
   RubberOptions options = ideal_rubber();
   options.hysteresis = 0.2;
   ConductiveRubber slow = make_rubber(options);
@@ -168,7 +168,7 @@ TEST(Rubber, HysteresisDependsOnForcesNotOnTime) {
   EXPECT_DOUBLE_EQ(felt_force(slow), felt_force(fast));
 }
 
-TEST(Rubber, CreepFollowsItsThreeTimeConstants) {
+TEST(Rubber, creep_follows_its_three_time_constants) {
   RubberOptions options = ideal_rubber();
   options.creep = 0.06;
   for (const double seconds : {0.0, 0.1, 1.0, 3.0, 30.0, 300.0, 1e5}) {
@@ -180,7 +180,7 @@ TEST(Rubber, CreepFollowsItsThreeTimeConstants) {
   }
 }
 
-TEST(Rubber, CreepDoesNotDependOnTheTimeStep) {
+TEST(Rubber, creep_does_not_depend_on_the_time_step) {
   RubberOptions options = ideal_rubber();
   options.creep = 0.1;
   ConductiveRubber once = make_rubber(options);
@@ -190,7 +190,7 @@ TEST(Rubber, CreepDoesNotDependOnTheTimeStep) {
   EXPECT_NEAR(felt_force(once), felt_force(often), 1e-9);
 }
 
-TEST(Rubber, CreepRecoversAfterUnloading) {
+TEST(Rubber, creep_recovers_after_unloading) {
   RubberOptions options = ideal_rubber();
   options.creep = 0.06;
   ConductiveRubber rubber = make_rubber(options);
@@ -225,7 +225,7 @@ double noise_covariance(double k, double lag_s) {
   return sum;
 }
 
-TEST(Rubber, NoiseHasTheCovarianceOfItsProcessesAtAnyTimeStep) {
+TEST(Rubber, noise_has_the_covariance_of_its_processes_at_any_time_step) {
   constexpr double kK = 1e-6;
   constexpr std::size_t kSide = 128;
   for (const double step_s : {0.003, 0.1, 5.0, 400.0}) {
@@ -243,7 +243,7 @@ TEST(Rubber, NoiseHasTheCovarianceOfItsProcessesAtAnyTimeStep) {
   }
 }
 
-TEST(Rubber, NoiseHasTheDensityKOverF) {
+TEST(Rubber, noise_has_the_density_k_over_f) {
   constexpr double kK = 1e-6;
   constexpr std::size_t kSide = 24;
   constexpr std::size_t kSamples = 2048;
@@ -270,7 +270,7 @@ TEST(Rubber, NoiseHasTheDensityKOverF) {
   }
 }
 
-TEST(Rubber, NeighboursShareALoadWhoseSumIsKeptInside) {
+TEST(Rubber, neighbours_share_a_load_whose_sum_is_kept_inside) {
   RubberOptions options = ideal_rubber();
   options.mechanical_spread = 0.08;
   ConductiveRubber rubber = make_rubber(options, 3, 3);
@@ -283,7 +283,7 @@ TEST(Rubber, NeighboursShareALoadWhoseSumIsKeptInside) {
   EXPECT_EQ(felt_force(rubber, 0), 0.0);
 }
 
-TEST(Rubber, SharesThatFallOffTheEdgeAreLost) {
+TEST(Rubber, shares_that_fall_off_the_edge_are_lost) {
   RubberOptions options = ideal_rubber();
   options.mechanical_spread = 0.08;
   ConductiveRubber rubber = make_rubber(options, 2, 2);
@@ -293,7 +293,7 @@ TEST(Rubber, SharesThatFallOffTheEdgeAreLost) {
   EXPECT_NEAR(sum, 9.6, 1e-9);
 }
 
-TEST(Rubber, GradesRankByCarbonContent) {
+TEST(Rubber, grades_rank_by_carbon_content) {
   EXPECT_EQ(rubber_grade(10)->resistance_at_10n_ohm, RubberOptions{}.resistance_at_10n_ohm);
   EXPECT_NEAR(rubber_grade(5)->resistance_at_10n_ohm, 900.0 * 12.25, 1e-9);
   EXPECT_NEAR(rubber_grade(15)->resistance_at_10n_ohm, 900.0 * 49.0 / 144.0, 1e-9);
@@ -301,7 +301,7 @@ TEST(Rubber, GradesRankByCarbonContent) {
   EXPECT_EQ(rubber_grade(12).error().kind, ErrorKind::bad_input);
 }
 
-TEST(Rubber, OptionsOutOfRangeAreNamed) {
+TEST(Rubber, options_out_of_range_are_named) {
   EXPECT_TRUE(RubberOptions{}.validate());
   RubberOptions options;
   options.exponent = std::numeric_limits<double>::quiet_NaN();
@@ -314,7 +314,7 @@ TEST(Rubber, OptionsOutOfRangeAreNamed) {
   EXPECT_EQ(ConductiveRubber::create(options, 2, 2, 1).error().message.find("rubber.contact_ohm:"), 0U);
 }
 
-TEST(Rubber, ScatterThatLeavesATaxelBelowTheContactIsAnError) {
+TEST(Rubber, scatter_that_leaves_a_taxel_below_the_contact_is_an_error) {
   RubberOptions options;
   options.contact_ohm = 890.0;
   const auto rubber = ConductiveRubber::create(options, 8, 8, 1);

@@ -31,7 +31,7 @@ double total(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-TEST(Scene, LabelsOfEveryFrameStateItsForces) {
+TEST(Scene, labels_of_every_frame_state_its_forces) {
   const ArrayDescription array = reference_array(5, 4);
   for (const std::string& name : scene_names()) {
     const auto frames = play(name, array);
@@ -48,7 +48,7 @@ TEST(Scene, LabelsOfEveryFrameStateItsForces) {
   }
 }
 
-TEST(Scene, SupplyStaysWithinTenPercent) {
+TEST(Scene, supply_stays_within_ten_percent) {
   const auto frames = play("multitouch", reference_array(4, 4));
   const auto [low, high] = std::minmax_element(frames.begin(), frames.end(),
                                                [](const auto& a, const auto& b) { return a.supply_v < b.supply_v; });
@@ -58,7 +58,7 @@ TEST(Scene, SupplyStaysWithinTenPercent) {
   EXPECT_GT(high->supply_v, 5.49);
 }
 
-TEST(Scene, CalibrationPressesEachTaxelAloneAtEveryForceAndTemperature) {
+TEST(Scene, calibration_presses_each_taxel_alone_at_every_force_and_temperature) {
   const ArrayDescription array = reference_array(3, 4);
   const auto frames = play("calibration", array);
   EXPECT_EQ(frames.size(), 5 * (20 + 14 * 12));
@@ -87,12 +87,12 @@ TEST(Scene, CalibrationPressesEachTaxelAloneAtEveryForceAndTemperature) {
   }
 }
 
-TEST(Scene, CalibrationOfTheReferenceArrayHas17920Presses) {
+TEST(Scene, calibration_of_the_reference_array_has_17920_presses) {
   const Scene scene = Scene::create("calibration", reference_array(16, 16), EnvironmentOptions{}, 1).value();
   EXPECT_EQ(scene.frame_count(), 17'920U + 100U);
 }
 
-TEST(Scene, PaperCalibrationIsTheCalibrationAt20Celsius) {
+TEST(Scene, paper_calibration_is_the_calibration_at_20_celsius) {
   const ArrayDescription array = reference_array(3, 4);
   const auto frames = play("paper_calibration", array);
   const auto all_temperatures = play("calibration", array);
@@ -103,7 +103,7 @@ TEST(Scene, PaperCalibrationIsTheCalibrationAt20Celsius) {
   }
 }
 
-TEST(Scene, UniformLabelsPressureOnAllTaxels) {
+TEST(Scene, uniform_labels_pressure_on_all_taxels) {
   const ArrayDescription array = reference_array(3, 3);
   const auto frames = play("uniform", array);
   EXPECT_EQ(frames.size(), 5U * (20 + 70));
@@ -122,7 +122,7 @@ TEST(Scene, UniformLabelsPressureOnAllTaxels) {
   EXPECT_EQ(*levels.rbegin(), 700e3);
 }
 
-TEST(Scene, PaperPressesSixteenDifferentTaxelsAtEachForce) {
+TEST(Scene, paper_presses_sixteen_different_taxels_at_each_force) {
   const auto frames = play("paper", reference_array(16, 16));
   ASSERT_EQ(frames.size(), 48U);
   std::map<double, std::set<std::size_t>> taxels;
@@ -136,7 +136,7 @@ TEST(Scene, PaperPressesSixteenDifferentTaxelsAtEachForce) {
   EXPECT_NE(taxels[10.0], taxels[20.0]);
 }
 
-TEST(Scene, MultitouchStaysInTheCalibratedRange) {
+TEST(Scene, multitouch_stays_in_the_calibrated_range) {
   const auto frames = play("multitouch", reference_array(16, 16));
   ASSERT_EQ(frames.size(), 1000U);
   std::size_t on_one_taxel = 0;
@@ -180,7 +180,7 @@ double summed_force(const std::vector<AppliedContact>& contacts, double x_m, dou
   return sum_n;
 }
 
-TEST(Scene, ContactsPressOnTaxelsWhatLiesOnTheirDiscs) {
+TEST(Scene, contacts_press_on_taxels_what_lies_on_their_discs) {
   ArrayDescription array = reference_array(16, 16);
   array.col_pitch_m = 0.008;
   const double radius_m = std::sqrt(*array.taxel_area_m2 / std::numbers::pi);
@@ -200,7 +200,7 @@ TEST(Scene, ContactsPressOnTaxelsWhatLiesOnTheirDiscs) {
   }
 }
 
-TEST(Scene, ADiscThatCoversAPatchCarriesItsWholeForce) {
+TEST(Scene, a_disc_that_covers_a_patch_carries_its_whole_force) {
   ArrayDescription array = reference_array(1, 1);
   array.taxel_area_m2 = 0.01;
   for (const SceneFrame& frame : play("contacts", array)) {
@@ -210,7 +210,7 @@ TEST(Scene, ADiscThatCoversAPatchCarriesItsWholeForce) {
   }
 }
 
-TEST(Scene, ContactsStayApartInsideTheArrayAndWithinTheirRanges) {
+TEST(Scene, contacts_stay_apart_inside_the_array_and_within_their_ranges) {
   const ArrayDescription array = reference_array(16, 16);
   std::set<std::size_t> counts;
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U}) {
@@ -237,7 +237,7 @@ TEST(Scene, ContactsStayApartInsideTheArrayAndWithinTheirRanges) {
   EXPECT_EQ(counts, (std::set<std::size_t>{0, 1, 2, 3, 4, 5}));
 }
 
-TEST(Scene, ContactsComeMoveSmoothlyAndGo) {
+TEST(Scene, contacts_come_move_smoothly_and_go) {
   const ArrayDescription array = reference_array(16, 16);
   const auto frames = play("contacts", array, 7);
   ASSERT_EQ(frames.size(), 2000U);
@@ -268,7 +268,7 @@ TEST(Scene, ContactsComeMoveSmoothlyAndGo) {
   EXPECT_GT(farthest_m, 0.03);
 }
 
-TEST(Scene, ContactsFollowTheSeedAndTheLengthAsked) {
+TEST(Scene, contacts_follow_the_seed_and_the_length_asked) {
   const ArrayDescription array = reference_array(16, 16);
   const auto frames = play("contacts", array, 5, 400);
   ASSERT_EQ(frames.size(), 400U);
@@ -278,7 +278,7 @@ TEST(Scene, ContactsFollowTheSeedAndTheLengthAsked) {
   EXPECT_EQ(play("multitouch", array, 5, 10)[3].contacts.size(), 0U);
 }
 
-TEST(Scene, IdleWarmsUpAndCoolsDownUnloaded) {
+TEST(Scene, idle_warms_up_and_cools_down_unloaded) {
   const auto frames = play("idle", reference_array(2, 2), 1, 100);
   ASSERT_EQ(frames.size(), 100U);
   EXPECT_EQ(frames[0].temperature_celsius, 0.0);
@@ -287,7 +287,7 @@ TEST(Scene, IdleWarmsUpAndCoolsDownUnloaded) {
   for (const SceneFrame& frame : frames) EXPECT_EQ(total(frame.force_n), 0.0);
 }
 
-TEST(Scene, FramesDependOnSeedAndIndexAlone) {
+TEST(Scene, frames_depend_on_seed_and_index_alone) {
   const ArrayDescription array = reference_array(6, 6);
   const auto frames = play("multitouch", array, 5, 50);
   const Scene longer = Scene::create("multitouch", array, EnvironmentOptions{}, 5, 500).value();
@@ -298,7 +298,7 @@ TEST(Scene, FramesDependOnSeedAndIndexAlone) {
   EXPECT_NE(play("multitouch", array, 6, 50)[31].force_n, frames[31].force_n);
 }
 
-TEST(Scene, RefusesWhatItCannotPlay) {
+TEST(Scene, refuses_what_it_cannot_play) {
   ArrayDescription array = reference_array(3, 3);
   const auto message = [&](std::string_view name, std::optional<std::size_t> frames = {}) {
     return Scene::create(name, array, EnvironmentOptions{}, 1, frames).error().message;

@@ -36,7 +36,7 @@ bool same_frame(const RawFrame& a, const RawFrame& b) {
          a.counts == b.counts;
 }
 
-TEST(Simulator, GivesAsManyFramesAsTheSceneHas) {
+TEST(Simulator, gives_as_many_frames_as_the_scene_has) {
   const auto simulator = simulate(reference_array(4, 3), "multitouch", 1, 25);
   EXPECT_EQ(simulator->frame_count(), 25U);
   const auto frames = record(*simulator);
@@ -47,7 +47,7 @@ TEST(Simulator, GivesAsManyFramesAsTheSceneHas) {
   EXPECT_FALSE(*simulator->next(frame));
 }
 
-TEST(Simulator, SameSeedGivesTheSameFramesInAnyThread) {
+TEST(Simulator, same_seed_gives_the_same_frames_in_any_thread) {
   const ArrayDescription array = reference_array(5, 5);
   std::vector<std::vector<RawFrame>> runs(8);
   parallel_for(runs.size(), [&](std::size_t i) { runs[i] = record(*simulate(array, "multitouch", i / 2, 40)); });
@@ -57,7 +57,7 @@ TEST(Simulator, SameSeedGivesTheSameFramesInAnyThread) {
   }
 }
 
-TEST(Simulator, TheSamePieceOfRubberGoesThroughAllScenes) {
+TEST(Simulator, the_same_piece_of_rubber_goes_through_all_scenes) {
   const ArrayDescription array = reference_array(4, 4);
   const auto calibration = simulate(array, "calibration", 1);
   const auto multitouch = simulate(array, "multitouch", 2);
@@ -67,7 +67,7 @@ TEST(Simulator, TheSamePieceOfRubberGoesThroughAllScenes) {
   }
 }
 
-TEST(Simulator, TrueLawFindsTheTrueForcesButForTheMaterialNoise) {
+TEST(Simulator, true_law_finds_the_true_forces_but_for_the_material_noise) {
   const ArrayDescription array = reference_array(8, 8);
   const auto simulator = simulate(array, "multitouch", 3, 100);
   RawFrame frame;
@@ -83,7 +83,7 @@ TEST(Simulator, TrueLawFindsTheTrueForcesButForTheMaterialNoise) {
   }
 }
 
-TEST(Simulator, CountsAreTheCircuitsReadings) {
+TEST(Simulator, counts_are_the_circuits_readings) {
   const ArrayDescription array = reference_array(6, 6);
   SimulationOptions options;
   options.environment.adc_noise_lsb = 0.0;
@@ -99,7 +99,7 @@ TEST(Simulator, CountsAreTheCircuitsReadings) {
   }
 }
 
-TEST(Simulator, InstrumentsReportWithTheirNoise) {
+TEST(Simulator, instruments_report_with_their_noise) {
   constexpr std::size_t kFrames = 4000;
   const auto simulator = simulate(reference_array(1, 1), "idle", 5, kFrames);
   double temperature_variance = 0.0;
@@ -116,7 +116,7 @@ TEST(Simulator, InstrumentsReportWithTheirNoise) {
   EXPECT_NEAR(supply_variance / (0.001 * 0.001), 1.0, five_sigma);
 }
 
-TEST(Simulator, CreepIsSeenInTheConductanceOfAPress) {
+TEST(Simulator, creep_is_seen_in_the_conductance_of_a_press) {
   SimulationOptions options;
   options.rubber.creep = 0.1;
   options.rubber.pink_noise = 0.0;
@@ -130,7 +130,7 @@ TEST(Simulator, CreepIsSeenInTheConductanceOfAPress) {
   EXPECT_NEAR(felt_n, press.value * (0.9 + 0.1 * late), 1e-9);
 }
 
-TEST(Simulator, RefusesOptionsOutOfRange) {
+TEST(Simulator, refuses_options_out_of_range) {
   SimulationOptions options;
   options.rubber.hysteresis = 2.0;
   EXPECT_EQ(options.validate().error().message.find("rubber.hysteresis:"), 0U);
@@ -146,7 +146,7 @@ Result<SimulationOptions> read_text(const std::string& text) {
   return options;
 }
 
-TEST(SimulationOptionsFile, SetsWhatItNamesAndKeepsTheOtherDefaults) {
+TEST(SimulationOptionsFile, sets_what_it_names_and_keeps_the_other_defaults) {
   const auto options = read_text("[rubber]\nseed = 9\nhysteresis = 0.1\n[environment]\nadc_noise_lsb = 0.5\n");
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(options->rubber.seed, 9U);
@@ -156,14 +156,14 @@ TEST(SimulationOptionsFile, SetsWhatItNamesAndKeepsTheOtherDefaults) {
   EXPECT_EQ(options->environment.supply_noise, EnvironmentOptions{}.supply_noise);
 }
 
-TEST(SimulationOptionsFile, GradeComesBeforeTheOtherKeys) {
+TEST(SimulationOptionsFile, grade_comes_before_the_other_keys) {
   const auto options = read_text("[rubber]\nexponent = 0.95\ncarbon_percent = 15\n");
   ASSERT_TRUE(options) << options.error().message;
   EXPECT_EQ(options->rubber.exponent, 0.95);
   EXPECT_EQ(options->rubber.resistance_at_10n_ohm, rubber_grade(15)->resistance_at_10n_ohm);
 }
 
-TEST(SimulationOptionsFile, NamesWhatIsWrong) {
+TEST(SimulationOptionsFile, names_what_is_wrong) {
   EXPECT_NE(read_text("[rubber]\nhysterisis = 0.1\n").error().message.find("hysteresis"), std::string::npos);
   EXPECT_NE(read_text("[rubber]\ncreep = 3\n").error().message.find("rubber.creep"), std::string::npos);
   EXPECT_NE(read_text("[rubber]\ncarbon_percent = 7\n").error().message.find("5, 10 or 15"), std::string::npos);
