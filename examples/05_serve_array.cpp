@@ -36,7 +36,9 @@ int main(int argc, char** argv) {
   if (!source) return fail(source.error());
   auto suit = dermis::serve::suit_of_one(*std::move(source), *std::move(model));
   if (!suit) return fail(suit.error());
-  const auto session = dermis::serve::Session::create(*std::move(suit), {.server = {.port = 0}});  // any free port
+  dermis::serve::SessionOptions options;
+  options.server.port = 0;  // any that is free
+  const auto session = dermis::serve::Session::create(*std::move(suit), options);
   if (!session) return fail(session.error());
   std::printf("serving at ws://127.0.0.1:%d/\n", (*session)->port());
   const auto ended = (*session)->run(stop);

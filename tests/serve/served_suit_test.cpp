@@ -112,7 +112,7 @@ TEST(ServedSuit, opens_the_arrays_of_a_recording_by_their_names) {
   const std::string rec = folder.file("rec.mcap");
   EXPECT_EQ(refusal({.from = rec, .model = folder.model()}), "'" + rec + "': holds no array 'hand_made'");
   EXPECT_EQ(refusal({.from = rec + "#other", .model = folder.model()}),
-            "'" + rec + "#other': array 'other' has 2x2 taxels, its model 3x4");
+            "'" + rec + "#other': array 'hand_made' has 2x2 taxels, its model 3x4");
 }
 
 TEST(ServedSuit, refuses_what_cannot_be_served) {

@@ -9,7 +9,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <utility>  // Asio 1.74 forgets it
+#include <utility>
 
 namespace dermis::serve {
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>  // Asio 1.74 forgets it
 #include <vector>
 
 #include "dermis/core/frames.hpp"
