@@ -69,6 +69,7 @@ TEST(Playback, BothArraysGiveAllFramesInOrderOnOneClock) {
     for (std::size_t i = 0; i < 2; ++i) made.push_back(playback->source(i));
     return made;
   }();
+  EXPECT_TRUE(sources.front()->is_live());
   playback->control({.speed = 10.0});
   {
     std::vector<std::jthread> threads;

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/sources/open_source.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "dermis/acquisition/protocol.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/suit_recording.hpp"
+#include "dermis/simulation/simulator.hpp"
+#include "sources/small_array.hpp"
+#include "support/random_frames.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace dermis::sources {
+namespace {
+
+using support::TemporaryFolder;
+
+constexpr FrameShape kShape{4, 5};
+
+std::unique_ptr<FrameSource> opened(const std::string& from, const SourceOptions& options = {}) {
+  Result<std::unique_ptr<FrameSource>> source = open_source(from, options);
+  EXPECT_TRUE(source) << (source ? "" : source.error().message);
+  return source ? *std::move(source) : nullptr;
+}
+
+std::string refusal(const std::string& from, const SourceOptions& options = {}) {
+  const Result<std::unique_ptr<FrameSource>> source = open_source(from, options);
+  return source ? "opened" : source.error().message;
+}
+
+bool has_next(FrameSource& source, RawFrame& frame) {
+  const Result<bool> more = source.next(frame);
+  EXPECT_TRUE(more) << (more ? "" : more.error().message);
+  return more && *more;
+}
+
+/// Frames with whole counts, a millisecond apart.
+std::vector<RawFrame> some_frames(std::size_t count) {
+  std::vector<RawFrame> frames(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    frames[i].time = static_cast<std::int64_t>(i) * Nanos(1'000'000);
+    frames[i].counts.assign(kShape.taxel_count(), static_cast<float>(i));
+  }
+  return frames;
+}
+
+void write_file(const std::string& path, const std::vector<RawFrame>& frames) {
+  const auto sink = recordings::create_frames(path, kShape);
+  ASSERT_TRUE(sink) << sink.error().message;
+  ASSERT_TRUE(support::write_all(**sink, frames));
+}
+
+void write_device_bytes(const std::string& path, const std::vector<RawFrame>& frames) {
+  const auto encoder = *acquisition::make_encoder({.name = "dermis", .shape = kShape});
+  std::vector<std::uint8_t> bytes;
+  for (const RawFrame& frame : frames) encoder->encode(frame, bytes);
+  support::write_bytes(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+TEST(OpenSource, reads_a_file_and_tells_where_each_frame_stands) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("frames.csv");
+  write_file(path, some_frames(2));
+  const auto source = opened(path);
+  ASSERT_TRUE(source);
+  EXPECT_FALSE(source->is_live());
+  EXPECT_EQ(source->shape(), kShape);
+  RawFrame frame;
+  ASSERT_TRUE(has_next(*source, frame));
+  ASSERT_TRUE(has_next(*source, frame));
+  EXPECT_EQ(frame.counts.front(), 1.0F);
+  EXPECT_EQ(source->place(), path + ":3");
+  EXPECT_FALSE(has_next(*source, frame));
+}
+
+TEST(OpenSource, reads_one_array_of_a_recording_by_its_name) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("rec.mcap");
+  const auto writer = recordings::SuitRecordingWriter::create(
+      path, {{.name = "chest", .shape = kShape}, {.name = "back", .shape = {1, 2}}});
+  ASSERT_TRUE(writer);
+  for (const RawFrame& frame : some_frames(3)) ASSERT_TRUE((*writer)->write(0, frame));
+  ASSERT_TRUE((*writer)->commit());
+
+  const auto source = opened(path + "#chest");
+  ASSERT_TRUE(source);
+  EXPECT_FALSE(source->is_live());
+  EXPECT_EQ(support::read_all(*source)->size(), 3U);
+  EXPECT_EQ(source->place(), "");
+  EXPECT_NE(refusal(path + "#arm").find("has no array 'arm'"), std::string::npos) << refusal(path + "#arm");
+}
+
+TEST(OpenSource, reads_a_device) {
+  const TemporaryFolder folder;
+  write_device_bytes(folder.file("device.bin"), some_frames(3));
+  const auto source = opened("file:" + folder.file("device.bin") + "?protocol=dermis");
+  ASSERT_TRUE(source);
+  EXPECT_TRUE(source->is_live());
+  const auto frames = support::read_all(*source);
+  ASSERT_TRUE(frames);
+  ASSERT_EQ(frames->size(), 3U);
+  EXPECT_EQ(frames->back().counts, some_frames(3).back().counts);
+}
+
+TEST(OpenSource, a_uri_that_was_parsed_opens_the_same) {
+  const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri("sim:idle?frames=2&rows=3&cols=2");
+  ASSERT_TRUE(uri);
+  const Result<std::unique_ptr<FrameSource>> source = open_source(*uri);
+  ASSERT_TRUE(source) << source.error().message;
+  EXPECT_EQ((*source)->shape(), (FrameShape{3, 2}));
+  EXPECT_EQ(support::read_all(**source)->size(), 2U);
+}
+
+TEST(OpenSource, simulates_a_scene_once_as_the_simulator_does) {
+  const ArrayDescription array = small_array();
+  const auto source = opened("sim:multitouch?frames=4&seed=7", {.array = &array});
+  ASSERT_TRUE(source);
+  EXPECT_TRUE(source->is_live());
+  const auto simulator = simulation::Simulator::create(array, {}, "multitouch", 7, 4);
+  ASSERT_TRUE(simulator);
+  support::expect_same_frames(*source, *support::read_all(**simulator));
+}
+
+TEST(OpenSource, sends_the_frames_of_a_scene_over_and_over_at_a_rate) {
+  const ArrayDescription array = small_array();
+  const auto scene = support::read_all(*opened("sim:multitouch?frames=3&seed=7", {.array = &array}));
+  ASSERT_TRUE(scene);
+  const auto source = opened("sim:multitouch?frames=3&seed=7&rate=1000", {.array = &array});
+  ASSERT_TRUE(source);
+  RawFrame frame;
+  for (int i = 0; i < 12; ++i) {
+    ASSERT_TRUE(has_next(*source, frame));
+    const RawFrame& same = (*scene)[*frame.acquisition.sequence % 3];
+    EXPECT_EQ(frame.counts, same.counts);
+    EXPECT_EQ(frame.supply_v, same.supply_v);
+    EXPECT_EQ(frame.temperature_celsius, same.temperature_celsius);
+  }
+}
+
+TEST(OpenSource, simulates_the_reference_array_where_none_is_named) {
+  const auto source = opened("sim:idle?frames=1");
+  ASSERT_TRUE(source);
+  EXPECT_EQ(source->shape(), (FrameShape{16, 16}));
+}
+
+TEST(OpenSource, the_array_of_the_uri_goes_before_that_of_the_options) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("array.toml");
+  ArrayDescription named = small_array();
+  named.readout.load_ohm.assign(5, 1000.0);
+  ASSERT_TRUE(files::write_array(path, named));
+  const ArrayDescription given = small_array();
+  const auto of_uri = support::read_all(*opened("sim:multitouch?frames=2&array=" + path, {.array = &given}));
+  const auto of_named = support::read_all(*opened("sim:multitouch?frames=2", {.array = &named}));
+  const auto of_given = support::read_all(*opened("sim:multitouch?frames=2", {.array = &given}));
+  EXPECT_EQ(of_uri->back().counts, of_named->back().counts);
+  EXPECT_NE(of_uri->back().counts, of_given->back().counts);
+}
+
+TEST(OpenSource, a_simulated_source_ends_where_the_stop_flag_is_set) {
+  const ArrayDescription array = small_array();
+  for (const char* uri : {"sim:idle", "sim:idle?rate=1000", "sim:contacts?frames=10&rate=1000"}) {
+    std::atomic<bool> stop = false;
+    const auto source = opened(uri, {.array = &array, .stop = &stop});
+    ASSERT_TRUE(source);
+    RawFrame frame;
+    EXPECT_TRUE(has_next(*source, frame)) << uri;
+    stop = true;
+    EXPECT_FALSE(has_next(*source, frame)) << uri;
+  }
+}
+
+TEST(OpenSource, the_hand_of_a_rehearsal_listens_to_the_guide) {
+  const ArrayDescription array = small_array();
+  const auto guide = std::make_shared<GuideVoice>();
+  const auto source = opened("sim:rehearsal?rate=1000", {.array = &array, .guide = guide});
+  ASSERT_TRUE(source);
+  EXPECT_TRUE(guide->has_listener());
+  RawFrame frame;
+  EXPECT_TRUE(has_next(*source, frame));
+  EXPECT_TRUE(has_next(*opened("sim:rehearsal?rate=1000", {.array = &array}), frame)) << "without a guide, too";
+}
+
+TEST(OpenSource, refuses_shapes_that_disagree) {
+  const TemporaryFolder folder;
+  const ArrayDescription array = small_array();
+  ASSERT_TRUE(files::write_array(folder.file("array.toml"), array));
+  ArrayDescription other = array;
+  other.rows = 2;
+  other.readout.drive_ohm.assign(2, 20.0);
+  write_file(folder.file("frames.csv"), some_frames(1));
+  write_file(folder.file("rec.mcap"), some_frames(1));
+  const std::string of_uri = "sim:idle?rows=3&cols=3";
+  EXPECT_EQ(refusal(of_uri, {.array = &array}), "'" + of_uri + "': has 3x3 taxels, the array 4x5");
+  const std::string of_both = of_uri + "&array=" + folder.file("array.toml");
+  EXPECT_EQ(refusal(of_both), "'" + of_both + "': the array of " + folder.file("array.toml") + " has 4x5 taxels");
+  const std::string of_file = "sim:idle?rate=100&array=" + folder.file("array.toml");
+  EXPECT_EQ(refusal(of_file, {.array = &other}), "'" + of_file + "': has 4x5 taxels, the array 2x5");
+  EXPECT_EQ(refusal(folder.file("frames.csv"), {.array = &other}),
+            folder.file("frames.csv") + ":1: has 4x5 taxels, the array is 2x5");
+  EXPECT_EQ(refusal(folder.file("rec.mcap"), {.array = &other}),
+            folder.file("rec.mcap") + ": has 4x5 taxels, the array is 2x5");
+  EXPECT_EQ(refusal("file:/dev/null?protocol=dermis&rows=1&cols=1", {.array = &other}),
+            "'file:/dev/null?protocol=dermis&rows=1&cols=1': rows and cols are 1x1, expected are 2x5");
+}
+
+TEST(OpenSource, refuses_what_cannot_be_simulated) {
+  ArrayDescription unknown = small_array();
+  unknown.readout.drive_ohm.front() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(refusal("sim:rehearsal"), "'sim:rehearsal': needs a rate, as in sim:rehearsal?rate=100");
+  EXPECT_EQ(refusal("sim:idle", {.array = &unknown}),
+            "'sim:idle': a circuit that is to be fitted cannot be simulated; name it in array.toml");
+  for (const char* uri : {"sim:walk", "sim:walk?rate=10"}) {
+    EXPECT_EQ(refusal(uri).find("'" + std::string(uri) + "': "), 0U) << refusal(uri);
+  }
+}
+
+TEST(OpenSource, refuses_what_is_not_there) {
+  EXPECT_NE(refusal("/nowhere/frames.csv").find("/nowhere/frames.csv"), std::string::npos);
+  EXPECT_NE(refusal("http://x").find("begins with none of"), std::string::npos) << refusal("http://x");
+  EXPECT_NE(refusal("sim:idle?speed=3").find("speed"), std::string::npos) << refusal("sim:idle?speed=3");
+}
+
+}  // namespace
+}  // namespace dermis::sources
