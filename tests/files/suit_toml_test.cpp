@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "support/mutations.hpp"
-#include "temporary_folder.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace dermis::files {
 namespace {

@@ -120,7 +120,7 @@ TEST(StatusMessages, a_calibration_is_told_with_all_that_the_guide_says) {
   const messages::CalibrationState message = calibration_message({"chest", guide});
   EXPECT_EQ(message.array, "chest");
   EXPECT_EQ(message.stage, messages::CalibrationState::Stage::pressing);
-  EXPECT_EQ(message.hint, 4);
+  EXPECT_EQ(message.hint, messages::CalibrationState::Hint::other_taxel);
   EXPECT_EQ(message.message, "press r1c1");
   EXPECT_EQ(message.taxel, 5U);
   EXPECT_EQ(message.weight_n, 2.0);
