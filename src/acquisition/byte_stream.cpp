@@ -2,191 +2,22 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/acquisition/byte_stream.hpp"
 
-#include <linux/serial.h>
-#include <sys/file.h>
-#include <sys/ioctl.h>
-
 #include <algorithm>
-#include <boost/asio.hpp>
 #include <cerrno>
-#include <cstring>
 #include <exception>
-#include <filesystem>
-#include <fstream>
-#include <system_error>
 #include <utility>  // Asio 1.74 forgets it
-#include <vector>
 
+#include "acquisition/asio_stream.hpp"
 #include "acquisition/descriptor_stream.hpp"
-#include "acquisition/serial_settings.hpp"
+#include "acquisition/serial_stream.hpp"
 
 namespace dermis::acquisition {
 namespace {
 
-namespace asio = boost::asio;
 using asio::ip::tcp;
 using asio::ip::udp;
-using boost::system::error_code;
 
 constexpr int kReceiveBuffer = 8 << 20;  // [bytes], less where the system allows less
-
-std::string in_quotes(const std::string& text) {
-  return "'" + text + "'";
-}
-
-ByteStream::End end_of(const error_code& error, ByteStream::End at_end) {
-  if (!error || error == asio::error::operation_aborted || error == asio::error::interrupted) {
-    return ByteStream::End::none;
-  }
-  const bool is_end = error == asio::error::eof || error == asio::error::broken_pipe;
-  return is_end ? at_end : ByteStream::End::lost;
-}
-
-/// One asynchronous operation at a time, each given some time.
-class AsioStream : public ByteStream {
- protected:
-  /// Runs what was started; where the time is over, `cancel` must make it end.
-  template <typename Cancel>
-  void run(Nanos timeout, Cancel cancel) {
-    context_.restart();
-    context_.run_for(timeout);
-    if (context_.stopped()) return;
-    cancel();
-    context_.run();
-  }
-
-  /// `start` begins a transfer with the handler that it is given.
-  template <typename Device, typename Start>
-  Transferred transfer(Device& device, Nanos timeout, End at_end, Start start) {
-    error_code error;
-    std::size_t bytes = 0;
-    start([&](const error_code& outcome, std::size_t count) {
-      error = outcome;
-      bytes = count;
-    });
-    run(timeout, [&] {
-      error_code ignored;
-      device.cancel(ignored);
-    });
-    return {bytes, end_of(error, at_end)};
-  }
-
-  template <typename Device>
-  Transferred read_some(Device& device, std::span<std::uint8_t> into, Nanos timeout, End at_end) {
-    return transfer(device, timeout, at_end,
-                    [&](auto handler) { device.async_read_some(asio::buffer(into.data(), into.size()), handler); });
-  }
-
-  template <typename Device>
-  Transferred write_some(Device& device, std::span<const std::uint8_t> bytes, Nanos timeout, End at_end) {
-    return transfer(device, timeout, at_end,
-                    [&](auto handler) { device.async_write_some(asio::buffer(bytes.data(), bytes.size()), handler); });
-  }
-
-  asio::io_context context_{1};
-};
-
-// ---------------------------------------------------------------------------------------------------------- serial
-
-std::vector<std::string> serial_devices() {
-  std::vector<std::string> devices;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev", error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("ttyUSB") || name.starts_with("ttyACM")) devices.push_back(entry.path().string());
-  }
-  std::sort(devices.begin(), devices.end());
-  return devices;
-}
-
-Error not_there(const std::string& path) {
-  std::string list;
-  for (const std::string& device : serial_devices()) list += (list.empty() ? "" : ", ") + device;
-  if (list.empty()) {
-    return failed(in_quotes(path) +
-                  " is not there, nor is any USB serial device: is it plugged in, with a data cable?");
-  }
-  return failed(in_quotes(path) + " is not there; the serial devices that are: " + list);
-}
-
-Error cannot_open_serial(const std::string& path, int error) {
-  switch (error) {
-    case ENOENT:
-    case ENODEV:
-    case ENXIO: return not_there(path);
-    case EACCES:
-    case EPERM:
-      return failed("no permission for " + in_quotes(path) +
-                    ": add yourself to the group dialout: sudo usermod -aG dialout $USER, and log in again");
-    case EBUSY:
-    case EWOULDBLOCK:
-      return failed(in_quotes(path) + " is in use by another program: close it ('fuser " + path + "' tells which)");
-    case ENOTTY:
-      return bad_input(in_quotes(path) + " is no serial device; bytes of a device in a file are file:" + path);
-    default: return failed("cannot open " + in_quotes(path) + ": " + std::strerror(error));
-  }
-}
-
-/// Bytes are handed over as they come, not 16 ms later; where the driver knows how, and where we may.
-void ask_for_low_latency(int descriptor, const std::string& path) {
-  serial_struct settings{};
-  if (::ioctl(descriptor, TIOCGSERIAL, &settings) == 0) {
-    settings.flags |= ASYNC_LOW_LATENCY;
-    ::ioctl(descriptor, TIOCSSERIAL, &settings);
-  }
-  std::error_code error;
-  const std::string device = std::filesystem::canonical(path, error).filename().string();
-  std::ofstream latency_timer("/sys/class/tty/" + device + "/device/latency_timer");  // FTDI [ms]
-  latency_timer << 1;
-}
-
-class SerialStream final : public AsioStream {
- public:
-  SerialStream(std::string path, unsigned baud) : path_(std::move(path)), baud_(baud) {}
-
-  Result<bool> open(Nanos /*timeout*/) override {
-    error_code error;
-    port_.close(error);
-    port_.open(path_, error);
-    if (error) return cannot_open_serial(path_, error.value());
-    const int descriptor = port_.native_handle();
-    // TIOCEXCL does not hold back root, the lock only those who ask for it.
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return give_up(errno);
-    ::ioctl(descriptor, TIOCEXCL);
-    if (!set_raw_8n1(descriptor, baud_)) {
-      if (errno == EINVAL) return refuse_baud();
-      return give_up(errno);
-    }
-    ask_for_low_latency(descriptor, path_);
-    return true;
-  }
-  Transferred read(std::span<std::uint8_t> into, Nanos timeout) override {
-    return read_some(port_, into, timeout, End::lost);
-  }
-  Transferred write(std::span<const std::uint8_t> bytes, Nanos timeout) override {
-    return write_some(port_, bytes, timeout, End::lost);
-  }
-  [[nodiscard]] std::string name() const override { return path_; }
-
- private:
-  Error give_up(int number) {
-    error_code ignored;
-    port_.close(ignored);
-    return cannot_open_serial(path_, number);
-  }
-
-  Error refuse_baud() {
-    error_code ignored;
-    port_.close(ignored);
-    return bad_input(in_quotes(path_) + " cannot do baud=" + std::to_string(baud_) + ": give one that it can");
-  }
-
-  std::string path_;
-  unsigned baud_;
-  asio::serial_port port_{context_};
-};
-
-// --------------------------------------------------------------------------------------------------------- network
 
 std::string host_and_port(const std::string& host, unsigned port) {
   const bool is_v6 = host.find(':') != std::string::npos;
@@ -392,7 +223,7 @@ class UdpStream final : public AsioStream {
 Result<std::unique_ptr<ByteStream>> make_stream(const SourceUri& uri, UdpStream::Role udp_role) {
   try {
     switch (uri.transport) {
-      case Transport::serial: return std::unique_ptr<ByteStream>(std::make_unique<SerialStream>(uri.path, uri.baud));
+      case Transport::serial: return make_serial_stream(uri.path, uri.baud);
       case Transport::tcp: return std::unique_ptr<ByteStream>(std::make_unique<TcpClient>(uri));
       case Transport::tcp_listen: return std::unique_ptr<ByteStream>(std::make_unique<TcpListener>(uri));
       case Transport::udp: return std::unique_ptr<ByteStream>(std::make_unique<UdpStream>(uri, udp_role));

@@ -136,14 +136,14 @@ class DeviceSource final : public FrameSource {
     return undecodable();
   }
 
-  void tell(const std::string& text) const {
+  void notify(const std::string& text) const {
     if (options_.notice) options_.notice(text);
   }
 
   void start() {
     state_ = State::open;
     last_activity_ = steady_now();
-    told_silence_ = false;
+    silence_noticed_ = false;
     clock_.restart();
     forget_sample();
     request();
@@ -180,7 +180,7 @@ class DeviceSource final : public FrameSource {
 
   void tell_what_was_recognised() const {
     const std::string_view protocol = decoder_->recognised();
-    if (!protocol.empty()) tell("these bytes are " + std::string(protocol) + ", " + shape_text(*decoder_->shape()));
+    if (!protocol.empty()) notify("these bytes are " + std::string(protocol) + ", " + shape_text(*decoder_->shape()));
   }
 
   /// The device has answered, but not with a frame: it waits to be asked again.
@@ -193,18 +193,18 @@ class DeviceSource final : public FrameSource {
     request_after_damage();
     const ByteStream::Transferred read = stream_->read(buffer_, kTick);
     const Stamp stamp = now();
-    if (read.bytes > 0) take(std::span(buffer_).first(read.bytes), stamp);
+    if (read.bytes > 0) decode(std::span(buffer_).first(read.bytes), stamp);
     if (read.bytes == 0) wait_on(stamp.steady);
     if (read.end != ByteStream::End::none) return end(read.end);
     return check_decodable(stamp.steady);
   }
 
-  void take(std::span<const std::uint8_t> bytes, const Stamp& stamp) {
+  void decode(std::span<const std::uint8_t> bytes, const Stamp& stamp) {
     position_ += bytes.size();
     stamps_.add(position_, stamp);
     decoder_->push(bytes);
     last_activity_ = stamp.steady;
-    told_pause_ = told_silence_ = false;
+    pause_noticed_ = silence_noticed_ = false;
     if (sample_.empty()) sample_begin_ = stamp.steady;
     undecoded_bytes_ += bytes.size();
     const std::size_t room = kMaxSample - sample_.size();
@@ -213,16 +213,16 @@ class DeviceSource final : public FrameSource {
   }
 
   void wait_on(Nanos at) {
-    if (!told_pause_ && at - last_activity_ >= kPause) {
-      told_pause_ = true;
+    if (!pause_noticed_ && at - last_activity_ >= kPause) {
+      pause_noticed_ = true;
       decoder_->idle();
     }
     if (!decoder_->request().empty() && at - last_request_ >= kRepeatRequest) request();
-    if (told_silence_ || at - last_activity_ < kSilence) return;
-    told_silence_ = true;
+    if (silence_noticed_ || at - last_activity_ < kSilence) return;
+    silence_noticed_ = true;
     const bool is_serial = uri_.transport == Transport::serial;
-    tell("no bytes from " + stream_->name() + " for 2 s: is the device powered and sending" +
-         (is_serial ? ", and is baud=" + std::to_string(uri_.baud) + " its baud?" : "?"));
+    notify("no bytes from " + stream_->name() + " for 2 s: is the device powered and sending" +
+           (is_serial ? ", and is baud=" + std::to_string(uri_.baud) + " its baud?" : "?"));
   }
 
   // ------------------------------------------------------------------------------------------- undecodable bytes
@@ -276,8 +276,8 @@ class DeviceSource final : public FrameSource {
     state_ = State::away;
     left_at_ = steady_now();
     if (uri_.reconnect > Nanos{}) {
-      tell(stream_->name() + what_happened() + ": waiting up to " + seconds_text(uri_.reconnect) +
-           " for it to come back");
+      notify(stream_->name() + what_happened() + ": waiting up to " + seconds_text(uri_.reconnect) +
+             " for it to come back");
     }
     return Done{};
   }
@@ -294,9 +294,9 @@ class DeviceSource final : public FrameSource {
       start();
       return Done{};
     }
-    if (!told_silence_ && steady_now() - last_activity_ >= kSilence) {
-      told_silence_ = true;
-      tell("listening on " + stream_->name() + ": no device has connected yet");
+    if (!silence_noticed_ && steady_now() - last_activity_ >= kSilence) {
+      silence_noticed_ = true;
+      notify("listening on " + stream_->name() + ": no device has connected yet");
     }
     return Done{};
   }
@@ -308,7 +308,7 @@ class DeviceSource final : public FrameSource {
     const Result<bool> opened = stream_->open(kTick);
     if (!opened || !*opened) return Done{};
     ++reconnections_;
-    tell(stream_->name() + " is back");
+    notify(stream_->name() + " is back");
     start();
     return Done{};
   }
@@ -342,8 +342,8 @@ class DeviceSource final : public FrameSource {
   Nanos last_activity_{};
   std::vector<std::uint8_t> request_;
   Nanos last_request_{};
-  bool told_pause_ = false;  // since the last byte
-  bool told_silence_ = false;
+  bool pause_noticed_ = false;  // since the last byte
+  bool silence_noticed_ = false;
 
   std::vector<std::uint8_t> sample_;  // the first bytes since the last frame
   Nanos sample_begin_{};

@@ -43,7 +43,7 @@ class Writer {
   /// False where the sink has failed.
   bool push(RawFrame& frame) { return queue_.push(frame); }
 
-  void tell(const SourceStatistics& source) {
+  void set_source_statistics(const SourceStatistics& source) {
     const std::lock_guard lock(mutex_);
     source_ = source;
   }
@@ -182,13 +182,13 @@ Status record(FrameSource& source, const OpenSink& open_sink, const RecorderOpti
     }
     if (!writer->push(frame)) break;
     if (const Clock::time_point now = Clock::now(); now >= next_told) {
-      writer->tell(source.statistics());
+      writer->set_source_statistics(source.statistics());
       next_told = now + kTick;
     }
   }
   last.source = source.statistics();
   if (!writer) return status;
-  writer->tell(last.source);
+  writer->set_source_statistics(last.source);
   const Status finished = writer->finish();
   last = writer->progress();
   return status ? finished : status;

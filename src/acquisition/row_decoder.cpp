@@ -56,7 +56,7 @@ bool RowDecoder::next(RawFrame& frame) {
       learn(line);
       continue;
     }
-    const bool whole = take(line);
+    const bool whole = decode_line(line);
     lines_.forget();
     if (!whole) continue;
     frame_end_ = lines_.position();
@@ -160,7 +160,7 @@ void RowDecoder::forget_learning() noexcept {
   alike_lines_ = equal_blocks_ = lone_lines_ = paused_at_ = 0;
 }
 
-bool RowDecoder::take(std::span<const std::uint8_t> line) {
+bool RowDecoder::decode_line(std::span<const std::uint8_t> line) {
   const std::size_t wanted = layout_ == Layout::line_per_row ? shape_->cols : shape_->taxel_count();
   const ParsedLine parsed = syntax_.parse(line, std::span(values_).subspan(row_ * wanted, wanted));
   switch (parsed.kind) {

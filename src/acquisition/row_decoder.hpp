@@ -78,7 +78,7 @@ class RowDecoder : public Decoder {
   void settle(Layout layout, FrameShape shape);
   void forget_learning() noexcept;
 
-  [[nodiscard]] bool take(std::span<const std::uint8_t> line);
+  [[nodiscard]] bool decode_line(std::span<const std::uint8_t> line);
   [[nodiscard]] bool take_row(std::size_t values, std::size_t bytes);
   void take_separator();
   void damage(std::size_t bytes);

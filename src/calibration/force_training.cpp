@@ -150,14 +150,14 @@ void put(fusion::ForceNetworks& networks, std::size_t taxel, const ForceNetwork&
 /// The lightest and heaviest load of the calibration.
 void report_loads(const SampleDatabase& database, TrainingReport& report) {
   report.lightest_newtons = std::numeric_limits<double>::infinity();
-  const auto take = [&](double newtons) {
+  const auto include = [&](double newtons) {
     if (!(newtons > 0.0)) return;
     report.lightest_newtons = std::min(report.lightest_newtons, newtons);
     report.heaviest_newtons = std::max(report.heaviest_newtons, newtons);
   };
   for (const Sample& sample : database.samples) {
-    for (const float newtons : sample.known_newtons) take(static_cast<double>(newtons));
-    for (const TotalForce& total : sample.totals) take(total.newtons);
+    for (const float newtons : sample.known_newtons) include(static_cast<double>(newtons));
+    for (const TotalForce& total : sample.totals) include(total.newtons);
   }
 }
 

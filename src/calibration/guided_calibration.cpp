@@ -57,7 +57,7 @@ class GuidedCalibration::Implementation {
   void start_fit(bool is_last);
   void start_last_fit();
   void fail(std::string why);
-  void take(GuideFitter::Outcome outcome);
+  void accept_fit(GuideFitter::Outcome outcome);
   [[nodiscard]] std::string message(const GuideState& state) const;
 
   const ArrayDescription array_;
@@ -82,7 +82,7 @@ GuidedCalibration::Implementation::Implementation(ArrayDescription array, Calibr
       conditioner_(array_),
       quiet_(plan_.unloaded_time, ratio_per_count(array_)),
       presses_(plan_),
-      fitter_(array_, [this](GuideFitter::Outcome outcome) { take(std::move(outcome)); }) {}
+      fitter_(array_, [this](GuideFitter::Outcome outcome) { accept_fit(std::move(outcome)); }) {}
 
 void GuidedCalibration::Implementation::feed(const RawFrame& raw) {
   const std::lock_guard lock(mutex_);
@@ -139,7 +139,7 @@ void GuidedCalibration::Implementation::fail(std::string why) {
   fit_.failure = std::move(why);
 }
 
-void GuidedCalibration::Implementation::take(GuideFitter::Outcome outcome) {
+void GuidedCalibration::Implementation::accept_fit(GuideFitter::Outcome outcome) {
   const std::lock_guard lock(mutex_);
   if (outcome.error) fit_.error = outcome.error;
   fit_.unpressed_error = outcome.unpressed_error;

@@ -29,7 +29,7 @@ class Literal {
  public:
   explicit Literal(std::string_view text) : rest_(text) {}
 
-  [[nodiscard]] bool take(char c) {
+  [[nodiscard]] bool consume(char c) {
     skip_blanks();
     if (!rest_.starts_with(c)) return false;
     rest_.remove_prefix(1);
@@ -82,14 +82,14 @@ class Literal {
 
 /// (3, 4, 5), (3,) or ().
 bool take_shape(Literal& literal, std::vector<std::uint64_t>& shape) {
-  if (!literal.take('(')) return false;
+  if (!literal.consume('(')) return false;
   shape.clear();
-  while (!literal.take(')')) {
+  while (!literal.consume(')')) {
     const std::optional<std::uint64_t> size = literal.number();
     if (!size || shape.size() == kMaxDimensions) return false;
     shape.push_back(*size);
-    if (literal.take(',')) continue;
-    return shape.size() > 1 && literal.take(')');
+    if (literal.consume(',')) continue;
+    return shape.size() > 1 && literal.consume(')');
   }
   return true;
 }
@@ -144,10 +144,10 @@ Result<NpyHeader> parse_npy_dictionary(std::string_view text) {
   std::string_view type;
   std::optional<bool> is_fortran_order;
   bool has_shape = false;
-  if (!literal.take('{')) return damaged();
-  while (!literal.take('}')) {
+  if (!literal.consume('{')) return damaged();
+  while (!literal.consume('}')) {
     const std::optional<std::string_view> key = literal.text();
-    if (!key || !literal.take(':')) return damaged();
+    if (!key || !literal.consume(':')) return damaged();
     if (*key == "descr" && type.empty()) {
       const std::optional<std::string_view> value = literal.text();
       if (!value || value->empty()) return bad_input("has elements of several numbers; save the counts alone");
@@ -161,8 +161,8 @@ Result<NpyHeader> parse_npy_dictionary(std::string_view text) {
     } else {
       return damaged();
     }
-    if (literal.take(',')) continue;
-    if (!literal.take('}')) return damaged();
+    if (literal.consume(',')) continue;
+    if (!literal.consume('}')) return damaged();
     break;
   }
   if (!literal.is_at_end() || type.empty() || !is_fortran_order || !has_shape) return damaged();

@@ -11,7 +11,7 @@
 namespace dermis::live {
 namespace {
 
-constexpr Nanos kTellInterval = std::chrono::milliseconds(100);
+constexpr Nanos kPublishInterval = std::chrono::milliseconds(100);
 constexpr Nanos kLate = std::chrono::milliseconds(500);
 constexpr Nanos kSilence = std::chrono::seconds(2);  // without a frame, the rate is 0
 constexpr double kSilentIntervals = 3.0;             // of slow sources
@@ -164,40 +164,40 @@ void ArrayWorker::meter(Nanos now) {
   if (has(force_.status, FrameStatus::rejected)) ++rejected_;
   const Nanos arrival = raw_.acquisition.arrival_steady;
   if (arrival > Nanos{}) latencies_.add(now, now - arrival);
-  if (now - told_at_ < kTellInterval) return;
-  const std::unique_lock lock(told_mutex_, std::try_to_lock);
-  if (lock) tell(now);
+  if (now - published_at_ < kPublishInterval) return;
+  const std::unique_lock lock(published_mutex_, std::try_to_lock);
+  if (lock) publish(now);
 }
 
-/// With told_mutex_ held.
-void ArrayWorker::tell(Nanos now) {
-  told_at_ = now;
-  told_.source = array_.source->statistics();
-  told_.frames = frames_;
-  told_.rejected = rejected_;
-  told_.latency_p50 = latencies_.quantile(now, 0.5);
-  told_.latency_p99 = latencies_.quantile(now, 0.99);
+/// With published_mutex_ held.
+void ArrayWorker::publish(Nanos now) {
+  published_at_ = now;
+  published_.source = array_.source->statistics();
+  published_.frames = frames_;
+  published_.rejected = rejected_;
+  published_.latency_p50 = latencies_.quantile(now, 0.5);
+  published_.latency_p99 = latencies_.quantile(now, 0.99);
   const auto faults = pipeline_->line_faults().faults();
-  told_.faults.assign(faults.begin(), faults.end());
-  told_.temperature_celsius = raw_.temperature_celsius;
-  told_.supply_v = raw_.supply_v;
+  published_.faults.assign(faults.begin(), faults.end());
+  published_.temperature_celsius = raw_.temperature_celsius;
+  published_.supply_v = raw_.supply_v;
 }
 
 void ArrayWorker::finish(const Status& outcome) {
   {
-    const std::lock_guard lock(told_mutex_);
-    tell(steady_now());
-    told_.ended = true;
-    if (!outcome) told_.error = outcome.error().message;
+    const std::lock_guard lock(published_mutex_);
+    publish(steady_now());
+    published_.ended = true;
+    if (!outcome) published_.error = outcome.error().message;
   }
   if (options_.notice && !outcome) options_.notice(fmt::format("array '{}': {}", array_.name, outcome.error().message));
   ended_.store(true, std::memory_order_release);
 }
 
 ArrayStatistics ArrayWorker::statistics() const {
-  const std::lock_guard lock(told_mutex_);
-  ArrayStatistics statistics = told_;
-  if (!statistics.ended && is_silent(statistics, steady_now() - told_at_)) statistics.source.rate_hz = 0.0;
+  const std::lock_guard lock(published_mutex_);
+  ArrayStatistics statistics = published_;
+  if (!statistics.ended && is_silent(statistics, steady_now() - published_at_)) statistics.source.rate_hz = 0.0;
   return statistics;
 }
 

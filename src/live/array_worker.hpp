@@ -55,7 +55,7 @@ class ArrayWorker {
   void begin_anew();
   void place_contacts();
   void meter(Nanos now);
-  void tell(Nanos now);
+  void publish(Nanos now);
   void finish(const Status& outcome);
 
   const std::size_t index_;
@@ -82,9 +82,9 @@ class ArrayWorker {
   std::uint64_t frames_ = 0;
   std::uint64_t rejected_ = 0;
 
-  mutable std::mutex told_mutex_;
-  ArrayStatistics told_;
-  Nanos told_at_{};  // by the steady clock
+  mutable std::mutex published_mutex_;
+  ArrayStatistics published_;
+  Nanos published_at_{};  // by the steady clock
 };
 
 }  // namespace dermis::live

@@ -94,7 +94,7 @@ class Playback::Implementation {
   [[nodiscard]] Status read_ahead();
   [[nodiscard]] bool may_read() const;
   void wait(Track& track, std::unique_lock<std::mutex>& lock);
-  void take(Track& track, RawFrame& frame);
+  void pop(Track& track, RawFrame& frame);
   void wake_all();
 
   mutable std::mutex mutex_;  ///< Of all that follows.
@@ -188,7 +188,7 @@ void Playback::Implementation::wait(Track& track, std::unique_lock<std::mutex>& 
   }
 }
 
-void Playback::Implementation::take(Track& track, RawFrame& frame) {
+void Playback::Implementation::pop(Track& track, RawFrame& frame) {
   const Nanos time = track.waiting.front().time;
   std::swap(frame, track.waiting.front().frame);
   track.waiting.pop_front();
@@ -207,7 +207,7 @@ Result<bool> Playback::Implementation::next(std::size_t index, RawFrame& frame) 
     if (!track.waiting.empty()) {
       const bool is_due = track.is_shown_at_once || (plays_ && moment_of(track.waiting.front().time) <= Clock::now());
       if (is_due) {
-        take(track, frame);
+        pop(track, frame);
         return true;
       }
     }

@@ -101,18 +101,18 @@ class ByteReader {
 
   template <std::unsigned_integral T>
   [[nodiscard]] T number() {
-    const ByteView bytes = take(sizeof(T));
+    const ByteView bytes = consume(sizeof(T));
     T value{};
     if (good_) std::memcpy(&value, bytes.data(), sizeof(T));
     return value;
   }
 
   [[nodiscard]] std::string_view text() {
-    const ByteView bytes = take(number<std::uint32_t>());
+    const ByteView bytes = consume(number<std::uint32_t>());
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
 
-  [[nodiscard]] ByteView take(std::uint64_t count) {
+  [[nodiscard]] ByteView consume(std::uint64_t count) {
     good_ = good_ && count <= rest_.size();
     if (!good_) return {};
     const ByteView taken = rest_.first(static_cast<std::size_t>(count));

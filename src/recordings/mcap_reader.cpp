@@ -68,7 +68,7 @@ struct McapReader::State {
 
   [[nodiscard]] Result<bool> next_record(McapRecord& record);
   [[nodiscard]] Result<bool> next_in_file(McapRecord& record);
-  [[nodiscard]] Result<bool> take(const McapRecord& record, McapMessage& message);
+  [[nodiscard]] Result<bool> handle(const McapRecord& record, McapMessage& message);
   [[nodiscard]] Result<bool> take_message(ByteView body, McapMessage& message) const;
   [[nodiscard]] Result<bool> next_in_chunk(McapMessage& message);
 };
@@ -153,7 +153,7 @@ Status McapReader::State::take_statistics(ByteReader reader) {
   taken.chunks = reader.number<std::uint32_t>();
   taken.first_log_time = reader.number<std::uint64_t>();
   taken.last_log_time = reader.number<std::uint64_t>();
-  ByteReader counts(reader.take(reader.number<std::uint32_t>()));
+  ByteReader counts(reader.consume(reader.number<std::uint32_t>()));
   while (counts.good() && !counts.rest().empty()) {
     const auto channel = counts.number<std::uint16_t>();
     taken.channel_messages[channel] = counts.number<std::uint64_t>();
@@ -168,9 +168,9 @@ Status McapReader::State::take_chunk_index(ByteReader reader) {
   chunk.first_time = reader.number<std::uint64_t>();
   chunk.last_time = reader.number<std::uint64_t>();
   chunk.place = reader.number<std::uint64_t>();
-  static_cast<void>(reader.number<std::uint64_t>());               // length
-  static_cast<void>(reader.take(reader.number<std::uint32_t>()));  // message indexes
-  static_cast<void>(reader.number<std::uint64_t>());               // length of message indexes
+  static_cast<void>(reader.number<std::uint64_t>());                  // length
+  static_cast<void>(reader.consume(reader.number<std::uint32_t>()));  // message indexes
+  static_cast<void>(reader.number<std::uint64_t>());                  // length of message indexes
   const std::string_view name = reader.text();
   if (!reader.good()) return bad_input("the index of a chunk is shorter than its fields");
   for (const McapCompression compression : {McapCompression::none, McapCompression::lz4, McapCompression::zstd}) {
@@ -262,7 +262,7 @@ Result<bool> McapReader::State::next_in_file(McapRecord& record) {
 }
 
 /// Returns whether the record is a message.
-Result<bool> McapReader::State::take(const McapRecord& record, McapMessage& message) {
+Result<bool> McapReader::State::handle(const McapRecord& record, McapMessage& message) {
   switch (record.opcode) {
     case Opcode::schema:
     case Opcode::channel: {
@@ -316,7 +316,7 @@ Result<bool> McapReader::State::next_in_chunk(McapMessage& message) {
     }
     if (record.opcode == Opcode::message) return take_message(record.body, message);
     if (record.opcode != Opcode::schema && record.opcode != Opcode::channel) continue;
-    if (const Result<bool> taken = take(record, message); !taken) return taken.error();
+    if (const Result<bool> taken = handle(record, message); !taken) return taken.error();
   }
   return false;
 }
@@ -357,7 +357,7 @@ Result<bool> McapReader::next(McapMessage& message) {
     McapRecord record;
     Result<bool> in_file = state_->next_record(record);
     if (!in_file || !*in_file) return in_file;
-    Result<bool> is_message = state_->take(record, message);
+    Result<bool> is_message = state_->handle(record, message);
     if (!is_message || *is_message) return is_message;
   }
 }

@@ -26,7 +26,7 @@ std::optional<McapCompression> compression_named(std::string_view name) {
 }
 
 std::optional<std::map<std::string, std::string>> parse_map(ByteReader& reader) {
-  ByteReader entries(reader.take(reader.number<std::uint32_t>()));
+  ByteReader entries(reader.consume(reader.number<std::uint32_t>()));
   std::map<std::string, std::string> values;
   while (entries.good() && !entries.rest().empty()) {
     const std::string_view key = entries.text();
@@ -131,7 +131,7 @@ Result<McapChunk> parse_chunk(ByteView body, Decompressor& decompressor) {
   const auto size = reader.number<std::uint64_t>();
   const auto crc = reader.number<std::uint32_t>();
   const std::string_view compression_name = reader.text();
-  const ByteView compressed = reader.take(reader.number<std::uint64_t>());
+  const ByteView compressed = reader.consume(reader.number<std::uint64_t>());
   if (!reader.good()) return bad_input("the chunk is shorter than its fields say");
   const std::optional<McapCompression> compression = compression_named(compression_name);
   if (!compression) {
@@ -150,7 +150,7 @@ Result<McapChunk> parse_chunk(ByteView body, Decompressor& decompressor) {
 bool take_record(ByteView& records, Opcode& opcode, ByteView& body) {
   ByteReader reader(records);
   opcode = static_cast<Opcode>(reader.number<std::uint8_t>());
-  body = reader.take(reader.number<std::uint64_t>());
+  body = reader.consume(reader.number<std::uint64_t>());
   records = reader.rest();
   return reader.good();
 }
@@ -174,7 +174,7 @@ Result<McapAttachment> parse_attachment(ByteView body) {
   McapAttachment attachment;
   attachment.name = reader.text();
   attachment.media_type = reader.text();
-  const ByteView data = reader.take(reader.number<std::uint64_t>());
+  const ByteView data = reader.consume(reader.number<std::uint64_t>());
   attachment.data.assign(data.begin(), data.end());
   const std::size_t checked_bytes = body.size() - reader.rest().size();
   const auto crc = reader.number<std::uint32_t>();

@@ -13,106 +13,17 @@
 #include "recordings/compression.hpp"
 #include "recordings/crc32.hpp"
 #include "recordings/growing_file.hpp"
+#include "recordings/mcap_batch.hpp"
 #include "recordings/mcap_bytes.hpp"
 
 namespace dermis::recordings {
 namespace {
-
-struct WrittenChannel {
-  McapChannel description;
-  std::uint16_t schema_id = 0;
-};
-
-/// An attachment or metadata, and where they stand among the records of a batch.
-struct PlacedRecord {
-  Opcode opcode{};
-  std::size_t offset = 0;
-  std::size_t bytes = 0;
-  Bytes rest;  ///< Of its index, behind place and length.
-};
-
-/// What goes to the file at once.
-struct Batch {
-  Bytes records;                     ///< Whole ones, before the chunk.
-  std::vector<PlacedRecord> placed;  ///< Of them, those that have an index.
-  Bytes chunk;                       ///< The records in it.
-  std::uint64_t first_time = 0;
-  std::uint64_t last_time = 0;
-  std::vector<Bytes> indexes;  ///< Of each channel from 1 on: time and place of each of its messages in the chunk.
-
-  [[nodiscard]] bool is_empty() const { return records.empty() && chunk.empty(); }
-  /// With as much room.
-  [[nodiscard]] Batch empty_like() const {
-    Batch batch;
-    batch.chunk.reserve(chunk.capacity());
-    batch.indexes.resize(indexes.size());
-    for (std::size_t i = 0; i < indexes.size(); ++i) batch.indexes[i].reserve(indexes[i].capacity());
-    return batch;
-  }
-  void clear() {
-    records.clear();
-    placed.clear();
-    chunk.clear();
-    for (Bytes& index : indexes) index.clear();
-  }
-};
-
-/// Records of the summary that tell of what is in the file. What is of bytes that could not be written is cut off.
-struct IndexRecords {
-  Bytes bytes;
-  std::uint32_t count = 0;
-  std::size_t written_bytes = 0;
-  std::uint32_t written_count = 0;
-
-  void keep() {
-    written_bytes = bytes.size();
-    written_count = count;
-  }
-  void cut() {
-    bytes.resize(written_bytes);
-    count = written_count;
-  }
-};
-
-void append_map(Bytes& bytes, const std::map<std::string, std::string>& values) {
-  const LengthBefore<std::uint32_t> length(bytes);
-  for (const auto& [key, value] : values) {
-    append_text(bytes, key);
-    append_text(bytes, value);
-  }
-}
-
-void append_schema(Bytes& bytes, std::uint16_t id, const McapChannel& channel) {
-  const Record record(bytes, Opcode::schema);
-  append_number(bytes, id);
-  append_text(bytes, channel.schema_name);
-  append_text(bytes, channel.schema_encoding);
-  append_text(bytes, channel.schema);
-}
-
-void append_channel(Bytes& bytes, std::uint16_t id, const WrittenChannel& channel) {
-  const Record record(bytes, Opcode::channel);
-  append_number(bytes, id);
-  append_number(bytes, channel.schema_id);
-  append_text(bytes, channel.description.topic);
-  append_text(bytes, channel.description.encoding);
-  append_map(bytes, {});
-}
 
 bool has_same_schema(const McapChannel& a, const McapChannel& b) {
   return a.schema_name == b.schema_name && a.schema_encoding == b.schema_encoding && a.schema == b.schema;
 }
 
 }  // namespace
-
-const char* to_string(McapCompression compression) noexcept {
-  switch (compression) {
-    case McapCompression::none: return "";
-    case McapCompression::lz4: return "lz4";
-    case McapCompression::zstd: return "zstd";
-  }
-  return "";
-}
 
 struct McapWriter::State {
   State(GrowingFile growing_file, McapCompression chunk_compression)

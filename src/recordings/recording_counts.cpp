@@ -7,7 +7,7 @@
 
 namespace dermis::recordings {
 
-void RecordingCounts::take(const McapMessage& message, const McapChannel& channel) {
+void RecordingCounts::count(const McapMessage& message, const McapChannel& channel) {
   ++messages_[message.channel];
   const std::string folder(topic_folder(channel.topic));
   if (channel.schema_name == messages::acquisition_type().name && messages::decode_acquisition(message.data, frame_)) {

@@ -24,7 +24,7 @@ struct FrameCounts {
 /// What is counted while the messages of a file go by.
 class RecordingCounts {
  public:
-  void take(const McapMessage& message, const McapChannel& channel);
+  void count(const McapMessage& message, const McapChannel& channel);
 
   [[nodiscard]] const std::map<std::uint16_t, std::uint64_t>& messages() const noexcept { return messages_; }
   /// Of the images in a folder of topics.

@@ -114,7 +114,7 @@ Status count_all(McapReader& reader, RecordingInfo& info) {
     const Result<bool> got_message = reader.next(message);
     if (!got_message) return got_message.error();
     if (!*got_message) break;
-    counts.take(message, reader.channels().at(message.channel));
+    counts.count(message, reader.channels().at(message.channel));
   }
   take_counts(reader, counts, info);
   set_topics(reader, counts.messages(), info);

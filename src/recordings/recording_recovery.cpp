@@ -21,7 +21,7 @@ bool may_be_chunk(ByteView bytes) {
   ByteReader reader(bytes);
   const auto opcode = reader.number<std::uint8_t>();
   const auto length = reader.number<std::uint64_t>();
-  static_cast<void>(reader.take(8 + 8));  // times
+  static_cast<void>(reader.consume(8 + 8));  // times
   const auto size = reader.number<std::uint64_t>();
   static_cast<void>(reader.number<std::uint32_t>());  // crc
   const std::string_view name = reader.text();
@@ -34,7 +34,7 @@ bool may_be_chunk(ByteView bytes) {
 std::uint64_t work_of(const McapRecord& record) {
   if (record.opcode != Opcode::chunk) return record.bytes;
   ByteReader reader(record.body);
-  static_cast<void>(reader.take(8 + 8));  // times
+  static_cast<void>(reader.consume(8 + 8));  // times
   const auto size = reader.number<std::uint64_t>();
   return record.bytes + (size <= kMaxChunkBytes ? size : 0);
 }
@@ -50,7 +50,7 @@ class RecoveryRun {
  private:
   void add_totals();
   [[nodiscard]] Status read_records();
-  [[nodiscard]] bool take(const McapRecord& record);
+  [[nodiscard]] bool keep(const McapRecord& record);
   [[nodiscard]] bool take_chunk(ByteView body);
   [[nodiscard]] bool take_message(ByteView body);
   [[nodiscard]] bool take_message_index(ByteView body);
@@ -121,7 +121,7 @@ Status RecoveryRun::read_records() {
       continue;
     }
     if (record.opcode == Opcode::data_end) return Done{};
-    const bool is_kept = !record.is_left_out && take(record);
+    const bool is_kept = !record.is_left_out && keep(record);
     if (is_kept) {
       kept_end_ = scanner_.place();
       kept_bytes_ += record.bytes;
@@ -135,7 +135,7 @@ Status RecoveryRun::read_records() {
 }
 
 /// Returns whether the record is whole.
-bool RecoveryRun::take(const McapRecord& record) {
+bool RecoveryRun::keep(const McapRecord& record) {
   switch (record.opcode) {
     case Opcode::schema: return table_.add_schema(record.body).has_value();
     case Opcode::channel: return table_.add_channel(record.body).has_value();
@@ -174,7 +174,7 @@ bool RecoveryRun::take_message(ByteView body) {
   const auto channel = table_.channels().find(message->channel);
   if (channel == table_.channels().end()) return false;
   const auto written = written_channels_.find(message->channel);
-  counts_.take(*message, channel->second);
+  counts_.count(*message, channel->second);
   ++recovery_.messages;
   message->channel = written != written_channels_.end()
                          ? written->second
@@ -188,7 +188,7 @@ bool RecoveryRun::take_message_index(ByteView body) {
   constexpr std::size_t kEntryBytes = 16;
   ByteReader reader(body);
   static_cast<void>(reader.number<std::uint16_t>());  // channel
-  const ByteView entries = reader.take(reader.number<std::uint32_t>());
+  const ByteView entries = reader.consume(reader.number<std::uint32_t>());
   if (last_chunk_was_damaged_) recovery_.lost_messages += entries.size() / kEntryBytes;
   return reader.good() && !last_chunk_was_damaged_;
 }

@@ -60,12 +60,12 @@ void Rehearsal::move_hand(double seconds) {
     return;
   }
   const bool sees_mistake = words.other_taxel && seconds_ > while_s + kSeesMistakeSeconds;
-  told_seconds_ = words.press ? 0.0 : told_seconds_ + seconds;
-  if (!sees_mistake && told_seconds_ <= 0.5 * while_s) return;
+  release_seconds_ = words.press ? 0.0 : release_seconds_ + seconds;
+  if (!sees_mistake && release_seconds_ <= 0.5 * while_s) return;
   force_n_[*pressed_] = 0.0;
   pressed_.reset();
   seconds_ = 0.0;
-  told_seconds_ = 0.0;
+  release_seconds_ = 0.0;
 }
 
 void Rehearsal::read(std::uint64_t number, RawFrame& frame) {

@@ -46,8 +46,8 @@ class Rehearsal {
   double supply_v_;
   std::uint64_t next_ = 0;
   std::uint64_t presses_ = 0;
-  double seconds_ = 0.0;       // since the hand moved
-  double told_seconds_ = 0.0;  // since it was told to take the weight off
+  double seconds_ = 0.0;          // since the hand moved
+  double release_seconds_ = 0.0;  // since it was told to take the weight off
   std::optional<std::size_t> pressed_;
   std::vector<double> force_n_;
   std::vector<double> siemens_;

@@ -82,26 +82,26 @@ void Client::publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes
   ++statistics.messages;
 }
 
-void Client::tell_parameters(std::span<const Parameter> all) {
+void Client::send_parameters(std::span<const Parameter> all) {
   std::vector<Parameter> followed;
   std::copy_if(all.begin(), all.end(), std::back_inserter(followed),
                [this](const Parameter& parameter) { return followed_.contains(parameter.name); });
   if (!followed.empty()) queue_.push_text(parameter_values_text(followed, {}));
 }
 
-void Client::tell_playback(const PlaybackStatus& status, const PlaybackRequest& answered) {
+void Client::send_playback(const PlaybackStatus& status, const PlaybackRequest& answered) {
   if (is_sdk_) queue_.push_binary(playback_state(status, answered));
 }
 
-void Client::tell_status(int level, std::string_view message) {
+void Client::send_status(int level, std::string_view message) {
   queue_.push_text(status_text(level, message));
 }
 
 void Client::handle(const Subscribe& request) {
   for (const auto& [id, channel] : request.subscriptions) {
-    if (channel_of_.size() >= kMostSubscriptions) return tell_status(kErrorLevel, "too many subscriptions");
+    if (channel_of_.size() >= kMostSubscriptions) return send_status(kErrorLevel, "too many subscriptions");
     if (subscription_of_.contains(channel) || !channel_of_.emplace(id, channel).second) {
-      tell_status(kErrorLevel, "subscription " + std::to_string(id) + " or its channel is subscribed already");
+      send_status(kErrorLevel, "subscription " + std::to_string(id) + " or its channel is subscribed already");
       continue;
     }
     subscription_of_.emplace(channel, id);
@@ -136,7 +136,7 @@ void Client::handle(const SetParameters& request) {
     std::string text;
     if (!request.id.empty()) text = parameter_values_text(parameters_of(offer, names), request.id);
     return [errors, text](Client& client) {
-      for (const std::string& error : errors) client.tell_status(kErrorLevel, error);
+      for (const std::string& error : errors) client.send_status(kErrorLevel, error);
       if (!text.empty()) client.queue_.push_text(text);
     };
   });
@@ -159,7 +159,7 @@ void Client::follow(const FollowParameters& request, std::span<const Parameter> 
       followed_.erase(parameter.name);
     }
   }
-  if (request.follow) tell_parameters(all);
+  if (request.follow) send_parameters(all);
 }
 
 void Client::handle(const ServiceCall& request) {
@@ -180,7 +180,7 @@ void Client::handle(const PlaybackRequest& request) {
   if (!offer_.playback) return;
   ask_([&offer = offer_, request]() -> Answer {
     return [request, status = offer.playback->control(request.command)](Client& client) {
-      client.tell_playback(status, request);
+      client.send_playback(status, request);
     };
   });
 }

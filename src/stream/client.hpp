@@ -57,10 +57,10 @@ class Client {
 
   /// Queues the message where the client has subscribed to the channel; messages and drops are counted on.
   void publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, ServerStatistics& statistics);
-  void tell_parameters(std::span<const Parameter> all);
+  void send_parameters(std::span<const Parameter> all);
   /// `answered`: the request that it answers, if it answers one.
-  void tell_playback(const PlaybackStatus& status, const PlaybackRequest& answered = {});
-  void tell_status(int level, std::string_view message);
+  void send_playback(const PlaybackStatus& status, const PlaybackRequest& answered = {});
+  void send_status(int level, std::string_view message);
 
   [[nodiscard]] OutgoingQueue& queue() noexcept { return queue_; }
   /// More than its greeting and `queue_bytes` wait for it that are no data.

@@ -95,9 +95,9 @@ class Server::Implementation final : public SessionOwner {
   }
   void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message);
 
-  /// Runs `tell` for each client, on the server's thread.
-  template <typename Tell>
-  void tell_clients(Tell tell);
+  /// Runs `send` for each client, on the server's thread.
+  template <typename Send>
+  void send_to_clients(Send send);
   void parameters_changed();
   [[nodiscard]] ServerStatistics statistics() const;
 
@@ -124,7 +124,7 @@ class Server::Implementation final : public SessionOwner {
   Site site_;
   const std::string session_name_ = random_session();
   std::vector<std::atomic<int>> subscribers_;  // [channel]; outlives the sessions that the context still holds
-  std::atomic<bool> parameters_are_to_be_told_{false};
+  std::atomic<bool> parameters_pending_{false};
   asio::io_context context_{1};
   asio::thread_pool desk_{1};  // the owner's handlers and services run here
   tcp::acceptor acceptor_{context_};
@@ -234,7 +234,7 @@ ChannelId Server::Implementation::add_channel(std::string topic, std::string sch
     channel = {static_cast<ChannelId>(channels_.size()), std::move(topic), std::move(schema_name), std::move(schema)};
     channels_.push_back(channel);
   }
-  tell_clients([channel](Client& client) { client.advertise(channel); });
+  send_to_clients([channel](Client& client) { client.advertise(channel); });
   return channel.id;
 }
 
@@ -283,13 +283,13 @@ void Server::Implementation::hand_out() {
   count(handed);
 }
 
-template <typename Tell>
-void Server::Implementation::tell_clients(Tell tell) {
-  asio::post(context_, [this, tell = std::move(tell)] {
+template <typename Send>
+void Server::Implementation::send_to_clients(Send send) {
+  asio::post(context_, [this, send = std::move(send)] {
     const auto sessions = std::vector(clients_.begin(), clients_.end());
     for (const auto& session : sessions) {
       if (session->client() == nullptr) continue;
-      tell(*session->client());
+      send(*session->client());
       session->flush();
     }
   });
@@ -297,10 +297,10 @@ void Server::Implementation::tell_clients(Tell tell) {
 
 /// Once, however many have changed until then.
 void Server::Implementation::parameters_changed() {
-  if (!offer_.handlers.parameters || parameters_are_to_be_told_.exchange(true)) return;
+  if (!offer_.handlers.parameters || parameters_pending_.exchange(true)) return;
   asio::post(desk_, [this] {
-    parameters_are_to_be_told_ = false;
-    tell_clients([all = offer_.handlers.parameters()](Client& client) { client.tell_parameters(all); });
+    parameters_pending_ = false;
+    send_to_clients([all = offer_.handlers.parameters()](Client& client) { client.send_parameters(all); });
   });
 }
 
@@ -368,12 +368,12 @@ void Server::parameters_changed() {
 }
 
 void Server::playback_changed(const PlaybackStatus& status) {
-  implementation_->tell_clients([status](Client& client) { client.tell_playback(status); });
+  implementation_->send_to_clients([status](Client& client) { client.send_playback(status); });
 }
 
 void Server::status(int level, std::string_view message) {
-  implementation_->tell_clients(
-      [level, line = std::string(message)](Client& client) { client.tell_status(level, line); });
+  implementation_->send_to_clients(
+      [level, line = std::string(message)](Client& client) { client.send_status(level, line); });
 }
 
 ServerStatistics Server::statistics() const {

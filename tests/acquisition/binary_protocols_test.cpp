@@ -269,7 +269,8 @@ TEST(Firmware, sends_what_the_library_sends) {
 }
 
 TEST(Firmware, the_example_sends_frames) {
-  std::FILE* output = popen(support::firmware_example().c_str(), "r");  // NOLINT(cert-env33-c): the path is of the build
+  const std::string program = support::firmware_example();
+  std::FILE* output = popen(program.c_str(), "r");  // NOLINT(cert-env33-c): the path is of the build
   ASSERT_NE(output, nullptr);
   Bytes bytes(100000);
   bytes.resize(std::fread(bytes.data(), 1, bytes.size(), output));

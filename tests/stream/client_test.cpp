@@ -126,7 +126,7 @@ TEST_F(StreamClient, reads_sets_and_follows_parameters) {
   EXPECT_EQ(answer["parameters"][0]["value"], 3.0);
   say(R"({"op":"subscribeParameterUpdates","parameterNames":["/a"]})");
   EXPECT_EQ(next_text()["parameters"][0]["name"], "/a");
-  client.tell_parameters(parameters);
+  client.send_parameters(parameters);
   EXPECT_EQ(next_text()["parameters"].size(), 1U);
 }
 
@@ -134,12 +134,12 @@ TEST_F(StreamClient, follows_what_there_is) {
   for (int i = 0; i < 100; ++i) {
     say(R"({"op":"subscribeParameterUpdates","parameterNames":["/no)" + std::to_string(i) + "\"]}");
   }
-  client.tell_parameters(std::vector<Parameter>{{"/no1", 1.0}});
+  client.send_parameters(std::vector<Parameter>{{"/no1", 1.0}});
   EXPECT_TRUE(client.queue().empty()) << "names that no parameter had are not kept";
   say(R"({"op":"subscribeParameterUpdates","parameterNames":[]})");
   EXPECT_EQ(next_text()["parameters"].size(), 2U);
   say(R"({"op":"unsubscribeParameterUpdates","parameterNames":["/b"]})");
-  client.tell_parameters(parameters);
+  client.send_parameters(parameters);
   EXPECT_EQ(next_text()["parameters"].size(), 1U);
 }
 

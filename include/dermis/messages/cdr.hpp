@@ -70,8 +70,8 @@ class CdrReader {
   template <CdrNumber T>
   [[nodiscard]] T read() {
     const std::size_t excess = (fields_ - rest_.size()) % sizeof(T);
-    if (excess != 0) static_cast<void>(take(sizeof(T) - excess));
-    const std::span<const std::uint8_t> bytes = take(sizeof(T));
+    if (excess != 0) static_cast<void>(consume(sizeof(T) - excess));
+    const std::span<const std::uint8_t> bytes = consume(sizeof(T));
     T value{};
     if (good_) std::memcpy(&value, bytes.data(), sizeof(T));
     return value;
@@ -84,10 +84,10 @@ class CdrReader {
   }
 
   /// A sequence<uint8>.
-  [[nodiscard]] std::span<const std::uint8_t> read_bytes() { return take(read<std::uint32_t>()); }
+  [[nodiscard]] std::span<const std::uint8_t> read_bytes() { return consume(read<std::uint32_t>()); }
 
  private:
-  std::span<const std::uint8_t> take(std::size_t count) {
+  std::span<const std::uint8_t> consume(std::size_t count) {
     good_ = good_ && count <= rest_.size();
     if (!good_) return {};
     const std::span<const std::uint8_t> taken = rest_.first(count);

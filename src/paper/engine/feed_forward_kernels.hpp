@@ -32,23 +32,23 @@ struct WorkSpace {
 
   explicit WorkSpace(const PlacedShape& shape) {
     std::size_t size = 0;
-    const auto take = [&size](std::size_t count) {
+    const auto allocate = [&size](std::size_t count) {
       const std::size_t begin = size;
       size += (count + kLine - 1) / kLine * kLine;
       return begin;
     };
-    prepared = take(shape.parameters);
-    inputs = take(shape.inputs * kTile);
-    outputs = take(shape.units * kTile);
+    prepared = allocate(shape.parameters);
+    inputs = allocate(shape.inputs * kTile);
+    outputs = allocate(shape.units * kTile);
     evaluate_size = size;
-    deltas[0] = take(shape.widest * kTile);
-    deltas[1] = take(shape.widest * kTile);
-    sums = take(shape.parameters * kLine);
+    deltas[0] = allocate(shape.widest * kTile);
+    deltas[1] = allocate(shape.widest * kTile);
+    sums = allocate(shape.parameters * kLine);
     gradient_size = size;
     rows = shape.parameters - (shape.outputs() - 1) * (shape.top().fan_in + 1) + 1;
-    jacobian = take(rows * kTile);
+    jacobian = allocate(rows * kTile);
     const std::size_t blocks = (rows + kBlock - 1) / kBlock;
-    products = take(blocks * (blocks + 1) / 2 * kBlock * kBlock);
+    products = allocate(blocks * (blocks + 1) / 2 * kBlock * kBlock);
     normal_size = size;
   }
 
