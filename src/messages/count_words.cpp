@@ -28,7 +28,8 @@ std::size_t vectors_to_uint16([[maybe_unused]] const float* counts, [[maybe_unus
   const hn::Repartition<std::uint8_t, decltype(words)> bytes;
   for (; i + hn::Lanes(d) <= count; i += hn::Lanes(d)) {
     const auto given = hn::LoadU(d, counts + i);
-    const auto word = hn::DemoteTo(words, hn::ConvertTo(integers, given));  // both saturate
+    const auto number = hn::IfThenElseZero(hn::Eq(given, given), given);     // NaN becomes no integer
+    const auto word = hn::DemoteTo(words, hn::ConvertTo(integers, number));  // both saturate
     const auto again = hn::ConvertTo(d, hn::PromoteTo(integers, word));
     if (!hn::AllTrue(integers, hn::Eq(hn::BitCast(integers, again), hn::BitCast(integers, given)))) break;
     hn::StoreU(hn::BitCast(bytes, word), bytes, out + 2 * i);

@@ -100,8 +100,9 @@ TEST(ContactTracker, places_contacts_within_the_error_it_states) {
     std::vector<double> errors;
     std::size_t within_two_sigma = 0;
     for (int k = 0; k < 100; ++k) {
-      const PressurePatch patch =
-          round_patch(touch.random.uniform(0.02, 0.13), touch.random.uniform(0.02, 0.13), bound.diameter_m, 20.0);
+      const double y = touch.random.uniform(0.02, 0.13);
+      const double x = touch.random.uniform(0.02, 0.13);
+      const PressurePatch patch = round_patch(x, y, bound.diameter_m, 20.0);
       ContactTracker tracker(touch.array);
       tracker.process(touch.forces({patch}), touch.report);
       if (touch.report.contacts.size() != 1) continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,11 @@ struct InvertedFrame {
   std::vector<double> siemens;
   std::vector<double> sigma_siemens;
   Eigen::MatrixXd slopes;  ///< d siemens / d parameter [taxels, parameters or 0].
+
+  [[nodiscard]] Eigen::VectorXd slopes_of(std::size_t taxel) const {
+    if (slopes.cols() == 0) return {};  // a matrix without columns has no memory to point a row at
+    return slopes.row(static_cast<Eigen::Index>(taxel)).transpose();
+  }
 };
 
 /// Empty: the circuit cannot give this frame, and the inversion has forgotten it. Where slopes are wanted they, and the

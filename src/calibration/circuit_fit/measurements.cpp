@@ -40,7 +40,7 @@ void add_idle(const CircuitFrame& frame, const InvertedFrame& inverted, const Es
     const double relative_sigma = sigma / rubber.reference_siemens;
     const double weight = 1.0 / (estimate.scatter.noise_variance * relative_sigma * relative_sigma);
     auto row = rows.col(used++);
-    row.head(slopes) = inverted.slopes.row(static_cast<Index>(taxel)).transpose() / rubber.reference_siemens;
+    row.head(slopes) = inverted.slopes_of(taxel) / rubber.reference_siemens;
     row[slopes] = inverted.siemens[taxel] / rubber.reference_siemens;
     idle.add_local(taxel, basis, row, weight);
     row *= std::sqrt(weight);
@@ -53,8 +53,7 @@ void add_pressed(const CircuitFrame& frame, const InvertedFrame& inverted, const
   for (std::size_t taxel = 0; taxel < frame.newtons.size(); ++taxel) {
     if (!(frame.newtons[taxel] > 0.0F)) continue;
     pressed.push_back({taxel, scale.log_force(static_cast<double>(frame.newtons[taxel])), frame.temperature,
-                       inverted.siemens[taxel], inverted.sigma_siemens[taxel],
-                       inverted.slopes.row(static_cast<Index>(taxel)).transpose()});
+                       inverted.siemens[taxel], inverted.sigma_siemens[taxel], inverted.slopes_of(taxel)});
   }
 }
 
