@@ -31,7 +31,7 @@ sanitize: setup
 
 lint: setup
 	scripts/setup lint
-	cmake --preset release
+	cmake --preset lint
 	scripts/lint
 
 fuzz: setup

@@ -5,8 +5,9 @@ add_library(dermis_build_flags INTERFACE)
 target_compile_features(dermis_build_flags INTERFACE cxx_std_20)
 target_compile_options(dermis_build_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
-  # g++ 12 reports std::string operator+ as overlapping (GCC bug 105651).
-  target_compile_options(dermis_build_flags INTERFACE -Wno-restrict)
+  # g++ 12 reports std::string operator+ as overlapping (GCC bug 105651), and in sources that are compiled together every
+  # member of a type of an unnamed namespace.
+  target_compile_options(dermis_build_flags INTERFACE -Wno-restrict -Wno-subobject-linkage)
 endif()
 if(DERMIS_SANITIZE)
   target_compile_options(dermis_build_flags INTERFACE -fsanitize=${DERMIS_SANITIZE} -fno-sanitize-recover=all
@@ -14,12 +15,29 @@ if(DERMIS_SANITIZE)
   target_link_options(dermis_build_flags INTERFACE -fsanitize=${DERMIS_SANITIZE})
 endif()
 
+# compile_together(<target>): with DERMIS_UNITY_BUILD, its sources in batches.
+function(compile_together target)
+  if(NOT DERMIS_UNITY_BUILD)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/batches.py ${sources}
+                  WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE batches COMMAND_ERROR_IS_FATAL ANY)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  foreach(source batch IN ZIP_LISTS sources batches)
+    if(NOT batch STREQUAL alone)
+      set_source_files_properties(${source} PROPERTIES UNITY_GROUP batch_${batch})
+    endif()
+  endforeach()
+endfunction()
+
 # dermis_module(<name> DEPENDS <modules> PRIVATE <third-party targets>): the static library dermis::<name> from all
 # sources of src/<name>, with the public headers of include/dermis/<name>.
 function(dermis_module name)
   cmake_parse_arguments(MODULE "" "" "DEPENDS;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
   add_library(dermis_${name} STATIC ${sources})
+  compile_together(dermis_${name})
   add_library(dermis::${name} ALIAS dermis_${name})
   set_target_properties(dermis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_features(dermis_${name} PUBLIC cxx_std_20)

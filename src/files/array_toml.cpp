@@ -11,11 +11,11 @@
 
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/config_table.hpp"
+#include "files/millimetres.hpp"
 
 namespace dermis::files {
 namespace {
 
-constexpr double kMillimetresPerMetre = 1e3;
 constexpr double kSquareMillimetresPerSquareMetre = 1e6;
 
 void read_line_count(ConfigFile& file, std::string_view key, std::size_t& lines) {

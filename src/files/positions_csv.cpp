@@ -8,11 +8,11 @@
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/files/text.hpp"
 #include "files/csv_reader.hpp"
+#include "files/millimetres.hpp"
 
 namespace dermis::files {
 namespace {
 
-constexpr double kMillimetresPerMetre = 1e3;
 constexpr std::size_t kMostTaxels = kMaxLines * kMaxLines;
 constexpr std::array<std::string_view, 3> kHeader{"x_mm", "y_mm", "z_mm"};
 

@@ -12,11 +12,11 @@
 #include <utility>
 
 #include "dermis/files/config_table.hpp"
+#include "files/millimetres.hpp"
 
 namespace dermis::files {
 namespace {
 
-constexpr double kMillimetresPerMetre = 1e3;
 constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 
 /// "sim:...", "serial://...": left as it is; everything else is a path.

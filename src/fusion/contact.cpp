@@ -17,8 +17,6 @@
 namespace dermis::fusion {
 namespace {
 
-constexpr std::size_t kMostContacts = 255;
-
 Status check_range(const char* name, double value, double low, double high) {
   if (value >= low && value <= high) return Done{};
   return bad_input("contacts." + std::string(name) + ": is " + std::to_string(value) + ", must be " +

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "dermis/fusion/contact.hpp"
+
 namespace dermis::fusion {
 namespace {
 
-constexpr std::size_t kMostContacts = 255;
 constexpr double kLeastVariance = 1e-18;  // [m2]
 constexpr double kFirstSpeed = 0.5;       // sd of the velocity of a new contact [m/s]
 constexpr double kAcceleration = 0.1;     // power density of the acceleration [m2/s3]: 0.1 m/s in 0.1 s

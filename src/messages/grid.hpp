@@ -24,6 +24,11 @@ struct GridField {
   PackedElementType type;
 };
 
+/// The cell of a grid of forces or conductances: a float32, its standard deviation as float32, its status as uint8.
+inline constexpr std::size_t kSigmaOffset = 4;
+inline constexpr std::size_t kCellStatusOffset = 8;
+inline constexpr std::size_t kCellBytes = 9;
+
 /// What a grid is of: when, how large, where.
 struct GridPlace {
   Nanos time;

@@ -15,10 +15,6 @@
 namespace dermis::messages {
 namespace {
 
-// The cell of a grid of conductances: float32 siemens, float32 sigma_siemens, uint8 status.
-constexpr std::size_t kSigmaOffset = 4;
-constexpr std::size_t kCellStatusOffset = 8;
-constexpr std::size_t kCellBytes = 9;
 constexpr std::array<GridField, 3> kConductanceFields{GridField{"siemens", 0, PackedElementType::float32},
                                                       {"sigma_siemens", kSigmaOffset, PackedElementType::float32},
                                                       {"status", kCellStatusOffset, PackedElementType::uint8}};

@@ -58,13 +58,9 @@ void read_floats(std::span<const std::uint8_t> row, bool big_endian, std::span<f
   for (float& count : counts) count = std::bit_cast<float>(__builtin_bswap32(std::bit_cast<std::uint32_t>(count)));
 }
 
-// The cell of a grid of forces: float32 newtons, float32 sigma_newtons, uint8 status.
-constexpr std::size_t kSigmaOffset = 4;
-constexpr std::size_t kStatusOffset = 8;
-constexpr std::size_t kCellBytes = 9;
 constexpr std::array<GridField, 3> kGridFields{GridField{"newtons", 0, PackedElementType::float32},
                                                {"sigma_newtons", kSigmaOffset, PackedElementType::float32},
-                                               {"status", kStatusOffset, PackedElementType::uint8}};
+                                               {"status", kCellStatusOffset, PackedElementType::uint8}};
 
 bool read_grid_fields(CdrReader& reader) {
   bool expected = reader.read<std::uint32_t>() == kGridFields.size();
@@ -84,8 +80,8 @@ bool read_cells(std::span<const std::uint8_t> cells, ForceFrame& frame) {
     const std::uint8_t* cell = cells.data() + i * kCellBytes;
     std::memcpy(&frame.newtons[i], cell, sizeof(float));
     std::memcpy(&frame.sigma_newtons[i], cell + kSigmaOffset, sizeof(float));
-    if (cell[kStatusOffset] > static_cast<std::uint8_t>(TaxelStatus::invalid)) return false;
-    frame.taxels[i] = static_cast<TaxelStatus>(cell[kStatusOffset]);
+    if (cell[kCellStatusOffset] > static_cast<std::uint8_t>(TaxelStatus::invalid)) return false;
+    frame.taxels[i] = static_cast<TaxelStatus>(cell[kCellStatusOffset]);
   }
   return true;
 }
@@ -207,7 +203,7 @@ void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& 
     std::uint8_t* cell = cells.data() + i * kCellBytes;
     std::memcpy(cell, &frame.newtons[i], sizeof(float));
     std::memcpy(cell + kSigmaOffset, &frame.sigma_newtons[i], sizeof(float));
-    cell[kStatusOffset] = static_cast<std::uint8_t>(frame.taxels[i]);
+    cell[kCellStatusOffset] = static_cast<std::uint8_t>(frame.taxels[i]);
   }
 }
 
