@@ -19,12 +19,12 @@ TOKEN = re.compile(r"namespace\s*\{|[{}()]|\b(?:struct|class|enum class|enum|usi
 
 
 def stays_alone(text):
-    return bool(ALONE.search(text)) or "int main(" in text
+    return bool(ALONE.search(text))
 
 
 def own_names(text):
-    """What unnamed namespaces of a source declare, roughly."""
-    names, unnamed, depth, brackets = set(), [], 0, 0
+    """What unnamed namespaces of a source declare, roughly, and its main()."""
+    names, unnamed, depth, brackets = {"main"} if "int main(" in text else set(), [], 0, 0
     for token in TOKEN.findall(NOISE.sub(" ", text)):
         if token.startswith("namespace"):
             depth += 1
