@@ -24,7 +24,7 @@ constexpr std::array kCommands{
                  "Simulate an array: frames.csv and loads.csv (the truth); contacts.csv of the scene contacts",
                  add_simulate},
     CommandEntry{"calibrate", "Frames with known loads -> a model", add_calibrate},
-    CommandEntry{"run", "Raw counts -> newtons per taxel", add_run},
+    CommandEntry{"run", "Raw counts -> newtons per taxel, and contacts", add_run},
     CommandEntry{"evaluate", "Accuracy against known loads, beside the baseline estimators", add_evaluate},
     CommandEntry{"circuit", "Compute a readout circuit: for people who design one", add_circuit},
     CommandEntry{"doctor", "Health of an array, in plain words: line faults, noise, drift", add_doctor},

@@ -7,7 +7,9 @@
 #include <string>
 
 #include "commands.hpp"
+#include "dermis/files/contacts_csv.hpp"
 #include "dermis/files/forces_csv.hpp"
+#include "dermis/fusion/contact.hpp"
 #include "dermis/preprocessing/phase.hpp"
 #include "open_source.hpp"
 #include "seconds.hpp"
@@ -24,6 +26,7 @@ struct RunOptions {
   std::string in;
   std::string out;
   std::string sigma;
+  std::string contacts;
   double settle_s = 0.0;
 };
 
@@ -33,36 +36,88 @@ std::string place_of(const std::string& in, const FrameSource& source, std::size
   return place.empty() ? fmt::format("{}: frame {}", in, frame) : place;
 }
 
-/// forces.csv and, where it is asked for, the table of their standard deviations.
-class ForceTables {
+/// What touches the array, as contacts.csv.
+class ContactTable {
  public:
-  static Result<ForceTables> create(const RunOptions& options, const ArrayDescription& array) {
-    Result<files::ForcesCsvWriter> forces = files::ForcesCsvWriter::create(options.out, array.rows, array.cols);
+  static Result<ContactTable> create(const std::string& path, const ArrayDescription& array) {
+    Result<files::ContactsCsvWriter> contacts = files::ContactsCsvWriter::create(path);
+    if (!contacts) return contacts.error();
+    return ContactTable(array, std::move(*contacts));
+  }
+
+  Status write(const ForceFrame& force) {
+    tracker_.process(force, report_);
+    return contacts_.write(report_);
+  }
+  Status commit() { return contacts_.commit(); }
+
+ private:
+  ContactTable(const ArrayDescription& array, files::ContactsCsvWriter contacts)
+      : tracker_(array), contacts_(std::move(contacts)) {}
+
+  fusion::ContactTracker tracker_;
+  ContactReport report_;
+  files::ContactsCsvWriter contacts_;
+};
+
+/// Those of forces.csv, of the standard deviations of the forces and of the contacts that are asked for.
+class Tables {
+ public:
+  static Result<Tables> create(const RunOptions& options, const ArrayDescription& array) {
+    Tables tables;
+    const Status forces = create_forces(tables.forces_, options.out, array, files::ForceColumn::newtons);
     if (!forces) return forces.error();
-    ForceTables tables(std::move(*forces));
-    if (options.sigma.empty()) return tables;
-    Result<files::ForcesCsvWriter> sigmas =
-        files::ForcesCsvWriter::create(options.sigma, array.rows, array.cols, files::ForceColumn::sigma_newtons);
+    const Status sigmas = create_forces(tables.sigmas_, options.sigma, array, files::ForceColumn::sigma_newtons);
     if (!sigmas) return sigmas.error();
-    tables.sigmas_.emplace(std::move(*sigmas));
+    if (options.contacts.empty()) return tables;
+    Result<ContactTable> contacts = ContactTable::create(options.contacts, array);
+    if (!contacts) return contacts.error();
+    tables.contacts_.emplace(std::move(*contacts));
     return tables;
   }
 
   Status write(const ForceFrame& force) {
-    const Status written = forces_.write(force);
-    return written && sigmas_ ? sigmas_->write(force) : written;
+    return for_each([&](auto& table) { return table.write(force); });
   }
   Status commit() {
-    const Status committed = forces_.commit();
-    return committed && sigmas_ ? sigmas_->commit() : committed;
+    return for_each([](auto& table) { return table.commit(); });
   }
 
  private:
-  explicit ForceTables(files::ForcesCsvWriter forces) : forces_(std::move(forces)) {}
+  static Status create_forces(std::optional<files::ForcesCsvWriter>& table, const std::string& path,
+                              const ArrayDescription& array, files::ForceColumn column) {
+    if (path.empty()) return Done{};
+    Result<files::ForcesCsvWriter> created = files::ForcesCsvWriter::create(path, array.rows, array.cols, column);
+    if (!created) return created.error();
+    table.emplace(std::move(*created));
+    return Done{};
+  }
 
-  files::ForcesCsvWriter forces_;
+  /// Until one fails.
+  template <typename Work>
+  Status for_each(Work work) {
+    Status status = Done{};
+    if (forces_) status = work(*forces_);
+    if (status && sigmas_) status = work(*sigmas_);
+    if (status && contacts_) status = work(*contacts_);
+    return status;
+  }
+
+  std::optional<files::ForcesCsvWriter> forces_;
   std::optional<files::ForcesCsvWriter> sigmas_;
+  std::optional<ContactTable> contacts_;
 };
+
+Status check_outputs(const RunOptions& options) {
+  if (options.out.empty() && options.sigma.empty() && options.contacts.empty()) {
+    return bad_input("name a file to write: --out FILE for the forces, --contacts FILE for the contacts");
+  }
+  const auto same = [](const std::string& a, const std::string& b) { return !a.empty() && a == b; };
+  if (same(options.sigma, options.out)) return bad_input("--sigma: is the file of --out; name another");
+  if (same(options.contacts, options.out)) return bad_input("--contacts: is the file of --out; name another");
+  if (same(options.contacts, options.sigma)) return bad_input("--contacts: is the file of --sigma; name another");
+  return Done{};
+}
 
 /// Frames whose forces are not what a user expects.
 class Troubles {
@@ -102,7 +157,7 @@ class Troubles {
 };
 
 /// An error of the source comes in `source_status`, one of the tables is returned.
-Status solve(const RunOptions& options, Operation& operation, preprocessing::PhaseSelector& phase, ForceTables& tables,
+Status solve(const RunOptions& options, Operation& operation, preprocessing::PhaseSelector& phase, Tables& tables,
              Troubles& troubles, Status& source_status) {
   const bool is_live = operation.frames->is_live();
   std::optional<LiveLine> line;
@@ -128,10 +183,10 @@ Status solve(const RunOptions& options, Operation& operation, preprocessing::Pha
 Status run(const RunOptions& options) {
   const Result<Nanos> settle = nanos_from_seconds(options.settle_s, "--settle");
   if (!settle) return settle.error();
-  if (options.sigma == options.out) return bad_input("--sigma: is the file of --out; name another");
+  if (Status distinct = check_outputs(options); !distinct) return distinct;
   Result<std::unique_ptr<Operation>> operation = open_operation(options.model, options.in);
   if (!operation) return operation.error();
-  Result<ForceTables> tables = ForceTables::create(options, (*operation)->model.array);
+  Result<Tables> tables = Tables::create(options, (*operation)->model.array);
   if (!tables) return tables.error();
 
   preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
@@ -151,8 +206,9 @@ void add_run(Command& command) {
   auto options = std::make_shared<RunOptions>();
   command.option("--model", options->model, "Model file of 'dermis calibrate'").required();
   command.option("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device").required();
-  command.option("--out", options->out, "forces.csv to write").required();
+  command.option("--out", options->out, "forces.csv to write");
   command.option("--sigma", options->sigma, "Also write the standard deviation of every force [N] to this CSV");
+  command.option("--contacts", options->contacts, "contacts.csv to write: what touches the array, where and how hard");
   command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
       .shows_default();
   command.action([options] { return run(*options); });

@@ -23,6 +23,13 @@ Status check_range(const char* name, double value, double low, double high) {
                    std::to_string(low) + " to " + std::to_string(high));
 }
 
+/// Of the axes along which there are several taxels.
+double larger_pitch(const ArrayDescription& array) {
+  if (array.rows == 1 && array.cols > 1) return array.col_pitch_m;
+  if (array.cols == 1 && array.rows > 1) return array.row_pitch_m;
+  return std::max(array.row_pitch_m, array.col_pitch_m);
+}
+
 }  // namespace
 
 Status ContactOptions::validate() const {
@@ -40,9 +47,10 @@ class ContactTracker::Implementation {
         cols_(array.cols),
         row_pitch_m_(array.row_pitch_m),
         col_pitch_m_(array.col_pitch_m),
+        pitch_m_(larger_pitch(array)),
         areas_(array.rows, array.cols),
         gauge_(array),
-        tracks_(kReachPitches * std::max(array.row_pitch_m, array.col_pitch_m)) {
+        tracks_(kReachPitches * pitch_m_) {
     assert(array.validate().has_value());
     found_.reserve(array.taxel_count());
     expected_.reserve(kMostContacts);
@@ -50,7 +58,8 @@ class ContactTracker::Implementation {
   }
 
   void process(const ForceFrame& force, ContactReport& report) noexcept {
-    assert(force.newtons.size() == rows_ * cols_ && force.sigma_newtons.size() == rows_ * cols_);
+    assert(force.newtons.size() == rows_ * cols_ && force.sigma_newtons.size() == rows_ * cols_ &&
+           force.signal_to_noise.size() == rows_ * cols_);
     report.time = force.time;
     report.status = force.status;
     report.contacts.reserve(2 * options.most_contacts);
@@ -71,7 +80,7 @@ class ContactTracker::Implementation {
   static constexpr double kReachPitches = 2.0;
   static constexpr double kPitchesApart = 1.7;
 
-  /// From so many standard deviations on a taxel is pressed.
+  /// From so many standard deviations of the noise on a taxel is pressed.
   [[nodiscard]] double pressed_sigma() const { return options.release_share * options.onset_sigma; }
 
   void find_held_taxels(Nanos time) {
@@ -92,9 +101,10 @@ class ContactTracker::Implementation {
     found.peak = taxels.front();
     found.contact = gauge_.measure(force, taxels, pressed_sigma(), expected_at(taxels.front()));
     found.profile = gauge_.profile();
-    const std::size_t own = gauge_.part(force, taxels);
+    const double share = holds_several(taxels) ? StressedAreas::kHeldShare : 1.0;
+    const std::size_t own = gauge_.part(force, taxels, options.onset_sigma, share);
     if (own < taxels.size() && own > 0 && can_go_on(force, taxels.subspan(own)) && is_top(force, taxels, taxels[own]) &&
-        are_apart(force, taxels.first(own), taxels.subspan(own))) {
+        are_apart(force, taxels.first(own), taxels.subspan(own), share)) {
       add(force, taxels.first(own));
       add(force, taxels.subspan(own));
       return;
@@ -104,14 +114,21 @@ class ContactTracker::Implementation {
     found_.push_back(found);
   }
 
+  /// More than one contact of the frame before was on these taxels.
+  [[nodiscard]] bool holds_several(std::span<const std::uint32_t> taxels) const {
+    return std::count_if(held_.begin(), held_.end(), [&](std::uint32_t held) {
+             return std::find(taxels.begin(), taxels.end(), held) != taxels.end();
+           }) > 1;
+  }
+
   /// The patches of two contacts do not overlap; those found on the parts of an elongated one do, near each other.
   [[nodiscard]] bool are_apart(const ForceFrame& force, std::span<const std::uint32_t> one,
-                               std::span<const std::uint32_t> other) {
+                               std::span<const std::uint32_t> other, double share) {
     const Contact a = gauge_.measure(force, one, pressed_sigma(), nullptr);
     const Contact b = gauge_.measure(force, other, pressed_sigma(), nullptr);
     const double distance = std::hypot(a.position.x - b.position.x, a.position.y - b.position.y);
-    return distance >= kPitchesApart * std::max(row_pitch_m_, col_pitch_m_) ||
-           distance >= std::sqrt(a.area_m2 / std::numbers::pi) + std::sqrt(b.area_m2 / std::numbers::pi);
+    return distance >= share * kPitchesApart * pitch_m_ ||
+           distance >= share * (std::sqrt(a.area_m2 / std::numbers::pi) + std::sqrt(b.area_m2 / std::numbers::pi));
   }
 
   /// No taxel of another area beside it is stronger; else it is the rim of that one.
@@ -127,13 +144,20 @@ class ContactTracker::Implementation {
     return is_strong(force, taxels, expected_at(taxels.front()) != nullptr ? options.release_share : 1.0);
   }
 
-  /// `share`: of the thresholds of an onset.
+  /// `share`: of the thresholds of an onset. Each taxel adds the square of what it shows over the noise, less what one
+  /// shows that just counts as pressed: so one taxel needs onset_sigma, several together need less each, and noise that
+  /// takes a taxel just over the threshold adds nothing.
   [[nodiscard]] bool is_strong(const ForceFrame& force, std::span<const std::uint32_t> taxels, double share) const {
-    const float sigma = force.sigma_newtons[taxels.front()];
-    const bool stands_out = std::isinf(sigma) || force.newtons[taxels.front()] >= share * options.onset_sigma * sigma;
+    const double pressed = pressed_sigma();
+    const double onset = std::max(share * options.onset_sigma, pressed);
+    double evidence = 0.0;
     double newtons = 0.0;
-    for (const std::uint32_t taxel : taxels) newtons += force.newtons[taxel];
-    return stands_out && newtons >= share * options.onset_force_n;
+    for (const std::uint32_t taxel : taxels) {
+      const double signal = force.signal_to_noise[taxel];
+      evidence += signal * signal - pressed * pressed;
+      newtons += force.newtons[taxel];
+    }
+    return evidence >= onset * onset - pressed * pressed && newtons >= share * options.onset_force_n;
   }
 
   /// The nearest contact expected on this taxel or on a neighbour of it; null where there is none.
@@ -180,6 +204,7 @@ class ContactTracker::Implementation {
   std::size_t cols_;
   double row_pitch_m_;
   double col_pitch_m_;
+  double pitch_m_;
   StressedAreas areas_;
   ContactGauge gauge_;
   ContactTracks tracks_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "dermis/core/neighbours.hpp"
@@ -13,12 +14,12 @@ namespace dermis::fusion {
 namespace {
 
 constexpr std::size_t kSmall = 4;             // pressed taxels, of which patches of many sizes press as many
-constexpr std::size_t kMostFitted = 40;       // pressed taxels; of more the centre of mass is as good
+constexpr std::size_t kMostFitted = 40;       // pressed taxels; of more the centre of mass is as good,
+constexpr double kFading = 10.0;              // and from so many less on it takes over
 constexpr double kPriorRadiusPitches = 0.75;  // fingers and heels of hands on a pitch of 10 mm
 constexpr float kPriorSigma = 0.6F;
 constexpr float kMismatchOfTaxel = 0.003F;  // what the shape of a real patch differs by from the model's
 constexpr float kMismatchOfPeak = 0.0005F;
-constexpr float kRoundMisfit = 1000.0F;     // beyond which a contact is not round: the centre of mass is taken
 constexpr float kMostShareOfOther = 0.35F;  // of a peak, that a contact without a valley before it can have
 constexpr double kLeastPitchesApart = 1.6;  // from this contact's centre to the strongest taxel of another
 constexpr float kLeastShareOfOther = 0.5F;  // of a taxel's force, that is not this contact's
@@ -26,6 +27,24 @@ constexpr float kLeastShareOfOther = 0.5F;  // of a taxel's force, that is not t
 double taxel_area(const ArrayDescription& array) {
   const double diameter = 0.7 * std::min(array.row_pitch_m, array.col_pitch_m);
   return array.taxel_area_m2.value_or(std::numbers::pi / 4.0 * diameter * diameter);
+}
+
+bool is_strip(const ArrayDescription& array) {
+  return array.rows == 1 || array.cols == 1;
+}
+
+/// Of a disc of the same area; on a strip, whose taxels may be long across it, no larger than fits in the pitch along
+/// it.
+double taxel_radius(const ArrayDescription& array) {
+  const double radius = std::sqrt(taxel_area(array) / std::numbers::pi);
+  if (array.rows == 1 && array.cols > 1) return std::min(radius, 0.5 * array.col_pitch_m);
+  if (array.cols == 1 && array.rows > 1) return std::min(radius, 0.5 * array.row_pitch_m);
+  return radius;
+}
+
+/// Of a place anywhere on a cell of this pitch [1/radii of a taxel^2].
+double strength_on_cell(double pitch_m, double taxel_radius_m) {
+  return 12.0 * std::pow(taxel_radius_m / pitch_m, 2);
 }
 
 }  // namespace
@@ -36,13 +55,16 @@ ContactGauge::ContactGauge(const ArrayDescription& array)
       row_pitch_m_(array.row_pitch_m),
       col_pitch_m_(array.col_pitch_m),
       taxel_area_m2_(taxel_area(array)),
-      taxel_radius_m_(std::sqrt(taxel_area_m2_ / std::numbers::pi)),
-      small_contacts_(
-          SmallContactTable::of({array.col_pitch_m / taxel_radius_m_, array.row_pitch_m / taxel_radius_m_})),
+      taxel_radius_m_(taxel_radius(array)),
+      small_contacts_(is_strip(array) ? nullptr
+                                      : SmallContactTable::of({array.col_pitch_m / taxel_radius_m_,
+                                                               array.row_pitch_m / taxel_radius_m_})),
       visited_(array.taxel_count()) {
   const double pitch = std::sqrt(row_pitch_m_ * col_pitch_m_);
   prior_.log_radius = static_cast<float>(std::log(kPriorRadiusPitches * pitch / taxel_radius_m_));
   prior_.sigma = kPriorSigma;
+  if (cols_ == 1) prior_.strength_x = static_cast<float>(strength_on_cell(col_pitch_m_, taxel_radius_m_));
+  if (rows_ == 1) prior_.strength_y = static_cast<float>(strength_on_cell(row_pitch_m_, taxel_radius_m_));
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
     places_.push_back({centre(taxel).x / taxel_radius_m_, centre(taxel).y / taxel_radius_m_});
   }
@@ -75,12 +97,16 @@ std::optional<ContactGauge::Place> ContactGauge::place(const ForceFrame& force, 
   if (of_table && taxels.size() <= 2) return of_table;
   gather(force, taxels);
   const double newtons = 2.0 * contact.force_n;  // about half of the force lies between the taxels
-  if (!of_table && expected != nullptr) {
-    return fit(taxels, start_at(expected->place, expected->radius_m, newtons), expected->profile);
+  if (!of_table) {
+    const std::optional<Place> of_fit =
+        expected != nullptr
+            ? fit(taxels, start_at(expected->place, expected->radius_m, newtons), expected->profile)
+            : fit(taxels, start_at(contact.position, reach(taxels, contact.position), newtons), PatchProfile::hertz);
+    return of_fit ? blend(*of_fit, contact) : of_fit;
   }
   const Patch start = start_at(contact.position, reach(taxels, contact.position), newtons);
   std::optional<Place> of_fit = fit(taxels, start, PatchProfile::hertz);
-  if (!of_table || !of_fit) return of_fit ? of_fit : of_table;
+  if (!of_fit) return of_table;
   of_fit->sigma = {std::hypot(of_table->sigma.x, of_fit->position.x - of_table->position.x),
                    std::hypot(of_table->sigma.y, of_fit->position.y - of_table->position.y)};
   return of_fit;
@@ -179,7 +205,7 @@ void ContactGauge::gather(const ForceFrame& force, std::span<const std::uint32_t
     for (const std::size_t beside : Neighbours(rows_, cols_, taxel)) {
       if (visited_[beside] == area_) continue;
       visited_[beside] = area_;
-      const bool is_of_other = force.newtons[beside] >= pressed_sigma_ * force.sigma_newtons[beside];
+      const bool is_of_other = force.signal_to_noise[beside] >= pressed_sigma_;
       if (!is_of_other) add_taxel(force, static_cast<std::uint32_t>(beside));
     }
   }
@@ -197,12 +223,13 @@ void ContactGauge::add_taxel(const ForceFrame& force, std::uint32_t taxel) {
   fit_taxels_.push_back({static_cast<float>(at.x - origin.x), static_cast<float>(at.y - origin.y), newtons, weight});
 }
 
-std::size_t ContactGauge::part(const ForceFrame& force, std::span<std::uint32_t> taxels) {
+std::size_t ContactGauge::part(const ForceFrame& force, std::span<std::uint32_t> taxels, double onset_sigma,
+                               double share) {
   if (!fit_) return taxels.size();
   unexplained_.clear();
   std::size_t explained = 0;
   for (const std::uint32_t taxel : taxels) {
-    if (is_explained(force, taxel)) {
+    if (is_explained(force, taxel, onset_sigma, share)) {
       taxels[explained++] = taxel;
     } else {
       unexplained_.push_back(taxel);
@@ -213,7 +240,7 @@ std::size_t ContactGauge::part(const ForceFrame& force, std::span<std::uint32_t>
 }
 
 /// What another contact presses is weak against this one's peak, or there would be a valley.
-bool ContactGauge::is_explained(const ForceFrame& force, std::uint32_t taxel) const {
+bool ContactGauge::is_explained(const ForceFrame& force, std::uint32_t taxel, double onset_sigma, double share) const {
   const float newtons = force.newtons[taxel];
   const float sigma = force.sigma_newtons[taxel];
   if (!(newtons < kMostShareOfOther * peak_newtons_) || !std::isfinite(sigma)) return true;
@@ -223,7 +250,7 @@ bool ContactGauge::is_explained(const ForceFrame& force, std::uint32_t taxel) co
   if (taxel_radius_m_ * distance < kLeastPitchesApart * std::min(row_pitch_m_, col_pitch_m_)) return true;
   const PatchResponse::Row response = PatchResponse::of(fit_->profile).row(fit_->patch.log_radius);
   const float expected = fit_->patch.newtons * response.share(static_cast<float>(distance));
-  return newtons - expected < std::max(kLeastShareOfOther * newtons, pressed_sigma_ * sigma);
+  return newtons - expected < share * std::max<double>(kLeastShareOfOther * newtons, onset_sigma * sigma);
 }
 
 Patch ContactGauge::start_at(PlaneVector place, double radius_m, double newtons) const {
@@ -246,6 +273,27 @@ double ContactGauge::reach(std::span<const std::uint32_t> taxels, PlaneVector pl
   return std::max(taxel_radius_m_, std::sqrt(most) - 0.6 * taxel_radius_m_);
 }
 
+ContactGauge::Place ContactGauge::blend(const Place& of_fit, const Contact& contact) const {
+  const PlaneVector mass = contact.position;
+  const PlaneVector sigma_mass = contact.sigma_position_m;
+  const auto variance = [&](const PlaneVector& sigma) {  // along the axes that the taxels tell
+    return (cols_ > 1 ? sigma.x * sigma.x : 0.0) + (rows_ > 1 ? sigma.y * sigma.y : 0.0);
+  };
+  const double ratio = variance(of_fit.sigma) / std::max(variance(sigma_mass), std::numeric_limits<double>::min());
+  const double fading = (static_cast<double>(kMostFitted + 1) - contact.taxels) / kFading;
+  const double share = std::min(1.0, fading) / (1.0 + ratio * ratio);  // of the fit
+  const auto place = [&](double fitted, double other) { return other + share * (fitted - other); };
+  const auto sigma = [&](double fitted, double other, double apart) {
+    return std::sqrt(share * fitted * fitted + (1.0 - share) * (other * other + share * apart * apart));
+  };
+  Place mean;
+  mean.position = {place(of_fit.position.x, mass.x), place(of_fit.position.y, mass.y)};
+  mean.sigma = {sigma(of_fit.sigma.x, sigma_mass.x, of_fit.position.x - mass.x),
+                sigma(of_fit.sigma.y, sigma_mass.y, of_fit.position.y - mass.y)};
+  mean.radius_m = place(of_fit.radius_m, std::sqrt(contact.area_m2 / std::numbers::pi));
+  return mean;
+}
+
 std::optional<ContactGauge::Place> ContactGauge::fit(std::span<const std::uint32_t> taxels, const Patch& start,
                                                      PatchProfile profile) {
   const PatchProfile second = profile == PatchProfile::hertz ? PatchProfile::flat : PatchProfile::hertz;
@@ -257,7 +305,6 @@ std::optional<ContactGauge::Place> ContactGauge::fit(std::span<const std::uint32
   const PlaneVector sigma{taxel_radius_m_ * std::sqrt(mean.variance_x), taxel_radius_m_ * std::sqrt(mean.variance_y)};
   if (!(sigma.x > 0.0 && sigma.x < col_pitch_m_ && sigma.y > 0.0 && sigma.y < row_pitch_m_)) return {};
   fit_ = better;
-  if (better.misfit > kRoundMisfit) return {};
   return Place{{origin_.x + taxel_radius_m_ * mean.patch.x, origin_.y + taxel_radius_m_ * mean.patch.y},
                sigma,
                taxel_radius_m_ * std::exp(mean.patch.log_radius)};

@@ -24,8 +24,8 @@ class ContactGauge {
   explicit ContactGauge(const ArrayDescription& array);
 
   /// `taxels`: those of the area, by falling force; at least one. Other taxels from `pressed_sigma` standard deviations
-  /// on belong to other contacts. `expected`, or null: where to begin the search for a patch on many taxels, which is
-  /// faster, and leads to the same one. Of the result id, phase, onset and velocity are left.
+  /// of the noise on belong to other contacts. `expected`, or null: where to begin the search for a patch on many
+  /// taxels, which is faster, and leads to the same one. Of the result id, phase, onset and velocity are left.
   [[nodiscard]] Contact measure(const ForceFrame& force, std::span<const std::uint32_t> taxels, double pressed_sigma,
                                 const ExpectedContact* expected);
 
@@ -34,8 +34,10 @@ class ContactGauge {
 
   /// Of the taxels measured last, those that the patch found does not explain are put last, both parts by falling
   /// force; returns how many it does explain. A weak contact beside a strong one makes no valley, but leaves such
-  /// taxels.
-  [[nodiscard]] std::size_t part(const ForceFrame& force, std::span<std::uint32_t> taxels);
+  /// taxels. `onset_sigma`: standard deviations of its force, material included, by which a taxel must stand out of the
+  /// patch; `share`: of all that is asked of them, less than 1 where several contacts are known already.
+  [[nodiscard]] std::size_t part(const ForceFrame& force, std::span<std::uint32_t> taxels, double onset_sigma,
+                                 double share);
 
  private:
   struct Place {
@@ -48,16 +50,19 @@ class ContactGauge {
   void find_moments(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
   [[nodiscard]] std::optional<Place> place(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                            const Contact& contact, const ExpectedContact* expected);
-  /// Empty where the taxels do not tell.
+  /// Empty where the taxels tell nothing.
   [[nodiscard]] std::optional<Place> fit(std::span<const std::uint32_t> taxels, const Patch& start,
                                          PatchProfile profile);
+  /// A fit and the centre of mass: the more uncertain the fit beside it, the more of the centre of mass, without a
+  /// jump.
+  [[nodiscard]] Place blend(const Place& of_fit, const Contact& contact) const;
   [[nodiscard]] Patch start_at(PlaneVector place, double radius_m, double newtons) const;
   [[nodiscard]] double reach(std::span<const std::uint32_t> taxels, PlaneVector place) const;
   /// Empty at the edge, beside a taxel without force, and on more than a block of 2 x 2 taxels.
   [[nodiscard]] std::optional<Place> look_up(const ForceFrame& force, std::span<const std::uint32_t> taxels) const;
   void gather(const ForceFrame& force, std::span<const std::uint32_t> taxels);
   void add_taxel(const ForceFrame& force, std::uint32_t taxel);
-  [[nodiscard]] bool is_explained(const ForceFrame& force, std::uint32_t taxel) const;
+  [[nodiscard]] bool is_explained(const ForceFrame& force, std::uint32_t taxel, double onset_sigma, double share) const;
   [[nodiscard]] PlaneVector centre(std::size_t taxel) const noexcept {
     const std::size_t row = taxel / cols_;
     return {static_cast<double>(taxel - row * cols_) * col_pitch_m_, static_cast<double>(row) * row_pitch_m_};
@@ -69,8 +74,8 @@ class ContactGauge {
   double col_pitch_m_;
   double taxel_area_m2_;
   double taxel_radius_m_;
-  RadiusPrior prior_;
-  std::shared_ptr<const SmallContactTable> small_contacts_;
+  PatchPrior prior_;
+  std::shared_ptr<const SmallContactTable> small_contacts_;  // null for a strip, which is all edge
   std::uint32_t origin_taxel_ = 0;
   PlaneVector origin_;  // of fit_taxels_: the strongest taxel [m]
   float peak_newtons_ = 0.0F;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr float kNoForce = std::numeric_limits<float>::quiet_NaN();
 constexpr float kNoUpperBound = std::numeric_limits<float>::infinity();
+constexpr float kCommonSigmas = 2.0F;  // of an error that all taxels share
 
 template <typename Values, typename Predicate>
 bool all(const Values& values, std::size_t size, Predicate predicate) {
@@ -88,18 +89,21 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
   force.taxels = conductance.taxels;
   force.newtons.resize(taxels);
   force.sigma_newtons.resize(taxels);
+  force.signal_to_noise.resize(taxels);
   const bool fits = conductance.siemens.size() == taxels && conductance.sigma_siemens.size() == taxels;
   if (has(conductance.status, FrameStatus::rejected) || !fits) {
     force.status |= FrameStatus::rejected;
     force.taxels.assign(taxels, TaxelStatus::invalid);
     std::fill(force.newtons.begin(), force.newtons.end(), kNoForce);
     std::fill(force.sigma_newtons.begin(), force.sigma_newtons.end(), kNoForce);
+    std::fill(force.signal_to_noise.begin(), force.signal_to_noise.end(), kNoForce);
     return;
   }
   const Temperature temperature = this->temperature(conductance, force);
   prepare_inputs(conductance, temperature.offset);
   bank_.evaluate(inputs_, outputs_, gradient_);
   compute_forces(temperature.sigma, force);
+  compute_signals(temperature.sigma, force);
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) apply_status(taxel, force);
 }
 
@@ -154,6 +158,14 @@ void ForceFusion::compute_forces(double temperature_sigma, ForceFrame& force) co
   forces(sources, force.newtons, force.sigma_newtons);
 }
 
+void ForceFusion::compute_signals(double temperature_sigma, ForceFrame& force) const noexcept {
+  const float common = kCommonSigmas * static_cast<float>(temperature_sigma);
+  for (std::size_t taxel = 0; taxel < networks_.taxel_count(); ++taxel) {
+    const float noise = sigma_siemens_[taxel] + common * std::abs(offset_per_celsius_[taxel]);
+    force.signal_to_noise[taxel] = excess_siemens_[taxel] / std::max(noise, std::numeric_limits<float>::min());
+  }
+}
+
 void ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexcept {
   TaxelStatus& status = force.taxels[taxel];
   float& newtons = force.newtons[taxel];
@@ -167,6 +179,7 @@ void ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexc
   if (status == TaxelStatus::dead || status == TaxelStatus::invalid || status == TaxelStatus::line_fault) {
     newtons = kNoForce;
     sigma = kNoForce;
+    force.signal_to_noise[taxel] = kNoForce;
     return;
   }
   if (excess_siemens_[taxel] > networks_.heaviest_siemens[taxel] || newtons > networks_.heaviest_newtons[taxel]) {
@@ -174,7 +187,10 @@ void ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexc
     if (status == TaxelStatus::ok) status = TaxelStatus::above_range;
     force.status |= FrameStatus::above_range;
   }
-  if (status == TaxelStatus::above_range || status == TaxelStatus::saturated) sigma = kNoUpperBound;
+  if (status == TaxelStatus::above_range || status == TaxelStatus::saturated) {
+    sigma = kNoUpperBound;
+    force.signal_to_noise[taxel] = kNoUpperBound;
+  }
 }
 
 }  // namespace dermis::fusion

@@ -61,7 +61,7 @@ Sums sum_up(std::span<const FitTaxel> taxels, const PatchResponse& response, con
 }  // namespace
 
 NormalEquations normal_equations(std::span<const FitTaxel> taxels, const PatchResponse& response, const Patch& patch,
-                                 const RadiusPrior& prior) noexcept {
+                                 const PatchPrior& prior) noexcept {
   const Sums sums = sum_up(taxels, response, patch);
   const double share_square = std::max(static_cast<double>(sums.products[3][3]), 1e-12);
   const double more = std::max(sums.residuals[3] / share_square, 1e-6 - patch.newtons);
@@ -82,6 +82,11 @@ NormalEquations normal_equations(std::span<const FitTaxel> taxels, const PatchRe
   normal.matrix[5] += strength;
   normal.slope[2] -= strength * off;
   normal.chi_squared += strength * off * off;
+  normal.matrix[0] += prior.strength_x;
+  normal.matrix[2] += prior.strength_y;
+  normal.slope[0] -= prior.strength_x * patch.x;
+  normal.slope[1] -= prior.strength_y * patch.y;
+  normal.chi_squared += prior.strength_x * patch.x * patch.x + prior.strength_y * patch.y * patch.y;
   return normal;
 }
 

@@ -26,10 +26,13 @@ struct Patch {
   float newtons = 0.0F;  ///< In all, between the taxels too.
 };
 
-/// What is known of a radius before anything is measured: normal in its logarithm.
-struct RadiusPrior {
+/// What is known of a patch before anything is measured: its radius, normal in the logarithm, and, across a strip of
+/// taxels, which tells nothing of it, its place.
+struct PatchPrior {
   float log_radius = 0.0F;
   float sigma = 1.0F;
+  float strength_x = 0.0F;  ///< 1 / variance of x about 0.
+  float strength_y = 0.0F;  ///< 1 / variance of y about 0.
 };
 
 /// The normal equations in x, y and ln radius, where the force follows as the best at each place and radius.
@@ -42,7 +45,7 @@ struct NormalEquations {
 };
 
 [[nodiscard]] NormalEquations normal_equations(std::span<const FitTaxel> taxels, const PatchResponse& response,
-                                               const Patch& patch, const RadiusPrior& prior) noexcept;
+                                               const Patch& patch, const PatchPrior& prior) noexcept;
 
 /// The matrix with `damping` times its diagonal added, as L D L^T.
 class Factor {

@@ -36,7 +36,7 @@ bool is_small(const std::array<double, 3>& step) {
 }  // namespace
 
 PatchFit fit_patch(std::span<const FitTaxel> taxels, PatchProfile profile, const Patch& start,
-                   const RadiusPrior& prior) noexcept {
+                   const PatchPrior& prior) noexcept {
   const PatchResponse& response = PatchResponse::of(profile);
   Patch patch = start;
   NormalEquations normal = normal_equations(taxels, response, patch, prior);

@@ -102,7 +102,7 @@ class RadiusSum {
 }  // namespace
 
 PatchFit mean_over_radii(std::span<const FitTaxel> taxels, const PatchFit& most_likely,
-                         const RadiusPrior& prior) noexcept {
+                         const PatchPrior& prior) noexcept {
   static const float kLow = std::log(PatchResponse::kLeastRadius);
   static const float kHigh = std::log(PatchResponse::kMostRadius);
   const PatchResponse& response = PatchResponse::of(most_likely.profile);

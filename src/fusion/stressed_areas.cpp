@@ -6,21 +6,17 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <limits>
 
 namespace dermis::fusion {
 namespace {
 
 constexpr std::int32_t kNone = -1;
 
-/// Surely nothing is pressed here, all forces and standard deviations are finite.
+/// Nothing is pressed here, and all taxels have a force.
 template <std::size_t Taxels>
-bool is_idle(const float* newtons, const float* noise, float sigma) {
+bool is_idle(const float* signal_to_noise, float sigma) {
   std::uint32_t other = 0;
-  for (std::size_t k = 0; k < Taxels; ++k) {
-    other |= static_cast<std::uint32_t>(!(newtons[k] < sigma * noise[k])) |
-             static_cast<std::uint32_t>(noise[k] > std::numeric_limits<float>::max());
-  }
+  for (std::size_t k = 0; k < Taxels; ++k) other |= static_cast<std::uint32_t>(!(signal_to_noise[k] < sigma));
   return other == 0;
 }
 
@@ -50,15 +46,15 @@ void StressedAreas::collect(const ForceFrame& force, float sigma) {
   const std::size_t taxels = rows_ * cols_;
   for (std::size_t first = 0; first < taxels; first += kBlock) {
     const std::size_t end = std::min(first + kBlock, taxels);
-    if (end == first + kBlock && is_idle<kBlock>(&force.newtons[first], &force.sigma_newtons[first], sigma)) continue;
+    if (end == first + kBlock && is_idle<kBlock>(&force.signal_to_noise[first], sigma)) continue;
     for (std::size_t taxel = first; taxel < end; ++taxel) collect_one(force, taxel, sigma);
   }
 }
 
 void StressedAreas::collect_one(const ForceFrame& force, std::size_t taxel, float sigma) {
+  if (force.signal_to_noise[taxel] < sigma) return;
   const float newtons = force.newtons[taxel];
   const float noise = force.sigma_newtons[taxel];
-  if (newtons < sigma * noise && !(std::isinf(noise) && newtons > 0.0F)) return;
   const bool has_force = !std::isnan(newtons);
   const float value = has_force ? newtons : bridged_newtons(force, taxel);
   if (value <= 0.0F) return;
@@ -120,7 +116,7 @@ void StressedAreas::meet(std::int32_t a, std::int32_t b, const Pressed& valley) 
   const Peak& high = peaks_[static_cast<std::size_t>(higher)];
   Peak& low = peaks_[static_cast<std::size_t>(lower)];
   const bool are_held = high.held != kNone && low.held != kNone && high.held != low.held;
-  const float scale = are_held ? 0.5F : 1.0F;
+  const float scale = are_held ? kHeldShare : 1.0F;
   const float depth = low.newtons - valley.newtons;
   const float noise = std::sqrt(low.sigma * low.sigma + valley.sigma * valley.sigma);
   if (depth < scale * kValleySigma * noise || depth < scale * kValleyShare * low.newtons) low.higher = higher;

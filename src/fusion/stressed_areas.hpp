@@ -15,17 +15,18 @@ namespace dermis::fusion {
 ///
 /// Taxels are taken by falling force. One with no neighbour that was taken before begins an area, any other one joins
 /// that of its strongest neighbour. Where two areas meet, they become one unless the lower peak stands out of the
-/// meeting point by noise (kValleySigma) and by a share of itself (kValleyShare); both count half between two areas
-/// that hold a contact each already. Taxels without force carry the lower of two opposite neighbours, so that a dead
-/// line does not cut what lies across it; they are in no area.
+/// meeting point by noise (kValleySigma) and by a share of itself (kValleyShare); both count half (kHeldShare)
+/// between two areas that hold a contact each already. Taxels without force carry the lower of two opposite neighbours,
+/// so that a dead line does not cut what lies across it; they are in no area.
 class StressedAreas {
  public:
   static constexpr float kValleySigma = 4.0F;
   static constexpr float kValleyShare = 0.1F;
+  static constexpr float kHeldShare = 0.5F;  ///< Of what parts two contacts: keeps them apart that are there already.
 
   StressedAreas(std::size_t rows, std::size_t cols);
 
-  /// A taxel is pressed from `sigma` standard deviations on, or when its force is only known to be at least so much.
+  /// A taxel is pressed from `sigma` standard deviations of the additive noise on.
   /// `held`: the taxels nearest to the contacts of the frame before.
   void find(const ForceFrame& force, double sigma, std::span<const std::uint32_t> held);
 

@@ -32,6 +32,12 @@ class Usage(SmallArray):
     def test_two_outputs_in_one_file(self):
         self.refuse([*self.run_arguments(self.work / "f.csv"), "--sigma", self.work / "f.csv"], ["--sigma", "--out"])
 
+        self.refuse([*self.run_arguments(self.work / "f.csv"), "--contacts", self.work / "f.csv"],
+                    ["--contacts", "--out"])
+
+    def test_a_run_that_writes_nothing(self):
+        self.refuse(["run", "--model", self.model, "--in", self.contacts / "frames.csv"], ["--out", "--contacts"])
+
     def test_a_count_below_zero(self):
         for option in ("--frames", "--seed"):
             with self.subTest(option):

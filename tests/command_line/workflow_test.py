@@ -109,6 +109,47 @@ class Workflow(SmallArray):
             self.assertEqual(len(found["candidates"]), 6 if "auto" in circuit else 0)
             self.assertIn("drive_ohm", self.succeed(*arguments) if circuit.startswith("drive") else "drive_ohm")
 
+    def test_contacts_have_a_line_from_onset_to_release(self):
+        scene, out, forces = self.work / "scene", self.work / "contacts.csv", self.work / "forces.csv"
+        self.succeed("simulate", "--array", self.array, "--scene", "contacts", "--seed", 3, "--out", scene)
+        self.succeed("run", "--model", self.model, "--in", scene / "frames.csv", "--contacts", out, "--out", forces)
+        with open(out, newline="") as file:
+            lines = list(csv.DictReader(file))
+        self.assertEqual(list(lines[0])[:7], ["time_s", "id", "phase", "x_mm", "y_mm", "sigma_x_mm", "sigma_y_mm"])
+        phases = {}
+        for line in lines:
+            self.assertTrue(all(math.isfinite(float(cell)) for name, cell in line.items()
+                                if name not in ("phase", "sigma_force_n")), line)
+            self.assertEqual(float(line["force_n"]) == 0, line["phase"] == "release")
+            phases.setdefault(line["id"], []).append(line["phase"])
+        for phase in phases.values():
+            self.assertEqual(phase[0], "onset")
+            self.assertLessEqual(set(phase[1:-1]), {"held"})
+        self.assertTrue(any(phase[-1] == "release" for phase in phases.values()))
+        times = {row[0] for row in rows_of(forces)[1:]}
+        self.assertLessEqual({line["time_s"] for line in lines}, times)
+
+        alone = self.work / "alone.csv"
+        self.succeed("run", "--model", self.model, "--in", scene / "frames.csv", "--contacts", alone)
+        self.assertEqual(alone.read_text(), out.read_text())
+
+    def test_contacts_are_where_the_scene_presses(self):
+        scene, out = self.work / "scene", self.work / "contacts.csv"
+        self.succeed("simulate", "--array", self.array, "--scene", "contacts", "--seed", 4, "--out", scene)
+        self.succeed("run", "--model", self.model, "--in", scene / "frames.csv", "--contacts", out)
+        times = [row[0] for row in rows_of(scene / "frames.csv")[1:]]
+        found = {}
+        for row in rows_of(out)[1:]:
+            found.setdefault(row[0], []).append((float(row[3]), float(row[4])))
+        pressed = near = 0
+        for frame, _, _, x, y, _, _, newtons in rows_of(scene / "contacts.csv")[1:]:
+            if float(newtons) < 0.5:
+                continue
+            pressed += 1
+            near += any(math.hypot(float(x) - a, float(y) - b) < 10 for a, b in found.get(times[int(frame)], []))
+        self.assertGreater(pressed, 100)
+        self.assertGreater(near, 0.98 * pressed)
+
     def test_settling_leaves_out_the_first_seconds(self):
         out = self.work / "forces.csv"
         self.succeed(*self.run_arguments(out), "--settle", 10)

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "support/allocation_guard.hpp"
@@ -71,6 +72,95 @@ TEST(ContactTracker, reports_nothing_where_nothing_presses) {
   for (int k = 0; k < 20; ++k) EXPECT_TRUE(touch.frame({}).contacts.empty());
   EXPECT_EQ(touch.report.total_force_n, 0.0);
   EXPECT_FALSE(touch.report.centre_of_pressure.has_value());
+}
+
+TEST(ContactTracker, noise_alone_begins_nothing) {
+  Touch touch;
+  for (int k = 0; k < 5000; ++k) ASSERT_TRUE(touch.frame({}).contacts.empty()) << k;
+}
+
+TEST(ContactTracker, a_touch_is_one_however_uncertain_the_material_is) {
+  Touch touch;
+  ForceFrame force = touch.forces({round_patch(0.062, 0.087, 0.020, 10.0)});
+  for (std::size_t taxel = 0; taxel < force.newtons.size(); ++taxel) {
+    force.sigma_newtons[taxel] += 0.5F * force.newtons[taxel];
+  }
+  ASSERT_EQ(touch.process(force).contacts.size(), 1U);
+  EXPECT_NEAR(touch.report.contacts[0].position.x, 0.062, 5e-3);
+  EXPECT_NEAR(touch.report.contacts[0].position.y, 0.087, 5e-3);
+}
+
+/// `count` taxels in a row, each so many standard deviations of the noise above it; forces of 0.2 N.
+std::size_t contacts_begun_by(std::size_t count, float signal) {
+  Touch touch;
+  ForceFrame force = touch.forces({});
+  std::fill(force.newtons.begin(), force.newtons.end(), 0.0F);
+  std::fill(force.signal_to_noise.begin(), force.signal_to_noise.end(), 0.0F);
+  for (std::size_t taxel = 100; taxel < 100 + count; ++taxel) {
+    force.newtons[taxel] = 0.2F;
+    force.signal_to_noise[taxel] = signal;
+  }
+  return touch.process(force).contacts.size();
+}
+
+TEST(ContactTracker, taxels_begin_a_contact_together_that_none_of_them_would_alone) {
+  EXPECT_EQ(contacts_begun_by(1, 5.1F), 1U);
+  EXPECT_EQ(contacts_begun_by(1, 4.0F), 0U);
+  EXPECT_EQ(contacts_begun_by(3, 4.0F), 1U);
+  EXPECT_EQ(contacts_begun_by(8, 2.6F), 0U);
+}
+
+TEST(ContactTracker, a_weight_that_lies_still_on_an_uneven_array_is_one_contact_in_one_place) {
+  constexpr double kUneven = 0.15;
+  Touch touch;
+  std::vector<double> newtons =
+      taxel_forces(touch.array, {round_patch(0.072, 0.066, 0.050, 40.0, support::Profile::flat)});
+  for (double& force : newtons) force *= std::exp(kUneven * touch.random.normal());
+  PlaneVector first;
+  for (int k = 0; k < 500; ++k) {
+    ForceFrame force = measured_forces(newtons, touch.random);
+    for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
+      force.sigma_newtons[taxel] += static_cast<float>(kUneven) * force.newtons[taxel];
+    }
+    const ContactReport& report = touch.process(std::move(force));
+    ASSERT_EQ(report.contacts.size(), 1U) << k;
+    if (k == 0) first = report.contacts[0].position;
+    EXPECT_EQ(report.contacts[0].id, 1U) << k;
+    EXPECT_NEAR(report.contacts[0].position.x, first.x, 1e-3) << k;
+    EXPECT_NEAR(report.contacts[0].position.y, first.y, 1e-3) << k;
+  }
+}
+
+TEST(ContactTracker, places_contacts_on_a_strip_better_than_the_centre_of_mass) {
+  for (const bool is_row : {true, false}) {
+    const ArrayDescription array = is_row ? reference_array(1, 16) : reference_array(16, 1);
+    Random random(3);
+    ContactReport report;
+    double squares = 0.0;
+    double squares_of_mass = 0.0;
+    for (int k = 0; k < 300; ++k) {
+      const double along = random.uniform(0.01, 0.14);
+      const double diameter = random.uniform(0.010, 0.030);
+      const std::vector<double> newtons =
+          taxel_forces(array, {round_patch(is_row ? along : 0.0, is_row ? 0.0 : along, diameter, 10.0)});
+      ContactTracker tracker(array);
+      const ForceFrame force = measured_forces(newtons, random);
+      tracker.process(force, report);
+      ASSERT_EQ(report.contacts.size(), 1U) << k;
+      const PlaneVector position = report.contacts[0].position;
+      EXPECT_EQ(is_row ? position.y : position.x, 0.0) << k;
+      double sum = 0.0;
+      double moment = 0.0;
+      for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
+        if (force.signal_to_noise[taxel] < 2.5F) continue;
+        sum += force.newtons[taxel];
+        moment += force.newtons[taxel] * 0.01 * static_cast<double>(taxel);
+      }
+      squares += std::pow((is_row ? position.x : position.y) - along, 2);
+      squares_of_mass += std::pow(moment / sum - along, 2);
+    }
+    EXPECT_LT(std::sqrt(squares), 0.85 * std::sqrt(squares_of_mass)) << is_row;
+  }
 }
 
 TEST(ContactTracker, tells_place_and_force_of_a_contact) {

@@ -348,6 +348,31 @@ TEST(ForceFusion, sigma_of_an_unloaded_taxel_is_its_detection_limit) {
   EXPECT_NEAR(fuse(power_law(), frame).sigma_newtons[0], 0.9 * 10.0 * std::pow(2e-2, 0.9) / 2.0, 1e-3);
 }
 
+TEST(ForceFusion, a_signal_stands_against_the_additive_noise_alone) {
+  ForceNetworks networks = power_law();
+  networks.relative_sigma.assign(kSigmaKnots, 0.5F);
+  networks.offset_sigma_siemens = {3e-6F};
+  auto frame = make_frame({1e-5 + 2e-4}, 20.0);
+  frame.sigma_siemens = {4e-6};
+  EXPECT_NEAR(fuse(networks, frame).signal_to_noise[0], 2e-4 / 5e-6, 1e-3);
+  frame.siemens = {1e-5 - 1e-5};
+  EXPECT_NEAR(fuse(networks, frame).signal_to_noise[0], -1e-5 / 5e-6, 1e-3);
+}
+
+TEST(ForceFusion, a_drift_that_all_taxels_share_counts_twice_against_a_signal) {
+  auto frame = make_frame({1e-5 + 2e-4}, std::nullopt);  // anywhere in 20 C: a standard deviation of 5.77 C
+  frame.sigma_siemens = {4e-6};
+  EXPECT_NEAR(fuse(power_law(), frame).signal_to_noise[0], 2e-4 / (4e-6 + 2.0 * 1e-6 * 10.0 / std::sqrt(3.0)), 1e-2);
+}
+
+TEST(ForceFusion, a_signal_is_infinite_or_missing_where_the_force_is) {
+  EXPECT_TRUE(std::isinf(fuse(power_law(), make_frame({1e-2}, 20.0)).signal_to_noise[0]));  // above range
+  EXPECT_TRUE(std::isnan(fuse(power_law(), make_frame({kNan}, 20.0)).signal_to_noise[0]));
+  auto frame = make_frame({1e-3}, 20.0);
+  frame.status = FrameStatus::rejected;
+  EXPECT_TRUE(std::isnan(fuse(power_law(), frame).signal_to_noise[0]));
+}
+
 TEST(ForceFusion, sigma_is_infinite_where_only_a_lower_bound_is_known) {
   EXPECT_TRUE(std::isinf(fuse(power_law(), make_frame({1e-2}, 20.0)).sigma_newtons[0]));  // above range
   auto frame = make_frame({1e-3}, 20.0);

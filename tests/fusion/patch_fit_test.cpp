@@ -11,7 +11,7 @@
 namespace dermis::fusion {
 namespace {
 
-const RadiusPrior kPrior{std::log(2.1F), 0.6F};
+const PatchPrior kPrior{std::log(2.1F), 0.6F};
 constexpr float kPitch = 2.857F;
 
 /// Taxels of 4 x 4 under a patch without noise, each known to `relative` of its force and `least_n`.

@@ -82,8 +82,10 @@ inline ForceFrame measured_forces(const std::vector<double>& newtons, Random& ra
   frame.taxels.assign(newtons.size(), TaxelStatus::ok);
   for (const double force : newtons) {
     const double sigma = std::hypot(kFloor, kShare * force);
-    frame.newtons.push_back(static_cast<float>(std::max(0.0, force + sigma * random.normal())));
+    const double measured = force + sigma * random.normal();
+    frame.newtons.push_back(static_cast<float>(std::max(0.0, measured)));
     frame.sigma_newtons.push_back(static_cast<float>(sigma));
+    frame.signal_to_noise.push_back(static_cast<float>(measured / kFloor));
   }
   return frame;
 }

@@ -105,6 +105,11 @@ struct ForceFrame {
   /// out of the noise. Infinite where only a lower bound is known (saturated, above_range). NaN where `newtons` is.
   std::vector<float> sigma_newtons;
   std::vector<TaxelStatus> taxels;
+  /// What each taxel shows beyond an unloaded one, over the standard deviation of the additive noise: of the readings
+  /// and of the zero. What is uncertain in proportion to the force (material, temperature) is not in it: that makes a
+  /// force uncertain, not the touch. Around 0 where nothing presses, infinite where `sigma_newtons` is, NaN where
+  /// `newtons` is.
+  std::vector<float> signal_to_noise{};
 };
 
 }  // namespace dermis

@@ -16,9 +16,11 @@ namespace dermis::fusion {
 inline constexpr std::size_t kMostContacts = 255;
 
 struct ContactOptions {
-  double onset_sigma = 5.0;    ///< A contact begins at a taxel whose force is so many standard deviations, 1 ... 100,
-  double onset_force_n = 0.2;  ///< and where the sum over the area is at least this [N], 0 ... 1000.
-  double release_share = 0.5;  ///< It ends below this share of both, 0.1 ... 1 (hysteresis).
+  /// A contact begins where a taxel stands so many standard deviations of the additive noise above an unloaded one, or
+  /// several stand less high and are together as unlikely, 1 ... 100,
+  double onset_sigma = 5.0;
+  double onset_force_n = 0.1;      ///< and where the sum over the area is at least this [N], 0 ... 1000.
+  double release_share = 0.5;      ///< It ends below this share of both, 0.1 ... 1 (hysteresis).
   std::size_t most_contacts = 32;  ///< At once, 1 ... kMostContacts; of more, the strongest are kept.
 
   /// Names the first field that is out of its range, as "contacts.onset_sigma: ...".

@@ -70,6 +70,11 @@ struct ForceNetworks {
 /// conductance, reached along the power law: what an unloaded taxel shows is its detection limit, the force that would
 /// just stand out of the noise.
 ///
+///   signal_to_noise = e / (sqrt(sigma_siemens^2 + offset_sigma^2) + 2 |per_celsius| sigma_T)
+///
+/// An error of the temperature moves the zero of all taxels alike, which no sum over taxels averages out: two standard
+/// deviations of it count in full.
+///
 /// Not thread-safe: one per stream.
 class ForceFusion {
  public:
@@ -89,6 +94,7 @@ class ForceFusion {
   [[nodiscard]] Temperature temperature(const ConductanceFrame& conductance, ForceFrame& force) const noexcept;
   void prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept;
   void compute_forces(double temperature_sigma, ForceFrame& force) const noexcept;
+  void compute_signals(double temperature_sigma, ForceFrame& force) const noexcept;
   void apply_status(std::size_t taxel, ForceFrame& force) const noexcept;
 
   ForceNetworks networks_;
