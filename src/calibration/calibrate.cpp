@@ -36,6 +36,7 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
   facts["temperature"] = training.uses_temperature
                              ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)
                              : "not an input (less than 3 C apart, or missing in many frames)";
+  if (!report.remarks.empty()) facts["remarks"] = fmt::format("{}", fmt::join(report.remarks, "; "));
   if (!report.circuit.empty()) facts["circuit"] = fmt::format("{}", fmt::join(report.circuit, "; "));
   return facts;
 }
@@ -76,6 +77,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, const Progress& pr
   report.frames = database.samples.size();
   report.frames_rejected = database.frames_rejected;
   report.first_rejection = database.first_rejection;
+  report.remarks = database.remarks;
   calibration.model.array = database.array;
   calibration.model.networks = training->networks;
   Result<UncertaintyReport> uncertainty =
