@@ -16,6 +16,7 @@
 #include "calibration/rail_search.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/parallel.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 #include "dermis/preprocessing/missing_readings.hpp"
 #include "dermis/preprocessing/phase.hpp"
@@ -24,6 +25,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kMaxRejectedShare = 0.1;
+constexpr double kMostMissingShare = 0.001;  // of the samples of the median taxel
 constexpr std::size_t kFramesPerTask = 128;
 constexpr std::size_t kFramesPerBatch = 128 * kFramesPerTask;
 
@@ -77,7 +79,7 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, const RawFr
   sample.ratio = conditioned.ratio;
   sample.sigma_ratio = conditioned.sigma_ratio;
   sample.siemens = std::move(conductance.siemens);
-  sample.taxels = conductance.taxels;
+  sample.taxels = conditioned.taxels;
   expand_loads(array, loads, sample);
   // A reading at the end of the ADC no longer tells its force, of one that is missing the neighbours tell some.
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
@@ -154,6 +156,20 @@ void invert_batch(std::span<const SelectedFrame> batch, std::span<const RawFrame
   });
 }
 
+/// Single taxels break; where most of them lack readings, the description of the array is wrong.
+Status check_missing(const SampleDatabase& database, const preprocessing::MissingReadings& missing) {
+  std::vector<std::size_t> samples(database.array.taxel_count());
+  for (const Sample& sample : database.samples) {
+    for (std::size_t taxel = 0; taxel < samples.size(); ++taxel) {
+      if (sample.taxels[taxel] == TaxelStatus::invalid) ++samples[taxel];
+    }
+  }
+  for (const std::size_t taxel : database.array.absent) samples[taxel] = 0;
+  const auto of_median = static_cast<double>(upper_median(std::move(samples)));
+  if (of_median <= 1.0 + kMostMissingShare * static_cast<double>(database.samples.size())) return Done{};
+  return bad_input("labelled frames have " + missing.describe() + ": check adc_bits");
+}
+
 /// The samples of an array whose circuit is known.
 Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time) {
@@ -179,6 +195,7 @@ Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<co
   reject_unsolved(database);
   reject_without_temperature(database);
   if (Status checked = check_rejected(database); !checked) return checked.error();
+  if (Status checked = check_missing(database, selection.missing()); !checked) return checked.error();
   return database;
 }
 
