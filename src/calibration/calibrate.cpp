@@ -23,6 +23,12 @@ auto timed(CalibrationReport& report, const char* stage, Work work) {
   return result;
 }
 
+/// What is wrong with the labels may be why nothing can be learned from them.
+Error with_remarks(Error error, const std::vector<std::string>& remarks) {
+  if (!remarks.empty()) error.message += fmt::format("; {}", fmt::join(remarks, "; "));
+  return error;
+}
+
 std::map<std::string, std::string> provenance(const ArrayDescription& array, const CalibrationReport& report) {
   const TrainingReport& training = report.training;
   std::map<std::string, std::string> facts{
@@ -71,7 +77,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, const Progress& pr
   CalibrationReport& report = calibration.report;
   Result<ForceTraining> training =
       timed(report, "networks", [&] { return train_force_networks(database, tell_networks); });
-  if (!training) return training.error();
+  if (!training) return with_remarks(training.error(), database.remarks);
   calibration.model.baselines = timed(report, "baselines", [&] { return make_baselines(database); });
 
   report.frames = database.samples.size();
