@@ -76,6 +76,7 @@ void print_text(const CalibrationReport& report, const std::optional<BankTrainin
   const calibration::TrainingReport& training = report.training;
   fmt::print("{} labelled frames, {} rejected{}\n", report.frames, report.frames_rejected,
              report.frames_rejected > 0 ? " (" + report.first_rejection + ")" : "");
+  for (const std::string& remark : report.remarks) fmt::print("{}\n", remark);
   for (const std::string& statement : report.circuit) fmt::print("{}\n", statement);
   fmt::print("{}\n", training.choice);
   fmt::print("loads {:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons);
@@ -127,6 +128,7 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
   const calibration::TrainingReport& training = report.training;
   nlohmann::ordered_json json = {{"frames", report.frames},
                                  {"frames_rejected", report.frames_rejected},
+                                 {"remarks", report.remarks},
                                  {"networks", training.choice},
                                  {"own_networks", training.own_networks},
                                  {"shared_networks", training.shared_networks},

@@ -10,6 +10,7 @@
 #include "dermis/files/contacts_csv.hpp"
 #include "dermis/files/forces_csv.hpp"
 #include "dermis/fusion/contact.hpp"
+#include "dermis/preprocessing/missing_readings.hpp"
 #include "dermis/preprocessing/phase.hpp"
 #include "open_source.hpp"
 #include "seconds.hpp"
@@ -122,14 +123,18 @@ Status check_outputs(const RunOptions& options) {
 /// Frames whose forces are not what a user expects.
 class Troubles {
  public:
+  explicit Troubles(const ArrayDescription& array) : missing_(array) {}
+
   /// `place` says where the frame is from.
   template <typename Place>
-  void count(const ForceFrame& force, preprocessing::Rejection rejection, Place place) {
+  void count(const ForceFrame& force, const pipeline::Pipeline& pipeline, Place place) {
     ++frames_;
+    missing_.add(pipeline.conditioned());
     if (has(force.status, FrameStatus::not_converged)) ++unsolved_;
     if (has(force.status, FrameStatus::line_fault)) ++faulty_;
     if (!has(force.status, FrameStatus::rejected)) return;
-    if (rejected_++ == 0) first_rejection_ = fmt::format("{}: {}", place(), preprocessing::to_string(rejection));
+    if (rejected_++ == 0)
+      first_rejection_ = fmt::format("{}: {}", place(), preprocessing::to_string(pipeline.rejection()));
   }
 
   [[nodiscard]] std::size_t frames() const { return frames_; }
@@ -138,6 +143,7 @@ class Troubles {
     if (rejected_ > 0) {
       say(fmt::format("{} of {} frames rejected, the first: {}", rejected_, frames_, first_rejection_));
     }
+    if (missing_.any()) say(missing_.describe());
     if (unsolved_ > 0) {
       say(fmt::format("{} of {} frames without forces: their readings do not fit the circuit of the array", unsolved_,
                       frames_));
@@ -149,6 +155,7 @@ class Troubles {
   }
 
  private:
+  preprocessing::MissingReadings missing_;
   std::size_t frames_ = 0;
   std::size_t rejected_ = 0;
   std::size_t unsolved_ = 0;
@@ -171,8 +178,7 @@ Status solve(const RunOptions& options, Operation& operation, preprocessing::Pha
     if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) continue;
     operation.pipeline.process(raw, force);
     if (Status written = tables.write(force); !written) return written;
-    troubles.count(force, operation.pipeline.rejection(),
-                   [&] { return place_of(options.in, *operation.frames, read); });
+    troubles.count(force, operation.pipeline, [&] { return place_of(options.in, *operation.frames, read); });
     if (line && troubles.frames() % kFramesPerLook == 0) {
       line->show(summary(troubles.frames(), operation.frames->statistics()));
     }
@@ -190,7 +196,7 @@ Status run(const RunOptions& options) {
   if (!tables) return tables.error();
 
   preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
-  Troubles troubles;
+  Troubles troubles((*operation)->model.array);
   Status status = Done{};
   if (Status solved = solve(options, **operation, phase, *tables, troubles, status); !solved) return solved;
   // What a device gave until it failed is worth having; a file that is wrong is to be mended.

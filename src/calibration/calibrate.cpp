@@ -23,6 +23,12 @@ auto timed(CalibrationReport& report, const char* stage, Work work) {
   return result;
 }
 
+/// What is wrong with the labels may be why nothing can be learned from them.
+Error with_remarks(Error error, const std::vector<std::string>& remarks) {
+  if (!remarks.empty()) error.message += fmt::format("; {}", fmt::join(remarks, "; "));
+  return error;
+}
+
 std::map<std::string, std::string> provenance(const ArrayDescription& array, const CalibrationReport& report) {
   const TrainingReport& training = report.training;
   std::map<std::string, std::string> facts{
@@ -36,6 +42,7 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
   facts["temperature"] = training.uses_temperature
                              ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)
                              : "not an input (less than 3 C apart, or missing in many frames)";
+  if (!report.remarks.empty()) facts["remarks"] = fmt::format("{}", fmt::join(report.remarks, "; "));
   if (!report.circuit.empty()) facts["circuit"] = fmt::format("{}", fmt::join(report.circuit, "; "));
   return facts;
 }
@@ -70,12 +77,13 @@ Result<Calibration> calibrate(const SampleDatabase& database, const Progress& pr
   CalibrationReport& report = calibration.report;
   Result<ForceTraining> training =
       timed(report, "networks", [&] { return train_force_networks(database, tell_networks); });
-  if (!training) return training.error();
+  if (!training) return with_remarks(training.error(), database.remarks);
   calibration.model.baselines = timed(report, "baselines", [&] { return make_baselines(database); });
 
   report.frames = database.samples.size();
   report.frames_rejected = database.frames_rejected;
   report.first_rejection = database.first_rejection;
+  report.remarks = database.remarks;
   calibration.model.array = database.array;
   calibration.model.networks = training->networks;
   Result<UncertaintyReport> uncertainty =

@@ -34,6 +34,7 @@ Status check_taxels(const std::vector<std::size_t>& taxels, const ArrayDescripti
     if (taxel >= seen.size()) {
       return bad_input(fmt::format("taxels: {} is beyond the last one, {}", taxel, seen.size() - 1));
     }
+    if (array.is_absent(taxel)) return bad_input("taxels: the sheet has no " + array.taxel_name(taxel));
     if (seen[taxel]) return bad_input("taxels: " + array.taxel_name(taxel) + " is there twice");
     seen[taxel] = true;
   }
@@ -79,6 +80,7 @@ std::vector<std::size_t> taxels_with_stride(const ArrayDescription& array, std::
   for (std::size_t row = first(array.rows); row < array.rows; row += stride) {
     for (std::size_t col = first(array.cols); col < array.cols; col += stride) taxels.push_back(array.index(row, col));
   }
+  std::erase_if(taxels, [&](std::size_t taxel) { return array.is_absent(taxel); });
   return taxels;
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <limits>
+#include <utility>
 
 namespace dermis::calibration {
 
@@ -21,6 +22,18 @@ Status check_loads(const ArrayDescription& array, std::size_t frame_count, std::
   return Done{};
 }
 
+double total_newtons(const Load& load, const ArrayDescription& array) {
+  if (load.kind == LoadKind::force) return load.value;
+  return load.value * array.taxel_area_m2.value_or(0.0) * static_cast<double>(load.where.taxel_count());
+}
+
+std::vector<std::optional<double>> newtons_of_frames(const ArrayDescription& array, std::size_t frame_count,
+                                                     std::span<const Load> loads) {
+  std::vector<std::optional<double>> newtons(frame_count);
+  for (const Load& load : loads) newtons[load.frame] = newtons[load.frame].value_or(0.0) + total_newtons(load, array);
+  return newtons;
+}
+
 std::vector<std::vector<Load>> group_by_frame(std::span<const Load> loads, std::size_t frame_count) {
   std::vector<std::vector<Load>> groups(frame_count);
   for (const Load& load : loads) groups[load.frame].push_back(load);
@@ -32,15 +45,17 @@ void expand_loads(const ArrayDescription& array, std::span<const Load> loads, Sa
   sample.totals.clear();
   sample.unloaded = true;
   for (const Load& load : loads) {
-    const std::vector<std::size_t> taxels = taxel_indices(load.where, array.cols);
+    std::vector<std::size_t> taxels = taxel_indices(load.where, array.cols);
+    std::erase_if(taxels, [&](std::size_t taxel) { return array.is_absent(taxel); });
     if (load.value > 0.0) sample.unloaded = false;
     const bool is_shared = load.kind == LoadKind::force && taxels.size() > 1 && load.value > 0.0;
     const double known = load.kind == LoadKind::pressure ? load.value * array.taxel_area_m2.value_or(0.0) : load.value;
     for (const std::size_t taxel : taxels) {
       sample.known_newtons[taxel] = is_shared ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(known);
     }
-    if (is_shared) sample.totals.push_back({taxels, load.value});
+    if (is_shared) sample.totals.push_back({std::move(taxels), load.value});
   }
+  for (const std::size_t taxel : array.absent) sample.known_newtons[taxel] = std::numeric_limits<float>::quiet_NaN();
 }
 
 }  // namespace dermis::calibration

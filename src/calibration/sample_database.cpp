@@ -6,48 +6,68 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <optional>
+#include <utility>
 
+#include "calibration/label_check.hpp"
 #include "calibration/labels.hpp"
+#include "calibration/rail_search.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/parallel.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
+#include "dermis/preprocessing/missing_readings.hpp"
 #include "dermis/preprocessing/phase.hpp"
 
 namespace dermis::calibration {
 namespace {
 
 constexpr double kMaxRejectedShare = 0.1;
+constexpr double kMostMissingShare = 0.001;  // of the samples of the median taxel
 constexpr std::size_t kFramesPerTask = 128;
+constexpr std::size_t kFramesPerBatch = 128 * kFramesPerTask;
 
-/// Labelled frames of the calibrate phase, in order, with supply removed.
-struct Selection {
-  std::vector<ConditionedFrame> conditioned;
-  std::vector<std::size_t> frame;  // index of each in the recording
+struct SelectedFrame {
+  std::size_t index = 0;  // in the recording
+  ConditionedFrame conditioned;
 };
 
-Selection select_and_condition(SampleDatabase& database, std::span<const RawFrame> frames,
-                               const std::vector<std::vector<Load>>& loads_of, Nanos settle_time) {
-  preprocessing::PhaseSelector phase(settle_time, preprocessing::Phase::calibrate);
-  preprocessing::Conditioner conditioner(database.array);
-  Selection selection;
-  for (std::size_t frame = 0; frame < frames.size(); ++frame) {
-    const bool labelled = !loads_of[frame].empty();
-    if (phase.select(frames[frame].time, labelled) != preprocessing::Destination::sample_database) continue;
-    ConditionedFrame conditioned;
-    conditioner.process(frames[frame], conditioned);
-    if (conditioner.rejection() != preprocessing::Rejection::none) {
-      if (database.frames_rejected++ == 0) {
+/// Labelled frames of the calibrate phase, in order, with supply removed, a batch at a time.
+class Selection {
+ public:
+  Selection(const ArrayDescription& array, Nanos settle_time)
+      : phase_(settle_time, preprocessing::Phase::calibrate), conditioner_(array), missing_(array) {}
+
+  /// Empty at the end.
+  std::vector<SelectedFrame> next_batch(std::span<const RawFrame> frames,
+                                        const std::vector<std::vector<Load>>& loads_of, SampleDatabase& database) {
+    std::vector<SelectedFrame> batch;
+    for (; next_ < frames.size() && batch.size() < kFramesPerBatch; ++next_) {
+      const bool labelled = !loads_of[next_].empty();
+      if (phase_.select(frames[next_].time, labelled) != preprocessing::Destination::sample_database) continue;
+      ConditionedFrame conditioned;
+      conditioner_.process(frames[next_], conditioned);
+      if (conditioner_.rejection() == preprocessing::Rejection::none) {
+        missing_.add(conditioned);
+        batch.push_back({next_, std::move(conditioned)});
+      } else if (database.frames_rejected++ == 0) {
         database.first_rejection =
-            fmt::format("frame {}: {}", frame, preprocessing::to_string(conditioner.rejection()));
+            fmt::format("frame {}: {}", next_, preprocessing::to_string(conditioner_.rejection()));
       }
-      continue;
     }
-    selection.conditioned.push_back(std::move(conditioned));
-    selection.frame.push_back(frame);
+    return batch;
   }
-  return selection;
-}
+
+  [[nodiscard]] const preprocessing::MissingReadings& missing() const { return missing_; }
+
+ private:
+  preprocessing::PhaseSelector phase_;
+  preprocessing::Conditioner conditioner_;
+  preprocessing::MissingReadings missing_;
+  std::size_t next_ = 0;
+};
 
 Sample make_sample(const ArrayDescription& array, std::size_t frame, const RawFrame& raw, std::span<const Load> loads,
                    const ConditionedFrame& conditioned, ConductanceFrame& conductance) {
@@ -59,8 +79,9 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, const RawFr
   sample.ratio = conditioned.ratio;
   sample.sigma_ratio = conditioned.sigma_ratio;
   sample.siemens = std::move(conductance.siemens);
+  sample.taxels = conditioned.taxels;
   expand_loads(array, loads, sample);
-  // A reading at the end of the ADC no longer tells its force.
+  // A reading at the end of the ADC no longer tells its force, of one that is missing the neighbours tell some.
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
     if (conductance.taxels[taxel] != TaxelStatus::ok) {
       sample.known_newtons[taxel] = std::numeric_limits<float>::quiet_NaN();
@@ -68,7 +89,7 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, const RawFr
   }
   std::erase_if(sample.totals, [&](const TotalForce& total) {
     return std::any_of(total.taxels.begin(), total.taxels.end(),
-                       [&](std::size_t taxel) { return conductance.taxels[taxel] != TaxelStatus::ok; });
+                       [&](std::size_t taxel) { return conditioned.taxels[taxel] == TaxelStatus::saturated; });
   });
   return sample;
 }
@@ -113,47 +134,95 @@ Status check_rejected(const SampleDatabase& database) {
   return Done{};
 }
 
-}  // namespace
+/// Appends the samples of a batch.
+void invert_batch(std::span<const SelectedFrame> batch, std::span<const RawFrame> frames,
+                  const std::vector<std::vector<Load>>& loads_of, SampleDatabase& database) {
+  const ArrayDescription& array = database.array;
+  const std::size_t before = database.samples.size();
+  database.samples.resize(before + batch.size());
+  parallel_for((batch.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
+    Result<compensation::Compensator> solver = compensation::Compensator::create(array);
+    const std::size_t end = std::min(batch.size(), (task + 1) * kFramesPerTask);
+    for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
+      const auto& [index, conditioned] = batch[k];
+      ConductanceFrame conductance;
+      solver->forget();  // whatever task a frame is in, its bits are the same
+      solver->process(conditioned, conductance);
+      Sample& sample = database.samples[before + k];
+      sample.frame = index;
+      if (has(conductance.status, FrameStatus::not_converged)) continue;
+      sample = make_sample(array, index, frames[index], loads_of[index], conditioned, conductance);
+    }
+  });
+}
 
-Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                             std::span<const Load> loads, Nanos settle_time) {
-  if (array.has_unknown_circuit()) {
-    Result<CircuitFit> fit = fit_circuit(array, frames, loads, settle_time);
-    if (!fit) return fit.error();
-    Result<SampleDatabase> database = build_sample_database(fit->array, frames, loads, settle_time);
-    if (database) database->circuit_fit = std::move(*fit);
-    return database;
+/// Single taxels break; where most of them lack readings, the description of the array is wrong.
+Status check_missing(const SampleDatabase& database, const preprocessing::MissingReadings& missing) {
+  std::vector<std::size_t> samples(database.array.taxel_count());
+  for (const Sample& sample : database.samples) {
+    for (std::size_t taxel = 0; taxel < samples.size(); ++taxel) {
+      if (sample.taxels[taxel] == TaxelStatus::invalid) ++samples[taxel];
+    }
   }
-  if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
+  for (const std::size_t taxel : database.array.absent) samples[taxel] = 0;
+  const auto of_median = static_cast<double>(upper_median(std::move(samples)));
+  if (of_median <= 1.0 + kMostMissingShare * static_cast<double>(database.samples.size())) return Done{};
+  return bad_input("labelled frames have " + missing.describe() + ": check adc_bits");
+}
+
+/// The samples of an array whose circuit is known.
+Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                     std::span<const Load> loads, Nanos settle_time) {
   SampleDatabase database;
   database.array = array;
-  const std::vector<std::vector<Load>> loads_of = group_by_frame(loads, frames.size());
-  Selection selection = select_and_condition(database, frames, loads_of, settle_time);
-  const std::size_t selected = selection.conditioned.size();
-  Result<compensation::Compensator> compensator = compensation::Compensator::create(array);
+  const Result<compensation::Compensator> compensator = compensation::Compensator::create(array);
   if (!compensator) return compensator.error();
   const Readout& readout = array.readout;
   const double reference =
       readout.adc_reference_v && readout.supply_v ? *readout.adc_reference_v / *readout.supply_v : 1.0;
   database.siemens_per_count = compensator->siemens_per_ratio() * reference / readout.full_scale_counts();
-  database.samples.resize(selected);
-  parallel_for((selected + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
-    Result<compensation::Compensator> solver = compensation::Compensator::create(array);
-    const std::size_t end = std::min(selected, (task + 1) * kFramesPerTask);
-    for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
-      ConductanceFrame conductance;
-      solver->forget();  // whatever task a frame is in, its bits are the same
-      solver->process(selection.conditioned[k], conductance);
-      const std::size_t frame = selection.frame[k];
-      database.samples[k].frame = frame;
-      if (has(conductance.status, FrameStatus::not_converged)) continue;
-      database.samples[k] =
-          make_sample(array, frame, frames[frame], loads_of[frame], selection.conditioned[k], conductance);
-    }
-  });
+
+  const std::vector<std::vector<Load>> loads_of = group_by_frame(loads, frames.size());
+  Selection selection(array, settle_time);
+  while (true) {
+    const std::vector<SelectedFrame> batch = selection.next_batch(frames, loads_of, database);
+    if (batch.empty()) break;
+    invert_batch(batch, frames, loads_of, database);
+  }
+  if (selection.missing().any()) {
+    database.remarks.push_back(selection.missing().describe() + " with a label: left out");
+  }
   reject_unsolved(database);
   reject_without_temperature(database);
   if (Status checked = check_rejected(database); !checked) return checked.error();
+  if (Status checked = check_missing(database, selection.missing()); !checked) return checked.error();
+  return database;
+}
+
+}  // namespace
+
+Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                             std::span<const Load> loads, Nanos settle_time) {
+  if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
+  ArrayDescription known = array;
+  LabelCheck labels = check_labels(array, frames, loads, settle_time);
+  if (!known.readout.rail_counts) known.readout.rail_counts = find_rail(array, frames, labels.loads);
+  if (!array.readout.rail_counts && known.readout.rail_counts) {
+    labels.remarks.push_back(
+        fmt::format("readings end at {} counts under whatever load: taken for saturated there (rail_counts)",
+                    *known.readout.rail_counts));
+  }
+  std::optional<CircuitFit> circuit;
+  if (array.has_unknown_circuit()) {
+    Result<CircuitFit> fit = fit_circuit(known, frames, labels.loads, settle_time);
+    if (!fit) return fit.error();
+    known = fit->array;
+    circuit = std::move(*fit);
+  }
+  Result<SampleDatabase> database = invert_frames(known, frames, labels.loads, settle_time);
+  if (!database) return database.error();
+  database->circuit_fit = std::move(circuit);
+  std::move(labels.remarks.begin(), labels.remarks.end(), std::back_inserter(database->remarks));
   return database;
 }
 

@@ -110,9 +110,10 @@ class ErrorBudget {
     conditioned_.ratio = sample.ratio;
     conditioned_.sigma_ratio = sigma_ratio;
     conditioned_.temperature_celsius = sample.temperature_celsius;
-    conditioned_.taxels.assign(sample.ratio.size(), TaxelStatus::ok);
+    conditioned_.taxels = sample.taxels;
     compensator_.forget();
     compensator_.process(conditioned_, conductance_);
+    conductance_.taxels.assign(sample.ratio.size(), TaxelStatus::ok);  // what is estimated was trained on, too
     fusion_.process(conductance_, force_);
     return force_;
   }

@@ -21,7 +21,7 @@ struct UnloadedFit {
   UnloadedLaw law;
   std::vector<double> offset_sigma_siemens;  ///< Of the fit, averaged over its temperatures [taxels].
   std::vector<double> noise_siemens;  ///< Standard deviation of a single frame [taxels], at least a third of a count.
-  std::vector<bool> is_stuck;         ///< Saturated although nothing presses [taxels].
+  std::vector<bool> is_stuck;         ///< Saturated although nothing presses, or without any reading [taxels].
 };
 
 /// Least squares over the frames in which nothing presses anywhere, at least one.

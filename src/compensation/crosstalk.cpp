@@ -38,6 +38,11 @@ Inversion flexitac(const ArrayDescription& array, double tolerance) {
       std::make_unique<Transposed>(std::make_unique<GroundedRows>(exchanged, tolerance), array.rows, array.cols));
 }
 
+bool are_few_saturated(const ConditionedFrame& conditioned) {
+  const auto saturated = std::count(conditioned.taxels.begin(), conditioned.taxels.end(), TaxelStatus::saturated);
+  return saturated > 0 && 2 * static_cast<std::size_t>(saturated) <= conditioned.taxels.size();
+}
+
 Inversion newton(const ArrayDescription& array, double tolerance) {
   auto model = CircuitModel::create(array);
   if (!model) return model.error();
@@ -95,8 +100,11 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
     return;
   }
-  const InversionResult result = faults_->any() ? faults_->invert(*inversion_, conditioned.ratio, conductance.siemens)
-                                                : inversion_->invert(conditioned.ratio, conductance.siemens);
+  InversionResult result = invert(conditioned.ratio, conductance);
+  if (!result.solved && are_few_saturated(conditioned)) {  // a reading that no taxel gives
+    std::replace(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::saturated, TaxelStatus::invalid);
+    result = invert(conditioned.ratio, conductance);
+  }
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
   supply_error_->add(conductance.siemens, conductance.sigma_siemens);
@@ -105,6 +113,11 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
   }
   if (faults_->any()) mask_faulty_taxels(conductance);
+}
+
+InversionResult Compensator::invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept {
+  return faults_->concerns(conductance.taxels) ? faults_->invert(*inversion_, ratio, conductance.siemens)
+                                               : inversion_->invert(ratio, conductance.siemens);
 }
 
 void Compensator::mask_faulty_taxels(ConductanceFrame& conductance) const noexcept {

@@ -52,7 +52,9 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
     : array_(array),
       tolerance_(tolerance_ratio),
       typical_siemens_(typical_siemens.begin(), typical_siemens.end()),
+      absent_(array.taxel_count()),
       masked_(array.taxel_count()),
+      hidden_(array.taxel_count()),
       unknown_(array.taxel_count()),
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
@@ -63,6 +65,7 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
       faulty_ratio_(array.taxel_count()) {
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
   typical_siemens_.resize(array.taxel_count(), 1.0);
+  for (const std::size_t taxel : array.absent) absent_[taxel] = 1;
   supplied_rows_.reserve(array.rows);
   shorted_.reserve(array.rows + array.cols);
 }
@@ -71,7 +74,7 @@ void FaultInversion::set_faults(std::span<const LineFault> faults) {
   any_ = std::any_of(faults.begin(), faults.end(),
                      [](const LineFault& fault) { return fault.kind != LineFaultKind::drifting_driver; });
   std::fill(masked_.begin(), masked_.end(), std::uint8_t{0});
-  std::fill(unknown_.begin(), unknown_.end(), std::uint8_t{0});
+  std::fill(hidden_.begin(), hidden_.end(), std::uint8_t{0});
   supplied_rows_.clear();
   shorted_.clear();
   if (circuits_) circuits_->faulty.restore();
@@ -82,7 +85,7 @@ void FaultInversion::add(const LineFault& fault) {
   const LineFaultTraits& traits = traits_of(fault.kind);
   for_each_masked_taxel(fault, array_, [&](std::size_t taxel) {
     masked_[taxel] = 1;
-    if (traits.hides_conductance) unknown_[taxel] = 1;
+    if (traits.hides_conductance) hidden_[taxel] = 1;
   });
   if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
   if (traits.effect == LineFaultEffect::shorted) {
@@ -111,6 +114,17 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circu
   }
 }
 
+bool FaultInversion::concerns(std::span<const TaxelStatus> taxels) noexcept {
+  std::uint8_t any_missing = 0;
+  for (std::size_t taxel = 0; taxel < taxels.size(); ++taxel) {
+    const auto is_invalid = static_cast<std::uint8_t>(taxels[taxel] == TaxelStatus::invalid);
+    const auto is_missing = static_cast<std::uint8_t>(is_invalid & ~absent_[taxel]);
+    unknown_[taxel] = hidden_[taxel] | is_missing;
+    any_missing |= is_missing;
+  }
+  return any_ || any_missing != 0;
+}
+
 InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<const double> ratio,
                                        std::span<double> siemens) noexcept {
   subtract_supplied_rows(ratio);
@@ -122,12 +136,16 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   for (int round = 0; round < kMaxRounds; ++round) {
     estimate_unknown(siemens);
     circuits_->healthy.solve(siemens, healthy_ratio_);
-    circuits_->faulty.solve(siemens, faulty_ratio_);
+    if (any_) {
+      circuits_->faulty.solve(siemens, faulty_ratio_);
+    } else {
+      std::copy(healthy_ratio_.begin(), healthy_ratio_.end(), faulty_ratio_.begin());
+    }
     result.residual_ratio = misfit(siemens);
     if (correct(round == 0) <= tolerance_) return result;
     result.solved = healthy.invert(equivalent_, siemens).solved;
   }
-  result.solved = false;
+  if (any_) result.solved = false;  // else only what is estimated has not settled
   return result;
 }
 
@@ -187,7 +205,7 @@ void FaultInversion::estimate_unknown(std::span<double> values) const noexcept {
   const double floor = kFloorShare * *std::max_element(values.begin(), values.end());
   if (!(floor > 0.0)) return;
   const auto logarithm = [&](std::size_t taxel) -> std::optional<double> {
-    if (unknown_[taxel] != 0) return std::nullopt;
+    if (unknown_[taxel] != 0 || absent_[taxel] != 0) return std::nullopt;
     return std::log(std::max(values[taxel], floor) / typical_siemens_[taxel]);
   };
   // Of the taxels at `place` on a line, -2, -1, +1 and +2 steps away.

@@ -19,10 +19,11 @@ namespace dermis::compensation {
 ///
 ///   T' = T + T_healthy(G) - T_faulty(G),   G <- invert_healthy(T')
 ///
-/// Taxels whose conductance no reading tells (on a silent line, stuck) are estimated from their neighbours. An open row
-/// still couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. For resistive lines,
-/// switches, real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit: the readings of
-/// faulty lines are replaced by those of their neighbours, and the rest is solved as if healthy.
+/// Taxels whose conductance no reading tells (on a silent line, stuck, without a reading in this frame) are estimated
+/// from their neighbours. An open row still couples the columns through them: eliminating it adds -g g^T / sum(g) to
+/// their equations. For resistive lines, switches, real amplifiers, `none` and arrays of more than 256 lines there is
+/// no faulty circuit: the readings of faulty lines are replaced by those of their neighbours, and the rest is solved as
+/// if healthy.
 class FaultInversion {
  public:
   /// `typical_siemens`: see Compensator::create.
@@ -33,6 +34,9 @@ class FaultInversion {
 
   /// The taxel has no force of its own to report.
   [[nodiscard]] bool is_masked(std::size_t taxel) const noexcept { return masked_[taxel] != 0; }
+
+  /// Learns which taxels of the next frame have no reading; whether that frame needs invert().
+  [[nodiscard]] bool concerns(std::span<const TaxelStatus> taxels) noexcept;
 
   /// As CrosstalkInversion::invert; `healthy` inverts the circuit without faults.
   InversionResult invert(CrosstalkInversion& healthy, std::span<const double> ratio,
@@ -64,8 +68,10 @@ class FaultInversion {
   std::vector<double> typical_siemens_;  // [taxels]
   bool any_ = false;
   std::optional<Circuits> circuits_;
+  std::vector<std::uint8_t> absent_;   // from the sheet [taxels]
   std::vector<std::uint8_t> masked_;   // [taxels]
-  std::vector<std::uint8_t> unknown_;  // [taxels]
+  std::vector<std::uint8_t> hidden_;   // by a fault [taxels]
+  std::vector<std::uint8_t> unknown_;  // hidden, or without a reading [taxels]
   std::vector<std::size_t> supplied_rows_;
   std::vector<ShortedLines> shorted_;
   std::vector<double> measured_;         // T without what supplied rows add [taxels]

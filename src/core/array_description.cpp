@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace dermis {
 namespace {
@@ -79,6 +80,18 @@ Status validate_automatic(const Readout& readout) {
   return validate_resistors("load_ohm", readout.load_ohm, 1, false);
 }
 
+Status validate_absent(const ArrayDescription& array) {
+  const std::vector<std::size_t>& absent = array.absent;
+  if (std::adjacent_find(absent.begin(), absent.end(), std::greater_equal<>()) != absent.end()) {
+    return bad_input("array.absent: must name each taxel once, row by row");
+  }
+  if (!absent.empty() && absent.back() >= array.taxel_count()) {
+    return bad_input("array.absent: must name taxels of the array");
+  }
+  if (absent.size() == array.taxel_count()) return bad_input("array.absent: must leave at least one taxel");
+  return Done{};
+}
+
 Status validate_readout(const ArrayDescription& array) {
   const Readout& readout = array.readout;
   if (readout.adc_bits < 1 || readout.adc_bits > kMaxAdcBits) {
@@ -89,6 +102,9 @@ Status validate_readout(const ArrayDescription& array) {
   }
   if (readout.supply_v && !is_positive(*readout.supply_v)) {
     return bad_input("readout.supply_v: must be more than 0 V");
+  }
+  if (readout.rail_counts && !(*readout.rail_counts >= 0.0 && *readout.rail_counts <= readout.full_scale_counts())) {
+    return bad_input("readout.rail_counts: must be a reading of the ADC, 0 to 2^adc_bits - 1");
   }
   if (!is_positive(readout.adc_noise_counts)) return bad_input("readout.adc_noise_counts: must be more than 0");
   if (!(readout.supply_noise >= 0.0 && readout.supply_noise <= kMostSupplyNoise)) {
@@ -114,6 +130,10 @@ double Readout::full_scale_counts() const noexcept {
   return std::ldexp(1.0, adc_bits) - 1.0;
 }
 
+bool ArrayDescription::is_absent(std::size_t taxel) const noexcept {
+  return std::binary_search(absent.begin(), absent.end(), taxel);
+}
+
 bool ArrayDescription::has_unknown_circuit() const noexcept {
   if (readout.circuit == Circuit::none) return false;
   return readout.circuit == Circuit::automatic || is_to_be_fitted(readout.drive_ohm) ||
@@ -130,6 +150,7 @@ Status ArrayDescription::validate() const {
   if (!is_positive(row_pitch_m) || !is_positive(col_pitch_m))
     return bad_input("array.pitch_mm: must be more than 0 mm");
   if (taxel_area_m2 && !is_positive(*taxel_area_m2)) return bad_input("array.taxel_area_mm2: must be more than 0 mm2");
+  if (Status valid = validate_absent(*this); !valid) return valid;
   return validate_readout(*this);
 }
 

@@ -11,6 +11,7 @@
 
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/config_table.hpp"
+#include "dermis/files/taxel_text.hpp"
 #include "files/millimetres.hpp"
 
 namespace dermis::files {
@@ -36,6 +37,19 @@ void read_geometry(ConfigFile& file, ArrayDescription& array) {
   array.col_pitch_m = pitch_mm[1] / kMillimetresPerMetre;
   file.number("array.taxel_area_mm2", array.taxel_area_m2);
   if (array.taxel_area_m2) *array.taxel_area_m2 /= kSquareMillimetresPerSquareMetre;
+}
+
+void read_absent(ConfigFile& file, ArrayDescription& array) {
+  std::vector<std::string> names;
+  file.texts("array.absent", names);
+  for (const std::string& name : names) {
+    const Result<TaxelRegion> region = parse_region(name, {array.rows, array.cols});
+    if (!region) return file.fail("array.absent", region.error().message);
+    const std::vector<std::size_t> taxels = taxel_indices(*region, array.cols);
+    array.absent.insert(array.absent.end(), taxels.begin(), taxels.end());
+  }
+  std::sort(array.absent.begin(), array.absent.end());
+  array.absent.erase(std::unique(array.absent.begin(), array.absent.end()), array.absent.end());
 }
 
 template <typename Choice>
@@ -109,6 +123,7 @@ void read_readout(ConfigFile& file, ArrayDescription& array) {
   }
   file.number("readout.supply_v", readout.supply_v);
   file.boolean("readout.pressure_raises_reading", readout.pressure_raises_reading);
+  file.number("readout.rail_counts", readout.rail_counts);
 }
 
 /// The messages of validate() begin with the key.
@@ -120,6 +135,7 @@ void fail_invalid(ConfigFile& file, const std::string& message) {
 Result<ArrayDescription> read_array(ConfigFile& file) {
   ArrayDescription array;
   read_geometry(file, array);
+  read_absent(file, array);
   read_readout(file, array);
   if (const Status read = file.finish(); !read) return read.error();
   if (const Status valid = array.validate(); !valid) fail_invalid(file, valid.error().message);
@@ -153,6 +169,12 @@ std::string per_line_toml(std::string_view key, const std::vector<double>& value
   for (const double value : values) texts.push_back(ohm_toml(value));
   const bool is_uniform = std::all_of(texts.begin(), texts.end(), [&](const auto& text) { return text == texts[0]; });
   return fmt::format("{} = {}\n", key, is_uniform ? texts[0] : fmt::format("[{}]", fmt::join(texts, ", ")));
+}
+
+std::vector<std::string> absent_names(const ArrayDescription& array) {
+  std::vector<std::string> names;
+  for (const std::size_t taxel : array.absent) names.push_back(quoted_toml(array.taxel_name(taxel)));
+  return names;
 }
 
 std::string circuit_toml(const Readout& readout) {
@@ -196,12 +218,14 @@ std::string array_to_toml(const ArrayDescription& array) {
   if (array.taxel_area_m2) {
     text += fmt::format("taxel_area_mm2 = {:.15g}\n", *array.taxel_area_m2 * kSquareMillimetresPerSquareMetre);
   }
+  if (!array.absent.empty()) text += fmt::format("absent = [{}]\n", fmt::join(absent_names(array), ", "));
   text += "\n[readout]\n" + circuit_toml(readout);
   text += fmt::format("adc_bits = {}\nadc_noise_counts = {}\nsupply_noise = {}\nadc_reference_v = {}\n",
                       readout.adc_bits, readout.adc_noise_counts, readout.supply_noise,
                       readout.adc_reference_v ? fmt::format("{}", *readout.adc_reference_v) : "\"supply\"");
   if (readout.supply_v) text += fmt::format("supply_v = {}\n", *readout.supply_v);
   text += fmt::format("pressure_raises_reading = {}\n", readout.pressure_raises_reading);
+  if (readout.rail_counts) text += fmt::format("rail_counts = {}\n", *readout.rail_counts);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -192,15 +193,19 @@ Status FramesCsvReader::State::read_frame(std::string_view line, RawFrame& frame
   }
   for (std::size_t taxel = 0; taxel < taxel_count; ++taxel) {
     static_cast<void>(cells.next(cell));
-    if (!parse_number(cell, frame.counts[taxel])) return count_error(taxel, cell);
+    if (cell.empty()) {
+      frame.counts[taxel] = std::numeric_limits<float>::quiet_NaN();
+    } else if (!parse_number(cell, frame.counts[taxel])) {
+      return count_error(taxel, cell);
+    }
   }
   return Done{};
 }
 
 Error FramesCsvReader::State::count_error(std::size_t taxel, std::string_view cell) const {
   const std::string place = "column " + taxel_name(taxel / header.shape.cols, taxel % header.shape.cols);
-  const std::string what = cell.empty() ? " is empty" : ": " + in_quotes(cell) + " is not a number";
-  return csv.error(place + what + "; write nan where a reading is missing");
+  return csv.error(place + ": " + in_quotes(cell) +
+                   " is not a number; leave the cell empty where a reading is missing");
 }
 
 FramesCsvReader::FramesCsvReader(std::unique_ptr<State> state) : state_(std::move(state)) {}

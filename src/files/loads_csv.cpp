@@ -29,30 +29,6 @@ struct NumberedLoad {
   std::size_t line = 0;
 };
 
-Result<TaxelPlace> parse_existing_taxel(std::string_view text, const ArrayDescription& array) {
-  const std::optional<TaxelPlace> place = parse_taxel(text);
-  if (!place) return bad_input(in_quotes(text) + " is not a place; write r3c5, r0c0:r3c3 or all");
-  if (place->row >= array.rows || place->col >= array.cols) {
-    return bad_input(std::string(text) + " does not exist in a " + std::to_string(array.rows) + "x" +
-                     std::to_string(array.cols) + " array");
-  }
-  return *place;
-}
-
-Result<TaxelRegion> parse_region(std::string_view text, const ArrayDescription& array) {
-  if (text == "all") return all_taxels(array);
-  const std::size_t colon = text.find(':');
-  const Result<TaxelPlace> first = parse_existing_taxel(text.substr(0, colon), array);
-  if (!first) return first.error();
-  if (colon == std::string_view::npos) return TaxelRegion{first->row, first->col, first->row, first->col};
-  const Result<TaxelPlace> last = parse_existing_taxel(text.substr(colon + 1), array);
-  if (!last) return last.error();
-  if (last->row < first->row || last->col < first->col) {
-    return bad_input("region " + in_quotes(text) + " is reversed; write its smallest row and column first");
-  }
-  return TaxelRegion{first->row, first->col, last->row, last->col};
-}
-
 Result<LoadKind> parse_kind(std::string_view text, const ArrayDescription& array) {
   if (text == "force") return LoadKind::force;
   if (text != "pressure") return bad_input("unknown kind " + in_quotes(text) + "; write force or pressure");
@@ -90,7 +66,7 @@ Result<Load> parse_load(std::string_view line, const ArrayDescription& array, st
   if (!frame) return frame.error();
   const Result<LoadKind> kind = parse_kind(cells[1], array);
   if (!kind) return kind.error();
-  const Result<TaxelRegion> where = parse_region(cells[2], array);
+  const Result<TaxelRegion> where = parse_region(cells[2], {array.rows, array.cols});
   if (!where) return where.error();
   const Result<double> value = parse_value(cells[3], *kind);
   if (!value) return value.error();

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/preprocessing/missing_readings.hpp"
 #include "health/findings.hpp"
 #include "health/noise_meter.hpp"
 #include "health/offset_meter.hpp"
@@ -61,7 +62,11 @@ std::vector<std::string> blind_lines(const compensation::LineFaultMonitor& monit
 class Examination::Implementation {
  public:
   explicit Implementation(const pipeline::Model& model)
-      : model_(model), unloaded_(model), offsets_(model.array.taxel_count()), deviation_(model.array.taxel_count()) {}
+      : model_(model),
+        missing_(model.array),
+        unloaded_(model),
+        offsets_(model.array.taxel_count()),
+        deviation_(model.array.taxel_count()) {}
 
   void add(const RawFrame& raw, const pipeline::Pipeline& pipeline) {
     const std::size_t frame = counted_.frames++;
@@ -75,6 +80,7 @@ class Examination::Implementation {
     last_time_ = raw.time;
     follow_temperature(raw);
     follow(pipeline.line_faults().faults(), frame, counted_.faults);
+    missing_.add(pipeline.conditioned());
     const auto& taxels = pipeline.conditioned().taxels;
     saturated_ += static_cast<std::size_t>(std::count(taxels.begin(), taxels.end(), TaxelStatus::saturated));
     if (has(conductance.status, FrameStatus::not_converged)) {
@@ -93,6 +99,7 @@ class Examination::Implementation {
     const std::optional<double> noise = noise_.ratio();
     if (noise) diagnosis.noise_counts = *noise * model_.array.readout.adc_noise_counts;
     diagnosis.saturated_share = saturated_share();
+    if (missing_.any()) diagnosis.missing_readings = missing_.describe();
     diagnosis.offset_drift = offsets_.drift();
     diagnosis.blind_lines = blind_lines(pipeline.line_faults(), model_.array);
     diagnosis.findings = findings_of(diagnosis, model_);
@@ -138,6 +145,7 @@ class Examination::Implementation {
   std::optional<Nanos> first_time_;
   Nanos last_time_{};
   std::size_t saturated_ = 0;  // readings
+  preprocessing::MissingReadings missing_;
   UnloadedTaxels unloaded_;
   NoiseMeter noise_;
   OffsetMeter offsets_;

@@ -40,6 +40,9 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline:
   for (const auto& [reason, count] : diagnosis.rejections) {
     found.push_back(fmt::format("{} frames rejected: {}", count, reason));
   }
+  if (!diagnosis.missing_readings.empty()) {
+    found.push_back(diagnosis.missing_readings + ": no force there, the others are solved");
+  }
   if (diagnosis.noise_counts && *diagnosis.noise_counts > kMuchNoise * array.readout.adc_noise_counts) {
     found.push_back(
         fmt::format("the readings have {:.1f} counts of noise, {:.1f} were calibrated: check grounding and supply",

@@ -6,12 +6,27 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <vector>
+
+#include "dermis/core/neighbours.hpp"
 
 namespace dermis::preprocessing {
 namespace {
 
 bool is_finite_or_absent(const std::optional<double>& value) {
   return !value || std::isfinite(*value);
+}
+
+/// Ratio of the taxels around one that have a reading; 0 where none has.
+double mean_of_neighbours(const ArrayDescription& array, const ConditionedFrame& conditioned, std::size_t taxel) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const std::size_t near : Neighbours(array.rows, array.cols, taxel)) {
+    if (conditioned.taxels[near] == TaxelStatus::invalid) continue;
+    sum += conditioned.ratio[near];
+    count += 1.0;
+  }
+  return sum / std::max(count, 1.0);
 }
 
 }  // namespace
@@ -21,7 +36,7 @@ const char* to_string(Rejection rejection) noexcept {
     case Rejection::none: return "none";
     case Rejection::wrong_shape: return "wrong number of readings";
     case Rejection::not_a_number: return "a value that is not a number";
-    case Rejection::outside_adc_range: return "a reading outside the ADC range";
+    case Rejection::too_few_readings: return "more than half of the readings are missing or outside the ADC range";
     case Rejection::supply_not_positive: return "a supply of 0 V or less";
     case Rejection::supply_unknown: return "no supply voltage (add supply_v to the frames or to array.toml)";
     case Rejection::time_going_backwards: return "time going backwards";
@@ -30,7 +45,26 @@ const char* to_string(Rejection rejection) noexcept {
 }
 
 Conditioner::Conditioner(ArrayDescription array)
-    : array_(std::move(array)), full_scale_counts_(array_.readout.full_scale_counts()) {}
+    : array_(std::move(array)),
+      full_scale_counts_(static_cast<float>(array_.readout.full_scale_counts())),
+      highest_counts_(std::numeric_limits<float>::infinity()),
+      lowest_counts_(-highest_counts_) {
+  constexpr float kHalfCount = 0.5F;  // averaged readings
+  const Readout& readout = array_.readout;
+  if (readout.pressure_raises_reading) {
+    highest_counts_ = static_cast<float>(readout.rail_counts.value_or(readout.full_scale_counts())) - kHalfCount;
+  } else {
+    lowest_counts_ = static_cast<float>(readout.rail_counts.value_or(0.0)) + kHalfCount;
+  }
+}
+
+/// Taxels of the sheet without a reading.
+std::size_t Conditioner::count_missing(const RawFrame& raw) const noexcept {
+  std::size_t missing = 0;
+  for (const float count : raw.counts) missing += is_reading(count) ? 0 : 1;
+  for (const std::size_t taxel : array_.absent) missing -= is_reading(raw.counts[taxel]) ? 0 : 1;
+  return missing;
+}
 
 Rejection Conditioner::inspect(const RawFrame& raw) const noexcept {
   if (raw.counts.size() != array_.taxel_count()) return Rejection::wrong_shape;
@@ -41,10 +75,6 @@ Rejection Conditioner::inspect(const RawFrame& raw) const noexcept {
   const Readout& readout = array_.readout;
   const bool needs_supply = readout.adc_reference_v && readout.circuit != Circuit::none;
   if (needs_supply && !raw.supply_v && !readout.supply_v) return Rejection::supply_unknown;
-  for (const float count : raw.counts) {
-    if (!std::isfinite(count)) return Rejection::not_a_number;
-    if (count < 0.0F || static_cast<double>(count) > full_scale_counts_) return Rejection::outside_adc_range;
-  }
   if (last_time_ && raw.time < *last_time_) return Rejection::time_going_backwards;
   return Rejection::none;
 }
@@ -57,6 +87,8 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   conditioned.taxels.resize(array_.taxel_count());
   rejection_ = inspect(raw);
   if (rejection_ == Rejection::time_going_backwards) last_time_ = raw.time;
+  const std::size_t missing = rejection_ == Rejection::none ? count_missing(raw) : 0;
+  if (2 * missing > array_.taxel_count() - array_.absent.size()) rejection_ = Rejection::too_few_readings;
   if (rejection_ != Rejection::none) {
     conditioned.status = FrameStatus::rejected;
     std::fill(conditioned.ratio.begin(), conditioned.ratio.end(), 0.0);
@@ -65,34 +97,47 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   }
   last_time_ = raw.time;
   convert(raw, conditioned);
+  if (missing > 0 || !array_.absent.empty()) mark_missing(raw, conditioned);
 }
 
 void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept {
   const Readout& readout = array_.readout;
   const std::optional<double> supply_v = raw.supply_v ? raw.supply_v : readout.supply_v;
   const double reference = readout.adc_reference_v && supply_v ? *readout.adc_reference_v / *supply_v : 1.0;
-  const double scale = (readout.pressure_raises_reading ? reference : -reference) / full_scale_counts_;
+  const double scale = (readout.pressure_raises_reading ? reference : -reference) / readout.full_scale_counts();
   conditioned.sigma_ratio = std::abs(scale) * readout.adc_noise_counts;
   const double zero = readout.pressure_raises_reading ? 0.0 : 1.0;
-  constexpr float kHalfCount = 0.5F;  // averaged readings
-  constexpr float kNever = std::numeric_limits<float>::infinity();
-  const float highest = readout.pressure_raises_reading ? static_cast<float>(full_scale_counts_) - kHalfCount : kNever;
-  const float lowest = readout.pressure_raises_reading ? -kNever : kHalfCount;
   bool any_saturated = false;
   for (std::size_t taxel = 0; taxel < raw.counts.size(); ++taxel) {
     conditioned.ratio[taxel] = zero + scale * static_cast<double>(raw.counts[taxel]);
-    const bool saturated = raw.counts[taxel] > highest || raw.counts[taxel] < lowest;
+    const bool saturated = raw.counts[taxel] > highest_counts_ || raw.counts[taxel] < lowest_counts_;
     conditioned.taxels[taxel] = saturated ? TaxelStatus::saturated : TaxelStatus::ok;
     any_saturated = any_saturated || saturated;
   }
   if (any_saturated) conditioned.status |= FrameStatus::saturated;
 }
 
+void Conditioner::mark_missing(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept {
+  std::vector<TaxelStatus>& status = conditioned.taxels;
+  for (std::size_t taxel = 0; taxel < status.size(); ++taxel) {
+    if (!is_reading(raw.counts[taxel])) status[taxel] = TaxelStatus::invalid;
+  }
+  for (const std::size_t taxel : array_.absent) status[taxel] = TaxelStatus::invalid;
+  const bool any_saturated = std::find(status.begin(), status.end(), TaxelStatus::saturated) != status.end();
+  conditioned.status = any_saturated ? FrameStatus::saturated : FrameStatus::ok;
+  for (std::size_t taxel = 0; taxel < status.size(); ++taxel) {
+    if (status[taxel] == TaxelStatus::invalid)
+      conditioned.ratio[taxel] = mean_of_neighbours(array_, conditioned, taxel);
+  }
+  for (const std::size_t taxel : array_.absent) conditioned.ratio[taxel] = 0.0;
+}
+
 void bare_readings(const ArrayDescription& array, const RawFrame& raw, std::span<double> reading) noexcept {
   const double full_scale = array.readout.full_scale_counts();
   for (std::size_t taxel = 0; taxel < reading.size(); ++taxel) {
     const double share = static_cast<double>(raw.counts[taxel]) / full_scale;
-    reading[taxel] = array.readout.pressure_raises_reading ? share : 1.0 - share;
+    const bool is_reading = share >= 0.0 && share <= 1.0;
+    reading[taxel] = is_reading ? (array.readout.pressure_raises_reading ? share : 1.0 - share) : 0.0;
   }
 }
 

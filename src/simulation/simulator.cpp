@@ -68,15 +68,14 @@ Result<SimulationOptions> read_simulation_options(const std::string& path) {
   return options;
 }
 
-Simulator::Simulator(const FrameShape& shape, Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit,
-                     std::optional<FaultyCircuit> faulty, const Readout& readout, const EnvironmentOptions& environment,
-                     std::uint64_t seed)
-    : shape_(shape),
+Simulator::Simulator(ArrayDescription array, Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit,
+                     std::optional<FaultyCircuit> faulty, const EnvironmentOptions& environment, std::uint64_t seed)
+    : array_(std::move(array)),
       scene_(std::move(scene)),
       rubber_(std::move(rubber)),
       circuit_(std::move(circuit)),
       faulty_(std::move(faulty)),
-      adc_(readout, environment.adc_noise_lsb),
+      adc_(array_.readout, environment.adc_noise_lsb),
       environment_(environment),
       instruments_(Random::stream(seed, kInstrumentStream)),
       unloaded_n_(rubber_.taxel_count()),
@@ -99,9 +98,8 @@ Result<std::unique_ptr<Simulator>> Simulator::create(const ArrayDescription& arr
     if (!created) return created.error();
     faulty = *std::move(created);
   }
-  return std::unique_ptr<Simulator>(new Simulator({array.rows, array.cols}, *std::move(script), *std::move(rubber),
-                                                  *std::move(circuit), std::move(faulty), array.readout,
-                                                  options.environment, seed));
+  return std::unique_ptr<Simulator>(new Simulator(array, *std::move(script), *std::move(rubber), *std::move(circuit),
+                                                  std::move(faulty), options.environment, seed));
 }
 
 Result<bool> Simulator::next(RawFrame& frame) {
@@ -110,9 +108,11 @@ Result<bool> Simulator::next(RawFrame& frame) {
   const bool is_faulty = faulty_ && faulty_->present(index);
   frame.acquisition = {};
   scene_.frame(index, truth_);
+  for (const std::size_t taxel : array_.absent) truth_.force_n[taxel] = 0.0;
   if (truth_.rest_s > 0.0) rubber_.press(unloaded_n_, truth_.rest_s);
   rubber_.press(truth_.force_n, truth_.hold_s);
   rubber_.read(truth_.temperature_celsius, siemens_);
+  for (const std::size_t taxel : array_.absent) siemens_[taxel] = 0.0;
   is_faulty ? faulty_->ratios(siemens_, index, ratio_) : circuit_.ratios(siemens_, ratio_);
   time_s_ += truth_.rest_s + truth_.hold_s;
 

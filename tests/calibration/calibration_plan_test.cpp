@@ -51,6 +51,16 @@ TEST(CalibrationPlan, presses_every_taxel_with_one_weight_before_the_next) {
   EXPECT_EQ(plan.weight_of(2), 5.0);
 }
 
+TEST(CalibrationPlan, asks_for_no_press_where_the_sheet_has_no_taxel) {
+  ArrayDescription array = reference_array(4, 4);
+  array.absent = {0, 5};
+  CalibrationPlan plan = default_plan(array);
+  EXPECT_EQ(plan.taxels.size(), 14U);
+  EXPECT_TRUE(plan.validate(array));
+  plan.taxels = {4, 5};
+  EXPECT_EQ(plan.validate(array).error().message, "taxels: the sheet has no r1c1");
+}
+
 TEST(CalibrationPlan, strides_leave_equal_edges) {
   const ArrayDescription array = reference_array(16, 7);
   const std::vector<std::size_t> taxels = taxels_with_stride(array, 4);

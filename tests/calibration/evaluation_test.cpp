@@ -114,7 +114,7 @@ TEST(Evaluation, breaks_down_every_judged_taxel_once) {
 TEST(Evaluation, counts_a_rejected_frame_apart) {
   const pipeline::Model model = exact_model();
   std::vector<RawFrame> frames = {frame_under(model, {5.0, 0, 0, 0}), frame_under(model, {5.0, 0, 0, 0})};
-  frames[1].counts[0] = -1.0F;
+  frames[1].supply_v = -1.0;
   const std::vector<Load> loads = {{0, LoadKind::force, {0, 0, 0, 0}, 5.0}, {1, LoadKind::force, {0, 0, 0, 0}, 5.0}};
   const auto evaluation = evaluate(model, frames, loads);
   ASSERT_TRUE(evaluation);

@@ -4,9 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "calibration/simulated.hpp"
+#include "dermis/core/random.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -100,19 +105,19 @@ TEST(SampleDatabase, counts_rejected_frames_and_refuses_many_of_them) {
     }
     loads.push_back({k, LoadKind::force, kAll, 0.0});
   }
-  frames[5].counts[2] = 2000.0F;
-  frames[7].counts[2] = std::nanf("");
+  frames[5].supply_v = -1.0;
+  frames[7].counts.assign(6, std::nanf(""));
   const auto few = build_sample_database(bare_array(), frames, loads);
   ASSERT_TRUE(few);
   EXPECT_EQ(few->samples.size(), 38U);
   EXPECT_EQ(few->frames_rejected, 2U);
-  EXPECT_EQ(few->first_rejection, "frame 5: a reading outside the ADC range");
+  EXPECT_EQ(few->first_rejection, "frame 5: a supply of 0 V or less");
 
   for (std::size_t k = 20; k < 25; ++k) frames[k].counts.pop_back();
   const auto many = build_sample_database(bare_array(), frames, loads);
   ASSERT_FALSE(many);
   EXPECT_EQ(many.error().message,
-            "7 of 40 labelled frames cannot be used, the first: frame 5: a reading outside the ADC range");
+            "7 of 40 labelled frames cannot be used, the first: frame 5: a supply of 0 V or less");
 }
 
 TEST(SampleDatabase, does_not_trust_a_saturated_reading) {
@@ -177,6 +182,130 @@ TEST(SampleDatabase, leaves_out_the_few_frames_without_a_temperature) {
   const auto many = build_sample_database(bare_array(), frames, loads);
   ASSERT_TRUE(many);
   EXPECT_EQ(many->samples.size(), 20U);
+}
+
+TEST(SampleDatabase, a_missing_reading_costs_its_taxel_alone_and_is_named) {
+  std::vector<RawFrame> frames = frames_of(3);
+  for (RawFrame& frame : frames) frame.counts[2] = std::nanf("");
+  frames[1].counts[4] = 5000.0F;
+  const std::vector<Load> loads = {
+      {0, LoadKind::force, kAll, 0.0}, {1, LoadKind::pressure, kAll, 2e4}, {2, LoadKind::force, kAll, 20.0}};
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  ASSERT_EQ(database->samples.size(), 3U);
+  const std::vector<float>& newtons = database->samples[1].known_newtons;
+  for (std::size_t taxel = 0; taxel < 6; ++taxel) {
+    EXPECT_EQ(std::isnan(newtons[taxel]), taxel == 2 || taxel == 4) << taxel;
+    EXPECT_TRUE(std::isfinite(database->samples[1].siemens[taxel])) << taxel;
+    EXPECT_TRUE(std::isfinite(database->samples[1].reading[taxel])) << taxel;
+  }
+  EXPECT_EQ(database->samples[2].totals.size(), 1U);
+  ASSERT_EQ(database->remarks.size(), 1U);
+  EXPECT_EQ(database->remarks[0],
+            "no reading (not a number, or outside the ADC) of r0c2 in 3, r1c1 in 1 of 3 frames with a label: left out");
+}
+
+TEST(SampleDatabase, taxels_that_the_sheet_does_not_have_carry_nothing) {
+  ArrayDescription array = bare_array();
+  array.absent = {0, 4};
+  const std::vector<Load> loads = {
+      {0, LoadKind::force, kAll, 0.0}, {1, LoadKind::pressure, kAll, 2e4}, {2, LoadKind::force, kAll, 20.0}};
+  const auto database = build_sample_database(array, frames_of(3), loads);
+  ASSERT_TRUE(database) << database.error().message;
+  EXPECT_TRUE(std::isnan(database->samples[1].known_newtons[0]));
+  EXPECT_EQ(database->samples[1].known_newtons[1], 2.0F);
+  EXPECT_EQ(database->samples[2].totals[0].taxels, (std::vector<std::size_t>{1, 2, 3, 5}));
+  EXPECT_TRUE(database->remarks.empty());
+}
+
+/// Presses of 20 frames with 20 unloaded frames before each; the reading follows the load of `late` frames before.
+struct LabelledPresses {
+  std::vector<RawFrame> frames;
+  std::vector<Load> loads;
+};
+
+LabelledPresses labelled_presses(std::size_t late) {
+  constexpr std::size_t kPresses = 20;
+  constexpr std::size_t kFrames = 20;
+  Random random(7);
+  const auto newtons = [](std::size_t frame) {
+    const std::size_t press = frame / (2 * kFrames);
+    return frame / kFrames % 2 == 0 ? 0.0 : 1.0 + static_cast<double>(press * 7 % kPresses);
+  };
+  LabelledPresses presses;
+  for (std::size_t k = 0; k < 2 * kPresses * kFrames; ++k) {
+    RawFrame& frame = presses.frames.emplace_back();
+    frame.time = std::chrono::milliseconds(10 * k);
+    for (int taxel = 0; taxel < 6; ++taxel) {
+      const double pressed = 20.0 + 30.0 * newtons(k - std::min(late, k));
+      frame.counts.push_back(static_cast<float>(std::round(pressed + random.normal())));
+    }
+    presses.loads.push_back({k, LoadKind::force, kAll, newtons(k)});
+  }
+  return presses;
+}
+
+TEST(SampleDatabase, has_nothing_to_remark_on_good_labels) {
+  const auto [frames, loads] = labelled_presses(0);
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  EXPECT_TRUE(database->remarks.empty()) << database->remarks[0];
+}
+
+TEST(SampleDatabase, leaves_out_unloaded_frames_that_are_pressed) {
+  auto [frames, loads] = labelled_presses(0);
+  for (const std::size_t frame : {133, 134, 255}) frames[frame].counts.assign(6, 60.0F);
+  frames[255].counts.assign(6, 22.0F);  // noise
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  EXPECT_EQ(database->remarks,
+            (std::vector<std::string>{"2 of 400 unloaded frames are pressed: left out, the first 133"}));
+  EXPECT_EQ(database->samples.size(), frames.size() - 2);
+}
+
+TEST(SampleDatabase, an_array_that_warms_up_is_not_pressed) {
+  auto [frames, loads] = labelled_presses(0);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    frames[k].temperature_celsius = 20.0 + 0.05 * static_cast<double>(k);
+    for (float& count : frames[k].counts) count += static_cast<float>(0.1 * static_cast<double>(k));
+  }
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  EXPECT_TRUE(database->remarks.empty()) << database->remarks[0];
+}
+
+TEST(SampleDatabase, says_that_labels_are_shifted) {
+  const auto [frames, loads] = labelled_presses(3);
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  ASSERT_FALSE(database->remarks.empty());
+  EXPECT_NE(database->remarks.back().find("the loads fit the readings 3 frames later"), std::string::npos)
+      << database->remarks.back();
+}
+
+TEST(SampleDatabase, asks_whether_grams_are_newtons) {
+  auto [frames, loads] = labelled_presses(0);
+  for (Load& load : loads) load.value *= 1000.0 / 9.80665;
+  ArrayDescription array = bare_array();
+  array.taxel_area_m2 = 2e-5;
+  const auto database = build_sample_database(array, frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  ASSERT_EQ(database->remarks.size(), 1U);
+  EXPECT_EQ(database->remarks[0],
+            "the load of frame 700 presses all with 17 MPa: is it in newtons (or kPa), not in grams (or Pa)?");
+}
+
+TEST(SampleDatabase, finds_where_the_readout_saturates_before_its_adc) {
+  auto [frames, loads] = labelled_presses(0);
+  for (RawFrame& frame : frames) {
+    for (float& count : frame.counts) count = std::min(count, 300.0F);
+  }
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  EXPECT_EQ(database->array.readout.rail_counts, 300.0);
+  EXPECT_EQ(database->remarks,
+            (std::vector<std::string>{
+                "readings end at 300 counts under whatever load: taken for saturated there (rail_counts)"}));
 }
 
 }  // namespace

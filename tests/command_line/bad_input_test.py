@@ -230,7 +230,7 @@ class Calibration(SmallArray):
 
     def test_readings_beyond_the_adc(self):
         array = self.written("array.toml", ARRAY.replace("adc_bits = 12", "adc_bits = 8"))
-        self.refuse(self.calibrate_arguments(self.work / "m", array=array), ["ADC range", "frame"])
+        self.refuse(self.calibrate_arguments(self.work / "m", array=array), ["outside the ADC", "adc_bits"])
 
     def test_all_frames_settle(self):
         self.refuse([*self.calibrate_arguments(self.work / "m"), "--settle", "1e6"], ["settling"])

@@ -306,8 +306,8 @@ class RejectedFrames(SmallArray):
 
     def test_run_goes_on_and_says_so(self):
         rows = rows_of(self.contacts / "frames.csv")
-        rows[10][3] = "nan"
-        rows[20][3] = "5000"
+        for row in (rows[10], rows[20]):
+            row[3:] = ["nan"] * len(row[3:])
         frames = self.written("frames.csv", "".join(",".join(row) + "\n" for row in rows))
         out = self.work / "forces.csv"
         result = dermis(*self.run_arguments(out, **{"in": frames}))
@@ -318,6 +318,23 @@ class RejectedFrames(SmallArray):
         self.assertEqual([row[1] for row in (forces[10], forces[20])], ["rejected", "rejected"])
         self.assertTrue(all(cell == "nan" for cell in forces[10][2:]))
         self.assertEqual(sum(row[1] == "rejected" for row in forces[1:]), 2)
+
+    def test_a_taxel_without_a_reading_costs_its_own_force_alone(self):
+        rows = rows_of(self.contacts / "frames.csv")
+        for row in rows[1:]:
+            row[-1] = "nan"
+        rows[10][-2] = "5000"
+        rows[20][-2] = ""
+        frames = self.written("frames.csv", "".join(",".join(row) + "\n" for row in rows))
+        out = self.work / "forces.csv"
+        result = dermis(*self.run_arguments(out, **{"in": frames}))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        last, before = rows[0][-1], rows[0][-2]
+        self.assertIn(f"of {last} in 200, {before} in 2 of 200 frames", result.stderr)
+        forces = rows_of(out)
+        self.assertTrue(all(row[-1] == "nan" for row in forces[1:]))
+        self.assertEqual([k for k, row in enumerate(forces) if row[-2] == "nan"], [10, 20])
+        self.assertFalse(any("nan" in row[:-2] for row in forces[1:]))
 
 
 if __name__ == "__main__":

@@ -76,6 +76,27 @@ TEST(ArrayDescription, names_the_field_out_of_range) {
             "readout.load_ohm: has 2 values, the array needs 3");
 }
 
+TEST(ArrayDescription, names_what_is_wrong_with_its_absent_taxels_and_its_rail) {
+  using Array = ArrayDescription;
+  EXPECT_EQ(message_after([](Array& array) {
+              array.absent = {1, 1};
+            }),
+            "array.absent: must name each taxel once, row by row");
+  EXPECT_EQ(message_after([](Array& array) { array.absent = {array.taxel_count()}; }),
+            "array.absent: must name taxels of the array");
+  EXPECT_EQ(message_after([](Array& array) { array.absent = {0, 1, 2, 3, 4, 5}; }),
+            "array.absent: must leave at least one taxel");
+  EXPECT_EQ(message_after([](Array& array) { array.readout.rail_counts = 4096.0; }),
+            "readout.rail_counts: must be a reading of the ADC, 0 to 2^adc_bits - 1");
+}
+
+TEST(ArrayDescription, knows_its_absent_taxels) {
+  ArrayDescription array;
+  array.absent = {2, 5};
+  EXPECT_TRUE(array.is_absent(2) && array.is_absent(5));
+  EXPECT_FALSE(array.is_absent(0) || array.is_absent(3) || array.is_absent(6));
+}
+
 TEST(ArrayDescription, counts_the_lines_that_are_driven_and_sensed) {
   ArrayDescription array = valid_array();
   EXPECT_EQ(array.driven_lines(), 2U);

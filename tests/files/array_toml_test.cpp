@@ -276,6 +276,25 @@ TEST(ArrayToml, writes_what_reads_back_equal) {
   EXPECT_EQ(read->readout.load_ohm, array.readout.load_ohm);
 }
 
+TEST(ArrayToml, reads_which_taxels_the_sheet_does_not_have) {
+  const std::string text = with("[readout]", "absent = [\"r1c2\", \"r0c0:r0c1\", \"r0c0\"]\n[readout]");
+  const Result<ArrayDescription> array = array_from_toml(text, "array.toml");
+  ASSERT_TRUE(array) << array.error().message;
+  EXPECT_EQ(array->absent, (std::vector<std::size_t>{0, 1, 5}));
+  EXPECT_EQ(array_from_toml(array_to_toml(*array), "array.toml").value().absent, array->absent);
+  EXPECT_NE(error_of(with("[readout]", "absent = [\"r2c0\"]\n[readout]")).find("r2c0 does not exist in a 2x3 array"),
+            std::string::npos);
+  EXPECT_NE(error_of(with("[readout]", "absent = [\"all\"]\n[readout]")).find("must leave at least one taxel"),
+            std::string::npos);
+}
+
+TEST(ArrayToml, reads_where_the_readout_saturates) {
+  const Result<ArrayDescription> array = array_from_toml(std::string(kComplete) + "rail_counts = 4000\n", "array.toml");
+  ASSERT_TRUE(array) << array.error().message;
+  EXPECT_EQ(array->readout.rail_counts, 4000.0);
+  EXPECT_EQ(array_from_toml(array_to_toml(*array), "array.toml").value().readout.rail_counts, 4000.0);
+}
+
 TEST(ArrayToml, writes_every_circuit_without_loss) {
   constexpr const char* kAuto = "[array]\nrows = 2\ncols = 3\n[readout]\ncircuit = \"auto\"\nadc_bits = 12\n";
   for (const std::string& text :

@@ -77,6 +77,15 @@ TEST(FramesCsvReader, keeps_fractions_and_what_is_not_finite) {
   EXPECT_EQ((*frames)[1].counts[1], std::numeric_limits<float>::infinity());
 }
 
+TEST(FramesCsvReader, reads_an_empty_cell_of_a_taxel_as_a_missing_reading) {
+  const auto frames = parse("time_s,r0c0,r0c1\n0,,2\n1,1,\n");
+  ASSERT_TRUE(frames) << frames.error().message;
+  ASSERT_EQ(frames->size(), 2U);
+  EXPECT_TRUE(std::isnan((*frames)[0].counts[0]));
+  EXPECT_EQ((*frames)[0].counts[1], 2.0F);
+  EXPECT_TRUE(std::isnan((*frames)[1].counts[1]));
+}
+
 TEST(FramesCsvReader, reads_times_to_the_nanosecond) {
   const auto frames = parse(
       header_of(1, 1) + "1731412345.123456789,0\n-0.000000001,0\n1e-3,0\n0.30000000000000004,0\n" + "9000000000,0\n", 1,
@@ -184,13 +193,11 @@ TEST(FramesCsvReader, names_both_lengths_of_a_ragged_row) {
 
 TEST(FramesCsvReader, names_column_and_text_that_is_not_a_number) {
   EXPECT_EQ(error_of("time_s,r0c0,r0c1\n0,1,x2\n"),
-            "frames.csv:2: column r0c1: 'x2' is not a number; write nan where a reading is missing");
-  EXPECT_EQ(error_of("time_s,r0c0,r0c1\n0,,2\n"),
-            "frames.csv:2: column r0c0 is empty; write nan where a reading is missing");
+            "frames.csv:2: column r0c1: 'x2' is not a number; leave the cell empty where a reading is missing");
   EXPECT_EQ(error_of("time_s,supply_v,r0c0,r0c1\n0,5V,1,2\n"),
             "frames.csv:2: column supply_v: '5V' is not a number; leave the cell empty where there is no value");
   EXPECT_EQ(error_of("time_s,r0c0,r0c1\n0,1,\x01\x7F\n"),
-            "frames.csv:2: column r0c1: '\?\?' is not a number; write nan where a reading is missing");
+            "frames.csv:2: column r0c1: '\?\?' is not a number; leave the cell empty where a reading is missing");
 }
 
 TEST(FramesCsvReader, refuses_a_time_that_is_no_number_or_too_far) {

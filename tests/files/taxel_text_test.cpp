@@ -20,6 +20,15 @@ TEST(TaxelText, anything_else_is_no_taxel) {
   }
 }
 
+TEST(TaxelText, a_region_is_a_taxel_or_two_corners_or_all) {
+  const FrameShape shape{4, 5};
+  EXPECT_EQ(parse_region("r3c4", shape).value(), (TaxelRegion{3, 4, 3, 4}));
+  EXPECT_EQ(parse_region("r0c1:r2c3", shape).value(), (TaxelRegion{0, 1, 2, 3}));
+  EXPECT_EQ(parse_region("all", shape).value(), (TaxelRegion{0, 0, 3, 4}));
+  EXPECT_EQ(parse_region("left", shape).error().message, "'left' is not a place; write r3c5, r0c0:r3c3 or all");
+  EXPECT_EQ(parse_region("r4c0", shape).error().message, "r4c0 does not exist in a 4x5 array");
+}
+
 TEST(TaxelText, the_names_of_a_header_go_row_by_row) {
   std::string header = "time_s";
   append_taxel_names(header, 2, 2);

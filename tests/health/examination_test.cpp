@@ -169,6 +169,19 @@ TEST(Examination, readings_at_the_end_of_the_adc_are_counted) {
   EXPECT_TRUE(says(diagnosis, "1.6 % of the readings stand at the end of the ADC"));
 }
 
+TEST(Examination, a_taxel_without_a_reading_is_named) {
+  const Measurement measurement;
+  Examined examined(measurement.model);
+  for (std::size_t frame = 0; frame < 10; ++frame) {
+    RawFrame raw = measurement.frame(frame);
+    if (frame < 7) raw.counts[5] = std::numeric_limits<float>::quiet_NaN();
+    examined.add(raw);
+  }
+  const Diagnosis diagnosis = examined.diagnosis();
+  EXPECT_EQ(diagnosis.frames_rejected, 0U);
+  EXPECT_TRUE(says(diagnosis, "no reading (not a number, or outside the ADC) of r0c5 in 7 of 10 frames"));
+}
+
 TEST(Examination, rejected_frames_are_counted_by_their_reason) {
   const Measurement measurement;
   Examined examined(measurement.model);

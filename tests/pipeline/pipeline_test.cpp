@@ -144,7 +144,7 @@ TEST(Pipeline, process_is_the_units_chained_by_hand) {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     SCOPED_TRACE(testing::Message() << "seed " << seed);
     RawFrame raw = random_frame(model, seed);
-    if (seed % 5 == 0) raw.counts[seed % 35] = -1.0F;
+    if (seed % 5 == 0) raw.supply_v = -1.0;
     if (seed % 7 == 0) raw.time = Nanos(0);
     if (seed % 11 == 0) raw.temperature_celsius.reset();
     conditioner.process(raw, conditioned);
@@ -177,15 +177,105 @@ TEST(Pipeline, frames_influence_each_other_far_below_their_noise) {
   }
 }
 
+/// A round contact that leaves the edges alone.
+std::vector<double> round_contact(const ArrayDescription& array, double most_newtons) {
+  std::vector<double> newtons(array.taxel_count());
+  for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
+    const double row = static_cast<double>(taxel / array.cols) - 3.3;
+    const double col = static_cast<double>(taxel % array.cols) - 3.6;
+    const double force = most_newtons * std::exp(-(row * row + col * col) / (2.0 * 1.3 * 1.3));
+    if (force > 0.1) newtons[taxel] = force;
+  }
+  return newtons;
+}
+
+/// Largest error of the forces beside one taxel, as a share of the force there and a hundredth of the largest.
+double worst_error_beside(std::size_t left_out, const std::vector<double>& newtons, const ForceFrame& force) {
+  const double largest = *std::max_element(newtons.begin(), newtons.end());
+  double worst = 0.0;
+  for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
+    if (taxel == left_out) continue;
+    const double error = std::abs(static_cast<double>(force.newtons[taxel]) - newtons[taxel]);
+    if (!(error <= worst * (newtons[taxel] + 0.01 * largest))) worst = error / (newtons[taxel] + 0.01 * largest);
+  }
+  return worst;
+}
+
+TEST(Pipeline, a_taxel_without_a_reading_costs_its_own_force_alone) {
+  for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
+    Model model = hand_made_model(8, 8);
+    model.array.readout.circuit = circuit;
+    const std::vector<double> newtons = round_contact(model.array, 20.0);
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), -7.0F, 1e9F}) {
+      for (const std::size_t taxel : {model.array.index(3, 4), model.array.index(2, 3), model.array.index(7, 7)}) {
+        SCOPED_TRACE(testing::Message() << to_string(circuit) << ", " << bad << " at "
+                                        << model.array.taxel_name(taxel));
+        const auto pipeline = make_pipeline(model);
+        RawFrame raw = measure(model, newtons, 25.0, 5.0);
+        raw.counts[taxel] = bad;
+        ForceFrame force;
+        for (int frame = 0; frame < 100; ++frame) pipeline->process(raw, force);
+        EXPECT_EQ(force.status, FrameStatus::ok) << to_string(force.status);
+        EXPECT_EQ(force.taxels[taxel], TaxelStatus::invalid);
+        EXPECT_TRUE(std::isnan(force.newtons[taxel]));
+        EXPECT_LT(worst_error_beside(taxel, newtons, force), 0.05);
+      }
+    }
+  }
+}
+
+TEST(Pipeline, a_taxel_that_is_pinned_to_the_end_of_the_adc_does_not_take_the_others_with_it) {
+  const Model model = hand_made_model(8, 8);
+  const std::vector<double> newtons = round_contact(model.array, 20.0);
+  const std::size_t pinned = model.array.index(2, 3);
+  RawFrame raw = measure(model, newtons, 25.0, 5.0);
+  raw.counts[pinned] = static_cast<float>(model.array.readout.full_scale_counts());
+  ForceFrame force;
+  make_pipeline(model)->process(raw, force);
+  EXPECT_FALSE(has(force.status, FrameStatus::not_converged));
+  EXPECT_EQ(force.taxels[pinned], TaxelStatus::invalid);
+  EXPECT_LT(worst_error_beside(pinned, newtons, force), 0.05);
+}
+
+TEST(Pipeline, taxels_that_the_sheet_does_not_have_have_no_force_and_disturb_no_other) {
+  Model model = hand_made_model(8, 8);
+  model.array.absent = {0, 1, 26, 63};
+  const std::vector<double> newtons = round_contact(model.array, 20.0);
+  std::vector<double> siemens(newtons.size());
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    siemens[taxel] = model.array.is_absent(taxel) ? 0.0 : support::siemens_under(model, taxel, newtons[taxel], 25.0);
+  }
+  std::vector<double> ratio(newtons.size());
+  simulation::ReadoutCircuit::create(model.array)->ratios(siemens, ratio);
+  RawFrame raw;
+  raw.temperature_celsius = 25.0;
+  raw.supply_v = 5.0;
+  raw.counts.resize(newtons.size());
+  Random random(1);
+  simulation::Adc(model.array.readout, 0.0).convert(ratio, 5.0, random, raw.counts);
+  raw.counts[1] = std::numeric_limits<float>::quiet_NaN();
+  raw.counts[26] = 3000.0F;
+  ForceFrame force;
+  make_pipeline(model)->process(raw, force);
+  EXPECT_EQ(force.status, FrameStatus::ok) << to_string(force.status);
+  for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
+    if (model.array.is_absent(taxel)) {
+      EXPECT_TRUE(std::isnan(force.newtons[taxel])) << taxel;
+    } else {
+      EXPECT_NEAR(force.newtons[taxel], newtons[taxel], 2e-4 * newtons[taxel] + 2e-3) << taxel;
+    }
+  }
+}
+
 TEST(Pipeline, rejected_frame_says_why_and_has_no_force) {
   const Model model = hand_made_model(2, 2);
   const auto pipeline = make_pipeline(model);
   RawFrame raw = random_frame(model, 1);
-  raw.counts[2] = std::numeric_limits<float>::quiet_NaN();
+  std::fill(raw.counts.begin() + 1, raw.counts.end(), std::numeric_limits<float>::quiet_NaN());
   ForceFrame force;
   pipeline->process(raw, force);
   EXPECT_EQ(force.status, FrameStatus::rejected);
-  EXPECT_EQ(pipeline->rejection(), preprocessing::Rejection::not_a_number);
+  EXPECT_EQ(pipeline->rejection(), preprocessing::Rejection::too_few_readings);
   ASSERT_EQ(force.newtons.size(), 4U);
   for (const float newtons : force.newtons) EXPECT_TRUE(std::isnan(newtons));
   EXPECT_EQ(force.taxels, std::vector<TaxelStatus>(4, TaxelStatus::invalid));

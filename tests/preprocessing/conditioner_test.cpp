@@ -143,10 +143,7 @@ TEST(Conditioner, rejects_a_frame_of_another_shape) {
   }
 }
 
-TEST(Conditioner, rejects_what_is_not_a_number) {
-  EXPECT_EQ(rejection_of(make_frame({1.0F, kNan, 2.0F})), Rejection::not_a_number);
-  EXPECT_EQ(rejection_of(make_frame({1.0F, 2.0F, kInfinity})), Rejection::not_a_number);
-  EXPECT_EQ(rejection_of(make_frame({-kInfinity, 2.0F, 3.0F})), Rejection::not_a_number);
+TEST(Conditioner, rejects_a_supply_or_temperature_that_is_not_a_number) {
   for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     EXPECT_EQ(rejection_of(make_frame({1.0F, 2.0F, 3.0F}, value)), Rejection::not_a_number);
     RawFrame hot = make_frame({1.0F, 2.0F, 3.0F});
@@ -155,9 +152,54 @@ TEST(Conditioner, rejects_what_is_not_a_number) {
   }
 }
 
-TEST(Conditioner, rejects_a_reading_that_the_adc_cannot_give) {
-  EXPECT_EQ(rejection_of(make_frame({1.0F, 2.0F, -0.001F})), Rejection::outside_adc_range);
-  EXPECT_EQ(rejection_of(make_frame({4095.01F, 2.0F, 3.0F})), Rejection::outside_adc_range);
+TEST(Conditioner, a_taxel_without_a_reading_alone_is_invalid_and_reads_as_its_neighbours) {
+  const ArrayDescription array = make_array(2, 3);
+  for (const float bad : {kNan, kInfinity, -kInfinity, -0.001F, 4095.01F}) {
+    const auto conditioned = condition(array, make_frame({bad, 819.0F, 4095.0F, 0.0F, 2457.0F, 0.0F}));
+    EXPECT_EQ(conditioned.status, FrameStatus::saturated) << bad;
+    EXPECT_EQ(conditioned.taxels, (std::vector{TaxelStatus::invalid, TaxelStatus::ok, TaxelStatus::saturated,
+                                               TaxelStatus::ok, TaxelStatus::ok, TaxelStatus::ok}));
+    EXPECT_NEAR(conditioned.ratio[0], (0.2 + 0.0 + 0.6) / 3.0, 1e-12) << bad;
+    EXPECT_NEAR(conditioned.ratio[1], 0.2, 1e-12) << bad;
+  }
+}
+
+TEST(Conditioner, a_reading_beyond_the_adc_is_not_saturated) {
+  EXPECT_EQ(condition(make_array(), make_frame({1.0F, 5000.0F, 3.0F})).status, FrameStatus::ok);
+}
+
+TEST(Conditioner, rejects_a_frame_that_lacks_more_than_half_of_its_readings) {
+  Conditioner conditioner(make_array(2, 2));
+  ConditionedFrame conditioned;
+  conditioner.process(make_frame({1.0F, kNan, 2.0F, -1.0F}), conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::none);
+  conditioner.process(make_frame({kNan, kNan, 2.0F, -1.0F}), conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::too_few_readings);
+  EXPECT_EQ(conditioned.status, FrameStatus::rejected);
+}
+
+TEST(Conditioner, a_taxel_that_the_sheet_does_not_have_reads_nothing_and_is_no_missing_reading) {
+  ArrayDescription array = make_array(2, 2);
+  array.absent = {0, 1, 2};
+  for (const float reading : {kNan, 0.0F, 4095.0F, 9999.0F}) {
+    const auto conditioned = condition(array, make_frame({reading, reading, reading, 819.0F}));
+    EXPECT_EQ(conditioned.status, FrameStatus::ok) << reading;
+    EXPECT_EQ(conditioned.taxels,
+              (std::vector{TaxelStatus::invalid, TaxelStatus::invalid, TaxelStatus::invalid, TaxelStatus::ok}));
+    EXPECT_EQ(std::vector<double>(conditioned.ratio.begin(), conditioned.ratio.begin() + 3), std::vector<double>(3));
+    EXPECT_NEAR(conditioned.ratio[3], 0.2, 1e-12);
+  }
+}
+
+TEST(Conditioner, readings_at_the_rail_are_saturated) {
+  ArrayDescription array = make_array();
+  array.readout.rail_counts = 4000.0;
+  EXPECT_EQ(condition(array, make_frame({3999.0F, 4000.0F, 4095.0F})).taxels,
+            (std::vector{TaxelStatus::ok, TaxelStatus::saturated, TaxelStatus::saturated}));
+  array.readout.pressure_raises_reading = false;
+  array.readout.rail_counts = 100.0;
+  EXPECT_EQ(condition(array, make_frame({101.0F, 100.0F, 0.0F})).taxels,
+            (std::vector{TaxelStatus::ok, TaxelStatus::saturated, TaxelStatus::saturated}));
 }
 
 TEST(Conditioner, rejects_a_supply_that_is_not_positive) {
@@ -222,10 +264,10 @@ TEST(Conditioner, a_rejected_frame_leaves_the_clock_untouched) {
   RawFrame raw = make_frame({1.0F, 2.0F, 3.0F});
   raw.time = Nanos(10);
   conditioner.process(raw, conditioned);
-  RawFrame broken = make_frame({1.0F, 2.0F, kNan});
+  RawFrame broken = make_frame({1.0F, kNan, kNan});
   broken.time = Nanos(1'000'000);
   conditioner.process(broken, conditioned);
-  EXPECT_EQ(conditioner.rejection(), Rejection::not_a_number);
+  EXPECT_EQ(conditioner.rejection(), Rejection::too_few_readings);
   raw.time = Nanos(5);
   conditioner.process(raw, conditioned);
   EXPECT_EQ(conditioner.rejection(), Rejection::time_going_backwards);
@@ -263,7 +305,7 @@ TEST(Conditioner, recovers_fully_after_a_rejected_frame) {
 TEST(Rejection, every_reason_has_words_of_its_own) {
   std::set<std::string> words;
   for (const Rejection reason :
-       {Rejection::none, Rejection::wrong_shape, Rejection::not_a_number, Rejection::outside_adc_range,
+       {Rejection::none, Rejection::wrong_shape, Rejection::not_a_number, Rejection::too_few_readings,
         Rejection::supply_not_positive, Rejection::time_going_backwards}) {
     words.insert(to_string(reason));
   }
@@ -276,6 +318,12 @@ TEST(BareReadings, are_the_share_of_full_scale_whatever_the_supply) {
   std::vector<double> reading(3);
   bare_readings(array, make_frame({0.0F, 1023.75F, 4095.0F}, 4.5), reading);
   EXPECT_EQ(reading, (std::vector<double>{0.0, 0.25, 1.0}));
+}
+
+TEST(BareReadings, are_zero_where_there_is_none) {
+  std::vector<double> reading(3);
+  bare_readings(make_array(), make_frame({kNan, 4096.0F, 4095.0F}), reading);
+  EXPECT_EQ(reading, (std::vector<double>{0.0, 0.0, 1.0}));
 }
 
 TEST(BareReadings, rise_with_pressure_where_pressure_lowers_the_counts) {

@@ -34,7 +34,8 @@ struct CalibrationPlan {
 
 inline constexpr std::size_t kMostGuidedPresses = 8192;
 
-/// Every `stride`-th row and column (>= 1), as far from the edges as they can be, in reading order.
+/// Every `stride`-th row and column (>= 1), as far from the edges as they can be, in reading order,
+/// without taxels that the sheet does not have.
 [[nodiscard]] std::vector<std::size_t> taxels_with_stride(const ArrayDescription& array, std::size_t stride);
 
 /// 1, 2, 5, 10 and 20 N on about 16 taxels all over the array.

@@ -26,10 +26,11 @@ struct TotalForce {
 struct Sample {
   std::size_t frame = 0;  ///< Index in the recording.
   std::optional<double> temperature_celsius;
-  std::vector<double> reading;       ///< Bare readings [taxels], counts / full scale, for the baselines.
+  std::vector<double> reading;       ///< Bare readings [taxels], counts / full scale, for the baselines; 0: missing.
   std::vector<double> ratio;         ///< Reading / supply [taxels], for further estimators.
   double sigma_ratio = 0.0;          ///< Standard deviation of every ratio for the array's adc_noise_counts.
   std::vector<double> siemens;       ///< Conductances [taxels].
+  std::vector<TaxelStatus> taxels;   ///< What is known about each [taxels].
   std::vector<float> known_newtons;  ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
   std::vector<TotalForce> totals;
   bool unloaded = false;  ///< Nothing presses anywhere.
@@ -41,13 +42,16 @@ struct SampleDatabase {
   std::vector<Sample> samples;
   double siemens_per_count = 0.0;  ///< Conductance of one ADC count at an unloaded taxel [S].
   std::size_t frames_rejected = 0;
-  std::string first_rejection;            ///< "frame 17: a reading outside the ADC range"; empty when none.
+  std::string first_rejection;       ///< "frame 17: a supply of 0 V or less"; empty when none.
+  std::vector<std::string> remarks;  ///< What is wrong with labels and readings, what is left out, a sentence each.
   std::optional<CircuitFit> circuit_fit;  ///< Where resistances or the circuit were unknown; `array` holds its result.
 };
 
 /// Runs labelled frames after `settle_time` through units 2 and 3. Errors: no labelled frame, no unloaded frame (a
 /// frame labelled `force,all,0`), a load beyond the frames, more than a tenth of the labelled frames rejected, a
-/// circuit that cannot be inverted. What is unknown of the circuit is found first: fit_circuit().
+/// circuit that cannot be inverted. Frames that are called unloaded but are pressed are left out; what is unknown of
+/// the circuit is found first: fit_circuit(). A taxel without a reading has the conductance that its neighbours
+/// suggest, and no known force.
 [[nodiscard]] Result<SampleDatabase> build_sample_database(const ArrayDescription& array,
                                                            std::span<const RawFrame> frames,
                                                            std::span<const Load> loads, Nanos settle_time = Nanos{0});

@@ -77,7 +77,9 @@ class Compensator {
   /// next frame on; none: as before. Allocates nothing.
   void set_faults(std::span<const LineFault> faults);
 
-  /// Allocates nothing once `conductance` has the array's size.
+  /// Taxels without a reading (TaxelStatus::invalid) are estimated from their neighbours, so that the others are
+  /// solved; so are the saturated ones, at most half, and become invalid, where the circuit has no solution with
+  /// them. Allocates nothing once `conductance` has the array's size.
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
 
   /// See CrosstalkInversion.
@@ -87,6 +89,7 @@ class Compensator {
  private:
   Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
               std::span<const double> typical_siemens);
+  InversionResult invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept;
   void mask_faulty_taxels(ConductanceFrame& conductance) const noexcept;
 
   std::unique_ptr<CrosstalkInversion> inversion_;

@@ -61,6 +61,8 @@ struct Readout {
   std::optional<double> adc_reference_v;   ///< Full scale of the ADC [V], > 0; empty: the supply itself (ratiometric).
   std::optional<double> supply_v;          ///< Nominal supply [V], > 0, for frames that carry none.
   bool pressure_raises_reading = true;     ///< false: the reading falls with pressure, and 1 - ratio is used.
+  /// Reading at which pressure saturates the readout [counts], 0 ... 2^adc_bits - 1; empty: the end of the ADC.
+  std::optional<double> rail_counts;
 
   /// Largest count, 2^adc_bits - 1.
   [[nodiscard]] double full_scale_counts() const noexcept;
@@ -75,6 +77,9 @@ struct ArrayDescription {
   double row_pitch_m = 0.010;           ///< Distance between neighbouring rows [m], > 0.
   double col_pitch_m = 0.010;           ///< Distance between neighbouring columns [m], > 0.
   std::optional<double> taxel_area_m2;  ///< Pressed area of a taxel [m2], > 0; needed for loads given as pressure.
+  /// Crossings of lines where the sheet has no taxel, as row-major indices, rising: they conduct nothing, their
+  /// readings are not looked at and they have no force. Not all taxels.
+  std::vector<std::size_t> absent;
   Readout readout;
 
   [[nodiscard]] std::size_t taxel_count() const noexcept { return rows * cols; }
@@ -84,6 +89,8 @@ struct ArrayDescription {
   [[nodiscard]] std::size_t driven_lines() const noexcept { return readout.circuit == Circuit::flexitac ? cols : rows; }
   /// Number of lines with a load: columns, or rows for `flexitac`.
   [[nodiscard]] std::size_t sensed_lines() const noexcept { return readout.circuit == Circuit::flexitac ? rows : cols; }
+
+  [[nodiscard]] bool is_absent(std::size_t taxel) const noexcept;
 
   /// Calibration is still to find the circuit or some of its resistances: a reading cannot be computed yet.
   [[nodiscard]] bool has_unknown_circuit() const noexcept;

@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include "dermis/core/frame_source.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
 
 namespace dermis::files {
 
@@ -18,6 +20,9 @@ struct TaxelPlace {
 
 /// Reads "r3c5".
 [[nodiscard]] std::optional<TaxelPlace> parse_taxel(std::string_view text);
+
+/// Reads "r3c5", "r0c0:r3c3" or "all"; the error says what is wrong with the text.
+[[nodiscard]] Result<TaxelRegion> parse_region(std::string_view text, FrameShape shape);
 
 /// "12x32"
 [[nodiscard]] std::string size_text(FrameShape shape);

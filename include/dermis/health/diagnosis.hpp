@@ -27,6 +27,7 @@ struct Diagnosis {
   double seconds = 0.0;                           ///< From the first to the last frame that was not rejected [s].
   std::optional<double> noise_counts;             ///< Of a reading; empty: something touched the array all the time.
   double saturated_share = 0.0;                   ///< Of all readings, 0 ... 1.
+  std::string missing_readings;                   ///< Of which taxels in how many frames; empty: of none.
   std::optional<double> offset_drift;             ///< Of the unloaded conductance, relative; empty: not known.
   std::optional<TemperatureRange> temperature;    ///< Empty: no frame carried one.
   double worst_misfit_sigma = 0.0;                ///< Of a solved reading [standard deviations].

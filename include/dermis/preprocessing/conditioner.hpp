@@ -14,8 +14,8 @@ namespace dermis::preprocessing {
 enum class Rejection {
   none,
   wrong_shape,           ///< Not rows x cols readings.
-  not_a_number,          ///< A reading, the temperature or the supply is NaN or infinite.
-  outside_adc_range,     ///< A reading below 0 or above 2^adc_bits - 1.
+  not_a_number,          ///< The temperature or the supply is NaN or infinite.
+  too_few_readings,      ///< More than half of the taxels have no reading.
   supply_not_positive,   ///< A measured supply of 0 V or less.
   supply_unknown,        ///< The ADC has a reference in volts, and neither the frame nor the array tells the supply.
   time_going_backwards,  ///< Earlier than the frame before it.
@@ -30,8 +30,10 @@ enum class Rejection {
 ///   circuit
 ///                                                                       and the supply are unknown, the factor is 1)
 ///
-/// and 1 - ratio where pressure lowers the reading. Readings within half a count of the end of the ADC that
-/// pressure drives them to are marked saturated. Not thread-safe: one conditioner per stream of frames.
+/// and 1 - ratio where pressure lowers the reading. Readings within half a count of the end that pressure drives them
+/// to, of the ADC or readout.rail_counts, or beyond it are marked saturated. A taxel without a reading (NaN, infinite,
+/// below 0 or above 2^adc_bits - 1) is invalid and has the mean ratio of its neighbours that have one; a taxel that the
+/// sheet does not have is invalid and has the ratio 0. Not thread-safe: one conditioner per stream of frames.
 class Conditioner {
  public:
   /// The array must be valid (ArrayDescription::validate). A reference in volts needs a supply, either nominal
@@ -47,17 +49,23 @@ class Conditioner {
   [[nodiscard]] Rejection rejection() const noexcept { return rejection_; }
 
  private:
+  [[nodiscard]] bool is_reading(float count) const noexcept { return count >= 0.0F && count <= full_scale_counts_; }
+  [[nodiscard]] std::size_t count_missing(const RawFrame& raw) const noexcept;
   [[nodiscard]] Rejection inspect(const RawFrame& raw) const noexcept;
   void convert(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
+  void mark_missing(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
 
   ArrayDescription array_;
-  double full_scale_counts_;
+  float full_scale_counts_;
+  float highest_counts_;  // readings above it are saturated
+  float lowest_counts_;   // and those below it
   std::optional<Nanos> last_time_;
   Rejection rejection_ = Rejection::none;
 };
 
 /// counts / full scale, turned round where pressure lowers the reading: what an estimator sees that knows neither the
-/// supply nor the circuit. `reading` [rows, cols] in [0, 1]; the frame must have the array's shape. Thread-safe.
+/// supply nor the circuit. `reading` [rows, cols] in [0, 1], 0 where there is none; the frame must have the array's
+/// shape. Thread-safe.
 void bare_readings(const ArrayDescription& array, const RawFrame& raw, std::span<double> reading) noexcept;
 
 }  // namespace dermis::preprocessing

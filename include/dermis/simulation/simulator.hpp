@@ -48,7 +48,7 @@ class Simulator final : public FrameSource {
                                                                  std::optional<std::size_t> frames = {});
 
   [[nodiscard]] Result<bool> next(RawFrame& frame) override;
-  [[nodiscard]] std::optional<FrameShape> shape() const override { return shape_; }
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return FrameShape{array_.rows, array_.cols}; }
 
   [[nodiscard]] std::size_t frame_count() const noexcept { return scene_.frame_count(); }
 
@@ -65,11 +65,10 @@ class Simulator final : public FrameSource {
   [[nodiscard]] const ConductiveRubber& rubber() const noexcept { return rubber_; }
 
  private:
-  Simulator(const FrameShape& shape, Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit,
-            std::optional<FaultyCircuit> faulty, const Readout& readout, const EnvironmentOptions& environment,
-            std::uint64_t seed);
+  Simulator(ArrayDescription array, Scene scene, ConductiveRubber rubber, ReadoutCircuit circuit,
+            std::optional<FaultyCircuit> faulty, const EnvironmentOptions& environment, std::uint64_t seed);
 
-  FrameShape shape_;
+  ArrayDescription array_;
   Scene scene_;
   ConductiveRubber rubber_;
   ReadoutCircuit circuit_;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+
+namespace dermis::calibration {
+
+/// The reading at which the readout saturates before its ADC ends [counts], where the labelled frames show one: loads
+/// that differ twofold drive readings to the same last count, and hardly any reading stands just before it.
+[[nodiscard]] std::optional<double> find_rail(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                              std::span<const Load> loads);
+
+}  // namespace dermis::calibration
