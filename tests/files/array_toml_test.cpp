@@ -175,6 +175,7 @@ cols = 3
 [readout]
 circuit = "flexitac"
 drive_ohm = [20, 21, 22]
+drive_error_ohm = [1, 0, 2]
 load_ohm = [1000, 2000]
 column_segment_ohm = 5
 adc_bits = 8
@@ -298,6 +299,7 @@ TEST(ArrayToml, writes_every_circuit_without_loss) {
     EXPECT_EQ(read->readout.column_segment_ohm, array.readout.column_segment_ohm);
     EXPECT_EQ(read->readout.adc_noise_counts, array.readout.adc_noise_counts);
     EXPECT_EQ(read->readout.supply_noise, array.readout.supply_noise);
+    EXPECT_EQ(read->readout.drive_error_ohm, array.readout.drive_error_ohm);
   }
 }
 
