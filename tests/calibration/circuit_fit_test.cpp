@@ -115,6 +115,25 @@ TEST(CircuitFit, gives_forces_as_good_as_the_known_circuit) {
   EXPECT_LE(*reached.p95, 1.1 * *best.p95);
 }
 
+TEST(CircuitFit, leaves_its_own_uncertainty_in_the_forces) {
+  double share_68 = 0.0;
+  double share_95 = 0.0;
+  constexpr std::uint64_t kArrays = 4;
+  for (std::uint64_t seed = 1; seed <= kArrays; ++seed) {
+    const ArrayDescription truth = uneven_array(8, seed);
+    const Recording recording = record(truth, "calibration", seed);
+    const auto fitted = calibrate(to_be_fitted(truth), recording.frames, recording.loads);
+    ASSERT_TRUE(fitted) << fitted.error().message;
+    const Recording test = record(truth, "multitouch", seed, {}, 300);
+    const auto evaluation = evaluate(fitted->model, test.frames, test.loads);
+    ASSERT_TRUE(evaluation) << evaluation.error().message;
+    share_68 += *evaluation->coverage.share_68 / kArrays;
+    share_95 += *evaluation->coverage.share_95 / kArrays;
+  }
+  EXPECT_GT(share_68, 0.6);
+  EXPECT_GT(share_95, 0.9);
+}
+
 TEST(CircuitFit, sets_the_scale_and_says_so_where_no_resistance_is_known) {
   const ArrayDescription truth = uneven_array(8, 1);
   ArrayDescription unknown = to_be_fitted(truth);

@@ -103,8 +103,8 @@ std::vector<PressPair> possible_pairs(const ArrayDescription& array, const std::
 }
 
 struct Distance {
-  PressPair pair;
-  double square;  // in variances of a reading
+  PressPair pair = {};
+  double square = 0.0;  // in variances of a reading
 };
 
 }  // namespace
