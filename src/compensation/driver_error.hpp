@@ -16,8 +16,8 @@ namespace dermis::compensation {
 ///   d ln G_ij = e_i + Rl_j sum_k G_kj e_k,   e_i = s_i sum_m G_im        (e_i alone at virtual ground)
 ///
 /// less what the taxel would have of it alone, which its calibration by presses has learned with its law. Drivers are
-/// taken to be wrong together, which is the most they can do. Lines with resistance and floating lines are taken as if
-/// they were ideal and grounded, which with `flexitac` is too much.
+/// taken to be wrong together and their parts not to cancel, which is the most they can do. Lines with resistance and
+/// floating lines are taken as if they were ideal and grounded, which with `flexitac` is too much.
 class DriverError {
  public:
   explicit DriverError(const ArrayDescription& array);

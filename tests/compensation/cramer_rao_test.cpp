@@ -214,7 +214,7 @@ std::pair<double, double> driver_sigma_over_error(ArrayDescription array, Random
   return range;
 }
 
-TEST(DriverError, is_what_the_inversion_makes_of_wrong_drivers) {
+TEST(DriverError, is_no_less_than_what_the_inversion_makes_of_wrong_drivers) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       SCOPED_TRACE(testing::Message() << to_string(circuit) << ", seed " << seed);
@@ -223,7 +223,9 @@ TEST(DriverError, is_what_the_inversion_makes_of_wrong_drivers) {
       array.readout.drive_ohm.assign(8, 5.0);
       const auto [low, high] = driver_sigma_over_error(array, random);
       EXPECT_GT(low, 0.5);
-      EXPECT_LT(high, 2.0);
+      if (circuit == Circuit::transimpedance) {
+        EXPECT_LT(high, 1.1) << "both parts of a divider may cancel";
+      }
     }
   }
 }

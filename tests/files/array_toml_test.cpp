@@ -210,7 +210,7 @@ TEST(ArrayToml, reads_what_idle_columns_end_in) {
 
 TEST(ArrayToml, refuses_a_key_of_another_circuit) {
   EXPECT_EQ(error_of(std::string(kFlexitac) + "idle_rows = \"grounded\"\n"),
-            "array.toml:10: readout.idle_rows: has no meaning with circuit = \"flexitac\", only with \"divider\" or "
+            "array.toml:11: readout.idle_rows: has no meaning with circuit = \"flexitac\", only with \"divider\" or "
             "\"transimpedance\"; remove it");
   EXPECT_EQ(error_of(std::string(kAmplifiers) + "idle_columns = \"loaded\"\n"),
             "array.toml:18: readout.idle_columns: has no meaning with circuit = \"transimpedance\", only with "
