@@ -113,10 +113,15 @@ nlohmann::ordered_json circuit_json(const calibration::CircuitFit& fit) {
                                  {"load_ohm", readout.load_ohm},
                                  {"load_relative_error", fit.load_error},
                                  {"statements", fit.statements},
+                                 {"telling_presses", nlohmann::ordered_json::array()},
                                  {"candidates", nlohmann::ordered_json::array()}};
+  for (const calibration::PressPair& pair : fit.telling_presses) {
+    json["telling_presses"].push_back(
+        {{"taxels", {fit.array.taxel_name(pair.first), fit.array.taxel_name(pair.second)}}, {"newtons", pair.newtons}});
+  }
   for (const calibration::CircuitCandidate& candidate : fit.candidates) {
     json["candidates"].push_back({{"name", candidate.name},
-                                  {"held_out_error", candidate.held_out_error},  // null: not possible
+                                  {"misfit", candidate.misfit},  // null: not possible
                                   {"chosen", candidate.chosen},
                                   {"indistinguishable", candidate.indistinguishable}});
   }

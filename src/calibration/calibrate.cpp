@@ -91,7 +91,10 @@ Result<Calibration> calibrate(const SampleDatabase& database, const Progress& pr
   if (!uncertainty) return uncertainty.error();
   report.uncertainty = *uncertainty;
   report.training = std::move(training->report);
-  if (database.circuit_fit) report.circuit = database.circuit_fit->statements;
+  if (database.circuit_fit) {
+    report.circuit = database.circuit_fit->statements;
+    report.telling_presses = database.circuit_fit->telling_presses;
+  }
   calibration.model.provenance = provenance(database.array, report);
   return calibration;
 }

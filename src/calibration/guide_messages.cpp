@@ -6,6 +6,8 @@
 
 #include <algorithm>
 
+#include "calibration/circuit_fit/telling_presses.hpp"
+
 namespace dermis::calibration {
 namespace {
 
@@ -84,6 +86,11 @@ std::string describe_result(const Calibration& calibration, const GuideState& st
   text += describe_errors(state, calibration.model.array);
   if (!training.dead_taxels.empty()) {
     text += fmt::format(" {} taxels did not answer and are marked dead.", training.dead_taxels.size());
+  }
+  const std::vector<PressPair>& telling = calibration.report.telling_presses;
+  if (!telling.empty()) {
+    text += fmt::format(" The circuit is not certain: {}, add these frames to the saved ones and calibrate again.",
+                        describe(telling, calibration.model.array));
   }
   text += fmt::format(" Forces above {:g} N are not extrapolated.", training.heaviest_newtons);
   return text + describe_temperature(training, presses);

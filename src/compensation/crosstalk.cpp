@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "compensation/driver_error.hpp"
 #include "compensation/fault_inversion.hpp"
 #include "compensation/grounded_rows.hpp"
 #include "compensation/newton_inversion.hpp"
@@ -77,6 +78,7 @@ Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<Crosstal
                          std::span<const double> typical_siemens)
     : inversion_(std::move(inversion)),
       supply_error_(std::make_unique<SupplyError>(array)),
+      driver_error_(std::make_unique<DriverError>(array)),
       faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts(),
                                                typical_siemens)) {}
 Compensator::Compensator(Compensator&&) noexcept = default;
@@ -108,6 +110,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
   supply_error_->add(conductance.siemens, conductance.sigma_siemens);
+  driver_error_->add(conductance.siemens, conductance.sigma_siemens);
   if (!result.solved) {
     conductance.status |= FrameStatus::not_converged;
     std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);

@@ -73,6 +73,9 @@ Status validate_automatic(const Readout& readout) {
   if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty()) {
     return bad_input("readout.circuit: \"auto\" takes lines for ideal; leave out the segment resistances");
   }
+  if (!readout.drive_error_ohm.empty()) {
+    return bad_input("readout.drive_error_ohm: \"auto\" finds it; leave it out");
+  }
   if (!readout.drive_ohm.empty()) {
     if (Status drive = validate_resistors("drive_ohm", readout.drive_ohm, 1, true); !drive) return drive;
   }
@@ -118,6 +121,10 @@ Status validate_readout(const ArrayDescription& array) {
   if (readout.circuit == Circuit::automatic) return validate_automatic(readout);
   if (Status drive = validate_resistors("drive_ohm", readout.drive_ohm, array.driven_lines(), true); !drive) {
     return drive;
+  }
+  if (Status error = validate_extra_resistors("drive_error_ohm", readout.drive_error_ohm, array.driven_lines());
+      !error) {
+    return error;
   }
   if (Status load = validate_resistors("load_ohm", readout.load_ohm, array.sensed_lines(), false); !load) return load;
   if (Status row = validate_extra_resistors("row_segment_ohm", readout.row_segment_ohm, array.rows); !row) return row;

@@ -115,6 +115,25 @@ TEST(CircuitFit, gives_forces_as_good_as_the_known_circuit) {
   EXPECT_LE(*reached.p95, 1.1 * *best.p95);
 }
 
+TEST(CircuitFit, leaves_its_own_uncertainty_in_the_forces) {
+  double share_68 = 0.0;
+  double share_95 = 0.0;
+  constexpr std::uint64_t kArrays = 4;
+  for (std::uint64_t seed = 1; seed <= kArrays; ++seed) {
+    const ArrayDescription truth = uneven_array(8, seed);
+    const Recording recording = record(truth, "calibration", seed);
+    const auto fitted = calibrate(to_be_fitted(truth), recording.frames, recording.loads);
+    ASSERT_TRUE(fitted) << fitted.error().message;
+    const Recording test = record(truth, "multitouch", seed, {}, 300);
+    const auto evaluation = evaluate(fitted->model, test.frames, test.loads);
+    ASSERT_TRUE(evaluation) << evaluation.error().message;
+    share_68 += *evaluation->coverage.share_68 / kArrays;
+    share_95 += *evaluation->coverage.share_95 / kArrays;
+  }
+  EXPECT_GT(share_68, 0.6);
+  EXPECT_GT(share_95, 0.9);
+}
+
 TEST(CircuitFit, sets_the_scale_and_says_so_where_no_resistance_is_known) {
   const ArrayDescription truth = uneven_array(8, 1);
   ArrayDescription unknown = to_be_fitted(truth);
@@ -151,6 +170,23 @@ TEST(CircuitFit, refuses_an_array_that_is_never_pressed) {
   EXPECT_NE(fit.error().message.find("no frame presses"), std::string::npos) << fit.error().message;
 }
 
+TEST(CircuitFit, takes_frames_in_which_no_taxel_is_idle) {
+  ArrayDescription truth = reference_array(64, 8);
+  const Recording recording = record(truth, "uniform", 1);
+  Recording pressed;
+  for (const Load& load : recording.loads) {
+    if (load.value == 0.0 || load.frame % 10 != 0) continue;
+    pressed.loads.push_back(load);
+    pressed.loads.back().frame = pressed.frames.size();
+    pressed.frames.push_back(recording.frames[load.frame]);
+  }
+  const CircuitFit fit = fit_of(to_be_fitted(truth), pressed);
+  EXPECT_FALSE(fit.array.has_unknown_circuit());
+  truth.readout.circuit = Circuit::automatic;
+  truth.readout.drive_ohm = truth.readout.load_ohm = {kFitOhm};
+  EXPECT_FALSE(fit_of(truth, pressed).array.has_unknown_circuit());
+}
+
 TEST(CircuitFit, tells_the_circuits_apart) {
   struct Case {
     Circuit circuit;
@@ -171,9 +207,25 @@ TEST(CircuitFit, tells_the_circuits_apart) {
     EXPECT_EQ(to_string(fit.array.readout.circuit), std::string(to_string(c.circuit)));
     EXPECT_EQ(fit.array.readout.idle_columns, c.idle_columns);
     EXPECT_TRUE(fit.candidates.front().chosen);
-    EXPECT_LT(fit.candidates.front().held_out_error, 1.2);
-    EXPECT_TRUE(says(fit, "held-out error"));
+    EXPECT_LT(fit.candidates.front().misfit, 1.2);
+    EXPECT_TRUE(says(fit, "times the noise"));
   }
+}
+
+TEST(CircuitFit, does_not_take_the_resistance_of_contacts_for_that_of_the_circuit) {
+  ArrayDescription truth = reference_array(9, 9);
+  truth.readout.drive_ohm.assign(9, 25.0);
+  simulation::SimulationOptions options;
+  options.rubber.contact_ohm = 60.0;
+  ArrayDescription unknown = truth;
+  unknown.readout.circuit = Circuit::automatic;
+  unknown.readout.drive_ohm = unknown.readout.load_ohm = {kFitOhm};
+  const CircuitFit fit = fit_of(unknown, record(truth, "calibration", 1, options));
+  SCOPED_TRACE(fit.statements[0] + "\n" + fit.statements[1]);
+  EXPECT_EQ(fit.candidates.front().name, "divider, idle rows grounded");
+  EXPECT_LT(fit.candidates.front().misfit, 1.1);
+  const double ratio = fit.array.readout.drive_ohm[0] / fit.array.readout.load_ohm[0];
+  EXPECT_NEAR(ratio, 25.0 / 200.0, 0.2 * 25.0 / 200.0);
 }
 
 TEST(CircuitFit, does_not_depend_on_the_number_of_threads) {

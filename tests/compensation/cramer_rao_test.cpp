@@ -176,6 +176,60 @@ TEST(SupplyError, is_what_the_inversion_makes_of_a_wrong_supply) {
   }
 }
 
+/// The Compensator's standard deviation where hardly anything but the drivers is unsure, over what the inversion with
+/// drivers that are wrong by just that makes of the readings beside what it makes of the taxel alone.
+std::pair<double, double> driver_sigma_over_error(ArrayDescription array, Random& random) {
+  constexpr double kErrorOhm = 0.01;
+  const std::size_t taxels = array.taxel_count();
+  std::vector<double> truth(taxels);
+  for (double& siemens : truth) siemens = random.below(4) == 0 ? 1.0 / random.log_uniform(200.0, 2000.0) : 5e-6;
+  auto circuit = CircuitModel::create(array);
+  ArrayDescription wrong_array = array;
+  for (double& ohm : wrong_array.readout.drive_ohm) ohm += kErrorOhm;
+  const InversionOptions exact{0.0};
+  auto inversion = make_crosstalk_inversion(wrong_array, exact);
+  std::vector<double> wrong(taxels);
+  const auto relative_error = [&](const std::vector<double>& siemens, std::size_t taxel) {
+    circuit->solve(siemens);
+    EXPECT_TRUE((*inversion)->invert(circuit->ratio(), wrong).solved);
+    return wrong[taxel] / siemens[taxel] - 1.0;
+  };
+  circuit->solve(truth);
+  ConditionedFrame conditioned;
+  conditioned.ratio.assign(circuit->ratio().begin(), circuit->ratio().end());
+  conditioned.sigma_ratio = 1e-12;
+  conditioned.taxels.assign(taxels, TaxelStatus::ok);
+  array.readout.drive_error_ohm.assign(array.driven_lines(), kErrorOhm);
+  ConductanceFrame right;
+  Compensator::create(array)->process(conditioned, right);
+  std::pair<double, double> range{1e9, 0.0};
+  for (std::size_t k = 0; k < taxels; ++k) {
+    if (truth[k] < 1e-4) continue;
+    std::vector<double> alone(taxels, 0.0);
+    alone[k] = truth[k];
+    const double error = std::abs(relative_error(truth, k) - relative_error(alone, k));
+    const double share = right.sigma_siemens[k] / truth[k] / error;
+    range = {std::min(range.first, share), std::max(range.second, share)};
+  }
+  return range;
+}
+
+TEST(DriverError, is_no_less_than_what_the_inversion_makes_of_wrong_drivers) {
+  for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance}) {
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+      SCOPED_TRACE(testing::Message() << to_string(circuit) << ", seed " << seed);
+      Random random(seed);
+      ArrayDescription array = random_array(8, circuit, random);
+      array.readout.drive_ohm.assign(8, 5.0);
+      const auto [low, high] = driver_sigma_over_error(array, random);
+      EXPECT_GT(low, 0.5);
+      if (circuit == Circuit::transimpedance) {
+        EXPECT_LT(high, 1.1) << "both parts of a divider may cancel";
+      }
+    }
+  }
+}
+
 TEST(SupplyError, is_nothing_where_the_reference_is_the_supply) {
   Random random(1);
   ArrayDescription array = random_array(4, Circuit::divider, random);

@@ -175,6 +175,7 @@ cols = 3
 [readout]
 circuit = "flexitac"
 drive_ohm = [20, 21, 22]
+drive_error_ohm = [1, 0, 2]
 load_ohm = [1000, 2000]
 column_segment_ohm = 5
 adc_bits = 8
@@ -209,7 +210,7 @@ TEST(ArrayToml, reads_what_idle_columns_end_in) {
 
 TEST(ArrayToml, refuses_a_key_of_another_circuit) {
   EXPECT_EQ(error_of(std::string(kFlexitac) + "idle_rows = \"grounded\"\n"),
-            "array.toml:10: readout.idle_rows: has no meaning with circuit = \"flexitac\", only with \"divider\" or "
+            "array.toml:11: readout.idle_rows: has no meaning with circuit = \"flexitac\", only with \"divider\" or "
             "\"transimpedance\"; remove it");
   EXPECT_EQ(error_of(std::string(kAmplifiers) + "idle_columns = \"loaded\"\n"),
             "array.toml:18: readout.idle_columns: has no meaning with circuit = \"transimpedance\", only with "
@@ -317,6 +318,7 @@ TEST(ArrayToml, writes_every_circuit_without_loss) {
     EXPECT_EQ(read->readout.column_segment_ohm, array.readout.column_segment_ohm);
     EXPECT_EQ(read->readout.adc_noise_counts, array.readout.adc_noise_counts);
     EXPECT_EQ(read->readout.supply_noise, array.readout.supply_noise);
+    EXPECT_EQ(read->readout.drive_error_ohm, array.readout.drive_error_ohm);
   }
 }
 

@@ -17,11 +17,19 @@ namespace dermis::calibration {
 /// One of the circuits that `auto` chooses among.
 struct CircuitCandidate {
   std::string name;  ///< "divider, idle rows floating"
-  /// Root mean square of what the circuit leaves unexplained in presses that it was not fitted to, in standard
-  /// deviations of the readings; 1 is the noise, infinity a circuit that cannot give these readings.
-  double held_out_error = 0.0;
+  /// Root mean square of what the circuit leaves unexplained, over the noise of readings and rubber that the best one
+  /// leaves; infinity: a circuit that cannot give these readings. All circuits are judged with one resistance for all
+  /// drivers and one for all loads.
+  double misfit = 0.0;
   bool chosen = false;
-  bool indistinguishable = false;  ///< Less than three standard errors worse than the chosen one.
+  bool indistinguishable = false;  ///< Less than a thousand to one worse than the chosen one.
+};
+
+/// Two taxels that are to be pressed at the same time, with the same load each.
+struct PressPair {
+  std::size_t first = 0;
+  std::size_t second = 0;
+  double newtons = 0.0;
 };
 
 /// The resistances of a circuit as the calibration frames tell them.
@@ -35,6 +43,7 @@ struct CircuitFit {
   double rubber_scatter = 0.0;      ///< Relative scatter of a press about the law of its taxel, found with the circuit.
   std::size_t frames = 0;           ///< Frames the fit used, after repeated ones were averaged.
   std::vector<CircuitCandidate> candidates;  ///< Of `auto`; empty otherwise.
+  std::vector<PressPair> telling_presses;    ///< Would tell the circuits apart that these frames do not; at most 5.
   std::vector<std::string> statements;       ///< What was found and what the data cannot determine, in plain words.
 };
 

@@ -58,6 +58,7 @@ class CrosstalkInversion {
 [[nodiscard]] Result<std::unique_ptr<CrosstalkInversion>> make_crosstalk_inversion(
     const ArrayDescription& array, const InversionOptions& options = {});
 
+class DriverError;
 class FaultInversion;
 class SupplyError;
 
@@ -94,6 +95,7 @@ class Compensator {
 
   std::unique_ptr<CrosstalkInversion> inversion_;
   std::unique_ptr<SupplyError> supply_error_;
+  std::unique_ptr<DriverError> driver_error_;
   std::unique_ptr<FaultInversion> faults_;
 };
 

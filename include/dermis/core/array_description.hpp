@@ -22,7 +22,7 @@ enum class Circuit {
   flexitac,   ///< One column is driven and the others are at 0 V; one row ends in a resistor to ground and is read, the
               ///< other rows float (FlexiTac, Sensitronics).
   none,       ///< Unknown: readings are taken as proportional to conductance.
-  automatic,  ///< "auto": calibration chooses among the circuits by held-out error.
+  automatic,  ///< "auto": calibration chooses among the circuits by what they leave unexplained.
 };
 
 /// What the rows that are not being scanned are tied to.
@@ -57,6 +57,7 @@ struct Readout {
   std::vector<double> column_segment_ohm;  ///< Of each column line, from one taxel to the next [ohm], >= 0.
   int adc_bits = 12;                       ///< Resolution [bit], 1 ... 24.
   double adc_noise_counts = 1.0;           ///< Standard deviation of a reading, rounding included [counts], > 0.
+  std::vector<double> drive_error_ohm;     ///< Standard deviation of each of drive_ohm [ohm], >= 0; empty: exact.
   double supply_noise = 0.0;               ///< Relative standard deviation of the measured supply, 0 ... 0.1.
   std::optional<double> adc_reference_v;   ///< Full scale of the ADC [V], > 0; empty: the supply itself (ratiometric).
   std::optional<double> supply_v;          ///< Nominal supply [V], > 0, for frames that carry none.

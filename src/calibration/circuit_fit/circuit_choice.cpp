@@ -5,20 +5,23 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
+#include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
-#include "calibration/circuit_fit/resistance_fit.hpp"
-#include "dermis/core/random.hpp"
+#include "calibration/circuit_fit/common_ratio.hpp"
+#include "calibration/circuit_fit/frame_selection.hpp"
+#include "calibration/circuit_fit/judge_frames.hpp"
+#include "calibration/circuit_fit/telling_presses.hpp"
+#include "dermis/core/parallel.hpp"
 
 namespace dermis::calibration {
 namespace {
 
-constexpr double kSureSigmas = 3.0;         // by which a circuit must be better to be told from another
-constexpr double kCutSquare = 25.0;         // no single reading decides
-constexpr std::size_t kTrainFrames = 1200;  // of each half of the frames that choose the circuit
-constexpr std::uint64_t kSplitSeed = 2;
+const double kSureSquare = 2.0 * std::log(1000.0);  // odds of a thousand to one tell one circuit from another
+
+constexpr std::size_t kFewFrames = 60;  // refute most circuits
 
 struct Kind {
   const char* name;
@@ -58,74 +61,103 @@ ArrayDescription as_kind(const ArrayDescription& array, const Kind& kind) {
   return candidate;
 }
 
-/// Two halves, of at most kTrainFrames each, drawn by lot.
-std::pair<CircuitFrames, CircuitFrames> split(const CircuitFrames& frames) {
-  std::pair<CircuitFrames, CircuitFrames> halves;
-  halves.first.has_temperature = frames.has_temperature;
-  halves.second.has_temperature = frames.has_temperature;
-  const double share = 2.0 * static_cast<double>(kTrainFrames) / static_cast<double>(frames.frames.size());
-  for (std::size_t k = 0; k < frames.frames.size(); ++k) {
-    const double lot = Random::stream(kSplitSeed, k).uniform();
-    if (lot >= share) continue;
-    (lot < 0.5 * std::min(share, 1.0) ? halves.first : halves.second).frames.push_back(frames.frames[k]);
-  }
-  return halves;
-}
-
-/// Mean square of what each kind leaves of each held-out frame.
+/// What a kind makes of the frames.
 struct Trial {
-  const Kind* kind;
-  std::vector<double> squares;
-  double mean = 0.0;
+  const Kind* kind = nullptr;
+  std::optional<CommonRatio> fit = {};  // empty: it cannot give them
+  FrameMisfit misfit = {std::numeric_limits<double>::infinity(), 0.0};
 };
 
-double mean_of(const std::vector<double>& squares) {
-  double sum = 0.0;
-  double count = 0.0;
-  for (const double square : squares) {
-    if (std::isnan(square)) continue;
-    sum += square;
-    count += 1.0;
+std::vector<Trial> all_kinds() {
+  std::vector<Trial> trials;
+  for (const Kind& kind : kKinds) trials.push_back({.kind = &kind});
+  return trials;
+}
+
+/// All by the least scatter that one of them leaves.
+void judge(std::vector<Trial>& trials, const std::vector<const CircuitFrame*>& frames) {
+  Scatter least;
+  least.noise_variance = least.rubber_variance = std::numeric_limits<double>::infinity();
+  for (const Trial& trial : trials) {
+    if (!trial.fit) continue;
+    least.noise_variance = std::min(least.noise_variance, trial.fit->scatter.noise_variance);
+    least.rubber_variance = std::min(least.rubber_variance, trial.fit->scatter.rubber_variance);
   }
-  return count > 0.0 ? sum / count : std::numeric_limits<double>::infinity();
-}
-
-/// Standard errors by which `other` is worse than `best`, from the frames' differences.
-double sigmas_worse(const Trial& best, const Trial& other) {
-  double sum = 0.0;
-  double square = 0.0;
-  double count = 0.0;
-  for (std::size_t k = 0; k < best.squares.size(); ++k) {
-    const double difference = other.squares[k] - best.squares[k];
-    if (std::isnan(difference)) continue;
-    sum += difference;
-    square += difference * difference;
-    count += 1.0;
+  for (Trial& trial : trials) {
+    if (trial.fit) trial.misfit = sum(judge_frames(trial.fit->array, trial.fit->rubber, least, frames));
   }
-  if (count < 2.0) return 0.0;
-  const double variance = (square - sum * sum / count) / (count - 1.0);
-  return variance > 0.0 ? sum / std::sqrt(count * variance) : 0.0;
 }
 
-Trial try_kind(const Kind& kind, const ArrayDescription& array, const CircuitFrames& first,
-               const CircuitFrames& second) {
-  Trial trial{&kind, {}, std::numeric_limits<double>::infinity()};
-  const Result<ResistanceFit> fit = fit_resistances(as_kind(array, kind), first);
-  if (!fit) return trial;
-  trial.squares = judge_frames(*fit, second, kCutSquare);
-  trial.mean = mean_of(trial.squares);
-  return trial;
+void try_kinds(const ArrayDescription& array, const CircuitFrames& all, std::size_t most, std::vector<Trial>& trials) {
+  const auto frames = select_frames(all, most);
+  parallel_for(trials.size(), [&](std::size_t k) {
+    const LineParameters lines(as_kind(array, *trials[k].kind));
+    const Rubber unknown = unknown_rubber(all, array.taxel_count(), 1.0 / lines.reference_ohm());
+    Result<CommonRatio> fit = fit_common_ratio(lines, frames, unknown);
+    trials[k] = {.kind = trials[k].kind};
+    if (fit) trials[k].fit = *std::move(fit);
+  });
+  judge(trials, frames);
 }
 
-std::vector<CircuitCandidate> candidates_of(const std::vector<Trial>& trials, const Trial& best) {
+/// The sum of squares by which a circuit must be better to be told from another: readings that no circuit explains to
+/// their noise count for less.
+double sure_square(const FrameMisfit& best) {
+  return kSureSquare * std::max(1.0, best.square / best.readings);
+}
+
+bool has_less(const Trial& a, const Trial& b) {
+  return a.misfit.square < b.misfit.square;
+}
+
+/// Lines that taxels share have crosstalk, however small: no circuit only where none of them is anywhere near.
+const Trial& choose(const std::vector<Trial>& trials) {
+  const auto none = std::find_if(trials.begin(), trials.end(),
+                                 [](const Trial& trial) { return trial.kind->circuit == Circuit::none; });
+  const auto best = std::min_element(trials.begin(), none, has_less);
+  if (none == trials.end()) return *best;
+  const bool is_refuted = none->misfit.square + sure_square(none->misfit) < best->misfit.square;
+  return is_refuted ? *none : *best;
+}
+
+/// "none" is no rival of a circuit, see choose().
+bool is_told(const Trial& trial, const Trial& chosen) {
+  return trial.kind->circuit == Circuit::none ||
+         trial.misfit.square >= chosen.misfit.square + sure_square(chosen.misfit);
+}
+
+std::vector<PressPair> presses_to_tell(const std::vector<Trial>& trials, const Trial& chosen,
+                                       const CircuitFrames& frames) {
+  std::vector<const CommonRatio*> circuits{&*chosen.fit};
+  for (const Trial& trial : trials) {
+    if (trial.kind != chosen.kind && !is_told(trial, chosen)) circuits.push_back(&*trial.fit);
+  }
+  if (circuits.size() == 1) return {};
+  return telling_presses(circuits, frames, sure_square(chosen.misfit));
+}
+
+/// The chosen one, and what is not told from it.
+std::vector<Trial> rivals(const std::vector<Trial>& trials) {
+  const Trial& chosen = choose(trials);
+  std::vector<Trial> rivals;
+  std::copy_if(trials.begin(), trials.end(), std::back_inserter(rivals),
+               [&](const Trial& trial) { return trial.kind == chosen.kind || !is_told(trial, chosen); });
+  return rivals;
+}
+
+bool has_kind(const std::vector<Trial>& trials, const Kind* kind) {
+  return std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) { return trial.kind == kind; });
+}
+
+std::vector<CircuitCandidate> candidates_of(const std::vector<Trial>& trials, const Trial& chosen) {
   std::vector<CircuitCandidate> candidates;
   for (const Trial& trial : trials) {
-    const bool is_best = trial.kind == best.kind;
-    const bool close = !is_best && std::isfinite(trial.mean) && sigmas_worse(best, trial) < kSureSigmas;
-    candidates.push_back({trial.kind->name, std::sqrt(trial.mean), is_best, close});
+    const double misfit = std::sqrt(trial.misfit.square / std::max(1.0, trial.misfit.readings));
+    const bool is_chosen = trial.kind == chosen.kind;
+    candidates.push_back({trial.kind->name, misfit, is_chosen, !is_chosen && !is_told(trial, chosen)});
   }
   std::stable_sort(candidates.begin(), candidates.end(), [](const CircuitCandidate& a, const CircuitCandidate& b) {
-    return a.held_out_error < b.held_out_error;
+    return a.chosen != b.chosen ? a.chosen : a.misfit < b.misfit;
   });
   return candidates;
 }
@@ -133,13 +165,22 @@ std::vector<CircuitCandidate> candidates_of(const std::vector<Trial>& trials, co
 }  // namespace
 
 Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames) {
-  const auto [first, second] = split(frames);
-  std::vector<Trial> trials;
-  for (const Kind& kind : kKinds) trials.push_back(try_kind(kind, array, first, second));
-  const auto best =
-      std::min_element(trials.begin(), trials.end(), [](const Trial& a, const Trial& b) { return a.mean < b.mean; });
-  if (!std::isfinite(best->mean)) return bad_input("readout: no circuit explains the calibration frames");
-  return CircuitChoice{as_kind(array, *best->kind), candidates_of(trials, *best)};
+  std::vector<Trial> trials = all_kinds();
+  try_kinds(array, frames, kFewFrames, trials);
+  std::vector<Trial> left = rivals(trials);
+  const bool is_slow = std::any_of(left.begin(), left.end(),
+                                   [](const Trial& trial) { return trial.kind->idle_rows == IdleRows::floating; });
+  const std::size_t most = affordable_frames_of_choice(array.taxel_count(), is_slow);
+  if (left.size() > 1 && most > kFewFrames && frames.frames.size() > kFewFrames) try_kinds(array, frames, most, left);
+  const Trial& chosen = choose(left);
+  if (!chosen.fit) return bad_input("readout: no circuit explains the calibration frames");
+  std::vector<CircuitCandidate> candidates = candidates_of(left, chosen);
+  std::erase_if(trials, [&](const Trial& trial) { return has_kind(left, trial.kind); });
+  for (CircuitCandidate& refuted : candidates_of(trials, chosen)) {
+    refuted.indistinguishable = false;
+    candidates.push_back(std::move(refuted));
+  }
+  return CircuitChoice{as_kind(array, *chosen.kind), std::move(candidates), presses_to_tell(left, chosen, frames)};
 }
 
 }  // namespace dermis::calibration

@@ -15,9 +15,11 @@ namespace dermis::calibration {
 struct CircuitChoice {
   ArrayDescription array;                    ///< Of that kind; resistances that are not given are kFitOhm.
   std::vector<CircuitCandidate> candidates;  ///< The best first.
+  std::vector<PressPair> telling_presses;    ///< Where some of them are indistinguishable.
 };
 
-/// Fits every kind to half of the frames and judges it on the other half. Errors: no kind explains the frames.
+/// Fits every kind with one resistance for all drivers and one for all loads, and compares what they leave. All have
+/// the same laws for the taxels, so that none is better by having more to fit. Errors: no kind explains the frames.
 [[nodiscard]] Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames);
 
 }  // namespace dermis::calibration

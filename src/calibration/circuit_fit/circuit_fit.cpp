@@ -38,7 +38,8 @@ Result<CircuitFit> fit_circuit(const ArrayDescription& array, std::span<const Ra
     if (!choice) return choice.error();
     result.array = std::move(choice->array);
     result.candidates = std::move(choice->candidates);
-    result.statements = describe_choice(result.candidates);
+    result.telling_presses = std::move(choice->telling_presses);
+    result.statements = describe_choice(array, result.candidates, result.telling_presses);
   }
   Result<ResistanceFit> fit = fit_resistances(result.array, *labelled);
   if (!fit) return fit.error();

@@ -10,6 +10,8 @@
 #include <limits>
 #include <optional>
 
+#include "calibration/circuit_fit/telling_presses.hpp"
+
 namespace dermis::calibration {
 namespace {
 
@@ -17,25 +19,29 @@ constexpr double kWellKnown = 0.02;  // relative standard error below which a re
 constexpr double kUnknown = 0.5;     // and above which nothing can be said
 
 std::string describe_candidates(const std::vector<CircuitCandidate>& candidates) {
-  std::string text = fmt::format("circuit: {} (held-out error {:.3g} standard deviations of a reading;",
-                                 candidates.front().name, candidates.front().held_out_error);
+  std::string text =
+      fmt::format("circuit: {} (leaves {:.3g} times the noise;", candidates.front().name, candidates.front().misfit);
   for (std::size_t k = 1; k < candidates.size(); ++k) {
-    text += std::isfinite(candidates[k].held_out_error)
-                ? fmt::format(" {} {:.3g}{}", candidates[k].name, candidates[k].held_out_error,
+    text += std::isfinite(candidates[k].misfit)
+                ? fmt::format(" {} {:.3g}{}", candidates[k].name, candidates[k].misfit,
                               k + 1 < candidates.size() ? ";" : ")")
                 : fmt::format(" {} not possible{}", candidates[k].name, k + 1 < candidates.size() ? ";" : ")");
   }
   return text;
 }
 
-std::optional<std::string> describe_doubt(const std::vector<CircuitCandidate>& candidates) {
+std::optional<std::string> describe_doubt(const ArrayDescription& array,
+                                          const std::vector<CircuitCandidate>& candidates,
+                                          const std::vector<PressPair>& telling_presses) {
   std::string names;
   for (const CircuitCandidate& candidate : candidates) {
     if (candidate.indistinguishable) names += (names.empty() ? "\"" : ", \"") + candidate.name + "\"";
   }
   if (names.empty()) return std::nullopt;
-  return "these frames do not tell the chosen circuit from " + names +
-         "; record heavy presses, and two or more weights in one row and in one column";
+  const std::string mend =
+      telling_presses.empty() ? "two taxels at once with these weights would not either, and forces hardly depend on it"
+                              : describe(telling_presses, array);
+  return "these frames do not tell the chosen circuit from " + names + "; " + mend;
 }
 
 /// "18.2 to 22.1 ohm, +-2.6 to 3.1 % each" of the fitted lines of a kind.
@@ -72,7 +78,7 @@ void describe_drives(const ResistanceFit& fit, std::vector<std::string>& stateme
     statements.push_back(fmt::format(
         "drive_ohm: too small for these frames to tell, at most about {:.3g} ohm; what is left of its crosstalk is as "
         "small, and forces hardly depend on it",
-        drives.most_ohm * (1.0 + 2.0 * drives.worst_error)));
+        drives.most_ohm + 2.0 * *std::max_element(fit.errors.drive_ohm.begin(), fit.errors.drive_ohm.end())));
     return;
   }
   statements.push_back(describe("drive_ohm", drives));
@@ -100,9 +106,10 @@ void describe_loads(const ResistanceFit& fit, std::vector<std::string>& statemen
 
 }  // namespace
 
-std::vector<std::string> describe_choice(const std::vector<CircuitCandidate>& candidates) {
+std::vector<std::string> describe_choice(const ArrayDescription& array, const std::vector<CircuitCandidate>& candidates,
+                                         const std::vector<PressPair>& telling_presses) {
   std::vector<std::string> statements{describe_candidates(candidates)};
-  if (const auto doubt = describe_doubt(candidates)) statements.push_back(*doubt);
+  if (const auto doubt = describe_doubt(array, candidates, telling_presses)) statements.push_back(*doubt);
   return statements;
 }
 

@@ -10,8 +10,10 @@
 
 namespace dermis::calibration {
 
-/// Which kind was chosen, and from which ones the frames do not tell it.
-[[nodiscard]] std::vector<std::string> describe_choice(const std::vector<CircuitCandidate>& candidates);
+/// Which kind was chosen, from which ones the frames do not tell it, and which presses would.
+[[nodiscard]] std::vector<std::string> describe_choice(const ArrayDescription& array,
+                                                       const std::vector<CircuitCandidate>& candidates,
+                                                       const std::vector<PressPair>& telling_presses);
 
 /// The resistances with their standard errors, and what the frames cannot determine.
 [[nodiscard]] std::vector<std::string> describe_fit(const ResistanceFit& fit);

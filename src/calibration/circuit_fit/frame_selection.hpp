@@ -13,7 +13,11 @@ namespace dermis::calibration {
 /// As many frames as the time allows: an inversion for each parameter and frame.
 [[nodiscard]] std::size_t affordable_frames(const LineParameters& lines);
 
-/// About `most` frames of all, spread at random: neighbours in time may press the same taxels.
+/// The same where kinds of circuits are compared. `is_slow`: one of them is inverted by Newton's method.
+[[nodiscard]] std::size_t affordable_frames_of_choice(std::size_t taxels, bool is_slow);
+
+/// About `most` frames of all, spread at random: neighbours in time may press the same taxels. At least half of the
+/// places are for frames that press several taxels, which tell more of the circuit.
 [[nodiscard]] std::vector<const CircuitFrame*> select_frames(const CircuitFrames& frames, std::size_t most);
 
 }  // namespace dermis::calibration

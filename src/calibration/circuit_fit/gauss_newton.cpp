@@ -2,10 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "calibration/circuit_fit/gauss_newton.hpp"
 
-#include <array>
-#include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -23,7 +20,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int kMaxIterations = 8;
-constexpr std::array kCommonRatios = {0.003, 0.01, 0.03, 0.1, 0.3, 1.0};  // drivers to loads, tried at the start
 
 Elimination eliminate_unloaded(const Measurements& measurements, const Rubber& rubber) {
   return eliminate_laws(measurements.idle, VectorXd::Ones(rubber.unloaded_terms));
@@ -79,32 +75,10 @@ Result<Iteration> iterate_once(const LineParameters& lines, const std::vector<co
                  before.scatter};
   if (sheet) after.scatter.sheet = sheet->scatter;
   after.scatter = learn_scatter(lines, after, step, idle, pressed, measurements->pressed);
-  return Iteration{std::move(after), step.covariance, step.largest(), idle.readings > 0.0};
+  return Iteration{std::move(after), step.covariance, step.largest(), idle.readings > 0.0, measurements->unsolved};
 }
 
 }  // namespace
-
-Result<Estimate> find_start(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
-                            const Rubber& rubber) {
-  double least = std::numeric_limits<double>::infinity();
-  Estimate best;
-  for (const double ratio : kCommonRatios) {
-    Estimate trial{lines.start(ratio), rubber, Scatter{}};
-    const Result<Measurements> measurements = measure(lines, frames, trial, Slopes::none);
-    if (!measurements) return measurements.error();
-    if (2 * measurements->unsolved > frames.size()) continue;
-    const Elimination idle = eliminate_unloaded(*measurements, trial.rubber);
-    trial.rubber = with_unloaded_laws(trial.rubber, idle);
-    const double cost = idle.cost() + eliminate_pressed(*measurements, idle, trial.rubber, trial.scatter).cost();
-    if (cost < least) {
-      least = cost;
-      best = std::move(trial);
-    }
-    if (lines.count() == 0) break;
-  }
-  if (std::isfinite(least)) return best;
-  return bad_input("readout: no resistances explain the calibration frames in this circuit; check its kind");
-}
 
 Result<Iteration> iterate(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
                           const Estimate& start, double enough) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 #include "calibration/circuit_fit/circuit_frames.hpp"
@@ -18,12 +19,8 @@ struct Iteration {
   Eigen::MatrixXd covariance;      ///< Of the parameters, then of what the pressed laws have in common.
   double step = 0.0;               ///< The largest of a parameter, in its standard errors.
   bool has_idle_readings = false;  ///< That are large enough to tell something.
+  std::size_t unsolved = 0;        ///< Frames that the circuit cannot give.
 };
-
-/// The common ratio of drivers to loads that leaves least of the frames, and the first unloaded laws. `rubber`: nothing
-/// is known of it. Errors: a circuit that cannot be inverted, or not at most of the frames.
-[[nodiscard]] Result<Estimate> find_start(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
-                                          const Rubber& rubber);
 
 /// Gauss-Newton with the taxels' laws eliminated (variable projection), until a step is smaller than `enough` standard
 /// errors. Errors: a circuit that cannot be inverted.

@@ -1,70 +1,113 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_fit/judge_frames.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
+#include <utility>
 
 #include "calibration/circuit_fit/inverted_frame.hpp"
 #include "calibration/circuit_fit/pressed_readings.hpp"
-#include "calibration/circuit_fit/resistance_fit.hpp"
+#include "dermis/compensation/circuit_model.hpp"
 #include "dermis/core/parallel.hpp"
 
 namespace dermis::calibration {
 namespace {
 
-double idle_square(double siemens, double sigma_siemens, double expected_siemens) {
-  return std::pow((siemens - expected_siemens) / sigma_siemens, 2);
+constexpr double kMostSquare = 25.0;  // of a reading
+
+bool is_judged(const Rubber& rubber, std::size_t taxel, float newtons) {
+  const TaxelLaw& law = rubber.laws[taxel];
+  return newtons == 0.0F ? law.unloaded.size() > 0 : newtons > 0.0F && law.pressed.size() > 0;
 }
 
-double pressed_square(const PressedReading& reading, const Rubber& rubber, double cut) {
-  const Scatter scatter;  // the same for all circuits
-  const PressedPoint point = pressed_point(reading, rubber, scatter);
-  if (!point.usable) return cut;
-  return point.residual * point.residual / (point.relative_variance + scatter.rubber_variance);
-}
-
-double judge_frame(SlopedInversion& inversion, const CircuitFrame& frame, const Rubber& rubber, double cut) {
-  const std::optional<InvertedFrame> inverted = invert_frame(inversion, frame, rubber);
-  if (!inverted) return cut;
-  const Eigen::VectorXd basis = unloaded_basis(rubber, frame.temperature);
-  double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t taxel = 0; taxel < rubber.laws.size(); ++taxel) {
-    const TaxelLaw& law = rubber.laws[taxel];
-    const auto newtons = static_cast<double>(frame.newtons[taxel]);
-    const double siemens = inverted->siemens[taxel];
-    const double sigma = inverted->sigma_siemens[taxel];
-    double square = 0.0;
-    if (newtons == 0.0 && law.unloaded.size() > 0) {
-      square = idle_square(siemens, sigma, law.unloaded.dot(basis) * rubber.reference_siemens);
-    } else if (newtons > 0.0 && law.pressed.size() > 0) {
-      const double log_force = rubber.force_scale.log_force(newtons);
-      square = pressed_square({taxel, log_force, frame.temperature, siemens, sigma, {}}, rubber, cut);
-    } else {
-      continue;
-    }
-    sum += square < cut ? square : cut;
-    count += 1.0;
+/// One circuit and its rubber. Idle taxels are judged by their readings, whose noise is the same in all circuits.
+class Judge {
+ public:
+  Judge(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter)
+      : rubber_(rubber), scatter_(scatter) {
+    if (array.readout.circuit == Circuit::none) return;
+    Result<compensation::CircuitModel> model = compensation::CircuitModel::create(array);
+    if (model) model_.emplace(std::move(*model));
   }
-  return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
-}
+
+  /// `inverted`: empty where the circuit cannot give the frame.
+  [[nodiscard]] FrameMisfit misfit(const CircuitFrame& frame, const std::optional<InvertedFrame>& inverted) {
+    FrameMisfit misfit;
+    if (inverted) expect_readings(frame, *inverted);
+    for (std::size_t taxel = 0; taxel < frame.newtons.size(); ++taxel) {
+      if (!is_judged(rubber_, taxel, frame.newtons[taxel])) continue;
+      misfit.readings += 1.0;
+      const double square = inverted ? square_of(frame, *inverted, taxel) : kMostSquare;
+      misfit.square += square < kMostSquare ? square : kMostSquare;  // also where it is not a number
+    }
+    return misfit;
+  }
+
+ private:
+  /// With the idle taxels at their laws.
+  void expect_readings(const CircuitFrame& frame, const InvertedFrame& inverted) {
+    expected_ = inverted.siemens;
+    const Eigen::VectorXd basis = unloaded_basis(rubber_, frame.temperature);
+    for (std::size_t taxel = 0; taxel < expected_.size(); ++taxel) {
+      const Eigen::VectorXd& law = rubber_.laws[taxel].unloaded;
+      if (frame.newtons[taxel] != 0.0F || law.size() == 0) continue;
+      expected_[taxel] = std::max(0.0, law.dot(basis) * rubber_.reference_siemens);
+    }
+    if (!model_) return;
+    model_->solve(expected_);
+    expected_.assign(model_->ratio().begin(), model_->ratio().end());
+  }
+
+  [[nodiscard]] double square_of(const CircuitFrame& frame, const InvertedFrame& inverted, std::size_t taxel) const {
+    const double siemens = inverted.siemens[taxel];
+    const double sigma = inverted.sigma_siemens[taxel];
+    if (frame.newtons[taxel] == 0.0F) {
+      return std::pow((frame.ratio[taxel] - expected_[taxel]) / frame.sigma_ratio, 2) / scatter_.noise_variance;
+    }
+    const double log_force = rubber_.force_scale.log_force(static_cast<double>(frame.newtons[taxel]));
+    const PressedPoint point =
+        pressed_point({taxel, log_force, frame.temperature, siemens, sigma, {}}, rubber_, scatter_);
+    const double noise = sigma / rubber_.reference_siemens;
+    // No law is nearer to its rubber than this: what is beyond is not the circuit's.
+    const double rubber_variance = std::max(scatter_.rubber_variance, kRubberScatter * kRubberScatter);
+    const double variance = scatter_.noise_variance * noise * noise + rubber_variance * point.expected * point.expected;
+    return std::pow(point.excess - point.expected, 2) / variance;
+  }
+
+  const Rubber& rubber_;
+  const Scatter& scatter_;
+  std::optional<compensation::CircuitModel> model_;  // empty: readings are conductances
+  std::vector<double> expected_;                     // readings over the supply
+};
 
 }  // namespace
 
-std::vector<double> judge_frames(const ResistanceFit& fit, const CircuitFrames& frames, double cut) {
-  const LineParameters known(fit.array);
-  std::vector<double> squares(frames.frames.size(), cut);
-  parallel_for((squares.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
+std::vector<FrameMisfit> judge_frames(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter,
+                                      const std::vector<const CircuitFrame*>& frames) {
+  const LineParameters known(array);
+  std::vector<FrameMisfit> misfits(frames.size());
+  parallel_for((misfits.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
     auto inversion = SlopedInversion::create(known, Eigen::VectorXd(0), Slopes::none);
     if (!inversion) return;
-    const std::size_t end = std::min(squares.size(), (task + 1) * kFramesPerTask);
+    Judge judge(array, rubber, scatter);
+    const std::size_t end = std::min(misfits.size(), (task + 1) * kFramesPerTask);
     for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
-      squares[k] = judge_frame(*inversion, frames.frames[k], fit.rubber, cut);
+      misfits[k] = judge.misfit(*frames[k], invert_frame(*inversion, *frames[k], rubber));
     }
   });
-  return squares;
+  return misfits;
+}
+
+FrameMisfit sum(const std::vector<FrameMisfit>& frames) {
+  FrameMisfit all;
+  for (const FrameMisfit& frame : frames) {
+    all.square += frame.square;
+    all.readings += frame.readings;
+  }
+  return all;
 }
 
 }  // namespace dermis::calibration

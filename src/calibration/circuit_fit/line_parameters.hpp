@@ -37,6 +37,9 @@ class LineParameters {
   [[nodiscard]] bool has_absolute() const { return known_drive_ohm_ > 0.0 || known_load_ohm_ > 0.0; }
   [[nodiscard]] double reference_ohm() const { return reference_ohm_; }
 
+  /// start(0) exists: no driver is known that the loads' scale would have to come from.
+  [[nodiscard]] bool allows_ideal_drivers() const { return known_drive_ohm_ == 0.0; }
+
   /// All drivers, or all loads, in the same ratio to each other.
   [[nodiscard]] Eigen::VectorXd start(double common_ratio) const;
 

@@ -45,6 +45,7 @@ void add_idle(const CircuitFrame& frame, const InvertedFrame& inverted, const Es
     idle.add_local(taxel, basis, row, weight);
     row *= std::sqrt(weight);
   }
+  if (used == 0) return;  // a product over no columns divides by their number
   idle.global.selfadjointView<Eigen::Lower>().rankUpdate(rows.leftCols(used));
 }
 

@@ -27,10 +27,10 @@ PressedPoint pressed_point(const PressedReading& reading, const Rubber& rubber, 
   const double expected_logarithm =
       has_law ? law.pressed.dot(point.basis) + rubber.sheet.tail(kCommonTerms).dot(point.common) : 0.0;
   // The variance from the law, not from the reading: weights must not follow the noise.
-  const double expected = has_law ? std::exp(expected_logarithm) : point.excess;
-  point.usable = std::min(expected, point.excess) > kLeastPressSigmas * sigma;
+  point.expected = has_law ? std::exp(expected_logarithm) : point.excess;
+  point.usable = std::min(point.expected, point.excess) > kLeastPressSigmas * sigma;
   if (!point.usable) return point;
-  point.relative_variance = scatter.noise_variance * std::pow(sigma / expected, 2);
+  point.relative_variance = scatter.noise_variance * std::pow(sigma / point.expected, 2);
   point.logarithm = std::log(point.excess) + 0.5 * point.relative_variance;
   point.residual = point.logarithm - expected_logarithm;
   return point;

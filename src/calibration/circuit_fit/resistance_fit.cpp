@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "calibration/circuit_fit/common_ratio.hpp"
 #include "calibration/circuit_fit/frame_selection.hpp"
 #include "calibration/circuit_fit/gauss_newton.hpp"
 #include "calibration/circuit_fit/line_parameters.hpp"
@@ -13,7 +14,8 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr std::size_t kFirstFrames = 1500;  // the way to the solution is found with these
+constexpr std::size_t kStartFrames = 300;   // the start is found with these
+constexpr std::size_t kFirstFrames = 1500;  // and the way to the solution with these
 constexpr double kEnoughAtFirst = 0.1;      // a step this small against the standard errors ends the fit
 constexpr double kEnough = 0.25;            // the same, with all frames
 
@@ -21,7 +23,7 @@ ResistanceFit report(const LineParameters& lines, const Iteration& last) {
   ResistanceFit fit;
   fit.array = lines.array_at(last.estimate.parameters);
   fit.errors = standard_errors(lines, last.estimate.parameters, last.covariance);
-  fit.rubber = last.estimate.rubber;
+  fit.array.readout.drive_error_ohm = fit.errors.drive_ohm;
   fit.rubber_scatter = std::sqrt(last.estimate.scatter.rubber_variance);
   fit.sheet_scatter = last.estimate.scatter.sheet;
   fit.has_idle_readings = last.has_idle_readings;
@@ -36,9 +38,11 @@ Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const Circu
   const std::size_t most = affordable_frames(lines);
   const auto first = select_frames(frames, std::min(kFirstFrames, most));
   const Rubber unknown = unknown_rubber(frames, array.taxel_count(), 1.0 / lines.reference_ohm());
-  const Result<Estimate> start = find_start(lines, first, unknown);
-  if (!start) return start.error();
-  Result<Iteration> last = iterate(lines, first, *start, kEnoughAtFirst);
+  const auto few = select_frames(frames, std::min(kStartFrames, most));
+  const Result<CommonRatio> common = fit_common_ratio(lines, few, unknown);
+  if (!common) return common.error();
+  const Estimate start{lines.start(common->ratio), common->rubber, Scatter{}};
+  Result<Iteration> last = iterate(lines, first, start, kEnoughAtFirst);
   if (last && most > first.size() && first.size() < frames.frames.size()) {
     last = iterate(lines, select_frames(frames, most), last->estimate, kEnough);
   }

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "calibration/circuit_fit/circuit_frames.hpp"
-#include "calibration/circuit_fit/rubber.hpp"
 #include "calibration/circuit_fit/standard_errors.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/result.hpp"
@@ -16,7 +15,6 @@ namespace dermis::calibration {
 struct ResistanceFit {
   ArrayDescription array;  ///< With numbers for all resistances.
   StandardErrors errors;
-  Rubber rubber;
   double rubber_scatter = 0.0;     ///< Of a pressed taxel about its law, relative.
   double sheet_scatter = 0.0;      ///< Unloaded conductance from line to line, relative; 0: not compared.
   bool has_idle_readings = false;  ///< That are large enough to tell something.
@@ -26,10 +24,5 @@ struct ResistanceFit {
 /// Fits the resistances of `array` that are kFitOhm. `array` has a circuit, not Circuit::automatic; where all is known
 /// only the laws are fitted. Errors: a circuit that cannot be inverted, no resistances with which it explains frames.
 [[nodiscard]] Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const CircuitFrames& frames);
-
-/// Mean square of what the fitted circuit leaves of each frame, in standard deviations of the readings, each reading's
-/// share cut at `cut`; `cut` for frames that it cannot give, NaN for frames without a reading to judge by. The fit has
-/// not seen the frames.
-[[nodiscard]] std::vector<double> judge_frames(const ResistanceFit& fit, const CircuitFrames& frames, double cut);
 
 }  // namespace dermis::calibration

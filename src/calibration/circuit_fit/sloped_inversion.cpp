@@ -19,10 +19,12 @@ Result<SlopedInversion> SlopedInversion::create(const LineParameters& lines, con
                                                 Slopes slopes) {
   SlopedInversion result;
   const Index count = slopes == Slopes::all ? parameters.size() : 0;
+  compensation::InversionOptions options;  // far below the noise; differences need more
+  if (count > 0) options.tolerance_ratio = kTolerance;
   for (Index p = -1; p < count; ++p) {
     VectorXd shifted = parameters;
     if (p >= 0) shifted[p] += kSlopeStep;
-    auto inversion = compensation::make_crosstalk_inversion(lines.array_at(shifted), {.tolerance_ratio = kTolerance});
+    auto inversion = compensation::make_crosstalk_inversion(lines.array_at(shifted), options);
     if (!inversion) return inversion.error();
     result.inversions_.push_back(std::move(*inversion));
   }

@@ -14,9 +14,12 @@ StandardErrors standard_errors(const LineParameters& lines, const Eigen::VectorX
   StandardErrors errors;
   errors.drive.assign(lines.array().readout.drive_ohm.size(), 0.0);
   errors.load.assign(lines.array().readout.load_ohm.size(), 0.0);
+  if (!lines.drives().empty()) errors.drive_ohm.assign(errors.drive.size(), 0.0);
   Index p = 0;
   for (const std::size_t line : lines.drives()) {
-    errors.drive[line] = std::min(1.0, std::sqrt(covariance(p, p)) / parameters[p]);
+    const double sigma = std::sqrt(covariance(p, p));
+    errors.drive[line] = std::min(1.0, sigma / parameters[p]);
+    errors.drive_ohm[line] = sigma * lines.reference_ohm();
     ++p;
   }
   for (const std::size_t line : lines.loads()) {

@@ -13,7 +13,8 @@ namespace dermis::calibration {
 struct StandardErrors {
   std::vector<double> drive;
   std::vector<double> load;
-  double common_drive = 0.0;  ///< Of the drivers' mean.
+  std::vector<double> drive_ohm;  ///< Of the drivers, not relative [ohm]; empty: all are given.
+  double common_drive = 0.0;      ///< Of the drivers' mean.
 };
 
 /// `covariance` is of the parameters, and may be of more after them.

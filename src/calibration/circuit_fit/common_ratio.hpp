@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/circuit_fit/estimate.hpp"
+#include "calibration/circuit_fit/line_parameters.hpp"
+#include "calibration/circuit_fit/rubber.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// A circuit whose unknown resistances are alike: one number, drivers over loads, stands for all of them.
+struct CommonRatio {
+  double ratio = 0.0;
+  ArrayDescription array;  ///< With numbers for all resistances.
+  Rubber rubber;
+  Scatter scatter;
+  double misfit = 0.0;  ///< Sum of squares that is left of the frames, see judge_frames().
+};
+
+/// The ratio that leaves least of the frames, all laws fitted anew for each that is tried: the whole range is searched,
+/// so that no start has to be near. Errors: a circuit that cannot be inverted, or not at most of the frames.
+[[nodiscard]] Result<CommonRatio> fit_common_ratio(const LineParameters& lines,
+                                                   const std::vector<const CircuitFrame*>& frames,
+                                                   const Rubber& unknown);
+
+}  // namespace dermis::calibration
