@@ -22,7 +22,7 @@ namespace dermis::compensation {
 ///                             only while most unloaded taxels elsewhere do read
 /// stuck taxels                equal readings of a pressed taxel beside a noise that makes unpressed ones change, about
 ///                             30 frames in a row; single taxels are judged 64 a frame, by turns
-/// shorted lines               equal readings of both lines and of no other line, in 10 presses, each released before
+/// shorted lines               equal readings of both lines and of no other line, in 6 presses, each released before
 ///                             the next, at several places, and no frame in which they differ
 /// supplied lines              a column at full scale in all rows, 3 frames, or 20 different loads where loads can do
 ///                             that too; a row of which 3 presses, likewise, show in most rows, while others do not

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "compensation/faults/supplied_row_detector.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -109,13 +110,15 @@ SuppliedRowDetector::ColumnComparison SuppliedRowDetector::compare_in_column(con
   return found;
 }
 
-/// A press on another row stands out of what this row shows in its column.
+/// A press on another row stands out of what this row shows in its column, or may have shown below a threshold.
 bool SuppliedRowDetector::another_row_is_pressed(const Observation& seen, std::size_t row,
                                                  const FaultList& faults) const noexcept {
   const std::span<const double> ratio = seen.conditioned.ratio;
+  const double most_cut_off = kStandsOut * seen.unloaded.smallest_reading();
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
     if ((faults.causes(taxel) & (kRowCause | kStuckCause)) != 0 || !seen.is_pressed(taxel)) continue;
-    if (ratio[taxel] > kStandsOut * ratio[array_.index(row, taxel % array_.cols)]) return true;
+    const double own = ratio[array_.index(row, taxel % array_.cols)];
+    if (ratio[taxel] > kStandsOut * std::max(own, most_cut_off)) return true;
   }
   return false;
 }
