@@ -56,7 +56,8 @@ void print_json(const Diagnosis& diagnosis, const ArrayDescription& array) {
                {"worst_misfit_sigma", diagnosis.worst_misfit_sigma},
                {"blind_lines", diagnosis.blind_lines},
                {"faults", Json::array()},
-               {"problems", diagnosis.findings}};
+               {"problems", diagnosis.findings},
+               {"remarks", diagnosis.remarks}};
   for (const health::FaultHistory& history : diagnosis.faults) json["faults"].push_back(fault_json(history, array));
   fmt::print("{}\n", json.dump(2));
 }

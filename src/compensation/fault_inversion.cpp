@@ -87,6 +87,7 @@ void FaultInversion::add(const LineFault& fault) {
     masked_[taxel] = 1;
     if (traits.hides_conductance) hidden_[taxel] = 1;
   });
+  if (array_.readout.circuit == Circuit::none) return;  // nothing to subtract or to solve
   if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
   if (traits.effect == LineFaultEffect::shorted) {
     shorted_.push_back({*traits.axis, fault.place, ratio_of_shorted_lines(array_, *traits.axis, fault.place)});

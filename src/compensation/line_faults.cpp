@@ -12,6 +12,7 @@
 #include "compensation/faults/stuck_taxel_detector.hpp"
 #include "compensation/faults/supplied_column_detector.hpp"
 #include "compensation/faults/supplied_row_detector.hpp"
+#include "compensation/faults/unloaded_witnesses.hpp"
 
 namespace dermis::compensation {
 
@@ -26,13 +27,21 @@ class LineFaultMonitor::Implementation {
     const bool solved = !has(conductance.status, FrameStatus::not_converged);
     sums_.sum(conditioned, conductance, solved);
     unloaded_.expect(conditioned, sums_, solved);
-    const Observation seen{conditioned, conductance, sums_, unloaded_, frame, solved};
+    witnesses_.follow(conditioned, unloaded_, faults_);
+    const Observation seen{conditioned, conductance, sums_, unloaded_, witnesses_, frame, solved};
     const std::size_t changes = faults_.changes();
     std::apply([&](auto&... detector) { (detector.judge(seen, faults_), ...); }, detectors_);
     return faults_.changes() != changes;
   }
 
   [[nodiscard]] std::span<const LineFault> faults() const noexcept { return faults_.all(); }
+
+  [[nodiscard]] std::vector<LineFault> suspicions() const {
+    std::vector<LineFault> suspicions;
+    std::get<ShortedLineDetector>(detectors_).suspect(faults_, suspicions);
+    std::get<SuppliedRowDetector>(detectors_).suspect(faults_, suspicions);
+    return suspicions;
+  }
 
   [[nodiscard]] bool sees_silent(Axis axis, std::size_t line) const noexcept {
     return std::get<SilentLineDetector>(detectors_).sees(axis, line);
@@ -43,6 +52,7 @@ class LineFaultMonitor::Implementation {
   UnloadedTaxels unloaded_;
   LineSums sums_;
   FaultList faults_;
+  UnloadedWitnesses witnesses_;
   // In the order in which they judge a frame; each sees what those before it have found.
   std::tuple<SilentLineDetector, SuppliedColumnDetector, StuckTaxelDetector, DeadTaxelDetector, ShortedLineDetector,
              SuppliedRowDetector, GroundedLineDetector, DriftingDriverDetector>
@@ -69,6 +79,10 @@ bool LineFaultMonitor::observe(const ConditionedFrame& conditioned, const Conduc
 
 std::span<const LineFault> LineFaultMonitor::faults() const noexcept {
   return implementation_->faults();
+}
+
+std::vector<LineFault> LineFaultMonitor::suspicions() const {
+  return implementation_->suspicions();
 }
 
 bool LineFaultMonitor::sees_silent_row(std::size_t row) const noexcept {

@@ -49,7 +49,9 @@ std::string describe(const Diagnosis& diagnosis, const pipeline::Model& model) {
   }
   text += "\n";
   for (const std::string& finding : diagnosis.findings) text += finding + "\n";
-  return diagnosis.is_healthy() ? text + "healthy\n" : text;
+  if (diagnosis.is_healthy()) text += "healthy\n";
+  for (const std::string& remark : diagnosis.remarks) text += "remark: " + remark + "\n";
+  return text;
 }
 
 }  // namespace dermis::health

@@ -103,6 +103,7 @@ class Examination::Implementation {
     diagnosis.offset_drift = offsets_.drift();
     diagnosis.blind_lines = blind_lines(pipeline.line_faults(), model_.array);
     diagnosis.findings = findings_of(diagnosis, model_);
+    diagnosis.remarks = remarks_on(pipeline.line_faults().suspicions(), model_.array);
     return diagnosis;
   }
 

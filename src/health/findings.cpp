@@ -62,4 +62,16 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline:
   return found;
 }
 
+std::vector<std::string> remarks_on(std::span<const compensation::LineFault> suspicions,
+                                    const ArrayDescription& array) {
+  std::vector<std::string> remarks;
+  for (const compensation::LineFault& suspicion : suspicions) {
+    const bool shorted = traits_of(suspicion.kind).effect == compensation::LineFaultEffect::shorted;
+    remarks.push_back(fmt::format("{} may be shorted {}: some presses look like it; press {} in several places to tell",
+                                  place_name(suspicion, array), shorted ? "together" : "to the supply",
+                                  shorted ? "each of them" : "it and other rows"));
+  }
+  return remarks;
+}
+
 }  // namespace dermis::health

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,5 +13,9 @@ namespace dermis::health {
 
 /// What is wrong by the values of the diagnosis, in plain words, a sentence each, worst first.
 [[nodiscard]] std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline::Model& model);
+
+/// What presses look like that is not sure to be a fault.
+[[nodiscard]] std::vector<std::string> remarks_on(std::span<const compensation::LineFault> suspicions,
+                                                  const ArrayDescription& array);
 
 }  // namespace dermis::health

@@ -58,5 +58,13 @@ TEST(Diagnosis, findings_stand_at_the_end_instead_of_healthy) {
       << text;
 }
 
+TEST(Diagnosis, remarks_leave_an_array_healthy) {
+  Diagnosis diagnosis = healthy();
+  diagnosis.remarks = {"rows 2 and 3 may be shorted together"};
+  EXPECT_TRUE(diagnosis.is_healthy());
+  const std::string text = describe(diagnosis, support::hand_made_model(4, 5));
+  EXPECT_TRUE(text.ends_with("\nhealthy\nremark: rows 2 and 3 may be shorted together\n")) << text;
+}
+
 }  // namespace
 }  // namespace dermis::health

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "dermis/compensation/line_fault.hpp"
 #include "dermis/core/array_description.hpp"
@@ -17,19 +18,21 @@ namespace dermis::compensation {
 ///
 /// silent lines, dead taxels   an unloaded taxel that works reads at least 0.3 of its unloaded value, less what the
 ///                             other taxels of its lines take; log-likelihood ratio against the floor of the ADC,
-///                             summed over the line and the frames (Page's test), 3 frames at least; a dead taxel 12
+///                             summed over the line and the frames (Page's test), 3 frames at least; a dead taxel 12;
+///                             only while most unloaded taxels elsewhere do read
 /// stuck taxels                equal readings of a pressed taxel beside a noise that makes unpressed ones change, about
 ///                             30 frames in a row; single taxels are judged 64 a frame, by turns
-/// shorted lines               equal readings of both lines and of no other line, in 10 different presses, and no
-///                             press in which they differ
-/// supplied lines              a column at full scale in all rows, 3 frames; a row whose presses show in all rows, 6
+/// shorted lines               equal readings of both lines and of no other line, in 6 presses, each released before
+///                             the next, at several places, and no frame in which they differ
+/// supplied lines              a column at full scale in all rows, 3 frames, or 20 different loads where loads can do
+///                             that too; a row of which 3 presses, likewise, show in most rows, while others do not
 /// drifting drivers            unloaded taxels that fall from one frame to the next when the current of their line
 ///                             rises, and rise when it falls; reported, but neither masked nor corrected
 ///
 /// What it cannot see: a line whose unloaded taxels read below about 2.5 standard deviations each, 16 of them
 /// (sees_silent_*); a short between lines that nothing presses; a taxel that stands at an end of the ADC, or is stuck
 /// at what unloaded ones read. With `circuit = "none"` silent lines and taxels are judged where nothing is pressed,
-/// drivers not at all. Not thread-safe: one per stream.
+/// shorts and drivers not at all. Not thread-safe: one per stream.
 class LineFaultMonitor {
  public:
   /// `unloaded_siemens` [rows, cols]: conductance of the unloaded taxels [S]; 0 or less where it is not known or the
@@ -45,6 +48,9 @@ class LineFaultMonitor {
 
   /// The faults that are there now, in the order in which they were found.
   [[nodiscard]] std::span<const LineFault> faults() const noexcept;
+
+  /// What some presses look like, but too few, or all in one place: no fault, and nothing is masked for it. Allocates.
+  [[nodiscard]] std::vector<LineFault> suspicions() const;
 
   /// The line's unloaded taxels stand far enough above the noise for it to be missed when it is silent; false until the
   /// first frame.

@@ -34,11 +34,13 @@ struct Diagnosis {
   std::vector<std::string> blind_lines;           ///< Read too little unloaded for a break to be seen: "row 3".
   std::vector<FaultHistory> faults;               ///< In the order in which they were found.
   std::vector<std::string> findings;              ///< What is wrong, a sentence each, worst first.
+  std::vector<std::string> remarks;               ///< What may be wrong or not, a sentence each.
 
   [[nodiscard]] bool is_healthy() const noexcept { return findings.empty(); }
 };
 
-/// The diagnosis of frames of `model`'s array as lines of text: the measured values, then the findings or "healthy".
+/// The diagnosis of frames of `model`'s array as lines of text: the measured values, then the findings or "healthy" and
+/// the remarks.
 [[nodiscard]] std::string describe(const Diagnosis& diagnosis, const pipeline::Model& model);
 
 }  // namespace dermis::health

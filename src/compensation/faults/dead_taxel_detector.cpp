@@ -5,12 +5,20 @@
 #include <limits>
 
 namespace dermis::compensation {
+namespace {
+
+constexpr int kPassedOver = 2;          // frames in which taxels on both sides are pressed
+constexpr double kAboveSmallest = 4.0;  // times the smallest reading: a press that no threshold hides on a weaker taxel
+
+}  // namespace
 
 DeadTaxelDetector::DeadTaxelDetector(const ArrayDescription& array)
-    : floor_(floor_evidence(array.readout.adc_noise_counts)),
+    : array_(array),
+      floor_(floor_evidence(array.readout.adc_noise_counts)),
       evidence_(array.taxel_count()),
       dead_(array.taxel_count()),
       since_(array.taxel_count()),
+      passed_over_(array.taxel_count()),
       alive_(array.taxel_count()) {}
 
 void DeadTaxelDetector::judge(const Observation& seen, FaultList& faults) noexcept {
@@ -19,6 +27,7 @@ void DeadTaxelDetector::judge(const Observation& seen, FaultList& faults) noexce
   weigh(seen, block);
   const float most = add_up(seen.frame, block);
   if (most < static_cast<float>(kEvidence) && !faults.contains(LineFaultKind::dead_taxel)) return;
+  if (seen.witnesses.are_doubtful()) forget(seen.frame, block);
   for (std::size_t taxel = block.from; taxel < block.to; ++taxel) judge_taxel(seen, taxel, faults);
 }
 
@@ -29,13 +38,19 @@ void DeadTaxelDetector::weigh(const Observation& seen, const TaxelBlock& block) 
   const double* const sigma = seen.conductance.sigma_siemens.data();
   const double* const unloaded = seen.unloaded.siemens().data();
   const float* const expected = seen.unloaded.least_reading().data();
+  const double* const ratio = seen.conditioned.ratio.data();
+  const double per_sigma_ratio = 1.0 / seen.conditioned.sigma_ratio;
   float* const evidence = evidence_.data();
   for (std::size_t taxel = from; taxel < to; ++taxel) {
     const auto per_sigma = 1.0F / static_cast<float>(sigma[taxel]);
     const float conductance = static_cast<float>(siemens[taxel]) * per_sigma;
     const float least = static_cast<float>(kUnloadedShare * unloaded[taxel]) * per_sigma;
     const float mean = expected[taxel] > 0.0F ? least : 0.0F;
-    evidence[taxel] = silence_evidence(conductance, mean, std::numeric_limits<float>::min(), floor, kMostForTaxel);
+    const float solved = silence_evidence(conductance, mean, std::numeric_limits<float>::min(), floor, kMostForTaxel);
+    const auto reading = static_cast<float>(ratio[taxel] * per_sigma_ratio);
+    const float read = silence_evidence(reading, expected[taxel], floor.sigmas, floor, kMostForTaxel);
+    const float most = read > 0.0F ? kMostForTaxel : 0.0F;
+    evidence[taxel] = solved < most ? solved : most;
   }
 }
 
@@ -57,6 +72,25 @@ float DeadTaxelDetector::add_up(std::size_t frame, const TaxelBlock& block) noex
   return most;
 }
 
+void DeadTaxelDetector::forget(std::size_t frame, const TaxelBlock& block) noexcept {
+  for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
+    dead_[taxel] = 0.0F;
+    since_[taxel] = static_cast<std::int32_t>(frame) + 1;
+  }
+}
+
+/// On both sides on its row, or on its column.
+bool DeadTaxelDetector::is_between_presses(const Observation& seen, std::size_t taxel) const noexcept {
+  const double least = kAboveSmallest * seen.unloaded.smallest_reading();
+  const auto is_pressed = [&](std::size_t other) {
+    return seen.is_pressed(other) && seen.conditioned.ratio[other] > least;
+  };
+  const std::size_t row = taxel / array_.cols;
+  const std::size_t col = taxel % array_.cols;
+  return (col > 0 && col + 1 < array_.cols && is_pressed(taxel - 1) && is_pressed(taxel + 1)) ||
+         (row > 0 && row + 1 < array_.rows && is_pressed(taxel - array_.cols) && is_pressed(taxel + array_.cols));
+}
+
 void DeadTaxelDetector::judge_taxel(const Observation& seen, std::size_t taxel, FaultList& faults) noexcept {
   const std::uint8_t causes = faults.causes(taxel);
   if ((causes & ~kDeadCause) != 0) {
@@ -67,7 +101,12 @@ void DeadTaxelDetector::judge_taxel(const Observation& seen, std::size_t taxel, 
     if (!alive_[taxel].decides(kHealFrames)) return;
     faults.remove(LineFaultKind::dead_taxel, taxel);
     dead_[taxel] = 0.0F;
+  } else if (evidence_[taxel] < -kMostForTaxel) {
+    passed_over_[taxel] = 0;
   } else if (dead_[taxel] >= static_cast<float>(kEvidence)) {
+    passed_over_[taxel] += is_between_presses(seen, taxel) ? 1 : 0;
+    if (passed_over_[taxel] < kPassedOver) return;
+    passed_over_[taxel] = 0;
     faults.add({.kind = LineFaultKind::dead_taxel,
                 .place = taxel,
                 .frame = static_cast<std::size_t>(since_[taxel]),

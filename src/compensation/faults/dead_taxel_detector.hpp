@@ -15,7 +15,9 @@
 namespace dermis::compensation {
 
 /// A taxel is dead when its conductance stays below what an unloaded one has: what crosses over from pressed taxels is
-/// solved there.
+/// solved there. Where it reads something all the same, that is no evidence: the circuit may not be quite the given
+/// one.
+/// As its unloaded conductance alone may be wrong, it must also keep silent between pressed taxels.
 class DeadTaxelDetector {
  public:
   explicit DeadTaxelDetector(const ArrayDescription& array);
@@ -25,12 +27,16 @@ class DeadTaxelDetector {
  private:
   void weigh(const Observation& seen, const TaxelBlock& block) noexcept;
   [[nodiscard]] float add_up(std::size_t frame, const TaxelBlock& block) noexcept;
+  [[nodiscard]] bool is_between_presses(const Observation& seen, std::size_t taxel) const noexcept;
+  void forget(std::size_t frame, const TaxelBlock& block) noexcept;
   void judge_taxel(const Observation& seen, std::size_t taxel, FaultList& faults) noexcept;
 
+  const ArrayDescription& array_;
   FloorEvidence floor_;
   std::vector<float> evidence_;      // of this frame [taxels]
   std::vector<float> dead_;          // Page's sum [taxels]
   std::vector<std::int32_t> since_;  // frame before its evidence [taxels]
+  std::vector<int> passed_over_;     // frames in which it kept silent between presses [taxels]
   std::vector<PageTest> alive_;      // of a taxel that was found to be dead [taxels]
 };
 

@@ -6,9 +6,13 @@
 
 #include "compensation/faults/line_sums.hpp"
 #include "compensation/faults/unloaded_taxels.hpp"
+#include "compensation/faults/unloaded_witnesses.hpp"
 #include "dermis/core/frames.hpp"
+#include "dermis/core/touch.hpp"
 
 namespace dermis::compensation {
+
+inline constexpr double kPressedSigmas = 20.0;  // of a reading that is surely not noise
 
 /// One frame, as the detectors see it.
 struct Observation {
@@ -16,8 +20,14 @@ struct Observation {
   const ConductanceFrame& conductance;
   const LineSums& sums;
   const UnloadedTaxels& unloaded;
+  const UnloadedWitnesses& witnesses;
   std::size_t frame;  ///< Counted from 0.
   bool solved;        ///< The conductances are those of the circuit.
+
+  /// The reading is surely more than an unloaded taxel's.
+  [[nodiscard]] bool is_pressed(std::size_t taxel) const noexcept {
+    return conditioned.ratio[taxel] > touched_above(unloaded.ratio()[taxel], conditioned.sigma_ratio, kPressedSigmas);
+  }
 };
 
 }  // namespace dermis::compensation

@@ -2,31 +2,64 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <optional>
 
+#include "compensation/faults/untouched.hpp"
 #include "dermis/core/frames.hpp"
 
 namespace dermis::compensation {
 
-inline constexpr double kPressedSigmas = 20.0;  // readings worth comparing
+inline constexpr double kComparedSigmas = 50.0;  // readings whose equality means something
 inline constexpr double kEqualSigmas = 3.0;
 inline constexpr double kDifferentSigmas = 5.0;
 inline constexpr double kEqualShare = 0.01;  // drivers and ADC channels are alike to this
-inline constexpr double kNewPress = 0.2;     // change that makes a press another one
+inline constexpr double kStandsOut = 2.0;    // times what others read
+inline constexpr std::size_t kSlide = 1;     // taxels from one frame to the next
 
-/// Presses that speak for a short, since the last one that spoke against it.
+/// Presses on a line that speak for a short, since the last one that spoke against it. A press counts once, however
+/// long it lasts and wherever it slides: until nothing is pressed any more near the place where it was last.
 struct PressCount {
   int presses = 0;
   int against = 0;  // frames in a row
   std::size_t first_frame = 0;
   Nanos first_time{};
+  std::size_t least_place = 0;  // of those that were counted
+  std::size_t most_place = 0;
+  std::optional<std::size_t> held_place;  // where the press that was counted is now
 
-  void add(int new_presses, std::size_t frame, Nanos time) {
-    if (presses == 0 && new_presses > 0) {
+  /// In every frame, before add(). `is_pressed(place)`: whether the line is, in this frame.
+  template <typename IsPressed>
+  void follow(std::size_t places, const IsPressed& is_pressed) {
+    if (!held_place) return;
+    const std::size_t held = *held_place;
+    held_place.reset();
+    for (std::size_t step = 0; step <= kSlide && !held_place; ++step) {
+      if (held + step < places && is_pressed(held + step)) {
+        held_place = held + step;
+      } else if (step <= held && is_pressed(held - step)) {
+        held_place = held - step;
+      }
+    }
+  }
+
+  /// A press at this place, unless one is counted that lasts.
+  void add(std::size_t place, std::size_t frame, Nanos time) {
+    if (held_place) return;
+    held_place = place;
+    if (presses++ == 0) {
       first_frame = frame;
       first_time = time;
+      least_place = most_place = place;
     }
-    presses += new_presses;
+    least_place = std::min(least_place, place);
+    most_place = std::max(most_place, place);
+  }
+
+  /// Presses at one place may all be those of one tool.
+  [[nodiscard]] bool decides(int least_presses) const {
+    return presses >= least_presses && most_place - least_place >= kContactReach;
   }
 };
 

@@ -12,16 +12,27 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr int kEqualPresses = 10;
+constexpr int kEqualPresses = 6;
+constexpr double kAlikeSums = 0.05;  // difference of the readings of two lines that may be shorted
+constexpr std::size_t kLeastLines = 3;
 
 constexpr PerAxis<LineFaultKind> kShorted{.row = LineFaultKind::shorted_rows, .column = LineFaultKind::shorted_columns};
+
+double square(double value) {
+  return value * value;
+}
+
+/// More than `count` squares of standard normal deviations sum up to.
+bool exceeds_noise(double squares, double count) {
+  return squares > count + kDifferentSigmas * std::sqrt(2.0 * count);
+}
 
 }  // namespace
 
 ShortedLineDetector::ShortedLineDetector(const ArrayDescription& array) : array_(array) {
+  if (array.readout.circuit == Circuit::none) return;
   for (const Axis axis : kAxes) {
-    lines_[axis].counts.resize(line_count(array, axis) - 1);
-    lines_[axis].last_ratio.resize(array.taxel_count());
+    if (line_count(array, axis) >= kLeastLines) counts_[axis].resize(line_count(array, axis) - 1);
   }
 }
 
@@ -29,71 +40,101 @@ void ShortedLineDetector::judge(const Observation& seen, FaultList& faults) noex
   for (const Axis axis : kAxes) judge_lines(seen, axis, faults);
 }
 
+void ShortedLineDetector::suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const {
+  for (const Axis axis : kAxes) {
+    for (std::size_t line = 0; line < counts_[axis].size(); ++line) {
+      const PressCount& count = counts_[axis][line];
+      if (2 * count.presses < kEqualPresses || faults.contains(kShorted[axis], line)) continue;
+      suspicions.push_back(
+          {.kind = kShorted[axis], .place = line, .frame = count.first_frame, .time = count.first_time});
+    }
+  }
+}
+
 void ShortedLineDetector::judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept {
   // A line at the supply makes the readings of others alike.
   if (faults.contains(LineFaultKind::supplied_row) || faults.contains(LineFaultKind::supplied_column)) return;
   const bool any_known = faults.contains(kShorted[axis]);
-  auto& [counts, last_ratio, turn] = lines_[axis];
-  if (counts.empty()) return;
-  turn = (turn + 1) % counts.size();
+  const std::span<const PressCount> counts = counts_[axis];
   for (std::size_t line = 0; line < counts.size(); ++line) {
     const bool is_suspect = counts[line].presses > 0 || (any_known && faults.contains(kShorted[axis], line));
-    if (is_suspect || line == turn) judge_pair(seen, axis, line, faults);
+    if (is_suspect || sums_are_alike(seen, axis, line)) judge_pair(seen, axis, line, faults);
   }
 }
 
+bool ShortedLineDetector::sums_are_alike(const Observation& seen, Axis axis, std::size_t line) const noexcept {
+  const std::span<const double> sums = seen.sums.ratio(axis);
+  const double second = ratio_of_shorted_lines(array_, axis, line) * sums[line + 1];
+  const double difference = std::abs(sums[line] - second);
+  if (difference > kAlikeSums * sums[line]) return false;
+  return sums[line] > kComparedSigmas * seen.conditioned.sigma_ratio;
+}
+
 void ShortedLineDetector::judge_pair(const Observation& seen, Axis axis, std::size_t line, FaultList& faults) noexcept {
-  const Comparison compared = compare_with_next(seen, axis, line, faults);
-  PressCount& count = lines_[axis].counts[line];
-  if (compared.different > 0) {
-    ++count.against;
-  } else if (compared.equal > 0) {
-    count.against = 0;
-  }
-  const bool is_known = faults.contains(kShorted[axis], line);
-  if (compared.different > 0 && (!is_known || count.against >= kLineFrames)) {
-    if (is_known) faults.remove(kShorted[axis], line);
-    count.presses = 0;
-  } else if (!is_known) {
-    count.add(compared.equal, seen.frame, seen.conditioned.time);
-    if (count.presses < kEqualPresses) return;
+  PressCount& count = counts_[axis][line];
+  count.follow(line_length(array_, axis), [&](std::size_t place) {
+    return seen.is_pressed(taxel_on_line(array_, axis, line, place)) ||
+           seen.is_pressed(taxel_on_line(array_, axis, line + 1, place));
+  });
+  const auto [different, equal_place] = compare_with_next(seen, axis, line, faults);
+  if (faults.contains(kShorted[axis], line)) {
+    if (equal_place) count.against = 0;
+    if (!different || ++count.against < kLineFrames) return;
+    faults.remove(kShorted[axis], line);
+    count = PressCount();
+  } else if (different) {
+    count = PressCount();
+  } else if (equal_place) {
+    count.add(*equal_place, seen.frame, seen.conditioned.time);
+    if (!count.decides(kEqualPresses)) return;
     faults.add({.kind = kShorted[axis], .place = line, .frame = count.first_frame, .time = count.first_time});
-    count.against = 0;
   }
 }
 
 ShortedLineDetector::Comparison ShortedLineDetector::compare_with_next(const Observation& seen, Axis axis,
                                                                        std::size_t line,
-                                                                       const FaultList& faults) noexcept {
+                                                                       const FaultList& faults) const noexcept {
   const std::span<const double> ratio = seen.conditioned.ratio;
   const std::span<const TaxelStatus> status = seen.conditioned.taxels;
   const double sigma = seen.conditioned.sigma_ratio;
   const double pair = ratio_of_shorted_lines(array_, axis, line);
   const int spoilt = kLineCause[axis] | kStuckCause | kDeadCause;
   Comparison found;
-  for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
-    const std::size_t first = taxel_on_line(array_, axis, line, k);
-    const std::size_t second = taxel_on_line(array_, axis, line + 1, k);
+  double squares = 0.0;
+  double taxels = 0.0;
+  double hardest = kComparedSigmas * sigma;
+  for (std::size_t place = 0; place < line_length(array_, axis); ++place) {
+    const std::size_t first = taxel_on_line(array_, axis, line, place);
+    const std::size_t second = taxel_on_line(array_, axis, line + 1, place);
     if (((faults.causes(first) | faults.causes(second)) & spoilt) != 0) continue;
     if (status[first] != TaxelStatus::ok || status[second] != TaxelStatus::ok) continue;
     const double largest = std::max(ratio[first], ratio[second]);
-    if (largest < kPressedSigmas * sigma) continue;
-    const double deviation = std::hypot(sigma, pair * sigma, kEqualShare * largest);
-    const double difference = std::abs(ratio[first] - pair * ratio[second]);
-    if (difference > kDifferentSigmas * deviation) ++found.different;
-    if (difference > kEqualSigmas * deviation) continue;
-    const auto reads_alike = [&](std::size_t other) {
-      const std::size_t taxel = taxel_on_line(array_, axis, other, k);
-      return std::abs(ratio[taxel] - ratio[first]) <= kDifferentSigmas * deviation;
-    };
-    if (line > 0 && reads_alike(line - 1)) continue;
-    if (line + 2 < line_count(array_, axis) && reads_alike(line + 2)) continue;
-    double& last = lines_[axis].last_ratio[first];
-    if (std::abs(ratio[first] - last) < kNewPress * largest) continue;
-    last = ratio[first];
-    ++found.equal;
+    const double variance = (1.0 + pair * pair) * sigma * sigma + square(kEqualShare * largest);
+    const double deviation = std::abs(ratio[first] - pair * ratio[second]) / std::sqrt(variance);
+    squares += square(deviation);
+    taxels += 1.0;
+    if (deviation > kEqualSigmas || largest < hardest || !seen.is_pressed(first)) continue;
+    if (!stands_out(seen, axis, line, place, std::sqrt(variance))) continue;
+    hardest = largest;
+    found.equal_place = place;
   }
+  found.different = exceeds_noise(squares, taxels);
   return found;
+}
+
+/// The pair reads something else there than the lines beside it, and much more than one of them: presses end there.
+bool ShortedLineDetector::stands_out(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
+                                     double deviation) const noexcept {
+  const std::span<const double> ratio = seen.conditioned.ratio;
+  const double own = ratio[taxel_on_line(array_, axis, line, place)];
+  bool is_alone = false;
+  for (const std::size_t beside : {line - 1, line + 2}) {  // line 0 has none before it: wraps round to the largest
+    if (beside >= line_count(array_, axis)) continue;
+    const double other = ratio[taxel_on_line(array_, axis, beside, place)];
+    if (std::abs(other - own) <= kDifferentSigmas * deviation) return false;
+    is_alone = is_alone || kStandsOut * other < own;
+  }
+  return is_alone;
 }
 
 }  // namespace dermis::compensation

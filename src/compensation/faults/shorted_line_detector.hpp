@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "compensation/faults/fault_list.hpp"
@@ -12,35 +13,37 @@
 
 namespace dermis::compensation {
 
-/// Two lines next to each other are shorted when presses on them read the same on both and on no line beside them. All
-/// pairs under suspicion are compared in every frame, and one of the others, by turns.
+/// Two lines next to each other are shorted when they read the same wherever they are pressed and wherever they are
+/// not, within the noise, and the lines beside them do not. One press that shows both that they are equal and that the
+/// others are not is a chance of its shape; many of them, each released before the next, are a short. Pairs under
+/// suspicion are compared in every frame, as are those whose sums are alike. With `circuit = "none"` equal readings may
+/// have any reason, and lines without others beside them have nothing to differ from.
 class ShortedLineDetector {
  public:
   explicit ShortedLineDetector(const ArrayDescription& array);
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
- private:
-  /// Presses on a line and the next one: new ones in which both read the same and the lines beside them do not, and
-  /// those in which they differ.
-  struct Comparison {
-    int equal = 0;
-    int different = 0;
-  };
+  /// Pairs that half as many presses as it takes speak for; allocates.
+  void suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const;
 
-  struct Lines {
-    std::vector<PressCount> counts;  // [pairs], by their first lines
-    std::vector<double> last_ratio;  // of the last press that was equal, on the first line [taxels]
-    std::size_t turn = 0;
+ private:
+  /// A line and the next one, in one frame.
+  struct Comparison {
+    bool different = false;                  // beyond the noise
+    std::optional<std::size_t> equal_place;  // of the hardest press that is equal on both and on no line beside them
   };
 
   void judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept;
   void judge_pair(const Observation& seen, Axis axis, std::size_t line, FaultList& faults) noexcept;
+  [[nodiscard]] bool sums_are_alike(const Observation& seen, Axis axis, std::size_t line) const noexcept;
   [[nodiscard]] Comparison compare_with_next(const Observation& seen, Axis axis, std::size_t line,
-                                             const FaultList& faults) noexcept;
+                                             const FaultList& faults) const noexcept;
+  [[nodiscard]] bool stands_out(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
+                                double deviation) const noexcept;
 
   const ArrayDescription& array_;
-  PerAxis<Lines> lines_;
+  PerAxis<std::vector<PressCount>> counts_;  // [pairs], by their first lines
 };
 
 }  // namespace dermis::compensation

@@ -4,6 +4,8 @@
 
 namespace dermis::compensation {
 
+inline constexpr float kMostMean = 8.0F;  // beyond, silence is told by less than half of this many deviations
+
 /// What the noise of a reading makes of one at the floor of the ADC.
 struct FloorEvidence {
   float sigmas = 0.0F;       // readings below half a count are the floor
@@ -18,7 +20,6 @@ struct FloorEvidence {
 /// Log-likelihood ratio of a silent taxel against one that reads `expected`, or more [standard deviations]: Gaussian
 /// noise, cut off at the floor of the ADC, where readings below `floor_end` are.
 inline float silence_evidence(float reading, float expected, float floor_end, const FloorEvidence& floor, float most) {
-  constexpr float kMostMean = 8.0F;  // beyond, silence is told by less than half of this many deviations
   constexpr float kMostAgainst = -20.0F;
   const float mean = expected < kMostMean ? expected : kMostMean;
   const float above = mean * (0.5F * mean - reading);

@@ -3,12 +3,16 @@
 #include "compensation/faults/silent_line_detector.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace dermis::compensation {
 namespace {
 
 constexpr float kMostForTaxel = 8.0F;  // evidence of one taxel in one frame
 constexpr double kFoundWithinFrames = 10.0;
+constexpr double kMeanOfNoise = 0.4;  // of normal noise that is cut off at 0 [standard deviations],
+constexpr double kDeviationOfNoise = 0.6;
+constexpr double kNoiseSigmas = 3.0;
 
 constexpr PerAxis<LineFaultKind> kSilent{.row = LineFaultKind::silent_row, .column = LineFaultKind::silent_column};
 constexpr PerAxis<LineFaultKind> kSupplied{.row = LineFaultKind::supplied_row,
@@ -76,10 +80,16 @@ void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultLi
     const auto evidence = static_cast<double>(line_evidence_[axis][line]);
     auto& [silent, alive] = tests_[axis][line];
     if (!faults.contains(kSilent[axis], line)) {
+      if (seen.witnesses.are_doubtful()) silent.restart();
+      if (evidence > 0.0 && !seen.witnesses.read()) continue;
       silent.add(evidence, seen.frame, time);
       if (!silent.decides(kLineFrames)) continue;
-      faults.add({.kind = kSilent[axis], .place = line, .frame = silent.first_frame, .time = silent.first_time});
-      alive.restart();
+      if (sees(axis, line) && reads_noise_alone(seen, axis, line, faults)) {
+        faults.add({.kind = kSilent[axis], .place = line, .frame = silent.first_frame, .time = silent.first_time});
+        alive.restart();
+      } else {
+        silent.restart();
+      }
     } else {
       alive.add(-evidence, seen.frame, time);
       if (!alive.decides(kHealFrames)) continue;
@@ -87,6 +97,20 @@ void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultLi
       silent.restart();
     }
   }
+}
+
+bool SilentLineDetector::reads_noise_alone(const Observation& seen, Axis axis, std::size_t line,
+                                           const FaultList& faults) const noexcept {
+  double sum = 0.0;
+  double taxels = 0.0;
+  for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
+    const std::size_t taxel = taxel_on_line(array_, axis, line, k);
+    const auto is_witness = static_cast<double>(faults.witnesses(axis)[taxel]);
+    sum += is_witness * seen.conditioned.ratio[taxel];
+    taxels += is_witness;
+  }
+  const double most = kMeanOfNoise * taxels + kNoiseSigmas * kDeviationOfNoise * std::sqrt(taxels);
+  return sum <= most * seen.conditioned.sigma_ratio;
 }
 
 }  // namespace dermis::compensation

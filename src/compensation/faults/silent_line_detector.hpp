@@ -14,7 +14,7 @@
 namespace dermis::compensation {
 
 /// A line is silent when its taxels read less than unloaded ones would, all together: evidence that each is silent,
-/// summed over the line and the frames.
+/// summed over the line and the frames. It has to read nothing but noise, while unloaded taxels elsewhere do read.
 class SilentLineDetector {
  public:
   SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded);
@@ -33,6 +33,8 @@ class SilentLineDetector {
   void weigh_taxels(const Observation& seen) noexcept;
   void sum_over_lines(const FaultList& faults) noexcept;
   void judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept;
+  [[nodiscard]] bool reads_noise_alone(const Observation& seen, Axis axis, std::size_t line,
+                                       const FaultList& faults) const noexcept;
 
   const ArrayDescription& array_;
   const UnloadedTaxels& unloaded_;

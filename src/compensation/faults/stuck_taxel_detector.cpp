@@ -6,13 +6,14 @@
 #include <cmath>
 #include <numbers>
 
-#include "compensation/faults/press_count.hpp"
-
 namespace dermis::compensation {
 namespace {
 
 constexpr double kSameCount = 1e-3;
 constexpr double kLeastOthers = 4.0;  // interior readings that tell how often a reading repeats
+constexpr double kLonger = 3.0;       // than any of those repeats
+constexpr double kFades = 0.999;      // a visit
+constexpr double kMaybeRail = 0.95;   // of the largest rise
 constexpr int kHealChanges = 5;
 
 /// Probability that a reading repeats, at least: `noise_counts` with the rounding of the ADC.
@@ -34,6 +35,7 @@ StuckTaxelDetector::StuckTaxelDetector(const ArrayDescription& array)
 void StuckTaxelDetector::judge(const Observation& seen, FaultList& faults) noexcept {
   const TaxelBlock block = TaxelBlock::of_frame(seen.frame, evidence_.size());
   const CountScale scale = count_scale(seen.conditioned.sigma_ratio);
+  follow_largest_rise(seen, scale);
   heal(seen, scale, block, faults);
   if (count_repetitions(seen, scale, block) >= kEvidence) find(seen, block, faults);
 }
@@ -41,6 +43,12 @@ void StuckTaxelDetector::judge(const Observation& seen, FaultList& faults) noexc
 StuckTaxelDetector::CountScale StuckTaxelDetector::count_scale(double sigma_ratio) const noexcept {
   const double supply = readout_.adc_noise_counts / sigma_ratio;
   return readout_.pressure_raises_reading ? CountScale{0.0, supply} : CountScale{supply, -supply};
+}
+
+void StuckTaxelDetector::follow_largest_rise(const Observation& seen, const CountScale& scale) noexcept {
+  double largest = 0.0;
+  for (const double ratio : seen.conditioned.ratio) largest = ratio > largest ? ratio : largest;
+  largest_rise_ = std::max(largest_rise_, std::abs(scale.per_ratio) * largest);
 }
 
 void StuckTaxelDetector::heal(const Observation& seen, const CountScale& scale, const TaxelBlock& block,
@@ -61,6 +69,7 @@ double StuckTaxelDetector::count_repetitions(const Observation& seen, const Coun
                                              const TaxelBlock& block) noexcept {
   const auto [from, to] = block;
   const double most = readout_.full_scale_counts() - 0.5;
+  const double most_pressed = kMaybeRail * largest_rise_ / std::abs(scale.per_ratio);
   const double least_pressed = kPressedSigmas * seen.conditioned.sigma_ratio;
   const double chance = chance_;
   const double* const ratios = seen.conditioned.ratio.data();
@@ -70,6 +79,7 @@ double StuckTaxelDetector::count_repetitions(const Observation& seen, const Coun
   double* const repetitions = repetitions_.data();
   double idle = 0.0;  // interior readings that nothing presses
   double idle_repeated = 0.0;
+  double idle_repetitions = 0.0;
   double most_evidence = 0.0;
   for (std::size_t taxel = from; taxel < to; ++taxel) {
     const double ratio = ratios[taxel];
@@ -80,10 +90,14 @@ double StuckTaxelDetector::count_repetitions(const Observation& seen, const Coun
     last_counts[taxel] = count;
     idle += interior * (1.0 - pressed);
     idle_repeated += repeated * (1.0 - pressed);
-    evidence[taxel] = repeated * pressed * (evidence[taxel] + chance);
-    repetitions[taxel] = repeated * pressed * (repetitions[taxel] + 1.0);
+    const double below_rail = ratio < most_pressed ? 1.0 : 0.0;
+    evidence[taxel] = repeated * pressed * below_rail * (evidence[taxel] + chance);
+    repetitions[taxel] = repeated * (repetitions[taxel] + 1.0);
+    const double of_idle = (1.0 - pressed) * repetitions[taxel];
+    idle_repetitions = of_idle > idle_repetitions ? of_idle : idle_repetitions;
     most_evidence = evidence[taxel] > most_evidence ? evidence[taxel] : most_evidence;
   }
+  idle_repetitions_ = std::max(kFades * idle_repetitions_, idle_repetitions);
   chance_ = idle < kLeastOthers ? 0.0 : -std::log(std::max(repeats_by_noise_, idle_repeated / idle));
   chance_ = std::min(chance_, static_cast<double>(kMostForTaxel));
   return most_evidence;
@@ -92,6 +106,7 @@ double StuckTaxelDetector::count_repetitions(const Observation& seen, const Coun
 void StuckTaxelDetector::find(const Observation& seen, const TaxelBlock& block, FaultList& faults) noexcept {
   for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
     if (evidence_[taxel] < kEvidence || (faults.causes(taxel) & kStuckCause) != 0) continue;
+    if (repetitions_[taxel] < kLonger * idle_repetitions_) continue;
     const std::size_t frames = static_cast<std::size_t>(repetitions_[taxel]) * TaxelBlock::count(evidence_.size());
     faults.add({.kind = LineFaultKind::stuck_taxel,
                 .place = taxel,

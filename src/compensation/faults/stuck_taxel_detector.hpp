@@ -13,7 +13,8 @@ namespace dermis::compensation {
 
 /// Noise moves a reading to another count with a probability that is known, and that taxels which nothing presses show:
 /// a reading that repeats while it should not is as unlikely as the repetitions multiplied. Readings like those of
-/// unloaded taxels are not judged: they are weak, and may be quiet.
+/// unloaded taxels are not judged: they are weak, and may be quiet. Where the noise is less than a count, others repeat
+/// as long; where the readout ends before its full scale, the hardest pressed do.
 class StuckTaxelDetector {
  public:
   explicit StuckTaxelDetector(const ArrayDescription& array);
@@ -28,6 +29,7 @@ class StuckTaxelDetector {
   };
 
   [[nodiscard]] CountScale count_scale(double sigma_ratio) const noexcept;
+  void follow_largest_rise(const Observation& seen, const CountScale& scale) noexcept;
   void heal(const Observation& seen, const CountScale& scale, const TaxelBlock& block, FaultList& faults) noexcept;
   [[nodiscard]] double count_repetitions(const Observation& seen, const CountScale& scale,
                                          const TaxelBlock& block) noexcept;
@@ -36,8 +38,10 @@ class StuckTaxelDetector {
   const Readout& readout_;
   double repeats_by_noise_;          // probability that a reading repeats, at least
   double chance_ = 0.0;              // minus logarithm of that probability, as other taxels show it
+  double largest_rise_ = 0.0;        // of a reading above its zero, of all frames [counts]
+  double idle_repetitions_ = 0.0;    // in a row, the most of an interior reading that nothing presses; fades
   std::vector<double> evidence_;     // Page's sum [taxels]
-  std::vector<double> repetitions_;  // in a row, while pressed [taxels]
+  std::vector<double> repetitions_;  // in a row [taxels]
   std::vector<double> last_counts_;  // [taxels]
   std::vector<int> changes_;         // since it was found to be stuck [taxels]
 };

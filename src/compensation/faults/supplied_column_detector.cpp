@@ -2,13 +2,19 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "compensation/faults/supplied_column_detector.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
 namespace dermis::compensation {
 namespace {
 
-constexpr double kFullScale = 0.97;                  // of the supply
-constexpr double kAgainst = -kEvidence * 1e3;        // of one frame: back to 0
-constexpr int kFramesWhereLoadsReachFullScale = 20;  // an amplifier at its rail, rows that float
-constexpr std::size_t kColumnsForEach = 4;           // that is at the supply; where more read full scale, loads do it
+constexpr double kFullScale = 0.97;            // of the supply
+constexpr double kAgainst = -kEvidence * 1e3;  // of one frame: back to 0
+constexpr int kLoadsWhereTheyReachFullScale = 20;
+constexpr double kNewLoad = 0.2;            // relative change
+constexpr std::size_t kColumnsForEach = 4;  // that is at the supply; where more read full scale, loads do it
 
 bool reads_full_scale(const Observation& seen, const ArrayDescription& array, std::size_t col,
                       const FaultList& faults) {
@@ -21,21 +27,29 @@ bool reads_full_scale(const Observation& seen, const ArrayDescription& array, st
   return true;
 }
 
+/// An amplifier at its rail, rows that float, no other row that holds the column down.
+bool can_reach_full_scale(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
+  return readout.circuit != Circuit::divider || readout.idle_rows != IdleRows::grounded || array.rows == 1;
+}
+
 }  // namespace
 
-SuppliedColumnDetector::SuppliedColumnDetector(const ArrayDescription& array) : array_(array), columns_(array.cols) {}
+SuppliedColumnDetector::SuppliedColumnDetector(const ArrayDescription& array)
+    : array_(array), loads_reach_full_scale_(can_reach_full_scale(array)), columns_(array.cols) {}
 
 void SuppliedColumnDetector::judge(const Observation& seen, FaultList& faults) noexcept {
+  if (array_.readout.circuit == Circuit::none) return;
   constexpr LineFaultKind kKind = LineFaultKind::supplied_column;
   const bool are_few = kColumnsForEach * find_full_scale(seen, faults) <= array_.cols;
-  const bool loads_reach_full_scale =
-      array_.readout.circuit != Circuit::divider || array_.readout.idle_rows != IdleRows::grounded;
-  const int least_frames = loads_reach_full_scale ? kFramesWhereLoadsReachFullScale : kLineFrames;
+  const int least_frames = loads_reach_full_scale_ ? kLoadsWhereTheyReachFullScale : kLineFrames;
   const Nanos time = seen.conditioned.time;
   for (std::size_t col = 0; col < array_.cols; ++col) {
-    auto& [is_full_scale, supplied, released] = columns_[col];
+    auto& [is_full_scale, elsewhere, supplied, released] = columns_[col];
     if (!faults.contains(kKind, col)) {
-      supplied.add(is_full_scale && are_few ? kEvidence : kAgainst, seen.frame, time);
+      const bool speaks_for = is_full_scale && are_few;
+      if (speaks_for && loads_reach_full_scale_ && !loads_have_changed(seen, col)) continue;
+      supplied.add(speaks_for ? kEvidence : kAgainst, seen.frame, time);
       if (!supplied.decides(least_frames)) continue;
       faults.add({.kind = kKind, .place = col, .frame = supplied.first_frame, .time = supplied.first_time});
       released.restart();
@@ -46,6 +60,16 @@ void SuppliedColumnDetector::judge(const Observation& seen, FaultList& faults) n
       supplied.restart();
     }
   }
+}
+
+bool SuppliedColumnDetector::loads_have_changed(const Observation& seen, std::size_t col) noexcept {
+  const std::span<const double> sums = seen.sums.ratio(Axis::column);
+  const double now = std::accumulate(sums.begin(), sums.end(), -sums[col]);
+  double& last = columns_[col].elsewhere;
+  const double noise = seen.conditioned.sigma_ratio * std::sqrt(static_cast<double>(array_.taxel_count()));
+  if (std::abs(now - last) <= std::max(kNewLoad * std::max(now, last), kPressedSigmas * noise)) return false;
+  last = now;
+  return true;
 }
 
 std::size_t SuppliedColumnDetector::find_full_scale(const Observation& seen, const FaultList& faults) noexcept {

@@ -11,7 +11,8 @@
 
 namespace dermis::compensation {
 
-/// A column at the supply reads full scale in all rows, while most columns do not.
+/// A column at the supply reads full scale in all rows, while most columns do not. Where loads can do that too, it has
+/// to last while the loads elsewhere change. With `circuit = "none"` there is no supply on a column.
 class SuppliedColumnDetector {
  public:
   explicit SuppliedColumnDetector(const ArrayDescription& array);
@@ -21,14 +22,17 @@ class SuppliedColumnDetector {
  private:
   struct Column {
     bool is_full_scale = false;  // in this frame
+    double elsewhere = 0.0;      // readings of all other columns when it was last counted
     PageTest supplied;
     PageTest released;  // of a column that was found to be at the supply
   };
 
+  [[nodiscard]] bool loads_have_changed(const Observation& seen, std::size_t col) noexcept;
   /// How many columns are.
   std::size_t find_full_scale(const Observation& seen, const FaultList& faults) noexcept;
 
   const ArrayDescription& array_;
+  bool loads_reach_full_scale_;
   std::vector<Column> columns_;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "compensation/faults/fault_list.hpp"
@@ -12,19 +13,23 @@
 namespace dermis::compensation {
 
 /// A row at the supply reads the least in every column, as the others hold its reading too. What speaks for it is a
-/// press on it that shows alike in most other rows.
+/// press on a part of it that shows in most other rows, equal within the noise, while presses on other rows show on
+/// them alone: where a whole column or everything is pressed, rows read alike without a fault. With `circuit = "none"`
+/// there is no supply on a row.
 class SuppliedRowDetector {
  public:
   explicit SuppliedRowDetector(const ArrayDescription& array);
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
+  /// The row that half as many presses as it takes speak for; allocates.
+  void suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const;
+
  private:
   /// What the presses on a row show in the other rows.
   struct Comparison {
-    bool any = false;  // press that shows
-    int shows = 0;     // new presses that do
-    int fails = 0;     // readings below those of the row
+    std::optional<std::size_t> place;  // of a press that shows
+    int fails = 0;                     // readings below those of the row
   };
 
   /// How a press on a row stands against the readings of the other rows in its column.
@@ -35,14 +40,16 @@ class SuppliedRowDetector {
 
   void choose_candidate(const Observation& seen, const FaultList& faults) noexcept;
   void judge_row(const Observation& seen, std::size_t row, bool is_known, FaultList& faults) noexcept;
-  [[nodiscard]] Comparison compare_row(const Observation& seen, std::size_t row, const FaultList& faults) noexcept;
+  [[nodiscard]] Comparison compare_row(const Observation& seen, std::size_t row,
+                                       const FaultList& faults) const noexcept;
   [[nodiscard]] ColumnComparison compare_in_column(const Observation& seen, std::size_t row, std::size_t col,
                                                    const FaultList& faults) const noexcept;
+  [[nodiscard]] bool another_row_is_pressed(const Observation& seen, std::size_t row,
+                                            const FaultList& faults) const noexcept;
 
   const ArrayDescription& array_;
-  std::size_t candidate_ = 0;       // the row under suspicion
-  PressCount count_;                // of its presses
-  std::vector<double> last_ratio_;  // of the last press that showed [taxels]
+  std::size_t candidate_ = 0;  // the row under suspicion
+  PressCount count_;           // of its presses
 };
 
 }  // namespace dermis::compensation

@@ -4,13 +4,20 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 #include "compensation/lumped_circuit.hpp"
 
 namespace dermis::compensation {
+namespace {
+
+constexpr double kAboveSmallest = 1.5;  // times the smallest reading: an unloaded one that cannot have been cut off
+
+}  // namespace
 
 UnloadedTaxels::UnloadedTaxels(const ArrayDescription& array, std::span<const double> siemens)
     : array_(array),
+      smallest_reading_(std::numeric_limits<double>::infinity()),
       siemens_(siemens.begin(), siemens.end()),
       ratio_(array.taxel_count()),
       least_reading_(array.taxel_count()),
@@ -22,6 +29,16 @@ UnloadedTaxels::UnloadedTaxels(const ArrayDescription& array, std::span<const do
     ratio_ = siemens_;
   } else {
     LumpedCircuit(array).solve(siemens_, ratio_);
+    subtract_amplifier_offsets();
+  }
+}
+
+void UnloadedTaxels::subtract_amplifier_offsets() {
+  const Readout& readout = array_.readout;
+  if (readout.amplifier_offset_v.empty()) return;
+  for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {
+    const double offset = readout.amplifier_offset_v[taxel % array_.cols] / *readout.supply_v;
+    ratio_[taxel] = std::max(ratio_[taxel] - offset, 0.0);
   }
 }
 
@@ -30,6 +47,24 @@ void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums&
     expect_beside_no_press(conditioned);
   } else {
     expect_beside_presses(sums, conditioned.sigma_ratio, solved);
+  }
+  follow_smallest_reading(conditioned.ratio);
+  forget_what_may_be_cut_off();
+}
+
+void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio) noexcept {
+  double smallest = smallest_reading_;
+  for (const double reading : ratio) {
+    const double positive = reading > 0.0 ? reading : smallest;
+    smallest = positive < smallest ? positive : smallest;
+  }
+  smallest_reading_ = smallest;
+}
+
+void UnloadedTaxels::forget_what_may_be_cut_off() noexcept {
+  const double least = kAboveSmallest * smallest_reading_;
+  for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {
+    least_reading_[taxel] = ratio_[taxel] > least ? least_reading_[taxel] : 0.0F;
   }
 }
 

@@ -31,8 +31,12 @@ class UnloadedTaxels {
   /// Readings while nothing is pressed.
   [[nodiscard]] std::span<const double> ratio() const noexcept { return ratio_; }
 
-  /// Least reading of every unloaded taxel among the loads of this frame [standard deviations].
+  /// Least reading of every unloaded taxel among the loads of this frame [standard deviations]; 0 where none can be
+  /// expected, as the readout has never sent so small a reading: it may cut them off.
   [[nodiscard]] std::span<const float> least_reading() const noexcept { return least_reading_; }
+
+  /// Of all readings above 0 so far.
+  [[nodiscard]] double smallest_reading() const noexcept { return smallest_reading_; }
 
   /// Most that an unloaded taxel may come out with, at this standard deviation of its conductance.
   [[nodiscard]] double most_siemens(std::size_t taxel, double sigma_siemens) const noexcept {
@@ -42,11 +46,15 @@ class UnloadedTaxels {
  private:
   static constexpr double kMostSigmas = 5.0;
 
+  void subtract_amplifier_offsets();
+  void follow_smallest_reading(std::span<const double> ratio) noexcept;
+  void forget_what_may_be_cut_off() noexcept;
   void expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept;
   void expect_beside_no_press(const ConditionedFrame& conditioned) noexcept;
   void find_pressed_lines(const ConditionedFrame& conditioned) noexcept;
 
   const ArrayDescription& array_;
+  double smallest_reading_;                           // > 0, of all frames
   std::vector<double> siemens_;                       // [taxels]
   std::vector<double> ratio_;                         // [taxels]
   std::vector<float> least_reading_;                  // [taxels]

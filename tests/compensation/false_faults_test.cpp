@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+// What looks like a line fault and is none.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "dermis/compensation/crosstalk.hpp"
+#include "dermis/compensation/line_faults.hpp"
+#include "dermis/core/random.hpp"
+#include "support/healthy_arrays.hpp"
+#include "support/reference_array.hpp"
+
+namespace dermis::compensation {
+namespace {
+
+using support::reference_circuit;
+
+/// The monitor of an array whose unloaded taxels are alike, fed with readings.
+class Watch {
+ public:
+  Watch(const ArrayDescription& array, double unloaded_siemens)
+      : array_(array),
+        compensator_(Compensator::create(array).value()),
+        monitor_(array, std::vector<double>(array.taxel_count(), unloaded_siemens)) {
+    conditioned_.sigma_ratio = 1.0 / array.readout.full_scale_counts();
+  }
+
+  /// The faults found so far, as text.
+  std::string observe(const std::vector<double>& ratio) {
+    conditioned_.ratio = ratio;
+    conditioned_.taxels.assign(ratio.size(), TaxelStatus::ok);
+    compensator_.process(conditioned_, conductance_);
+    monitor_.observe(conditioned_, conductance_);
+    std::string text;
+    for (const LineFault& fault : monitor_.faults()) text += place_name(fault, array_) + "; ";
+    return text;
+  }
+
+  [[nodiscard]] const LineFaultMonitor& monitor() const { return monitor_; }
+
+ private:
+  ArrayDescription array_;
+  Compensator compensator_;
+  LineFaultMonitor monitor_;
+  ConditionedFrame conditioned_;
+  ConductanceFrame conductance_;
+};
+
+/// Every circuit, scene and material, cut at the vendor's threshold, calibrated while something touched the array.
+TEST(FalseFaults, nothing_is_masked_on_random_healthy_arrays) {
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const support::HealthyArray healthy = support::random_healthy_array(seed);
+    EXPECT_EQ(support::found_faults(healthy, 300), "") << "seed " << seed << ": " << healthy.words;
+  }
+}
+
+/// Equal pressure on a mat of equal taxels, in steps, 8 bit: all lines read alike, and nothing is wrong.
+TEST(FalseFaults, uniform_loads_are_no_shorts) {
+  for (const support::NamedCircuit& circuit : support::all_circuits()) {
+    for (const double spread : {0.0, 0.05}) {
+      support::HealthyArray healthy = support::random_healthy_array(1);
+      Random random(4);
+      healthy.array = support::random_array(circuit, 8, 6, random);
+      healthy.array.readout.drive_ohm.assign(healthy.array.driven_lines(), 20.0);
+      healthy.array.readout.load_ohm.assign(healthy.array.sensed_lines(), 1000.0);
+      healthy.array.readout.adc_bits = 8;
+      healthy.array.readout.adc_noise_counts = 0.5;
+      healthy.array.taxel_area_m2 = 38.48e-6;
+      healthy.options = {};
+      healthy.options.environment.adc_noise_lsb = 0.4;
+      healthy.options.rubber.resistance_spread = spread;
+      healthy.options.rubber.exponent_spread = 0.0;
+      healthy.scene = "uniform";
+      healthy.threshold_counts = healthy.loaded_share = 0.0;
+      EXPECT_EQ(support::found_faults(healthy, 120), "") << circuit << ", spread " << spread;
+    }
+  }
+}
+
+/// A touch that comes and goes 40 times between two lines at the edge, alike on both, and one that slides along them.
+TEST(FalseFaults, the_same_press_again_and_a_long_one_are_no_short) {
+  const ArrayDescription array = reference_circuit(8, 8);
+  Watch watch(array, 5e-6);
+  const auto press = [&](std::size_t col, double reading) {
+    std::vector<double> ratio(array.taxel_count(), 1e-3);
+    ratio[array.index(6, col)] = ratio[array.index(7, col)] = reading;
+    ASSERT_EQ(watch.observe(ratio), "");
+  };
+  for (int time = 0; time < 40; ++time) {
+    press(3, 0.1);
+    press(3, 1e-3);
+  }
+  const std::vector<LineFault> suspicions = watch.monitor().suspicions();
+  ASSERT_EQ(suspicions.size(), 1U);
+  EXPECT_EQ(suspicions[0].kind, LineFaultKind::shorted_rows);
+  EXPECT_EQ(suspicions[0].place, 6U);
+  for (int step = 0; step < 400; ++step) {
+    const double phase = 0.02 * step;
+    press(static_cast<std::size_t>(3.5 + 3.5 * std::sin(phase)), 0.1 + 0.08 * std::sin(5.0 * phase));
+  }
+}
+
+/// Columns whose taxels all read the same, at full scale too, one after the other.
+TEST(FalseFaults, equal_readings_are_no_short_in_an_unknown_circuit) {
+  const ArrayDescription array = reference_circuit(8, 8, Circuit::none);
+  Watch watch(array, 5e-3);
+  Random random(2);
+  for (int frame = 0; frame < 500; ++frame) {
+    std::vector<double> ratio(array.taxel_count(), 5e-3);
+    const std::size_t col = random.below(array.cols);
+    const double reading = frame % 2 == 0 ? 1.0 : random.uniform(0.2, 0.6);
+    for (std::size_t row = 0; row < array.rows; ++row) {
+      ratio[array.index(row, 5)] = 1.0;
+      ratio[array.index(row, col)] = reading;
+      ratio[array.index(2, row)] = ratio[array.index(3, row)] = reading;
+    }
+    ASSERT_EQ(watch.observe(ratio), "") << "frame " << frame;
+  }
+}
+
+/// A readout that sends 0 below a threshold, calibrated while a press began.
+TEST(FalseFaults, readings_cut_at_a_threshold_are_no_silence) {
+  for (const Circuit circuit : {Circuit::none, Circuit::divider}) {
+    const ArrayDescription array = reference_circuit(13, 6, circuit);
+    Watch watch(array, circuit == Circuit::none ? 0.01 : 5e-5);
+    for (int frame = 0; frame < 500; ++frame) {
+      std::vector<double> ratio(array.taxel_count(), 0.0);
+      const double reading = 2e-3 * std::max(frame % 100 - 40, 0);
+      for (std::size_t row = 4; row < 8; ++row) {
+        for (std::size_t col = 2; col < 5; ++col) ratio[array.index(row, col)] = reading;
+      }
+      ASSERT_EQ(watch.observe(ratio), "") << to_string(circuit) << ", frame " << frame;
+    }
+    EXPECT_TRUE(watch.monitor().sees_silent_column(1));
+  }
+}
+
+}  // namespace
+}  // namespace dermis::compensation
