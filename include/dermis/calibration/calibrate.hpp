@@ -28,7 +28,7 @@ struct CalibrationReport {
   std::size_t frames = 0;  ///< Labelled frames used.
   std::size_t frames_rejected = 0;
   std::string first_rejection;
-  std::vector<std::string> remarks;  ///< On labels and readings: SampleDatabase::remarks.
+  std::vector<std::string> remarks;        ///< On labels and readings: SampleDatabase::remarks.
   std::vector<std::string> circuit;        ///< What the fit of an unknown circuit found; empty where all was given.
   std::vector<PressPair> telling_presses;  ///< Would tell circuits apart that the frames do not; see CircuitFit.
   TrainingReport training;
