@@ -5,55 +5,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/robust_line.hpp"
+
 namespace dermis::calibration {
 namespace {
 
 constexpr double kLeastNoiseCounts = 1.0 / 3;  // quantisation alone gives 1 / sqrt(12)
 constexpr std::size_t kLeastFramesForNoise = 5;
 
-/// Conductance of one taxel and the temperature, in a frame in which nothing presses.
-struct UnloadedPoint {
-  double siemens = 0.0;
-  double temperature_offset = 0.0;
-};
-
-std::vector<UnloadedPoint> unloaded_points(const SampleDatabase& database, std::size_t taxel,
-                                           const SampleTemperatures& temperatures) {
-  std::vector<UnloadedPoint> points;
+/// Temperature offset and conductance of one taxel in the frames in which nothing presses.
+std::vector<Point> unloaded_points(const SampleDatabase& database, std::size_t taxel,
+                                   const SampleTemperatures& temperatures) {
+  std::vector<Point> points;
   for (const Sample& sample : database.samples) {
     if (!sample.unloaded || sample.known_newtons[taxel] != 0.0F) continue;
-    points.push_back({sample.siemens[taxel], temperature_offset(sample, temperatures)});
+    points.push_back({temperature_offset(sample, temperatures), sample.siemens[taxel]});
   }
   return points;
 }
 
-struct Line {
-  double level = 0.0;  // at the centre temperature
-  double slope = 0.0;
-  double deviation = 0.0;
-};
-
-Line fit_line(const std::vector<UnloadedPoint>& points) {
-  const auto count = static_cast<double>(points.size());
-  double mean_y = 0.0;
-  double mean_x = 0.0;
-  for (const UnloadedPoint& point : points) {
-    mean_y += point.siemens / count;
-    mean_x += point.temperature_offset / count;
-  }
-  double covariance = 0.0;
+bool spans_temperatures(const std::vector<Point>& points) {
+  double mean = 0.0;
+  for (const Point& point : points) mean += point.x / static_cast<double>(points.size());
   double variance = 0.0;
-  for (const UnloadedPoint& point : points) {
-    covariance += (point.siemens - mean_y) * (point.temperature_offset - mean_x) / count;
-    variance += std::pow(point.temperature_offset - mean_x, 2) / count;
-  }
-  const bool has_slope = 4.0 * variance >= std::pow(SampleTemperatures::kLeastSpanCelsius, 2);
-  const double slope = has_slope ? covariance / variance : 0.0;
-  double square = 0.0;
-  for (const UnloadedPoint& point : points) {
-    square += std::pow(point.siemens - mean_y - slope * (point.temperature_offset - mean_x), 2) / count;
-  }
-  return {mean_y - slope * mean_x, slope, std::sqrt(square)};
+  for (const Point& point : points) variance += std::pow(point.x - mean, 2) / static_cast<double>(points.size());
+  return 4.0 * variance >= std::pow(SampleTemperatures::kLeastSpanCelsius, 2);
 }
 
 }  // namespace
@@ -74,10 +50,10 @@ UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperature
                   std::vector<double>(taxels, least_noise),
                   std::vector<bool>(taxels)};
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    const std::vector<UnloadedPoint> points = unloaded_points(database, taxel, temperatures);
+    const std::vector<Point> points = unloaded_points(database, taxel, temperatures);
     fit.is_stuck[taxel] = points.empty();
     if (points.empty()) continue;
-    const Line line = fit_line(points);
+    const RobustLine line = fit_robust_line(points, spans_temperatures(points), least_noise);
     fit.law.offset_siemens[taxel] = line.level;
     fit.law.per_celsius[taxel] = line.slope;
     fit.noise_siemens[taxel] =

@@ -24,7 +24,7 @@ struct UnloadedFit {
   std::vector<bool> is_stuck;         ///< Saturated although nothing presses, or without any reading [taxels].
 };
 
-/// Least squares over the frames in which nothing presses anywhere, at least one.
+/// By most of the frames in which nothing presses anywhere, at least one: some that are called so may be pressed.
 [[nodiscard]] UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& temperatures);
 
 /// Conductance of a taxel above its unloaded value [S].

@@ -31,8 +31,22 @@ bool same(const LineFault& a, const LineFault& b) {
   return a.kind == b.kind && a.place == b.place && a.frame == b.frame;
 }
 
+/// The taxel was found to be dead before the whole line of it was.
+bool is_explained(const LineFault& dead, const LineFault& line, const ArrayDescription& array) {
+  const compensation::LineFaultTraits& traits = traits_of(line.kind);
+  if (dead.kind != compensation::LineFaultKind::dead_taxel || traits.effect != compensation::LineFaultEffect::silent) {
+    return false;
+  }
+  return line.place == (*traits.axis == Axis::row ? dead.place / array.cols : dead.place % array.cols);
+}
+
 /// Of the faults so far, which stand and which have gone at this frame.
-void follow(std::span<const LineFault> present, std::size_t frame, std::vector<FaultHistory>& faults) {
+void follow(std::span<const LineFault> present, std::size_t frame, const ArrayDescription& array,
+            std::vector<FaultHistory>& faults) {
+  std::erase_if(faults, [&](const FaultHistory& known) {
+    const auto explains = [&](const LineFault& fault) { return is_explained(known.fault, fault, array); };
+    return !known.until && std::any_of(present.begin(), present.end(), explains);
+  });
   for (FaultHistory& known : faults) {
     const auto is_same = [&](const LineFault& fault) { return same(fault, known.fault); };
     const auto now = std::find_if(present.begin(), present.end(), is_same);
@@ -79,7 +93,7 @@ class Examination::Implementation {
     if (!first_time_) first_time_ = raw.time;
     last_time_ = raw.time;
     follow_temperature(raw);
-    follow(pipeline.line_faults().faults(), frame, counted_.faults);
+    follow(pipeline.line_faults().faults(), frame, model_.array, counted_.faults);
     missing_.add(pipeline.conditioned());
     const auto& taxels = pipeline.conditioned().taxels;
     saturated_ += static_cast<std::size_t>(std::count(taxels.begin(), taxels.end(), TaxelStatus::saturated));
@@ -126,10 +140,12 @@ class Examination::Implementation {
     noise_.add(deviation_);
   }
 
-  /// Frames in which neither the taxel nor one of its neighbours is touched tell what it conducts unloaded.
+  /// Frames in which neither the taxel nor one of its neighbours is touched tell what it conducts unloaded, where that
+  /// is more than noise.
   void follow_offsets(const ConductanceFrame& conductance) {
     for (std::size_t taxel = 0; taxel < deviation_.size(); ++taxel) {
-      if (conductance.taxels[taxel] != TaxelStatus::ok || !(unloaded_.expected(taxel) > 0.0)) continue;
+      if (conductance.taxels[taxel] != TaxelStatus::ok) continue;
+      if (!(unloaded_.expected(taxel) > kTouchedSigmas * conductance.sigma_siemens[taxel])) continue;
       if (unloaded_.is_near_touch(conductance, taxel, kTouchedSigmas)) continue;
       offsets_.add(taxel, conductance.siemens[taxel] / unloaded_.expected(taxel));
     }

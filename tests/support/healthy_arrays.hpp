@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/robust_line.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/compensation/line_faults.hpp"
 #include "dermis/core/random.hpp"
@@ -103,20 +104,24 @@ inline std::vector<ConditionedFrame> frames_of(const HealthyArray& healthy, cons
   return all;
 }
 
-/// Mean conductance of frames that were said to be unloaded.
+/// Conductance in frames that were said to be unloaded, as a calibration takes it.
 inline std::vector<double> calibrated_unloaded(const HealthyArray& healthy, compensation::Compensator& compensator) {
   constexpr std::size_t kFrames = 40;
   auto frames = frames_of(healthy, "idle", healthy.seed + 1, kFrames);
   const auto loaded = frames_of(healthy, "contacts", healthy.seed + 2, 400);
   const auto replaced = static_cast<std::size_t>(healthy.loaded_share * kFrames);
   for (std::size_t k = 0; k < replaced; ++k) frames[k] = loaded[k * loaded.size() / replaced];
-  std::vector<double> unloaded(healthy.array.taxel_count());
+  std::vector<std::vector<calibration::Point>> points(healthy.array.taxel_count());
   ConductanceFrame conductance;
   for (const ConditionedFrame& frame : frames) {
     compensator.process(frame, conductance);
-    for (std::size_t taxel = 0; taxel < unloaded.size(); ++taxel) {
-      unloaded[taxel] += conductance.siemens[taxel] / static_cast<double>(frames.size());
-    }
+    for (std::size_t taxel = 0; taxel < points.size(); ++taxel)
+      points[taxel].push_back({0.0, conductance.siemens[taxel]});
+  }
+  std::vector<double> unloaded;
+  for (const auto& of_taxel : points) {
+    const double least = 1.0 / 3 * conductance.sigma_siemens[unloaded.size()] / healthy.array.readout.adc_noise_counts;
+    unloaded.push_back(calibration::fit_robust_line(of_taxel, false, least).level);
   }
   return unloaded;
 }

@@ -2,12 +2,14 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "compensation/faults/dead_taxel_detector.hpp"
 
+#include <cmath>
 #include <limits>
 
 namespace dermis::compensation {
 namespace {
 
-constexpr int kPassedOver = 2;          // frames in which taxels on both sides are pressed
+constexpr float kCrosstalkShare = 0.3F;  // of what crosses over from other taxels may be solved wrongly
+constexpr int kPassedOver = 2;           // frames in which taxels on both sides are pressed
 constexpr double kAboveSmallest = 4.0;  // times the smallest reading: a press that no threshold hides on a weaker taxel
 
 }  // namespace
@@ -42,15 +44,13 @@ void DeadTaxelDetector::weigh(const Observation& seen, const TaxelBlock& block) 
   const double per_sigma_ratio = 1.0 / seen.conditioned.sigma_ratio;
   float* const evidence = evidence_.data();
   for (std::size_t taxel = from; taxel < to; ++taxel) {
-    const auto per_sigma = 1.0F / static_cast<float>(sigma[taxel]);
+    const auto reading = static_cast<float>(ratio[taxel] * per_sigma_ratio);
+    const float known = 1.0F / std::sqrt(1.0F + kCrosstalkShare * kCrosstalkShare * reading * reading);
+    const auto per_sigma = known / static_cast<float>(sigma[taxel]);
     const float conductance = static_cast<float>(siemens[taxel]) * per_sigma;
     const float least = static_cast<float>(kUnloadedShare * unloaded[taxel]) * per_sigma;
     const float mean = expected[taxel] > 0.0F ? least : 0.0F;
-    const float solved = silence_evidence(conductance, mean, std::numeric_limits<float>::min(), floor, kMostForTaxel);
-    const auto reading = static_cast<float>(ratio[taxel] * per_sigma_ratio);
-    const float read = silence_evidence(reading, expected[taxel], floor.sigmas, floor, kMostForTaxel);
-    const float most = read > 0.0F ? kMostForTaxel : 0.0F;
-    evidence[taxel] = solved < most ? solved : most;
+    evidence[taxel] = silence_evidence(conductance, mean, std::numeric_limits<float>::min(), floor, kMostForTaxel);
   }
 }
 

@@ -32,9 +32,19 @@ FaultList::FaultList(const ArrayDescription& array)
 
 void FaultList::add(const LineFault& fault) noexcept {
   if (faults_.size() == faults_.capacity()) return;
+  if (traits_of(fault.kind).effect == LineFaultEffect::silent) forget_dead_taxels(fault);
   faults_.push_back(fault);
   mask_taxels();
   count_change();
+}
+
+/// A silent line explains the silence of its taxels.
+void FaultList::forget_dead_taxels(const LineFault& line) noexcept {
+  for_each_masked_taxel(line, array_, [&](std::size_t taxel) {
+    std::erase_if(faults_, [&](const LineFault& fault) {
+      return fault.kind == LineFaultKind::dead_taxel && fault.place == taxel;
+    });
+  });
 }
 
 void FaultList::remove(LineFaultKind kind, std::size_t place) noexcept {

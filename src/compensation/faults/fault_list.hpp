@@ -55,6 +55,7 @@ class FaultList {
   [[nodiscard]] std::span<const float> witnesses(Axis axis) const noexcept { return witnesses_[axis]; }
 
  private:
+  void forget_dead_taxels(const LineFault& line) noexcept;
   void mask_taxels() noexcept;
 
   const ArrayDescription& array_;

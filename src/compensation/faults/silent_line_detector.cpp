@@ -9,7 +9,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr float kMostForTaxel = 8.0F;  // evidence of one taxel in one frame
-constexpr double kFoundWithinFrames = 10.0;
+constexpr double kFoundWithinFrames = 30.0;
 constexpr double kMeanOfNoise = 0.4;  // of normal noise that is cut off at 0 [standard deviations],
 constexpr double kDeviationOfNoise = 0.6;
 constexpr double kNoiseSigmas = 3.0;
@@ -81,7 +81,6 @@ void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultLi
     auto& [silent, alive] = tests_[axis][line];
     if (!faults.contains(kSilent[axis], line)) {
       if (seen.witnesses.are_doubtful()) silent.restart();
-      if (evidence > 0.0 && !seen.witnesses.read()) continue;
       silent.add(evidence, seen.frame, time);
       if (!silent.decides(kLineFrames)) continue;
       if (sees(axis, line) && reads_noise_alone(seen, axis, line, faults)) {

@@ -12,8 +12,9 @@ namespace dermis::compensation {
 namespace {
 
 constexpr LineFaultKind kKind = LineFaultKind::supplied_row;
-constexpr int kShowingPresses = 3;
-constexpr double kMostTolerance = 0.2;  // of a reading: beyond, equality means nothing
+constexpr int kShowingPresses = 2;
+constexpr std::size_t kAlikeReadings = 12;  // few rows may be alike by chance: they need more presses
+constexpr double kMostTolerance = 0.2;      // of a reading: beyond, equality means nothing
 
 }  // namespace
 
@@ -31,7 +32,7 @@ void SuppliedRowDetector::judge(const Observation& seen, FaultList& faults) noex
 }
 
 void SuppliedRowDetector::suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const {
-  if (2 * count_.presses < kShowingPresses || faults.contains(kKind)) return;
+  if (2 * alike_ < kAlikeReadings || faults.contains(kKind)) return;
   suspicions.push_back({.kind = kKind, .place = candidate_, .frame = count_.first_frame, .time = count_.first_time});
 }
 
@@ -45,27 +46,34 @@ void SuppliedRowDetector::choose_candidate(const Observation& seen, const FaultL
   const double noise = seen.conditioned.sigma_ratio * std::sqrt(static_cast<double>(array_.cols));
   if (sum[candidate_] > sum[least] + kDifferentSigmas * noise) {
     candidate_ = least;
-    count_ = PressCount();
+    forget_presses();
   }
 }
 
 void SuppliedRowDetector::judge_row(const Observation& seen, std::size_t row, bool is_known,
                                     FaultList& faults) noexcept {
-  const auto [place, fails] = compare_row(seen, row, faults);
+  const auto [place, alike, fails] = compare_row(seen, row, faults);
   if (is_known) {
     if (place) count_.against = 0;
     if (fails == 0 || ++count_.against < kLineFrames) return;
     faults.remove(kKind, row);
-    count_ = PressCount();
+    forget_presses();
   } else if (fails > 0) {
-    count_ = PressCount();
+    forget_presses();
   } else {
     count_.follow(array_.cols, [&](std::size_t col) { return seen.is_pressed(array_.index(row, col)); });
     if (!place || !another_row_is_pressed(seen, row, faults)) return;
+    const int presses = count_.presses;
     count_.add(*place, seen.frame, seen.conditioned.time);
-    if (!count_.decides(kShowingPresses)) return;
+    if (count_.presses > presses) alike_ += alike;
+    if (alike_ < kAlikeReadings || !count_.decides(kShowingPresses)) return;
     faults.add({.kind = kKind, .place = row, .frame = count_.first_frame, .time = count_.first_time});
   }
+}
+
+void SuppliedRowDetector::forget_presses() noexcept {
+  count_ = PressCount();
+  alike_ = 0;
 }
 
 SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observation& seen, std::size_t row,
@@ -79,7 +87,9 @@ SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observati
     ++pressed;
     const ColumnComparison press = compare_in_column(seen, row, col, faults);
     found.fails += press.fails;
-    if (press.shows) found.place = col;
+    if (!press.shows || press.alike < found.alike) continue;
+    found.place = col;
+    found.alike = press.alike;
   }
   if (pressed == array_.cols) found.place.reset();
   return found;
@@ -93,7 +103,6 @@ SuppliedRowDetector::ColumnComparison SuppliedRowDetector::compare_in_column(con
   const double own = ratio[array_.index(row, col)];
   const double deviation = std::hypot(sigma, sigma, kEqualShare * own);
   std::size_t others = 0;
-  std::size_t alike = 0;
   bool is_least = true;
   ColumnComparison found;
   for (std::size_t other = 0; other < array_.rows; ++other) {
@@ -102,11 +111,11 @@ SuppliedRowDetector::ColumnComparison SuppliedRowDetector::compare_in_column(con
     const double more = ratio[taxel] - own;
     const double tolerance = kEqualSigmas * deviation + seen.unloaded.ratio()[taxel];
     ++others;
-    if (more < tolerance && tolerance < kMostTolerance * own) ++alike;
+    if (more < tolerance && tolerance < kMostTolerance * own) ++found.alike;
     if (more < -kEqualSigmas * deviation) is_least = false;
     if (more < -kDifferentSigmas * deviation) ++found.fails;
   }
-  found.shows = is_least && 2 * alike >= others && others >= 2;
+  found.shows = is_least && 2 * found.alike >= others && others >= 2;
   return found;
 }
 

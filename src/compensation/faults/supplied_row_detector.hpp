@@ -22,24 +22,27 @@ class SuppliedRowDetector {
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
-  /// The row that half as many presses as it takes speak for; allocates.
+  /// The row that half as much as it takes speaks for; allocates.
   void suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const;
 
  private:
   /// What the presses on a row show in the other rows.
   struct Comparison {
     std::optional<std::size_t> place;  // of a press that shows
+    std::size_t alike = 0;             // readings of other rows that are equal to that press
     int fails = 0;                     // readings below those of the row
   };
 
   /// How a press on a row stands against the readings of the other rows in its column.
   struct ColumnComparison {
     bool shows = false;
+    std::size_t alike = 0;
     int fails = 0;
   };
 
   void choose_candidate(const Observation& seen, const FaultList& faults) noexcept;
   void judge_row(const Observation& seen, std::size_t row, bool is_known, FaultList& faults) noexcept;
+  void forget_presses() noexcept;
   [[nodiscard]] Comparison compare_row(const Observation& seen, std::size_t row,
                                        const FaultList& faults) const noexcept;
   [[nodiscard]] ColumnComparison compare_in_column(const Observation& seen, std::size_t row, std::size_t col,
@@ -50,6 +53,7 @@ class SuppliedRowDetector {
   const ArrayDescription& array_;
   std::size_t candidate_ = 0;  // the row under suspicion
   PressCount count_;           // of its presses
+  std::size_t alike_ = 0;      // readings of other rows that were equal to them
 };
 
 }  // namespace dermis::compensation

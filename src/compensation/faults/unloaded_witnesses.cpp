@@ -31,10 +31,9 @@ void UnloadedWitnesses::follow(const ConditionedFrame& conditioned, const Unload
     if (least > 0.0) ++expected;
     if (least > 0.0 && ratio[taxel] > 0.5 * least * sigma) ++reading;
   }
-  read_ = 2 * reading > unpressed;
   if (2 * unpressed > ratio.size() && 2 * reading < expected) {
     distrust_ = kFramesOfDistrust;
-  } else if (read_ && distrust_ > 0) {
+  } else if (2 * reading > unpressed && distrust_ > 0) {
     --distrust_;
   }
 }

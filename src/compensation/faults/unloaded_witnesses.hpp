@@ -17,14 +17,10 @@ class UnloadedWitnesses {
  public:
   void follow(const ConditionedFrame& conditioned, const UnloadedTaxels& unloaded, const FaultList& faults) noexcept;
 
-  /// Most of them read in this frame.
-  [[nodiscard]] bool read() const noexcept { return read_; }
-
   /// Not long ago most of the array was unloaded and did not read.
   [[nodiscard]] bool are_doubtful() const noexcept { return distrust_ > 0; }
 
  private:
-  bool read_ = false;
   int distrust_ = 0;  // frames in which they have to read first
 };
 
