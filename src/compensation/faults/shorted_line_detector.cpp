@@ -12,7 +12,7 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr int kEqualPresses = 4;
+constexpr int kEqualPresses = 6;
 constexpr double kAlikeSums = 0.05;  // difference of the readings of two lines that may be shorted
 constexpr std::size_t kLeastLines = 3;
 

@@ -12,7 +12,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr LineFaultKind kKind = LineFaultKind::supplied_row;
-constexpr int kShowingPresses = 2;
+constexpr int kShowingPresses = 3;
 constexpr std::size_t kAlikeReadings = 12;  // few rows may be alike by chance: they need more presses
 constexpr double kMostTolerance = 0.2;      // of a reading: beyond, equality means nothing
 

@@ -4,20 +4,20 @@
 
 #include <algorithm>
 #include <cassert>
-#include <limits>
 
 #include "compensation/lumped_circuit.hpp"
 
 namespace dermis::compensation {
 namespace {
 
+constexpr double kMostCutOff = 0.05;    // of full scale: what readouts send as 0
 constexpr double kAboveSmallest = 1.5;  // times the smallest reading: an unloaded one that cannot have been cut off
 
 }  // namespace
 
 UnloadedTaxels::UnloadedTaxels(const ArrayDescription& array, std::span<const double> siemens)
     : array_(array),
-      smallest_reading_(std::numeric_limits<double>::infinity()),
+      smallest_reading_(kMostCutOff),
       siemens_(siemens.begin(), siemens.end()),
       ratio_(array.taxel_count()),
       least_reading_(array.taxel_count()),
@@ -49,7 +49,7 @@ void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums&
     expect_beside_presses(sums, conditioned.sigma_ratio, solved);
   }
   follow_smallest_reading(conditioned.ratio);
-  forget_what_may_be_cut_off();
+  forget_what_may_be_cut_off(conditioned.sigma_ratio);
 }
 
 void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio) noexcept {
@@ -61,11 +61,9 @@ void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio) noex
   smallest_reading_ = smallest;
 }
 
-void UnloadedTaxels::forget_what_may_be_cut_off() noexcept {
-  const double least = kAboveSmallest * smallest_reading_;
-  for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {
-    least_reading_[taxel] = ratio_[taxel] > least ? least_reading_[taxel] : 0.0F;
-  }
+void UnloadedTaxels::forget_what_may_be_cut_off(double sigma_ratio) noexcept {
+  const auto cut_off = static_cast<float>(kUnloadedShare * kAboveSmallest * smallest_reading_ / sigma_ratio);
+  for (float& least : least_reading_) least = least > cut_off ? least : 0.0F;
 }
 
 /// Pressed taxels on the sensed line of an unloaded one take the share of the supply that they read themselves, those

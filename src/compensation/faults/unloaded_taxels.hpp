@@ -35,7 +35,7 @@ class UnloadedTaxels {
   /// expected, as the readout has never sent so small a reading: it may cut them off.
   [[nodiscard]] std::span<const float> least_reading() const noexcept { return least_reading_; }
 
-  /// Of all readings above 0 so far.
+  /// Of all readings above 0 so far: a readout that cuts readings off does so below it.
   [[nodiscard]] double smallest_reading() const noexcept { return smallest_reading_; }
 
   /// Most that an unloaded taxel may come out with, at this standard deviation of its conductance.
@@ -48,7 +48,7 @@ class UnloadedTaxels {
 
   void subtract_amplifier_offsets();
   void follow_smallest_reading(std::span<const double> ratio) noexcept;
-  void forget_what_may_be_cut_off() noexcept;
+  void forget_what_may_be_cut_off(double sigma_ratio) noexcept;
   void expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept;
   void expect_beside_no_press(const ConditionedFrame& conditioned) noexcept;
   void find_pressed_lines(const ConditionedFrame& conditioned) noexcept;
