@@ -26,8 +26,7 @@ class LineFaultMonitor::Implementation {
     if (has(conditioned.status, FrameStatus::rejected)) return false;
     const bool solved = !has(conductance.status, FrameStatus::not_converged);
     sums_.sum(conditioned, conductance, solved);
-    unloaded_.expect(conditioned, sums_, solved);
-    witnesses_.follow(conditioned, unloaded_, faults_);
+    unloaded_.expect(conditioned, sums_, frame, solved);
     const Observation seen{conditioned, conductance, sums_, unloaded_, witnesses_, frame, solved};
     const std::size_t changes = faults_.changes();
     std::apply([&](auto&... detector) { (detector.judge(seen, faults_), ...); }, detectors_);
@@ -56,7 +55,7 @@ class LineFaultMonitor::Implementation {
   // In the order in which they judge a frame; each sees what those before it have found.
   std::tuple<SilentLineDetector, SuppliedColumnDetector, StuckTaxelDetector, DeadTaxelDetector, ShortedLineDetector,
              SuppliedRowDetector, GroundedLineDetector, DriftingDriverDetector>
-      detectors_{SilentLineDetector(array_, unloaded_),
+      detectors_{SilentLineDetector(array_, unloaded_, witnesses_),
                  SuppliedColumnDetector(array_),
                  StuckTaxelDetector(array_),
                  DeadTaxelDetector(array_),

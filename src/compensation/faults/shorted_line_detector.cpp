@@ -22,9 +22,9 @@ double square(double value) {
   return value * value;
 }
 
-/// More than `count` squares of standard normal deviations sum up to.
-bool exceeds_noise(double squares, double count) {
-  return squares > count + kDifferentSigmas * std::sqrt(2.0 * count);
+/// Most that so many squares of standard normal deviations sum up to.
+double most_by_noise(double count) {
+  return count + kDifferentSigmas * std::sqrt(2.0 * count);
 }
 
 }  // namespace
@@ -99,6 +99,7 @@ ShortedLineDetector::Comparison ShortedLineDetector::compare_with_next(const Obs
   const double sigma = seen.conditioned.sigma_ratio;
   const double pair = ratio_of_shorted_lines(array_, axis, line);
   const int spoilt = kLineCause[axis] | kStuckCause | kDeadCause;
+  const double most_squares = most_by_noise(static_cast<double>(line_length(array_, axis)));
   Comparison found;
   double squares = 0.0;
   double taxels = 0.0;
@@ -110,15 +111,16 @@ ShortedLineDetector::Comparison ShortedLineDetector::compare_with_next(const Obs
     if (status[first] != TaxelStatus::ok || status[second] != TaxelStatus::ok) continue;
     const double largest = std::max(ratio[first], ratio[second]);
     const double variance = (1.0 + pair * pair) * sigma * sigma + square(kEqualShare * largest);
-    const double deviation = std::abs(ratio[first] - pair * ratio[second]) / std::sqrt(variance);
-    squares += square(deviation);
+    const double deviation_square = square(ratio[first] - pair * ratio[second]) / variance;
+    squares += deviation_square;
     taxels += 1.0;
-    if (deviation > kEqualSigmas || largest < hardest || !seen.is_pressed(first)) continue;
+    if (squares > most_squares) return {.different = true, .equal_place = std::nullopt};
+    if (deviation_square > square(kEqualSigmas) || largest < hardest || !seen.is_pressed(first)) continue;
     if (!stands_out(seen, axis, line, place, std::sqrt(variance))) continue;
     hardest = largest;
     found.equal_place = place;
   }
-  found.different = exceeds_noise(squares, taxels);
+  found.different = squares > most_by_noise(taxels);
   return found;
 }
 

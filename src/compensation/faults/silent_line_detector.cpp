@@ -8,7 +8,7 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr float kMostForTaxel = 8.0F;  // evidence of one taxel in one frame
+constexpr float kMostOfTaxel = 8.0F;  // evidence of one taxel in one frame
 constexpr double kFoundWithinFrames = 30.0;
 constexpr double kMeanOfNoise = 0.4;  // of normal noise that is cut off at 0 [standard deviations],
 constexpr double kDeviationOfNoise = 0.6;
@@ -20,9 +20,11 @@ constexpr PerAxis<LineFaultKind> kSupplied{.row = LineFaultKind::supplied_row,
 
 }  // namespace
 
-SilentLineDetector::SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded)
+SilentLineDetector::SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded,
+                                       UnloadedWitnesses& witnesses)
     : array_(array),
       unloaded_(unloaded),
+      witnesses_(witnesses),
       floor_(floor_evidence(array.readout.adc_noise_counts)),
       evidence_(array.taxel_count()),
       line_evidence_{std::vector<float>(array.rows), std::vector<float>(array.cols)},
@@ -32,6 +34,7 @@ void SilentLineDetector::judge(const Observation& seen, FaultList& faults) noexc
   last_sigma_ratio_ = seen.conditioned.sigma_ratio;
   weigh_taxels(seen);
   sum_over_lines(faults);
+  witnesses_.follow(line_evidence_);
   for (const Axis axis : kAxes) judge_lines(seen, axis, faults);
 }
 
@@ -40,7 +43,7 @@ bool SilentLineDetector::sees(Axis axis, std::size_t line) const noexcept {
   for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
     const double unloaded_ratio = unloaded_.ratio()[taxel_on_line(array_, axis, line, k)];
     const double mean = kUnloadedShare * unloaded_ratio / last_sigma_ratio_;
-    per_frame += std::min(floor_.information * mean * mean, static_cast<double>(kMostForTaxel));
+    per_frame += std::min(floor_.information * mean * mean, static_cast<double>(kMostOfTaxel));
   }
   return last_sigma_ratio_ > 0.0 && per_frame >= kEvidence / kFoundWithinFrames;
 }
@@ -54,7 +57,7 @@ void SilentLineDetector::weigh_taxels(const Observation& seen) noexcept {
   float* const evidence = evidence_.data();
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     const auto reading = static_cast<float>(ratios[taxel] * per_sigma);
-    evidence[taxel] = silence_evidence(reading, expected[taxel], floor.sigmas, floor, kMostForTaxel);
+    evidence[taxel] = silence_evidence(reading, expected[taxel], floor.sigmas, floor, kMostOfTaxel);
   }
 }
 
@@ -80,7 +83,7 @@ void SilentLineDetector::judge_lines(const Observation& seen, Axis axis, FaultLi
     const auto evidence = static_cast<double>(line_evidence_[axis][line]);
     auto& [silent, alive] = tests_[axis][line];
     if (!faults.contains(kSilent[axis], line)) {
-      if (seen.witnesses.are_doubtful()) silent.restart();
+      if (witnesses_.are_doubtful()) silent.restart();
       silent.add(evidence, seen.frame, time);
       if (!silent.decides(kLineFrames)) continue;
       if (sees(axis, line) && reads_noise_alone(seen, axis, line, faults)) {

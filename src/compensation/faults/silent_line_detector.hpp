@@ -17,7 +17,7 @@ namespace dermis::compensation {
 /// summed over the line and the frames. It has to read nothing but noise, while unloaded taxels elsewhere do read.
 class SilentLineDetector {
  public:
-  SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded);
+  SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded, UnloadedWitnesses& witnesses);
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
@@ -38,6 +38,7 @@ class SilentLineDetector {
 
   const ArrayDescription& array_;
   const UnloadedTaxels& unloaded_;
+  UnloadedWitnesses& witnesses_;  // told of every frame
   FloorEvidence floor_;
   double last_sigma_ratio_ = 0.0;
   std::vector<float> evidence_;                // that the taxel is silent, of this frame [taxels]

@@ -35,7 +35,7 @@ StuckTaxelDetector::StuckTaxelDetector(const ArrayDescription& array)
 void StuckTaxelDetector::judge(const Observation& seen, FaultList& faults) noexcept {
   const TaxelBlock block = TaxelBlock::of_frame(seen.frame, evidence_.size());
   const CountScale scale = count_scale(seen.conditioned.sigma_ratio);
-  follow_largest_rise(seen, scale);
+  follow_largest_rise(seen, scale, block);
   heal(seen, scale, block, faults);
   if (count_repetitions(seen, scale, block) >= kEvidence) find(seen, block, faults);
 }
@@ -45,9 +45,12 @@ StuckTaxelDetector::CountScale StuckTaxelDetector::count_scale(double sigma_rati
   return readout_.pressure_raises_reading ? CountScale{0.0, supply} : CountScale{supply, -supply};
 }
 
-void StuckTaxelDetector::follow_largest_rise(const Observation& seen, const CountScale& scale) noexcept {
+void StuckTaxelDetector::follow_largest_rise(const Observation& seen, const CountScale& scale,
+                                             const TaxelBlock& block) noexcept {
   double largest = 0.0;
-  for (const double ratio : seen.conditioned.ratio) largest = ratio > largest ? ratio : largest;
+  for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
+    largest = std::max(largest, seen.conditioned.ratio[taxel]);
+  }
   largest_rise_ = std::max(largest_rise_, std::abs(scale.per_ratio) * largest);
 }
 

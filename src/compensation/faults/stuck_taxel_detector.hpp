@@ -29,7 +29,7 @@ class StuckTaxelDetector {
   };
 
   [[nodiscard]] CountScale count_scale(double sigma_ratio) const noexcept;
-  void follow_largest_rise(const Observation& seen, const CountScale& scale) noexcept;
+  void follow_largest_rise(const Observation& seen, const CountScale& scale, const TaxelBlock& block) noexcept;
   void heal(const Observation& seen, const CountScale& scale, const TaxelBlock& block, FaultList& faults) noexcept;
   [[nodiscard]] double count_repetitions(const Observation& seen, const CountScale& scale,
                                          const TaxelBlock& block) noexcept;

@@ -42,23 +42,21 @@ void UnloadedTaxels::subtract_amplifier_offsets() {
   }
 }
 
-void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums& sums, bool solved) noexcept {
+void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums& sums, std::size_t frame,
+                            bool solved) noexcept {
   if (array_.readout.circuit == Circuit::none) {
     expect_beside_no_press(conditioned);
   } else {
     expect_beside_presses(sums, conditioned.sigma_ratio, solved);
   }
-  follow_smallest_reading(conditioned.ratio);
+  follow_smallest_reading(conditioned.ratio, TaxelBlock::of_frame(frame, ratio_.size()));
   forget_what_may_be_cut_off(conditioned.sigma_ratio);
 }
 
-void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio) noexcept {
-  double smallest = smallest_reading_;
-  for (const double reading : ratio) {
-    const double positive = reading > 0.0 ? reading : smallest;
-    smallest = positive < smallest ? positive : smallest;
+void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio, const TaxelBlock& block) noexcept {
+  for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
+    if (ratio[taxel] > 0.0) smallest_reading_ = std::min(smallest_reading_, ratio[taxel]);
   }
-  smallest_reading_ = smallest;
 }
 
 void UnloadedTaxels::forget_what_may_be_cut_off(double sigma_ratio) noexcept {

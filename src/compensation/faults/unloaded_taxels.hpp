@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compensation/faults/line_sums.hpp"
+#include "compensation/faults/taxel_block.hpp"
 #include "dermis/core/axis.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/touch.hpp"
@@ -23,7 +24,7 @@ class UnloadedTaxels {
   UnloadedTaxels(const ArrayDescription& array, std::span<const double> siemens);
 
   /// Finds least_reading() of this frame, from what the pressed taxels take from the others of their lines.
-  void expect(const ConditionedFrame& conditioned, const LineSums& sums, bool solved) noexcept;
+  void expect(const ConditionedFrame& conditioned, const LineSums& sums, std::size_t frame, bool solved) noexcept;
 
   /// Conductance of every taxel; 0 where it is not known.
   [[nodiscard]] std::span<const double> siemens() const noexcept { return siemens_; }
@@ -47,7 +48,7 @@ class UnloadedTaxels {
   static constexpr double kMostSigmas = 5.0;
 
   void subtract_amplifier_offsets();
-  void follow_smallest_reading(std::span<const double> ratio) noexcept;
+  void follow_smallest_reading(std::span<const double> ratio, const TaxelBlock& block) noexcept;
   void forget_what_may_be_cut_off(double sigma_ratio) noexcept;
   void expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept;
   void expect_beside_no_press(const ConditionedFrame& conditioned) noexcept;

@@ -3,37 +3,30 @@
 #include "compensation/faults/unloaded_witnesses.hpp"
 
 #include <algorithm>
-#include <span>
-
-#include "compensation/faults/silence_evidence.hpp"
-#include "dermis/core/touch.hpp"
+#include <iterator>
 
 namespace dermis::compensation {
 namespace {
 
-constexpr double kNoiseSigmas = 5.0;
 constexpr int kFramesOfDistrust = 200;
+constexpr float kClearEvidence = 1.0F;  // of one frame: e times as likely
 
 }  // namespace
 
-void UnloadedWitnesses::follow(const ConditionedFrame& conditioned, const UnloadedTaxels& unloaded,
-                               const FaultList& faults) noexcept {
-  const std::span<const double> ratio = conditioned.ratio;
-  const double sigma = conditioned.sigma_ratio;
-  std::size_t unpressed = 0;
-  std::size_t expected = 0;
-  std::size_t reading = 0;
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-    if (faults.causes(taxel) != 0) continue;
-    if (ratio[taxel] > touched_above(unloaded.ratio()[taxel], sigma, kNoiseSigmas)) continue;
-    const auto least = static_cast<double>(std::min(unloaded.least_reading()[taxel], kMostMean));
-    ++unpressed;
-    if (least > 0.0) ++expected;
-    if (least > 0.0 && ratio[taxel] > 0.5 * least * sigma) ++reading;
+void UnloadedWitnesses::follow(const PerAxis<std::vector<float>>& silence) noexcept {
+  bool most_silent = false;
+  bool most_read = true;
+  for (const Axis axis : kAxes) {
+    const std::vector<float>& lines = silence[axis];
+    const auto silent =
+        std::count_if(lines.begin(), lines.end(), [](float evidence) { return evidence > kClearEvidence; });
+    const auto reading = std::count_if(lines.begin(), lines.end(), [](float evidence) { return evidence < 0.0F; });
+    most_silent = most_silent || 2 * silent > std::ssize(lines);
+    most_read = most_read && reading > silent;
   }
-  if (2 * unpressed > ratio.size() && 2 * reading < expected) {
+  if (most_silent) {
     distrust_ = kFramesOfDistrust;
-  } else if (2 * reading > unpressed && distrust_ > 0) {
+  } else if (most_read && distrust_ > 0) {
     --distrust_;
   }
 }
