@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -111,17 +112,21 @@ inline std::vector<double> calibrated_unloaded(const HealthyArray& healthy, comp
   const auto loaded = frames_of(healthy, "contacts", healthy.seed + 2, 400);
   const auto replaced = static_cast<std::size_t>(healthy.loaded_share * kFrames);
   for (std::size_t k = 0; k < replaced; ++k) frames[k] = loaded[k * loaded.size() / replaced];
+  const double counts =
+      1.0 / (3.0 * healthy.array.readout.adc_noise_counts);  // a third of a count [standard deviations]
   std::vector<std::vector<calibration::Point>> points(healthy.array.taxel_count());
+  std::vector<double> sigma(points.size(), std::numeric_limits<double>::infinity());
   ConductanceFrame conductance;
   for (const ConditionedFrame& frame : frames) {
     compensator.process(frame, conductance);
-    for (std::size_t taxel = 0; taxel < points.size(); ++taxel)
+    for (std::size_t taxel = 0; taxel < points.size(); ++taxel) {
       points[taxel].push_back({0.0, conductance.siemens[taxel]});
+      sigma[taxel] = std::min(sigma[taxel], conductance.sigma_siemens[taxel]);
+    }
   }
   std::vector<double> unloaded;
   for (const auto& of_taxel : points) {
-    const double least = 1.0 / 3 * conductance.sigma_siemens[unloaded.size()] / healthy.array.readout.adc_noise_counts;
-    unloaded.push_back(calibration::fit_robust_line(of_taxel, false, least).level);
+    unloaded.push_back(calibration::fit_robust_line(of_taxel, false, counts * sigma[unloaded.size()]).level);
   }
   return unloaded;
 }
