@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dermis/files/array_toml.hpp"
+#include "dermis/pipeline/direct_model.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "frame_output.hpp"
 #include "open_source.hpp"
@@ -37,37 +38,44 @@ Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, cons
   Result<std::unique_ptr<FrameSource>> source = open_source(from, view->model_ ? &view->model_->array : nullptr);
   if (!source) return source.error();
   view->source_ = *std::move(source);
-  view->describe(from);
+  if (const Status described = view->describe(from); !described) return described.error();
   return view;
 }
 
 Status ArrayView::open_model(const std::string& path) {
   Result<pipeline::Model> model = pipeline::read_model(path);
   if (!model) return model.error();
-  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*model);
+  return use_model(std::move(*model));
+}
+
+Status ArrayView::use_model(pipeline::Model model) {
+  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
-  model_ = std::move(*model);
+  model_ = std::move(model);
   pipeline_.emplace(std::move(*pipeline));
   tracker_.emplace(model_->array);
   return Done{};
 }
 
-void ArrayView::set_array(const ArrayDescription& array) {
+Status ArrayView::set_array(const ArrayDescription& array) {
   name_ = array.name;
   row_pitch_m_ = array.row_pitch_m;
   col_pitch_m_ = array.col_pitch_m;
   full_scale_counts_ = array.readout.full_scale_counts();
+  if (model_ || array.readout.quantity == Quantity::counts) return Done{};
+  return use_model(pipeline::direct_model(array));
 }
 
 /// By the model, else by what the file says of itself.
-void ArrayView::describe(const std::string& from) {
+Status ArrayView::describe(const std::string& from) {
   if (model_) return set_array(model_->array);
   const recordings::FrameNotes notes = notes_of_source(*source_, from);
   name_ = notes.name;
   if (name_.empty()) name_ = is_live() ? from : std::filesystem::path(from).filename().string();
-  if (notes.array_toml.empty()) return;
+  if (notes.array_toml.empty()) return Done{};
   const Result<ArrayDescription> array = files::array_from_toml(notes.array_toml, from);
-  if (array) set_array(*array);
+  if (!array) return Done{};
+  return set_array(*array);
 }
 
 Result<bool> ArrayView::next() {

@@ -19,7 +19,8 @@ namespace dermis::app {
 /// End of a colour scale that covers a value: 1, 2 or 5 times a power of ten newtons, at least 1.
 [[nodiscard]] double force_scale(double newtons);
 
-/// A source of frames as it is shown: in newtons with its contacts where there is a model, else in counts.
+/// A source of frames as it is shown: in newtons with its contacts where there is a model, or where a recording says
+/// that its readings are forces; else in counts.
 class ArrayView {
  public:
   /// `model`: a file, or empty.
@@ -48,8 +49,9 @@ class ArrayView {
  private:
   ArrayView() = default;
   [[nodiscard]] Status open_model(const std::string& model);
-  void describe(const std::string& from);
-  void set_array(const ArrayDescription& array);
+  [[nodiscard]] Status use_model(pipeline::Model model);
+  [[nodiscard]] Status describe(const std::string& from);
+  [[nodiscard]] Status set_array(const ArrayDescription& array);
 
   std::unique_ptr<FrameSource> source_;
   std::optional<pipeline::Model> model_;

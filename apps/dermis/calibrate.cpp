@@ -19,7 +19,7 @@
 #include "dermis/paper/bank_training.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "dermis/recordings/frame_files.hpp"
+#include "open_source.hpp"
 #include "seconds.hpp"
 #include "status_line.hpp"
 
@@ -50,8 +50,10 @@ struct CalibrateOptions {
 };
 
 Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::string>& provenance) {
-  for (const auto& [key, path] : {std::pair{"array hash", &options.array}, std::pair{"frames hash", &options.frames},
+  const std::string frames = file_of(options.frames);
+  for (const auto& [key, path] : {std::pair{"array hash", &options.array}, std::pair{"frames hash", &frames},
                                   std::pair{"loads hash", &options.loads}}) {
+    if (std::filesystem::is_directory(*path)) continue;  // of pictures
     const Result<std::string> hash = files::content_hash(*path);
     if (!hash) return hash.error();
     provenance[key] = *hash;
@@ -192,8 +194,7 @@ Status calibrate(const CalibrateOptions& options) {
     if (Status writable = check_writable(options.bank); !writable) return writable;
   }
   auto start = Clock::now();
-  const Result<std::vector<RawFrame>> frames =
-      recordings::read_frames(options.frames, {.shape = FrameShape{array->rows, array->cols}});
+  const Result<std::vector<RawFrame>> frames = read_frames(options.frames, *array);
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = files::read_loads(options.loads, *array, frames->size());
   if (!loads) return loads.error();
@@ -232,7 +233,8 @@ Status calibrate(const CalibrateOptions& options) {
 void add_calibrate(Command& command) {
   auto options = std::make_shared<CalibrateOptions>();
   command.option("--array", options->array, "array.toml: size, pitch and readout circuit").required();
-  command.option("--frames", options->frames, "frames.csv: raw counts").required();
+  command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
+      .required();
   command.option("--loads", options->loads, "loads.csv: which load pressed where in which frame").required();
   command.option("--out", options->out, "Model file to write (safetensors)").required();
   command.option("--bank", options->bank,

@@ -32,11 +32,11 @@ struct ConvertOptions {
 };
 
 Status check(const ConvertOptions& options) {
-  const Result<FrameFormat> in = recordings::frame_format(recordings::recording_place(options.in).path);
+  const Result<FrameFormat> in = recordings::recognise_frames(options.in);
   if (!in) return in.error();
-  const Result<FrameFormat> out = recordings::frame_format(options.out);
+  const Result<FrameFormat> out = recordings::output_format(options.out);
   if (!out) return out.error();
-  if (options.rate_hz && *in != FrameFormat::npy) {
+  if (options.rate_hz && recordings::has_times(*in)) {
     return bad_input(fmt::format("--rate: '{}' has times of its own; leave --rate out", options.in));
   }
   if (options.rate_hz && !(*options.rate_hz > 0.0 && *options.rate_hz <= 1e9)) {
@@ -90,10 +90,11 @@ Status convert(const ConvertOptions& options) {
 
 void add_convert(Command& command) {
   auto options = std::make_shared<ConvertOptions>();
-  command.option("in", options->in, ".csv, .mcap, .h5, .hdf5 (of dermis or WiReSens) or .npy").required();
-  command.option("out", options->out, "The same, or .wiresens.hdf5").required();
+  command.option("in", options->in, ".csv, .mcap, .h5, .hdf5, .npy, or a file of another system (docs/file-formats.md)")
+      .required();
+  command.option("out", options->out, ".csv, .mcap, .h5, .hdf5, .npy or .wiresens.hdf5").required();
   command.option("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");
-  command.option("--rate", options->rate_hz, "Frames a second of a .npy file, which has no times [Hz]");
+  command.option("--rate", options->rate_hz, "Frames a second of a file without times (.npy, .npz, .txt, .png) [Hz]");
   const Option rows =
       command
           .option("--rows", options->rows, "Rows of the frames: checked, and needed for a .npy file of two dimensions")

@@ -10,8 +10,8 @@
 #include "dermis/files/loads_csv.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "dermis/recordings/frame_files.hpp"
 #include "dermis/report/evaluation_report.hpp"
+#include "open_source.hpp"
 
 namespace dermis::app {
 namespace {
@@ -65,8 +65,7 @@ void print_text(const Evaluation& evaluation) {
 Status evaluate(const EvaluateOptions& options) {
   const Result<pipeline::Model> model = pipeline::read_model(options.model);
   if (!model) return model.error();
-  const Result<std::vector<RawFrame>> frames =
-      recordings::read_frames(options.frames, {.shape = FrameShape{model->array.rows, model->array.cols}});
+  const Result<std::vector<RawFrame>> frames = read_frames(options.frames, model->array);
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = files::read_loads(options.loads, model->array, frames->size());
   if (!loads) return loads.error();
@@ -90,7 +89,8 @@ Status evaluate(const EvaluateOptions& options) {
 void add_evaluate(Command& command) {
   auto options = std::make_shared<EvaluateOptions>();
   command.option("--model", options->model, "Model file of 'dermis calibrate'").required();
-  command.option("--frames", options->frames, "frames.csv: raw counts").required();
+  command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
+      .required();
   command.option("--loads", options->loads, "loads.csv: the truth").required();
   command.option("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
   command.flag("--json", options->json, "Print the result as JSON");

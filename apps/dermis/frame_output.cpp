@@ -99,7 +99,7 @@ recordings::FrameNotes notes_of_source(const FrameSource& source, const std::str
 }
 
 Status check_output(const FrameOutput& output) {
-  const Result<recordings::FrameFormat> format = recordings::frame_format(output.path);
+  const Result<recordings::FrameFormat> format = recordings::output_format(output.path);
   if (!format) return format.error();
   if (output.model != nullptr && *format != recordings::FrameFormat::mcap) {
     return bad_input("'" + output.path + "': has no place for forces; a recording has: end it in .mcap");

@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "dermis/acquisition/source_uri.hpp"
+#include "dermis/recordings/recording.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
@@ -12,6 +14,26 @@ namespace dermis::app {
 
 Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const ArrayDescription* array) {
   return sources::open_source(from, {.array = array, .stop = &stop_flag(), .notice = say});
+}
+
+Result<std::vector<RawFrame>> read_frames(const std::string& from, const ArrayDescription& array) {
+  const Result<std::unique_ptr<FrameSource>> source = open_source(from, &array);
+  if (!source) return source.error();
+  if ((*source)->is_live()) return bad_input("'" + from + "': is a device, which has no end; 'dermis record' it first");
+  std::vector<RawFrame> frames;
+  RawFrame frame;
+  while (true) {
+    const Result<bool> more = (*source)->next(frame);
+    if (!more) return more.error();
+    if (!*more) return frames;
+    frames.push_back(frame);
+  }
+}
+
+std::string file_of(const std::string& from) {
+  const bool is_uri = acquisition::is_source_uri(from);
+  const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
+  return recordings::recording_place(is_uri && uri ? uri->path : from).path;
 }
 
 Result<std::unique_ptr<Operation>> open_operation(const std::string& model_path, const std::string& from) {

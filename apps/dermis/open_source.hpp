@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frame_source.hpp"
@@ -16,6 +17,12 @@ namespace dermis::app {
 /// sources::open_source() for --from and --in: live sources end where stop_flag() is set, and what a user should know
 /// goes to stderr.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const ArrayDescription* array);
+
+/// All frames of a file, for --frames, as open_source() opens it. Fails on a device, which has no end.
+[[nodiscard]] Result<std::vector<RawFrame>> read_frames(const std::string& from, const ArrayDescription& array);
+
+/// The path of the file that --frames names: without the name of an array in it, and without what a URI says of it.
+[[nodiscard]] std::string file_of(const std::string& from);
 
 /// A model at work on a source.
 struct Operation {

@@ -23,7 +23,7 @@ struct ReplayOptions {
 };
 
 Result<std::unique_ptr<FrameSink>> create_sink(const FrameOutput& output, const FrameShape& shape) {
-  const Result<recordings::FrameFormat> format = recordings::frame_format(output.path);
+  const Result<recordings::FrameFormat> format = recordings::output_format(output.path);
   if (!format) return format.error();
   const bool is_table = *format == recordings::FrameFormat::csv;
   return output.model != nullptr && is_table ? create_forces(output) : create_recording(output, shape);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "dermis/compensation/offset_drift.hpp"
 #include "dermis/files/contacts_csv.hpp"
 #include "dermis/files/forces_csv.hpp"
 #include "dermis/fusion/contact.hpp"
@@ -29,6 +30,8 @@ struct RunOptions {
   std::string sigma;
   std::string contacts;
   double settle_s = 0.0;
+  bool tare = false;
+  bool follow_drift = false;
 };
 
 /// Where the source does not tell it, by the number of the frame.
@@ -195,6 +198,9 @@ Status run(const RunOptions& options) {
   Result<Tables> tables = Tables::create(options, (*operation)->model.array);
   if (!tables) return tables.error();
 
+  compensation::OffsetDrift& drift = (*operation)->pipeline.drift();
+  drift.set_options({.track = options.follow_drift});
+  if (options.tare) drift.tare();
   preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
   Troubles troubles((*operation)->model.array);
   Status status = Done{};
@@ -210,13 +216,21 @@ Status run(const RunOptions& options) {
 
 void add_run(Command& command) {
   auto options = std::make_shared<RunOptions>();
-  command.option("--model", options->model, "Model file of 'dermis calibrate'").required();
-  command.option("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device").required();
+  command.option("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
+      .required();
+  command
+      .option("--in", options->in,
+              "Raw counts: frames.csv, a recording or another file of frames, or the URI of a device")
+      .required();
   command.option("--out", options->out, "forces.csv to write");
   command.option("--sigma", options->sigma, "Also write the standard deviation of every force [N] to this CSV");
   command.option("--contacts", options->contacts, "contacts.csv to write: what touches the array, where and how hard");
   command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
       .shows_default();
+  command.flag("--tare", options->tare,
+               "Take the first second (at least 10 frames) for unloaded, as tare in 'dermis serve' does");
+  command.flag("--follow-drift", options->follow_drift,
+               "Follow the offsets of idle taxels slowly, as in 'dermis serve'");
   command.action([options] { return run(*options); });
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -103,7 +104,8 @@ class DeviceSource final : public FrameSource {
     return known ? known : options_.shape;
   }
 
-  [[nodiscard]] bool is_live() const override { return true; }
+  /// A file with times of its own is read at any pace.
+  [[nodiscard]] bool is_live() const override { return !uri_.rate_hz; }
 
   [[nodiscard]] SourceStatistics statistics() const override {
     const DecoderCounts& counts = decoder_->counts();
@@ -170,12 +172,16 @@ class DeviceSource final : public FrameSource {
     const Nanos taken = device_time ? clock_.map(*device_time, arrival.steady) : arrival.steady;
     // Frames that came together, and a clock that was found to run slower, must not bring time to stand or go back.
     last_taken_ = std::max(taken, last_taken_ + 1ns);
-    frame.time = last_taken_ + utc_minus_steady_;
+    frame.time = uri_.rate_hz ? time_in_file() : last_taken_ + utc_minus_steady_;
     meter_.add(arrival.steady);
     if (frames_++ == 0) tell_what_was_recognised();
     forget_sample();
     if (!decoder_->request().empty()) request();
     return true;
+  }
+
+  [[nodiscard]] Nanos time_in_file() const {
+    return Nanos(std::llround(1e9 * static_cast<double>(frames_) / *uri_.rate_hz));
   }
 
   void tell_what_was_recognised() const {

@@ -42,7 +42,7 @@ const std::array<Scheme, 9>& schemes() {
       {"tcp-listen", Transport::tcp_listen, {"reconnect_s"}, true, true},
       {"udp", Transport::udp, {}, true, true},
       {"stdin", Transport::standard_input, {}, true, false},
-      {"file", Transport::file, {}, true, false},
+      {"file", Transport::file, {"rate"}, true, false},
       {"sim", Transport::simulation, {"rows", "cols", "rate", "seed", "array", "frames"}, true, false},
       {"pty", Transport::pseudo_terminal, {}, false, true},
       {"stdout", Transport::standard_output, {}, false, true},
@@ -230,6 +230,7 @@ class Parser {
     read_protocol();
     uri_.baud =
         read<unsigned>("baud", kLeastBaud, kMostBaud, "50 to 20000000").value_or(usual_baud(uri_.protocol.name));
+    read_rate();
     if (const auto seconds = read<double>("reconnect_s", 0.0, kMostSeconds, "0 to 1e6 seconds")) {
       uri_.reconnect = std::chrono::duration_cast<Nanos>(std::chrono::duration<double>(*seconds));
     }
@@ -253,9 +254,13 @@ class Parser {
     }
   }
 
+  void read_rate() {
+    uri_.rate_hz = read<double>("rate", std::nextafter(0.0, 1.0), kMostRate, "above 0 and at most 1e6 frames a second");
+  }
+
   void read_simulation() {
     uri_.array_shape = read_shape();
-    uri_.rate_hz = read<double>("rate", std::nextafter(0.0, 1.0), kMostRate, "above 0 and at most 1e6 frames a second");
+    read_rate();
     uri_.seed = read<std::uint64_t>("seed", 0, ~std::uint64_t{0}, "a whole number of 0 or more").value_or(1);
     uri_.frames = read<std::size_t>("frames", 1, 200'000, "1 to 200000");
     if (const auto found = parameters_.find("array"); found != parameters_.end()) uri_.array = found->second;

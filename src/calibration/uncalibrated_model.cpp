@@ -2,31 +2,19 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/calibration/uncalibrated_model.hpp"
 
-#include <limits>
+#include "dermis/pipeline/direct_model.hpp"
 
 namespace dermis::calibration {
 
 pipeline::Model uncalibrated_model(const ArrayDescription& array) {
-  pipeline::Model model;
-  model.array = array;
+  pipeline::Model model = pipeline::direct_model(array);
+  if (array.readout.quantity != Quantity::counts) return model;
   if (array.has_unknown_circuit()) {
     model.array.readout.circuit = Circuit::none;
     model.array.readout.drive_ohm.clear();
     model.array.readout.load_ohm.clear();
   }
-  const std::size_t taxels = array.taxel_count();
-  fusion::ForceNetworks& networks = model.networks;
-  networks.shape = {2, 0, 2};
-  networks.unloaded.offset_siemens.assign(taxels, 0.0);
-  networks.unloaded.per_celsius.assign(taxels, 0.0);
-  networks.reference_siemens.assign(taxels, 1.0F);
-  networks.heaviest_siemens.assign(taxels, 1.0F);
-  networks.heaviest_newtons.assign(taxels, std::numeric_limits<float>::infinity());
-  networks.gain.assign(taxels, 1.0F);
-  networks.dead.assign(taxels, 1);
-  networks.parameters.assign(networks.shape.parameter_count() * taxels, 0.0F);
-  networks.offset_sigma_siemens.assign(taxels, 0.0F);
-  networks.relative_sigma.assign(fusion::kSigmaKnots * taxels, 1.0F);
+  model.networks.dead.assign(array.taxel_count(), 1);
   return model;
 }
 

@@ -95,6 +95,19 @@ Status validate_absent(const ArrayDescription& array) {
   return Done{};
 }
 
+/// Pressures and forces, which no circuit and no supply has part in.
+Status validate_calibrated(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
+  if (readout.quantity == Quantity::counts) return Done{};
+  if (readout.circuit != Circuit::none) return bad_input("readout.circuit: readings that are forces have no circuit");
+  if (readout.adc_reference_v) return bad_input("readout.adc_reference_v: belongs to counts; leave it out");
+  if (!readout.pressure_raises_reading) {
+    return bad_input("readout.pressure_raises_reading: belongs to counts; leave it out");
+  }
+  if (readout.quantity == Quantity::force || array.taxel_area_m2) return Done{};
+  return bad_input("array.taxel_area_mm2: is needed where readings are pressures");
+}
+
 Status validate_readout(const ArrayDescription& array) {
   const Readout& readout = array.readout;
   if (readout.adc_bits < 1 || readout.adc_bits > kMaxAdcBits) {
@@ -113,6 +126,7 @@ Status validate_readout(const ArrayDescription& array) {
   if (!(readout.supply_noise >= 0.0 && readout.supply_noise <= kMostSupplyNoise)) {
     return bad_input("readout.supply_noise: must be 0 to 0.1");
   }
+  if (Status valid = validate_calibrated(array); !valid) return valid;
   if (readout.circuit == Circuit::none) return Done{};
   if (readout.idle_columns == IdleColumns::floating && readout.circuit != Circuit::divider) {
     return bad_input("readout.idle_columns: belongs to circuit = \"divider\"");

@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -18,6 +19,9 @@ namespace dermis::files {
 namespace {
 
 constexpr double kSquareMillimetresPerSquareMetre = 1e6;
+constexpr int kMostAdcBits = 24;  // which a float holds exactly
+constexpr const char* kPressure = "pressure";
+constexpr const char* kForce = "force";
 
 void read_line_count(ConfigFile& file, std::string_view key, std::size_t& lines) {
   file.require(key);
@@ -98,12 +102,30 @@ void read_resistors(ConfigFile& file, std::string_view key, Circuit circuit, std
   if (circuit == Circuit::none) ohms.clear();  // known or not, the resistances are not used
 }
 
+/// Besides the circuits, what readings are that have left theirs behind.
+void read_circuit(ConfigFile& file, Readout& readout) {
+  using enum Circuit;
+  constexpr std::array kCircuits{divider, transimpedance, flexitac, none, automatic};
+  std::vector<std::string> names;
+  for (const Circuit circuit : kCircuits) names.emplace_back(to_string(circuit));
+  names.insert(names.end(), {kPressure, kForce});
+  std::size_t index = 0;
+  file.require("readout.circuit");
+  file.choice("readout.circuit", names, index);
+  if (index < kCircuits.size()) {
+    readout.circuit = kCircuits[index];
+    file.require("readout.adc_bits");
+    return;
+  }
+  readout.circuit = none;
+  readout.quantity = names[index] == kPressure ? Quantity::pressure : Quantity::force;
+  readout.adc_bits = kMostAdcBits;
+  file.require("readout.adc_noise_counts");
+}
+
 void read_readout(ConfigFile& file, ArrayDescription& array) {
   Readout& readout = array.readout;
-  file.require("readout.circuit");
-  read_choice(file, "readout.circuit",
-              {Circuit::divider, Circuit::transimpedance, Circuit::flexitac, Circuit::none, Circuit::automatic},
-              readout.circuit);
+  read_circuit(file, readout);
   refuse_keys_of_other_circuits(file, readout.circuit);
   read_choice(file, "readout.idle_rows", {IdleRows::grounded, IdleRows::floating}, readout.idle_rows);
   read_choice(file, "readout.idle_columns", {IdleColumns::loaded, IdleColumns::floating}, readout.idle_columns);
@@ -114,7 +136,6 @@ void read_readout(ConfigFile& file, ArrayDescription& array) {
   file.number("readout.amplifier_gain", readout.amplifier_gain);
   file.number_per_line("readout.row_segment_ohm", array.rows, readout.row_segment_ohm);
   file.number_per_line("readout.column_segment_ohm", array.cols, readout.column_segment_ohm);
-  file.require("readout.adc_bits");
   file.integer("readout.adc_bits", readout.adc_bits);
   file.number("readout.adc_noise_counts", readout.adc_noise_counts);
   file.number_per_line("readout.drive_error_ohm", array.driven_lines(), readout.drive_error_ohm);
@@ -179,6 +200,8 @@ std::vector<std::string> absent_names(const ArrayDescription& array) {
 }
 
 std::string circuit_toml(const Readout& readout) {
+  if (readout.quantity == Quantity::pressure) return fmt::format("circuit = \"{}\"\n", kPressure);
+  if (readout.quantity == Quantity::force) return fmt::format("circuit = \"{}\"\n", kForce);
   std::string text = fmt::format("circuit = \"{}\"\n", to_string(readout.circuit));
   if (has_key("readout.idle_rows", readout.circuit)) {
     text += fmt::format("idle_rows = \"{}\"\n", to_string(readout.idle_rows));

@@ -26,6 +26,18 @@ std::string_view trimmed(std::string_view text) noexcept {
   return text;
 }
 
+/// What programs save as CSV, and is none here.
+const char* foreign_text(std::string_view line) noexcept {
+  const auto has = [line](char c) { return line.find(c) != std::string_view::npos; };
+  if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF") || has('\0')) {
+    return "is UTF-16 text; save it as UTF-8";
+  }
+  if (has('"')) return "has quotes around its values; write them without";
+  if (!has(',') && has(';')) return "has semicolons between its values; write commas";
+  if (!has(',') && has('\t')) return "has tabs between its values; write commas";
+  return nullptr;
+}
+
 }  // namespace
 
 CsvReader::CsvReader(std::istream& in, std::string name)
@@ -37,7 +49,10 @@ Result<bool> CsvReader::next_line(std::string_view& line) {
     if (line.size() > kMaxLineBytes) return error("is longer than 32 MiB; one frame or load belongs on each line");
     if (line_number_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     line = trimmed(line);
-    if (!line.empty()) return true;
+    if (line.empty()) continue;
+    const char* const mistake = std::exchange(is_first_line_, false) ? foreign_text(line) : nullptr;
+    if (mistake != nullptr) return error(mistake);
+    return true;
   }
   if (in_.bad()) return read_failure(name_);
   return false;
@@ -57,6 +72,7 @@ bool CsvReader::take_raw_line(std::string_view& line) {
     const auto* const line_end = static_cast<const char*>(std::memchr(from, '\n', end_ - scanned_));
     scanned_ = line_end != nullptr ? static_cast<std::size_t>(line_end - buffer_.data()) : end_;
     const bool is_too_long = scanned_ - begin_ > kMaxLineBytes;
+    was_cut_ = line_end == nullptr;
     if (line_end != nullptr || is_too_long || !fill()) break;
   }
   line = {buffer_.data() + begin_, scanned_ - begin_};

@@ -13,13 +13,17 @@
 namespace dermis::files {
 
 /// Lines of a CSV file, read in large pieces. Takes LF and CRLF, a UTF-8 byte order mark and a last line without an
-/// end; passes over blank lines; refuses lines of more than 32 MiB. The stream must outlive the reader.
+/// end; passes over blank lines; refuses lines of more than 32 MiB, and texts whose first line has no commas but
+/// semicolons or tabs, or quotes, or is UTF-16. The stream must outlive the reader.
 class CsvReader {
  public:
   CsvReader(std::istream& in, std::string name);
 
   /// The next line that is not blank, valid until the next call; false at the end.
   [[nodiscard]] Result<bool> next_line(std::string_view& line);
+
+  /// The text ended within the last line, or right after it.
+  [[nodiscard]] bool was_cut() const noexcept { return was_cut_; }
 
   /// Number of the last line, from 1.
   [[nodiscard]] std::size_t line_number() const noexcept { return line_number_; }
@@ -41,6 +45,8 @@ class CsvReader {
   std::size_t scanned_ = 0;  ///< No line end in [begin_, scanned_).
   std::size_t end_ = 0;
   std::size_t line_number_ = 0;
+  bool is_first_line_ = true;  ///< Of those that are not blank.
+  bool was_cut_ = false;
 };
 
 /// Takes the cells of one line from the left. Blanks around a cell are dropped; quotes have no meaning.

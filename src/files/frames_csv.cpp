@@ -133,6 +133,8 @@ struct FramesCsvReader::State {
   std::unique_ptr<std::istream> in;
   CsvReader csv;
   Header header;
+  Notice notice;
+  std::size_t frames = 0;
 
   Status read_header(std::optional<FrameShape> shape);
   std::optional<Error> read_value(Column column, std::string_view cell, RawFrame& frame) const;
@@ -147,9 +149,6 @@ Status FramesCsvReader::State::read_header(std::optional<FrameShape> shape) {
   if (!*got_line) return csv.error("is empty; expected a header time_s,r0c0,...");
   if (count_cells(line) > kMaxColumns) {
     return csv.error("has " + std::to_string(count_cells(line)) + " columns; at most 1024x1024 taxels can be read");
-  }
-  if (count_cells(line) == 1 && line.find(';') != std::string_view::npos) {
-    return csv.error("has semicolons between its values; write commas");
   }
   Result<Header> parsed = parse_header(split_cells(line), shape);
   if (!parsed) return csv.error(parsed.error().message);
@@ -212,19 +211,19 @@ FramesCsvReader::FramesCsvReader(std::unique_ptr<State> state) : state_(std::mov
 
 FramesCsvReader::~FramesCsvReader() = default;
 
-Result<std::unique_ptr<FramesCsvReader>> FramesCsvReader::open(const std::string& path,
-                                                               std::optional<FrameShape> shape) {
+Result<std::unique_ptr<FramesCsvReader>> FramesCsvReader::open(const std::string& path, std::optional<FrameShape> shape,
+                                                               Notice notice) {
   Result<std::unique_ptr<std::istream>> in = open_input(path);
   if (!in) return in.error();
-  return open(*std::move(in), path, shape);
+  return open(*std::move(in), path, shape, std::move(notice));
 }
 
 Result<std::unique_ptr<FramesCsvReader>> FramesCsvReader::open(std::unique_ptr<std::istream> in,
-                                                               const std::string& name,
-                                                               std::optional<FrameShape> shape) {
+                                                               const std::string& name, std::optional<FrameShape> shape,
+                                                               Notice notice) {
   assert(!shape || shape->taxel_count() > 0);
   std::istream& stream = *in;
-  auto state = std::make_unique<State>(State{std::move(in), CsvReader(stream, name), {}});
+  auto state = std::make_unique<State>(State{std::move(in), CsvReader(stream, name), {}, std::move(notice)});
   if (const Status header = state->read_header(shape); !header) return header.error();
   return std::unique_ptr<FramesCsvReader>(new FramesCsvReader(std::move(state)));
 }
@@ -234,7 +233,13 @@ Result<bool> FramesCsvReader::next(RawFrame& frame) {
   Result<bool> got_line = state_->csv.next_line(line);
   if (!got_line || !*got_line) return got_line;
   frame.acquisition = {};
-  if (const Status read = state_->read_frame(line, frame); !read) return read.error();
+  const Status read = state_->read_frame(line, frame);
+  if (!read && state_->csv.was_cut() && state_->frames > 0) {
+    if (state_->notice) state_->notice(place() + ": is cut off; the frames before are read");
+    return false;
+  }
+  if (!read) return read.error();
+  ++state_->frames;
   return true;
 }
 

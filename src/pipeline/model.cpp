@@ -10,6 +10,7 @@
 
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/safetensors.hpp"
+#include "dermis/pipeline/direct_model.hpp"
 
 namespace dermis::pipeline {
 namespace {
@@ -154,6 +155,14 @@ bool is_consistent(const Model& model) {
   return true;
 }
 
+/// An array.toml is enough where readings are forces.
+Result<Model> read_direct_model(const std::string& path) {
+  const Result<ArrayDescription> array = files::read_array(path);
+  if (!array) return array.error();
+  if (array->readout.quantity != Quantity::counts) return direct_model(*array);
+  return bad_input(path + ": describes an array, and is no model; 'dermis calibrate' makes one");
+}
+
 }  // namespace
 
 Status write_model(const std::string& path, const Model& model) {
@@ -171,6 +180,7 @@ Status write_model(const std::string& path, const Model& model) {
 }
 
 Result<Model> read_model(const std::string& path) {
+  if (path.ends_with(".toml")) return read_direct_model(path);
   const Result<SafetensorsFile> file = files::read_safetensors(path);
   if (!file) return file.error();
   if (metadata(*file, "format") == kFormatWithoutSigma) {

@@ -47,6 +47,7 @@ const char* to_string(Rejection rejection) noexcept {
 Conditioner::Conditioner(ArrayDescription array)
     : array_(std::move(array)),
       full_scale_counts_(static_cast<float>(array_.readout.full_scale_counts())),
+      least_counts_(array_.readout.quantity == Quantity::counts ? 0.0F : -full_scale_counts_),
       highest_counts_(std::numeric_limits<float>::infinity()),
       lowest_counts_(-highest_counts_) {
   constexpr float kHalfCount = 0.5F;  // averaged readings

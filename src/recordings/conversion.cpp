@@ -28,7 +28,7 @@ std::vector<std::string> left_out(const Extras& extras, bool has_forces, const F
   std::vector<std::string> names;
   const bool holds_all = format == FrameFormat::mcap || format == FrameFormat::hdf5;
   const bool holds_temperature = holds_all || format == FrameFormat::csv;
-  if (extras.is_timed && format == FrameFormat::npy) names.emplace_back("times");
+  if (extras.is_timed && !has_times(format)) names.emplace_back("times");
   if (extras.has_temperature && !holds_temperature) names.emplace_back("temperature");
   if (extras.has_supply && !holds_temperature) names.emplace_back("supply");
   if (extras.has_acquisition && !holds_all) names.emplace_back("numbers, device times and arrivals of the frames");
@@ -77,9 +77,11 @@ Status copy(FrameSource& source, RawFrame& frame, bool has_frame, FrameSink& sin
 
 Result<std::vector<std::string>> convert_frames(const std::string& in, const std::string& out,
                                                 const ConversionOptions& options) {
-  const Result<FrameFormat> format = frame_format(out);
+  const Result<FrameFormat> format = output_format(out);
   if (!format) return format.error();
-  const Result<std::unique_ptr<FrameSource>> source = open_frames(in, options.input);
+  FrameFileInput input = options.input;
+  input.notice = options.notice;
+  const Result<std::unique_ptr<FrameSource>> source = open_frames(in, input);
   if (!source) return source.error();
   const Result<FrameNotes> notes = notes_of(in, options.array);
   if (!notes) return notes.error();

@@ -49,7 +49,7 @@ void add(const RawFrame& frame, FrameFileInfo& info) {
 }
 
 Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format) {
-  const bool is_timed = format != FrameFormat::npy;
+  const bool is_timed = has_times(format);
   const Result<std::unique_ptr<FrameSource>> source =
       open_frames(path, {.rate_hz = is_timed ? std::nullopt : std::optional(1e3)});
   if (!source) return source.error();
@@ -87,7 +87,7 @@ Result<FrameFileInfo> frame_file_info(const std::string& path) {
   if (!info) return info;
   info->format = *format;
   std::error_code is_no_file;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, is_no_file);
+  const std::uintmax_t bytes = std::filesystem::file_size(recording_place(path).path, is_no_file);
   if (!is_no_file) info->bytes = bytes;
   return info;
 }

@@ -2,17 +2,22 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/recordings/frame_files.hpp"
 
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 #include "dermis/files/frames_csv.hpp"
+#include "dermis/files/input.hpp"
 #include "dermis/files/npy.hpp"
 #include "dermis/files/taxel_text.hpp"
-#include "dermis/files/text.hpp"
+#include "dermis/importers/dsa.hpp"
+#include "dermis/importers/novel_lst.hpp"
+#include "dermis/importers/npz.hpp"
+#include "dermis/importers/packed10.hpp"
+#include "dermis/importers/png_stack.hpp"
+#include "dermis/importers/tekscan.hpp"
+#include "dermis/importers/text_matrix.hpp"
+#include "dermis/importers/xsensor.hpp"
 #include "dermis/recordings/recording.hpp"
 #include "dermis/recordings/wiresens_hdf5.hpp"
-#include "recordings/hdf5.hpp"
 
 namespace dermis::recordings {
 namespace {
@@ -21,23 +26,6 @@ template <typename Interface, typename Opened>
 Result<std::unique_ptr<Interface>> as(Result<std::unique_ptr<Opened>> opened) {
   if (!opened) return opened.error();
   return std::unique_ptr<Interface>(*std::move(opened));
-}
-
-/// A pipe, a terminal, /dev/stdin.
-bool is_stream(const std::string& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  return std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
-}
-
-/// Which of the HDF5 formats a file has, by its datasets.
-Result<FrameFormat> hdf5_format(const std::string& path) {
-  const QuietHdf5 quiet;
-  const Result<Hdf5Input> file = Hdf5Input::open(path);
-  if (!file) return file.error();
-  if (file->contains("counts")) return FrameFormat::hdf5;
-  if (file->contains("pressure") && file->contains("frame_count")) return FrameFormat::wiresens;
-  return bad_input(path + ": has neither the dataset 'counts' (dermis) nor 'pressure' and 'frame_count' (WiReSens)");
 }
 
 Result<std::unique_ptr<FrameSource>> open_recording(const std::string& path, std::optional<FrameShape> shape) {
@@ -51,9 +39,29 @@ Result<std::unique_ptr<FrameSource>> open_recording(const std::string& path, std
   return as<FrameSource>(std::move(reader));
 }
 
-Result<std::unique_ptr<FrameSource>> open_npy(const std::string& path, const FrameFileInput& input) {
-  if (!input.rate_hz) return bad_input(path + ": a .npy file has no times; 'dermis convert --rate HZ' gives them");
-  return as<FrameSource>(files::NpyReader::open(path, {*input.rate_hz, input.shape}));
+/// Files of other systems.
+Result<std::unique_ptr<FrameSource>> open_import(const std::string& path, FrameFormat format,
+                                                 const FrameFileInput& input) {
+  const RecordingPlace place = recording_place(path);
+  const importers::ImportOptions options{input.shape, input.rate_hz, place.array, input.notice};
+  if (format == FrameFormat::png_stack) return importers::open_png_stack(place.path, options);
+  Result<std::unique_ptr<std::istream>> in = files::open_input(place.path);
+  if (!in) return in.error();
+  switch (format) {
+    case FrameFormat::npz: return importers::open_npz(*std::move(in), place.path, options);
+    case FrameFormat::dsa: return importers::open_dsa(*std::move(in), place.path, options);
+    case FrameFormat::tekscan: return importers::open_tekscan(*std::move(in), place.path, options);
+    case FrameFormat::xsensor: return importers::open_xsensor(*std::move(in), place.path, options);
+    case FrameFormat::packed10: return importers::open_packed10(*std::move(in), place.path, options);
+    case FrameFormat::novel_lst: return importers::open_novel_lst(*std::move(in), place.path, options);
+    default: return importers::open_text_matrix(*std::move(in), place.path, options);
+  }
+}
+
+Status check_rate(const std::string& path, FrameFormat format, const std::optional<double>& rate_hz) {
+  if (has_times(format) || rate_hz) return Done{};
+  return bad_input(path + ": has no times: give a rate, to 'dermis convert --rate HZ' or as 'file:" + path +
+                   "?rate=HZ'");
 }
 
 Result<std::unique_ptr<FrameSink>> create_recording(const std::string& path, FrameShape shape,
@@ -68,46 +76,18 @@ Result<std::unique_ptr<FrameSink>> create_recording(const std::string& path, Fra
 
 }  // namespace
 
-const char* to_string(FrameFormat format) {
-  switch (format) {
-    case FrameFormat::csv: return "frames.csv";
-    case FrameFormat::mcap: return "MCAP";
-    case FrameFormat::hdf5: return "HDF5";
-    case FrameFormat::wiresens: return "WiReSens HDF5";
-    case FrameFormat::npy: return "NumPy";
-  }
-  return "";
-}
-
-Result<FrameFormat> frame_format(const std::string& path) {
-  if (path.ends_with(".wiresens.h5") || path.ends_with(".wiresens.hdf5")) return FrameFormat::wiresens;
-  if (path.ends_with(".h5") || path.ends_with(".hdf5")) return FrameFormat::hdf5;
-  if (path.ends_with(".csv")) return FrameFormat::csv;
-  if (path.ends_with(".mcap")) return FrameFormat::mcap;
-  if (path.ends_with(".npy")) return FrameFormat::npy;
-  if (is_stream(path)) return FrameFormat::csv;
-  return bad_input(files::in_quotes(path) +
-                   ": the ending of its name tells no format of frames; known: .csv, .mcap, .h5, .hdf5, .wiresens.h5, "
-                   ".wiresens.hdf5 and .npy");
-}
-
-Result<FrameFormat> recognise_frames(const std::string& path) {
-  Result<FrameFormat> format = frame_format(recording_place(path).path);
-  if (!format || (*format != FrameFormat::hdf5 && *format != FrameFormat::wiresens)) return format;
-  return hdf5_format(path);
-}
-
 Result<std::unique_ptr<FrameSource>> open_frames(const std::string& path, const FrameFileInput& input) {
   const Result<FrameFormat> format = recognise_frames(path);
   if (!format) return format.error();
+  if (const Status valid = check_rate(path, *format, input.rate_hz); !valid) return valid.error();
   switch (*format) {
     case FrameFormat::mcap: return open_recording(path, input.shape);
     case FrameFormat::hdf5: return as<FrameSource>(Hdf5FramesReader::open(path, input.shape));
     case FrameFormat::wiresens: return as<FrameSource>(WiresensHdf5Reader::open(path, input.shape));
-    case FrameFormat::npy: return open_npy(path, input);
-    case FrameFormat::csv: break;
+    case FrameFormat::npy: return as<FrameSource>(files::NpyReader::open(path, {*input.rate_hz, input.shape}));
+    case FrameFormat::csv: return as<FrameSource>(files::FramesCsvReader::open(path, input.shape, input.notice));
+    default: return open_import(path, *format, input);
   }
-  return as<FrameSource>(files::FramesCsvReader::open(path, input.shape));
 }
 
 Result<FrameNotes> read_frame_notes(const std::string& path) {
@@ -128,16 +108,15 @@ Result<FrameNotes> read_frame_notes(const std::string& path) {
 }
 
 Result<std::unique_ptr<FrameSink>> create_frames(const std::string& path, FrameShape shape, const FrameNotes& notes) {
-  const Result<FrameFormat> format = frame_format(path);
+  const Result<FrameFormat> format = output_format(path);
   if (!format) return format.error();
   switch (*format) {
     case FrameFormat::mcap: return create_recording(path, shape, notes);
     case FrameFormat::hdf5: return as<FrameSink>(Hdf5FramesWriter::create(path, shape, notes));
     case FrameFormat::wiresens: return as<FrameSink>(WiresensHdf5Writer::create(path, shape));
     case FrameFormat::npy: return as<FrameSink>(files::NpyWriter::create(path, shape));
-    case FrameFormat::csv: break;
+    default: return as<FrameSink>(files::FramesCsvWriter::create(path, shape));
   }
-  return as<FrameSink>(files::FramesCsvWriter::create(path, shape));
 }
 
 Result<std::vector<RawFrame>> read_frames(const std::string& path, const FrameFileInput& input) {

@@ -47,12 +47,14 @@ Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const s
 }
 
 RecordingPlace recording_place(const std::string& text) {
-  constexpr std::string_view kMark = ".mcap#";
-  const std::size_t mark = text.rfind(kMark);
   std::error_code ignored;
-  if (mark == std::string::npos || std::filesystem::exists(text, ignored)) return {text, ""};
-  const std::size_t end = mark + kMark.size();
-  return {text.substr(0, end - 1), text.substr(end)};
+  for (const std::string_view mark : {".mcap#", ".dsa#", ".dsa3#", ".csv#", ".txt#", ".npz#"}) {
+    const std::size_t at = text.rfind(mark);
+    if (at == std::string::npos || std::filesystem::exists(text, ignored)) continue;
+    const std::size_t end = at + mark.size();
+    return {text.substr(0, end - 1), text.substr(end)};
+  }
+  return {text, ""};
 }
 
 RecordingReader::RecordingReader(std::unique_ptr<SuitRecordingReader> suit, std::size_t array)

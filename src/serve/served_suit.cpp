@@ -101,6 +101,11 @@ Result<std::unique_ptr<FrameSource>> open_live(const std::string& from, const Se
     return bad_input(fmt::format("'{}': say how many frames a second it sends, such as {}{}rate=100", from, from,
                                  from.find('?') == std::string::npos ? "?" : "&"));
   }
+  if (uri->transport == acquisition::Transport::file && uri->rate_hz) {
+    return bad_input(fmt::format(
+        "'{}': has times of its own; make a recording of it first (dermis record --from '{}' --out it.mcap)", from,
+        from));
+  }
   options.array = &array.model->array;
   return sources::open_source(*uri, options);
 }

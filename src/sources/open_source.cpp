@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "dermis/acquisition/device_source.hpp"
+#include "dermis/files/taxel_text.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/recording.hpp"
 #include "sources/simulated_source.hpp"
 
 namespace dermis::sources {
@@ -16,10 +18,34 @@ std::optional<FrameShape> shape_of(const ArrayDescription* array) {
   return FrameShape{array->rows, array->cols};
 }
 
+/// With a rate and without a protocol, a file may be more than the bytes of a device.
+bool is_file_of_frames(const acquisition::SourceUri& uri) {
+  return uri.transport == acquisition::Transport::file && uri.rate_hz && uri.protocol.name == "auto" &&
+         recordings::frame_format(recordings::recording_place(uri.path).path);
+}
+
+Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri, const SourceOptions& options) {
+  const std::optional<FrameShape> given = uri.protocol.shape;
+  const std::optional<FrameShape> wanted = shape_of(options.array);
+  if (given && wanted && *given != *wanted) {
+    return bad_input("'" + uri.text + "': rows and cols are " + files::size_text(*given) + ", the array is " +
+                     files::size_text(*wanted));
+  }
+  const Result<recordings::FrameFormat> format = recordings::recognise_frames(uri.path);
+  if (!format) return format.error();
+  if (recordings::has_times(*format)) {
+    return bad_input("'" + uri.text + "': the file has times of its own; leave rate out");
+  }
+  return recordings::open_frames(uri.path,
+                                 {.shape = given ? given : wanted, .rate_hz = uri.rate_hz, .notice = options.notice});
+}
+
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const SourceOptions& options) {
-  if (!acquisition::is_source_uri(from)) return recordings::open_frames(from, {.shape = shape_of(options.array)});
+  if (!acquisition::is_source_uri(from)) {
+    return recordings::open_frames(from, {.shape = shape_of(options.array), .notice = options.notice});
+  }
   const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
   if (!uri) return uri.error();
   return open_source(*uri, options);
@@ -27,6 +53,7 @@ Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const 
 
 Result<std::unique_ptr<FrameSource>> open_source(const acquisition::SourceUri& uri, const SourceOptions& options) {
   if (uri.transport == acquisition::Transport::simulation) return open_simulation(uri, options);
+  if (is_file_of_frames(uri)) return open_file(uri, options);
   return acquisition::open_device(uri, {shape_of(options.array), options.stop, options.notice});
 }
 

@@ -61,6 +61,8 @@ TEST(SourceUri, takes_files_and_streams_apart) {
   EXPECT_EQ(parsed("file:/tmp/a.bin?protocol=csv").path, "/tmp/a.bin");
   EXPECT_EQ(parsed("file:///tmp/a.bin").path, "/tmp/a.bin");
   EXPECT_EQ(parsed("file:raw.bin").path, "raw.bin");
+  EXPECT_EQ(parsed("file:raw.bin?rate=31.5").rate_hz, 31.5);
+  EXPECT_FALSE(parsed("file:raw.bin").rate_hz);
   EXPECT_EQ(parsed("file:a%3Fb%20c").path, "a?b c");
   EXPECT_EQ(parsed("stdin:?protocol=stag&bit_shift=6").protocol.bit_shift, 6);
 }

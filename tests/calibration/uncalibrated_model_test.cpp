@@ -43,5 +43,14 @@ TEST(UncalibratedModel, takes_readings_as_they_are_where_the_circuit_is_unknown)
   expect_readings_without_forces(array);
 }
 
+TEST(UncalibratedModel, has_the_forces_that_the_readings_are) {
+  ArrayDescription array;
+  array.rows = array.cols = 2;
+  array.readout.circuit = Circuit::none;
+  array.readout.quantity = Quantity::force;
+  const pipeline::Model model = uncalibrated_model(array);
+  EXPECT_EQ(model.networks.dead, std::vector<std::uint8_t>(4, 0));
+}
+
 }  // namespace
 }  // namespace dermis::calibration

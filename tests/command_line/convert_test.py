@@ -193,7 +193,7 @@ class Convert(FrameFiles):
         cut = self.written("cut.csv", "time_s,r0c0\n0,1\n1,x\n")
         for arguments, places in (
             ((frames, self.work / "a.txt"), ["a.txt", ".csv, .mcap, .h5"]),
-            ((self.written("a.txt", ""), out), ["a.txt", ".csv, .mcap, .h5"]),
+            ((self.written("a.xyz", ""), out), ["a.xyz", ".csv, .mcap, .h5"]),
             ((self.work / "none.csv", out), ["none.csv", "No such file"]),
             ((npy, out), ["f.npy", "no times", "--rate"]),
             ((npy, out, "--rate", "10"), ["f.npy", "6 numbers", "how many rows and cols"]),
@@ -367,7 +367,7 @@ class Info(FrameFiles):
             self.assertEqual((info["frames"], info["rate_hz"], info["complete"]), (0, None, True))
 
     def test_names_what_cannot_be_read(self):
-        self.refuse(("info", self.work / "a.txt"), ["a.txt", ".csv, .mcap"])
+        self.refuse(("info", self.work / "a.xyz"), ["a.xyz", ".csv, .mcap"])
         self.refuse(("info", self.work / "a.mcap"), ["a.mcap", "No such file"])
         self.refuse(("info", self.written("a.csv", "time_s,r0c0\n0\n")), ["a.csv:2"])
         self.refuse(("info", self.written("b.mcap", "no recording")), ["b.mcap"])

@@ -90,6 +90,32 @@ TEST(ArrayDescription, names_what_is_wrong_with_its_absent_taxels_and_its_rail) 
             "readout.rail_counts: must be a reading of the ADC, 0 to 2^adc_bits - 1");
 }
 
+TEST(ArrayDescription, readings_that_are_forces_have_nothing_of_an_adc) {
+  const auto as = [](Quantity quantity) {
+    return [quantity](ArrayDescription& array) {
+      array.readout = Readout();
+      array.readout.circuit = Circuit::none;
+      array.readout.quantity = quantity;
+    };
+  };
+  EXPECT_EQ(message_after(as(Quantity::pressure)), "valid");
+  EXPECT_EQ(message_after(as(Quantity::force)), "valid");
+  const auto pressure_with = [&](auto change) {
+    return message_after([&](ArrayDescription& array) {
+      as(Quantity::pressure)(array);
+      change(array);
+    });
+  };
+  EXPECT_EQ(pressure_with([](auto& array) { array.taxel_area_m2.reset(); }),
+            "array.taxel_area_mm2: is needed where readings are pressures");
+  EXPECT_EQ(pressure_with([](auto& array) { array.readout.circuit = Circuit::divider; }),
+            "readout.circuit: readings that are forces have no circuit");
+  EXPECT_EQ(pressure_with([](auto& array) { array.readout.adc_reference_v = 3.3; }),
+            "readout.adc_reference_v: belongs to counts; leave it out");
+  EXPECT_EQ(pressure_with([](auto& array) { array.readout.pressure_raises_reading = false; }),
+            "readout.pressure_raises_reading: belongs to counts; leave it out");
+}
+
 TEST(ArrayDescription, knows_its_absent_taxels) {
   ArrayDescription array;
   array.absent = {2, 5};

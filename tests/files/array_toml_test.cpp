@@ -249,9 +249,9 @@ TEST(ArrayToml, leaves_resistors_aside_where_the_circuit_is_unknown) {
 }
 
 TEST(ArrayToml, refuses_unknown_choices) {
-  EXPECT_EQ(
-      error_of(with("\"divider\"", "\"bridge\"")),
-      "array.toml:9: readout.circuit: must be \"divider\", \"transimpedance\", \"flexitac\", \"none\" or \"auto\"");
+  EXPECT_EQ(error_of(with("\"divider\"", "\"bridge\"")),
+            "array.toml:9: readout.circuit: must be \"divider\", \"transimpedance\", \"flexitac\", \"none\", \"auto\", "
+            "\"pressure\" or \"force\"");
   EXPECT_EQ(error_of(with("\"floating\"", "1")),
             "array.toml:10: readout.idle_rows: must be \"grounded\" or \"floating\"");
 }
@@ -334,6 +334,25 @@ TEST(ArrayToml, gives_a_value_or_a_one_line_error_for_mutations) {
   for (const char* const text : {kComplete, kAmplifiers, kFlexitac}) {
     support::expect_value_or_one_line_error(
         text, 3000, [](const std::string& mutated) { return array_from_toml(mutated, "mutated"); });
+  }
+}
+
+TEST(ArrayToml, readings_may_be_pressures_or_forces) {
+  const std::string geometry = "[array]\nrows = 2\ncols = 3\ntaxel_area_mm2 = 100\n[readout]\n";
+  for (const auto& [name, quantity] :
+       {std::pair("pressure", Quantity::pressure), std::pair("force", Quantity::force)}) {
+    const std::string circuit = std::string("circuit = \"") + name + "\"\n";
+    const Result<ArrayDescription> array =
+        array_from_toml(geometry + circuit + "adc_noise_counts = 0.5\n", "array.toml");
+    ASSERT_TRUE(array) << array.error().message;
+    EXPECT_EQ(array->readout.circuit, Circuit::none);
+    EXPECT_EQ(array->readout.quantity, quantity);
+    EXPECT_EQ(array->readout.adc_bits, 24);
+    const Result<ArrayDescription> again = array_from_toml(array_to_toml(*array), "array.toml");
+    ASSERT_TRUE(again) << again.error().message;
+    EXPECT_EQ(again->readout.quantity, quantity);
+    EXPECT_EQ(array_to_toml(*again), array_to_toml(*array));
+    EXPECT_NE(error_of(geometry + circuit).find("readout.adc_noise_counts"), std::string::npos) << "it has no default";
   }
 }
 

@@ -182,8 +182,33 @@ TEST(FramesCsvReader, names_a_column_out_of_place) {
   EXPECT_EQ(error_of("time_s,time_s,r0c0,r0c1\n"), "frames.csv:1: column 'time_s' stands twice; remove one");
 }
 
-TEST(FramesCsvReader, hints_at_semicolons) {
+TEST(FramesCsvReader, says_what_another_program_has_saved) {
+  using namespace std::string_literals;  // NOLINT(google-build-using-namespace): the literals only
   EXPECT_EQ(error_of("time_s;r0c0;r0c1\n"), "frames.csv:1: has semicolons between its values; write commas");
+  EXPECT_EQ(error_of("time_s\tr0c0\tr0c1\n"), "frames.csv:1: has tabs between its values; write commas");
+  EXPECT_EQ(error_of("\"time_s\",\"r0c0\",\"r0c1\"\n"),
+            "frames.csv:1: has quotes around its values; write them without");
+  for (const std::string& mark : {"\xFF\xFE"s, "\xFE\xFF"s, ""s}) {
+    EXPECT_EQ(error_of(mark + "t\0i\0m\0e\0_\0s\0,\0"s), "frames.csv:1: is UTF-16 text; save it as UTF-8");
+  }
+}
+
+TEST(FramesCsvReader, loses_only_the_last_line_where_it_is_cut) {
+  const std::string whole = "time_s,r0c0,r0c1\n0,1,2\n1,3,4\n";
+  for (const std::string rest : {"2", "2,", "2,5", "2,5,6,7", "2,5,x"}) {
+    std::vector<std::string> notices;
+    const auto reader =
+        FramesCsvReader::open(std::make_unique<std::istringstream>(whole + rest), "frames.csv", FrameShape{1, 2},
+                              [&](const std::string& line) { notices.push_back(line); });
+    ASSERT_TRUE(reader);
+    const auto frames = support::read_all(**reader);
+    ASSERT_TRUE(frames) << frames.error().message;
+    EXPECT_EQ(frames->size(), 2U) << rest;
+    EXPECT_EQ(notices, std::vector<std::string>{"frames.csv:4: is cut off; the frames before are read"});
+    EXPECT_FALSE(parse(whole + rest + "\n")) << "a line that is wrong is not cut";
+  }
+  EXPECT_EQ(parse(whole + "2,5,6")->size(), 3U) << "a last line needs no end";
+  EXPECT_EQ(error_of("time_s,r0c0,r0c1\n0,1"), "frames.csv:2: has 2 values, the header 3");
 }
 
 TEST(FramesCsvReader, names_both_lengths_of_a_ragged_row) {

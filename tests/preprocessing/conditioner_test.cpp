@@ -258,6 +258,19 @@ TEST(Conditioner, needs_a_supply_where_the_reference_is_in_volts) {
   EXPECT_EQ(unknown_circuit.rejection(), Rejection::none);
 }
 
+TEST(Conditioner, pressures_and_forces_may_be_below_zero) {
+  ArrayDescription array = make_array();
+  array.readout = Readout();
+  array.readout.circuit = Circuit::none;
+  array.readout.quantity = Quantity::force;
+  array.readout.adc_bits = 24;
+  const ConditionedFrame forces = condition(array, make_frame({-0.5F, 2.0F, kNan}));
+  EXPECT_EQ(forces.taxels[0], TaxelStatus::ok);
+  EXPECT_EQ(forces.taxels[1], TaxelStatus::ok);
+  EXPECT_EQ(forces.taxels[2], TaxelStatus::invalid);
+  EXPECT_DOUBLE_EQ(forces.ratio[1] / forces.ratio[0], -4.0);
+}
+
 TEST(Conditioner, a_rejected_frame_leaves_the_clock_untouched) {
   Conditioner conditioner(make_array());
   ConditionedFrame conditioned;

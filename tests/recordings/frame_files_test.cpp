@@ -142,7 +142,8 @@ TEST(FrameFiles, list_the_known_endings_where_the_name_has_another) {
     EXPECT_EQ(source.error().message,
               "'" + name +
                   "': the ending of its name tells no format of frames; known: .csv, .mcap, .h5, .hdf5, "
-                  ".wiresens.h5, .wiresens.hdf5 and .npy");
+                  ".wiresens.h5, .wiresens.hdf5 and .npy, and to read .npz, .dsa, .dsa3, .asf, .lst, .txt, .png and "
+                  ".packed10");
     EXPECT_FALSE(create_frames(name, {1, 1}));
   }
 }
@@ -161,7 +162,41 @@ TEST(FrameFiles, of_a_pipe_are_csv) {
 TEST(FrameFiles, of_numpy_need_a_rate) {
   const auto source = open_frames("f.npy");
   ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().message, "f.npy: a .npy file has no times; 'dermis convert --rate HZ' gives them");
+  EXPECT_EQ(source.error().message,
+            "f.npy: has no times: give a rate, to 'dermis convert --rate HZ' or as 'file:f.npy?rate=HZ'");
+}
+
+TEST(FrameFiles, of_other_systems_are_told_by_what_they_hold) {
+  const support::TemporaryFolder folder;
+  const auto format = [&](const std::string& name, const std::string& text) {
+    support::write_bytes(folder.file(name), text);
+    return *recognise_frames(folder.file(name));
+  };
+  for (const std::string ending : {".csv", ".txt"}) {
+    EXPECT_EQ(format("a" + ending, "DATA_TYPE MOVIE\nROWS 2\n"), FrameFormat::tekscan);
+    EXPECT_EQ(format("b" + ending, "\"File:\",\"C:\\a.XSN\"\n"), FrameFormat::xsensor);
+    EXPECT_EQ(format("c" + ending, "1.5,2\n3,4\n"), FrameFormat::text_matrix);
+  }
+  EXPECT_EQ(format("d.csv", "time_s,r0c0\n"), FrameFormat::csv);
+  EXPECT_EQ(*recognise_frames(folder.file("")), FrameFormat::png_stack);
+  EXPECT_EQ(*recognise_frames("hand.dsa#3"), FrameFormat::dsa);
+}
+
+TEST(FrameFiles, of_other_systems_are_read_and_not_written) {
+  const support::TemporaryFolder folder;
+  support::write_bytes(folder.file("a.txt"), "1,2\n3,4\n\n5,6\n7,8\n\n9");
+  std::vector<std::string> notices;
+  const auto frames = read_frames(
+      folder.file("a.txt"), {.rate_hz = 10.0, .notice = [&](const std::string& line) { notices.push_back(line); }});
+  ASSERT_TRUE(frames) << frames.error().message;
+  EXPECT_EQ(frames->size(), 2U);
+  EXPECT_EQ(notices.size(), 1U);
+  const auto sink = create_frames(folder.file("b.txt"), {2, 2});
+  ASSERT_FALSE(sink);
+  EXPECT_EQ(sink.error().message,
+            "'" + folder.file("b.txt") +
+                "': files of this ending are only read; to write, there are .csv, .mcap, .h5, .hdf5, .wiresens.h5, "
+                ".wiresens.hdf5 and .npy");
 }
 
 }  // namespace

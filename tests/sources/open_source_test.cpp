@@ -186,6 +186,30 @@ TEST(OpenSource, the_hand_of_a_rehearsal_listens_to_the_guide) {
   EXPECT_TRUE(has_next(*opened("sim:rehearsal?rate=1000", {.array = &array}), frame)) << "without a guide, too";
 }
 
+TEST(OpenSource, a_rate_gives_times_to_a_file_that_has_none) {
+  const TemporaryFolder folder;
+  write_file(folder.file("a.npy"), some_frames(3));
+  write_device_bytes(folder.file("device.bin"), some_frames(3));
+  for (const std::string& uri :
+       {"file:" + folder.file("a.npy") + "?rate=4", "file:" + folder.file("a.npy") + "?rate=4&rows=4&cols=5",
+        "file:" + folder.file("device.bin") + "?protocol=dermis&rate=4"}) {
+    const auto source = opened(uri);
+    ASSERT_TRUE(source);
+    EXPECT_FALSE(source->is_live()) << uri;
+    RawFrame frame;
+    for (int k = 0; k < 3; ++k) {
+      ASSERT_TRUE(has_next(*source, frame)) << uri;
+      EXPECT_EQ(frame.time, k * std::chrono::milliseconds(250)) << uri;
+    }
+    EXPECT_FALSE(has_next(*source, frame));
+  }
+  const std::string other = "file:" + folder.file("a.npy") + "?rate=4&rows=2&cols=2";
+  EXPECT_EQ(refusal(other), folder.file("a.npy") + ": has 4x5 taxels, the array is 2x2");
+  write_file(folder.file("a.csv"), some_frames(3));
+  const std::string timed = "file:" + folder.file("a.csv") + "?rate=4";
+  EXPECT_EQ(refusal(timed), "'" + timed + "': the file has times of its own; leave rate out");
+}
+
 TEST(OpenSource, refuses_shapes_that_disagree) {
   const TemporaryFolder folder;
   const ArrayDescription array = small_array();

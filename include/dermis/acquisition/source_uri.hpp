@@ -39,10 +39,12 @@ struct SourceUri {
   unsigned baud = 0;           ///< serial: 50 ... 20,000,000; not given: the usual one of the protocol.
   Nanos reconnect{};           ///< serial, tcp: how long an unplugged device may stay away; reconnect_s, 0 ... 1e6.
   std::optional<FrameShape> array_shape{};  ///< simulation: rows and cols.
-  std::optional<double> rate_hz{};          ///< simulation: rate, > 0 ... 1e6; empty: as fast as it can.
-  std::uint64_t seed = 1;                   ///< simulation.
-  std::string array{};                      ///< simulation: path of an array.toml.
-  std::optional<std::size_t> frames{};      ///< simulation: length of the scenes multitouch, contacts and idle.
+  /// simulation: rate, > 0 ... 1e6; empty: as fast as it can. file: frames a second of its times, which begin at 0;
+  /// empty: they are those of the reading.
+  std::optional<double> rate_hz{};
+  std::uint64_t seed = 1;               ///< simulation.
+  std::string array{};                  ///< simulation: path of an array.toml.
+  std::optional<std::size_t> frames{};  ///< simulation: length of the scenes multitouch, contacts and idle.
 };
 
 /// True where `text` begins as a URI of a transport does, right or wrong; false: a path of a file.

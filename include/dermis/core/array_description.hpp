@@ -25,6 +25,13 @@ enum class Circuit {
   automatic,  ///< "auto": calibration chooses among the circuits by what they leave unexplained.
 };
 
+/// What a reading is.
+enum class Quantity {
+  counts,    ///< Of the ADC.
+  pressure,  ///< Kilopascals: another system has calibrated it.
+  force,     ///< Newtons, the same.
+};
+
 /// What the rows that are not being scanned are tied to.
 enum class IdleRows {
   grounded,  ///< Through their drive resistance to 0 V.
@@ -45,6 +52,9 @@ inline constexpr double kFitOhm = std::numeric_limits<double>::quiet_NaN();
 /// are empty (to be fitted) or hold one value for all lines.
 struct Readout {
   Circuit circuit = Circuit::divider;
+  /// Other than counts with Circuit::none only; the members that speak of counts are in this unit then, and readings
+  /// below 0 are readings, too.
+  Quantity quantity = Quantity::counts;
   IdleRows idle_rows = IdleRows::grounded;         ///< divider, transimpedance
   IdleColumns idle_columns = IdleColumns::loaded;  ///< divider
   std::vector<double> drive_ohm;          ///< Resistance of the driver of each driven line [ohm], >= 0 or kFitOhm.

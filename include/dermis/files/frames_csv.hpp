@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <istream>
 #include <memory>
 #include <optional>
@@ -25,17 +26,22 @@ struct FramesCsvColumns {
 
 /// Reads frames.csv (docs/file-formats.md) frame by frame: the memory is that of one line, at most 32 MiB.
 /// Counts may be fractional, nan or inf: whether a reading can be used is for preprocessing to say. An empty cell of
-/// temperature_celsius or supply_v is no value. Errors name the line and the column. Not thread-safe.
+/// temperature_celsius or supply_v is no value. Errors name the line and the column. A last line without an end that is
+/// no frame is left out where others stand before it, and told. Not thread-safe.
 class FramesCsvReader final : public FrameSource {
  public:
+  using Notice = std::function<void(const std::string&)>;  ///< Takes one line.
+
   /// Opens the file and checks its header: against an array of that shape, or, where none is given, against the shape
   /// that its last column names (1x1 ... 1024x1024).
   [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(const std::string& path,
-                                                                     std::optional<FrameShape> shape = {});
+                                                                     std::optional<FrameShape> shape = {},
+                                                                     Notice notice = {});
   /// The same from a stream; `name` stands for the path in messages.
   [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(std::unique_ptr<std::istream> in,
                                                                      const std::string& name,
-                                                                     std::optional<FrameShape> shape = {});
+                                                                     std::optional<FrameShape> shape = {},
+                                                                     Notice notice = {});
   ~FramesCsvReader() override;
 
   [[nodiscard]] Result<bool> next(RawFrame& frame) override;

@@ -25,7 +25,8 @@ struct Model {
 /// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it.
 [[nodiscard]] Status write_model(const std::string& path, const Model& model);
 
-/// A model read is complete and consistent, or an error that names the file.
+/// Reads a model file, or, by the ending .toml, the array.toml of an array whose readings are forces: its
+/// direct_model(). A model read is complete and consistent, or an error that names the file.
 [[nodiscard]] Result<Model> read_model(const std::string& path);
 
 }  // namespace dermis::pipeline

@@ -32,8 +32,9 @@ enum class Rejection {
 ///
 /// and 1 - ratio where pressure lowers the reading. Readings within half a count of the end that pressure drives them
 /// to, of the ADC or readout.rail_counts, or beyond it are marked saturated. A taxel without a reading (NaN, infinite,
-/// below 0 or above 2^adc_bits - 1) is invalid and has the mean ratio of its neighbours that have one; a taxel that the
-/// sheet does not have is invalid and has the ratio 0. Not thread-safe: one conditioner per stream of frames.
+/// above 2^adc_bits - 1, or below 0 where readings are counts) is invalid and has the mean ratio of its neighbours that
+/// have one; a taxel that the sheet does not have is invalid and has the ratio 0. Not thread-safe: one conditioner per
+/// stream of frames.
 class Conditioner {
  public:
   /// The array must be valid (ArrayDescription::validate). A reference in volts needs a supply, either nominal
@@ -49,7 +50,9 @@ class Conditioner {
   [[nodiscard]] Rejection rejection() const noexcept { return rejection_; }
 
  private:
-  [[nodiscard]] bool is_reading(float count) const noexcept { return count >= 0.0F && count <= full_scale_counts_; }
+  [[nodiscard]] bool is_reading(float count) const noexcept {
+    return count >= least_counts_ && count <= full_scale_counts_;
+  }
   [[nodiscard]] std::size_t count_missing(const RawFrame& raw) const noexcept;
   [[nodiscard]] Rejection inspect(const RawFrame& raw) const noexcept;
   void convert(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
@@ -57,6 +60,7 @@ class Conditioner {
 
   ArrayDescription array_;
   float full_scale_counts_;
+  float least_counts_;
   float highest_counts_;  // readings above it are saturated
   float lowest_counts_;   // and those below it
   std::optional<Nanos> last_time_;

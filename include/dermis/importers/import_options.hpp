@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::importers {
+
+/// What must be known of a file of another system.
+struct ImportOptions {
+  std::optional<FrameShape> shape{};  ///< That the frames must have; empty: what the file says. 1x1 ... 1024x1024.
+  std::optional<double> rate_hz{};    ///< Frames a second of a file without times. > 0
+  std::string array{};                ///< Which of several arrays of a file; empty: the only one.
+  std::function<void(const std::string&)> notice{};  ///< Told in one line what was left out: a frame that is cut.
+};
+
+/// Bad input, with `name` of the file, where its frames have not the shape that they must have, or more than 1024 rows
+/// or columns, or none.
+[[nodiscard]] Status check_shape(const std::string& name, FrameShape found, const std::optional<FrameShape>& wanted);
+
+}  // namespace dermis::importers

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <istream>
+#include <memory>
+#include <string>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/importers/import_options.hpp"
+
+namespace dermis::importers {
+
+/// Listings of novel (emed, pliance: .lst): pages with "Pict-No.: 7" and a table of kilopascals, whose first line has
+/// the numbers of the columns and whose first column those of the rows, both from 1 on the whole platform. Pages of the
+/// same picture are one frame; MPP and MVP, the sums of a measurement, are passed over, and so are sums of force. Cells
+/// that a table does not have are 0. Where options.shape is given, a table lies at its place on the platform; else the
+/// frames are the smallest rectangle that holds all tables. A last frame that is cut is left out, and told. The memory
+/// is that of a frame and of a line, at most 32 MiB. `in` must be able to seek; `name` stands for the path in messages.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_novel_lst(std::unique_ptr<std::istream> in,
+                                                                  const std::string& name,
+                                                                  const ImportOptions& options);
+
+}  // namespace dermis::importers

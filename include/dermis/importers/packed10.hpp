@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <istream>
+#include <memory>
+#include <string>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/importers/import_options.hpp"
+
+namespace dermis::importers {
+
+/// Frames as they come over I2C from controllers that pack their readings: 10 bits each, row by row, the highest bit
+/// first, without a gap, so that 4 readings have 5 bytes; a frame begins with a byte of its own, and nothing else is
+/// between the frames. The file tells neither shape nor times: options.shape and options.rate_hz do. A last frame that
+/// is cut is left out, and told. The memory is that of a frame. `name` stands for the path in messages.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_packed10(std::unique_ptr<std::istream> in,
+                                                                 const std::string& name, const ImportOptions& options);
+
+}  // namespace dermis::importers

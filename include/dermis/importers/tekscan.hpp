@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <istream>
+#include <memory>
+#include <string>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/importers/import_options.hpp"
+
+namespace dermis::importers {
+
+/// ASCII exports of Tekscan (I-Scan, F-Scan, Conformat: .asf, .csv, .txt): keys such as ROWS, COLS, SECONDS_PER_FRAME
+/// and UNITS, a line ASCII_DATA @@, then "Frame 1" and a line of numbers a row. Pressures of any unit come as
+/// kilopascals, forces as newtons, UNITS RAW as it is; "B", a cell outside the sensor, as NaN. A last frame that is cut
+/// is left out, and told. The memory is that of a frame and of a line, at most 32 MiB. `name` stands for the path in
+/// messages.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_tekscan(std::unique_ptr<std::istream> in,
+                                                                const std::string& name, const ImportOptions& options);
+
+}  // namespace dermis::importers

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <istream>
+#include <memory>
+#include <string>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/importers/import_options.hpp"
+
+namespace dermis::importers {
+
+/// Frames as blocks of lines with numbers: a line a row, values between commas, semicolons, tabs or blanks; an empty
+/// value is a missing reading (NaN). Blocks end at a line without numbers (blank, "# frame 7", a header) and, where the
+/// shape is given, after its rows; else the first block tells the shape. There are no times: options.rate_hz gives
+/// them. A last block that is cut is left out, and told. The memory is that of two frames and of a line, at most 32
+/// MiB. `name` stands for the path in messages.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_text_matrix(std::unique_ptr<std::istream> in,
+                                                                    const std::string& name,
+                                                                    const ImportOptions& options);
+
+}  // namespace dermis::importers

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <istream>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "dermis/core/result.hpp"
+
+namespace dermis::importers {
+
+/// The lines of a text, LF or CRLF, without a byte order mark, of at most 32 MiB.
+class TextLines {
+ public:
+  TextLines(std::unique_ptr<std::istream> in, std::string name);
+
+  /// The next line, valid until the next call; false at the end.
+  [[nodiscard]] Result<bool> next(std::string_view& line);
+
+  /// The text ended without the end of its last line.
+  [[nodiscard]] bool was_cut() const noexcept { return was_cut_; }
+  /// It ended before a value that was to come.
+  [[nodiscard]] bool ends_in_comma() const noexcept { return was_cut_ && line_.ends_with(','); }
+
+  /// To the first line again; of a stream that can seek.
+  void rewind();
+
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  /// Of the last line: "name:line".
+  [[nodiscard]] std::string place() const;
+  /// Bad input at the last line.
+  [[nodiscard]] Error error(const std::string& message) const;
+
+ private:
+  std::unique_ptr<std::istream> in_;
+  std::string name_;
+  std::string line_;
+  std::size_t number_ = 0;
+  bool was_cut_ = false;
+};
+
+[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
+
+/// Takes the cells of one line from the left. Blanks around a cell are dropped, and so are quotes; what is between
+/// quotes holds together.
+class Cells {
+ public:
+  enum class Separator {
+    comma,
+    any,  ///< One comma, or blanks; where the line has semicolons or tabs, these, and a comma belongs to a number.
+  };
+  Cells(std::string_view line, Separator separator) noexcept;
+
+  /// False when the line has no further cell.
+  [[nodiscard]] bool next(std::string_view& cell) noexcept;
+
+ private:
+  [[nodiscard]] bool ends_cell(char c) const noexcept;
+
+  std::string_view rest_;
+  char separator_;  ///< Between two of them, there is a cell.
+  bool blanks_separate_;
+  bool at_end_;
+};
+
+/// A number, with a decimal point or comma; what stands for no reading (nothing, nan, B) is NaN.
+[[nodiscard]] bool parse_reading(std::string_view text, float& value);
+
+/// Reads the values of a row, all of `row`; what follows must be empty. Else says what is wrong with the line.
+[[nodiscard]] Status parse_row(std::string_view line, Cells::Separator separator, std::span<float> row);
+
+/// What a reading in this unit is to be multiplied by: pressures become kilopascals, forces newtons, "raw" stays.
+/// Empty: the unit is not known.
+[[nodiscard]] std::optional<double> factor_of_unit(std::string_view unit);
+
+}  // namespace dermis::importers

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+#include "dermis/files/input.hpp"
+#include "dermis/files/text.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/recording.hpp"
+#include "recordings/hdf5.hpp"
+
+namespace dermis::recordings {
+namespace {
+
+constexpr const char* kWritten = ".csv, .mcap, .h5, .hdf5, .wiresens.h5, .wiresens.hdf5 and .npy";
+
+struct Ending {
+  std::string_view ending;
+  FrameFormat format;
+};
+
+constexpr std::array kEndings = {Ending{".wiresens.h5", FrameFormat::wiresens},
+                                 Ending{".wiresens.hdf5", FrameFormat::wiresens},
+                                 Ending{".h5", FrameFormat::hdf5},
+                                 Ending{".hdf5", FrameFormat::hdf5},
+                                 Ending{".csv", FrameFormat::csv},
+                                 Ending{".mcap", FrameFormat::mcap},
+                                 Ending{".npy", FrameFormat::npy},
+                                 Ending{".npz", FrameFormat::npz},
+                                 Ending{".dsa", FrameFormat::dsa},
+                                 Ending{".dsa3", FrameFormat::dsa},
+                                 Ending{".asf", FrameFormat::tekscan},
+                                 Ending{".lst", FrameFormat::novel_lst},
+                                 Ending{".txt", FrameFormat::text_matrix},
+                                 Ending{".png", FrameFormat::png_stack},
+                                 Ending{".packed10", FrameFormat::packed10}};
+
+/// A pipe, a terminal, /dev/stdin.
+bool is_stream(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  return std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);
+}
+
+/// Which of the HDF5 formats a file has, by its datasets.
+Result<FrameFormat> hdf5_format(const std::string& path) {
+  const QuietHdf5 quiet;
+  const Result<Hdf5Input> file = Hdf5Input::open(path);
+  if (!file) return file.error();
+  if (file->contains("counts")) return FrameFormat::hdf5;
+  if (file->contains("pressure") && file->contains("frame_count")) return FrameFormat::wiresens;
+  return bad_input(path + ": has neither the dataset 'counts' (dermis) nor 'pressure' and 'frame_count' (WiReSens)");
+}
+
+/// The first word of a text that is there, without quotes.
+std::string first_word(const std::string& path) {
+  constexpr std::size_t kLooked = 4096;
+  constexpr std::string_view kBetween = " \t\r\n\",;";
+  const Result<std::unique_ptr<std::istream>> in = files::open_input(path);
+  if (!in) return {};
+  std::string text(kLooked, '\0');
+  (*in)->read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>((*in)->gcount()));
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  const std::size_t begin = std::min(text.find_first_not_of(kBetween), text.size());
+  return text.substr(begin, std::min(text.find_first_of(kBetween, begin), text.size()) - begin);
+}
+
+/// Exports of several systems have the endings .csv and .txt.
+FrameFormat text_format(const std::string& path, FrameFormat by_name) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return by_name;
+  const std::string word = first_word(path);
+  double number = 0.0;
+  if (word == "DATA_TYPE") return FrameFormat::tekscan;
+  if (word == "File:" || word == "FRAME") return FrameFormat::xsensor;
+  if (files::parse_number(word, number)) return FrameFormat::text_matrix;
+  return by_name;
+}
+
+}  // namespace
+
+const char* to_string(FrameFormat format) {
+  switch (format) {
+    case FrameFormat::csv: return "frames.csv";
+    case FrameFormat::mcap: return "MCAP";
+    case FrameFormat::hdf5: return "HDF5";
+    case FrameFormat::wiresens: return "WiReSens HDF5";
+    case FrameFormat::npy: return "NumPy";
+    case FrameFormat::npz: return "NumPy archive";
+    case FrameFormat::dsa: return "Weiss DSA";
+    case FrameFormat::tekscan: return "Tekscan ASCII";
+    case FrameFormat::xsensor: return "XSENSOR ASCII";
+    case FrameFormat::novel_lst: return "novel listing";
+    case FrameFormat::text_matrix: return "text matrix";
+    case FrameFormat::png_stack: return "PNG";
+    case FrameFormat::packed10: return "packed 10 bits";
+  }
+  return "";
+}
+
+bool has_times(FrameFormat format) {
+  switch (format) {
+    case FrameFormat::npy:
+    case FrameFormat::npz:
+    case FrameFormat::text_matrix:
+    case FrameFormat::png_stack:
+    case FrameFormat::packed10: return false;
+    default: return true;
+  }
+}
+
+Result<FrameFormat> frame_format(const std::string& path) {
+  const auto* const found =
+      std::find_if(kEndings.begin(), kEndings.end(), [&](const Ending& known) { return path.ends_with(known.ending); });
+  if (found != kEndings.end()) return found->format;
+  if (is_stream(path)) return FrameFormat::csv;
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) return FrameFormat::png_stack;
+  return bad_input(files::in_quotes(path) + ": the ending of its name tells no format of frames; known: " + kWritten +
+                   ", and to read .npz, .dsa, .dsa3, .asf, .lst, .txt, .png and .packed10");
+}
+
+Result<FrameFormat> output_format(const std::string& path) {
+  Result<FrameFormat> format = frame_format(path);
+  if (!format || *format <= FrameFormat::npy) return format;
+  return bad_input(files::in_quotes(path) + ": files of this ending are only read; to write, there are " + kWritten);
+}
+
+Result<FrameFormat> recognise_frames(const std::string& path) {
+  const RecordingPlace place = recording_place(path);
+  Result<FrameFormat> format = frame_format(place.path);
+  if (!format) return format;
+  if (*format == FrameFormat::hdf5 || *format == FrameFormat::wiresens) return hdf5_format(place.path);
+  if (*format == FrameFormat::csv || *format == FrameFormat::text_matrix) return text_format(place.path, *format);
+  return format;
+}
+
+}  // namespace dermis::recordings
