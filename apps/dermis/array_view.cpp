@@ -48,7 +48,7 @@ Status ArrayView::open_model(const std::string& path) {
   if (!pipeline) return pipeline.error();
   model_ = std::move(*model);
   pipeline_.emplace(std::move(*pipeline));
-  tracker_.emplace(model_->array);
+  tracker_.emplace(model_->array, fusion::ContactOptions{}, model_->strip);
   return Done{};
 }
 
