@@ -32,6 +32,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   Evaluation evaluation;
   evaluation.array = model.array;
   EstimatorRow row(model, std::move(*pipeline), further);
+  evaluation.judged_from_n = row.judged_from_n();
   Judgement judgement(row.names().size());
   ExampleChoice examples;
   const LoadsOfFrames loads_of(loads, frames.size());
