@@ -355,8 +355,9 @@ std::vector<TestedLoad> tested_loads(const std::vector<RawLoad>& raw, const Shar
 }
 
 /// The errors of the loads on single taxels as those of taxels that were never pressed: the network alone, without the
-/// gain. Over the n taxels they scatter with the variance s^2; that of a new one is (1 + 1/n) s^2, and because s^2 is
-/// itself uncertain, Student's distribution is wider by (n - 1) / (n - 3).
+/// gain. If their mean square over the n taxels is m, the variance is m n / (n - 1), that of a new taxel larger by
+/// 1 + 1/n, and because it is itself uncertain, the 68 % point of Student's distribution is that of (n - 1) / (n - 2)
+/// times it.
 std::vector<TestedLoad> tested_as_unpressed(const std::vector<RawLoad>& raw, const SharedProblem& problem,
                                             const ForceNetwork& network) {
   std::vector<TestedLoad> tested;
@@ -373,7 +374,7 @@ std::vector<TestedLoad> tested_as_unpressed(const std::vector<RawLoad>& raw, con
   const auto count = static_cast<double>(taxels.size());
   const bool tells = taxels.size() >= kLeastTaxelsForScatter;
   for (TestedLoad& load : tested) {
-    load.error_n = tells ? load.error_n * std::sqrt((count + 1.0) / (count - 3.0)) : kGainDeviation * load.newtons;
+    load.error_n = tells ? load.error_n * std::sqrt((count + 1.0) / (count - 2.0)) : kGainDeviation * load.newtons;
   }
   return tested;
 }
