@@ -53,7 +53,7 @@ Status ArrayView::use_model(pipeline::Model model) {
   if (!pipeline) return pipeline.error();
   model_ = std::move(model);
   pipeline_.emplace(std::move(*pipeline));
-  tracker_.emplace(model_->array);
+  tracker_.emplace(model_->array, fusion::ContactOptions{}, model_->strip);
   return Done{};
 }
 

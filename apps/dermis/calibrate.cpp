@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "commands.hpp"
+#include "dermis/calibration/strip_training.hpp"
 #include "dermis/core/version.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/atomic_file.hpp"
@@ -158,6 +159,9 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
   if (uncertainty.relative_sigma_of_shared) {
     json["relative_sigma_of_shared"] = *uncertainty.relative_sigma_of_shared;
   }
+  if (uncertainty.relative_sigma_of_unpressed) {
+    json["relative_sigma_of_unpressed"] = *uncertainty.relative_sigma_of_unpressed;
+  }
   if (bank) {
     json["bank"] = {{"unknowns", bank->unknowns}, {"steps", bank->steps}, {"last_error", bank->curve.back()}};
     json["bank"]["never_loaded"] = taxel_names(bank->never_loaded, array);
@@ -198,12 +202,15 @@ Status calibrate(const CalibrateOptions& options) {
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = files::read_loads(options.loads, *array, frames->size());
   if (!loads) return loads.error();
+  const auto positions = files::read_touch_positions(options.loads, *array, frames->size());
+  if (!positions) return positions.error();
   const double read_s = seconds_since(start);
 
   Progress progress;
   progress.show("circuit", 0.0);
   start = Clock::now();
-  const auto database = calibration::build_sample_database(*array, *frames, *loads, *settle);
+  const auto database = calibration::build_sample_database(*array, *frames, *loads, *settle,
+                                                           [&](double share) { progress.show("circuit", share); });
   if (!database) return database.error();
   const double circuit_s = seconds_since(start);
   progress.show("circuit", 1.0);
@@ -213,6 +220,11 @@ Status calibrate(const CalibrateOptions& options) {
   Result<Calibration> calibration =
       calibration::calibrate(*database, [&](const std::string& stage, double share) { progress.show(stage, share); });
   if (!calibration) return calibration.error();
+  if (!positions->empty()) {
+    Result<fusion::StripTable> strip = calibration::train_strip(calibration->model, *frames, *positions);
+    if (!strip) return strip.error();
+    calibration->model.strip = *std::move(strip);
+  }
   std::vector<calibration::StageTime>& stages = calibration->report.stages;
   stages.insert(stages.begin(), {{"reading", read_s}, {"circuit", circuit_s}});
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
@@ -225,6 +237,10 @@ Status calibrate(const CalibrateOptions& options) {
   }
   options.json ? print_json(calibration->report, bank, *array, database->circuit_fit)
                : print_text(calibration->report, bank, *array);
+  if (!options.json && calibration->model.strip) {
+    fmt::print("positions along the strip: learned from {} touches, +- {:.2f} mm\n", positions->size(),
+               1e3 * calibration->model.strip->sigma_m);
+  }
   return Done{};
 }
 

@@ -39,8 +39,8 @@ std::string newtons(const std::optional<double>& value) {
 
 void print_text(const Evaluation& evaluation) {
   const auto& first = evaluation.estimators.front();
-  fmt::print("{} labelled frames ({} rejected), {} taxels of at least {} N, {} unloaded, {} totals\n\n",
-             evaluation.frames, evaluation.frames_rejected, first.relative_error.count, calibration::kJudgedNewtons,
+  fmt::print("{} labelled frames ({} rejected), {} taxels of at least {:.3g} N, {} unloaded, {} totals\n\n",
+             evaluation.frames, evaluation.frames_rejected, first.relative_error.count, evaluation.judged_from_n,
              first.ghost_n.count, first.totals_judged);
   fmt::print("{:<20}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "estimator", "median", "p95", "p99", "max", "ghost p99",
              "total rmse");

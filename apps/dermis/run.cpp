@@ -43,10 +43,10 @@ std::string place_of(const std::string& in, const FrameSource& source, std::size
 /// What touches the array, as contacts.csv.
 class ContactTable {
  public:
-  static Result<ContactTable> create(const std::string& path, const ArrayDescription& array) {
+  static Result<ContactTable> create(const std::string& path, const pipeline::Model& model) {
     Result<files::ContactsCsvWriter> contacts = files::ContactsCsvWriter::create(path);
     if (!contacts) return contacts.error();
-    return ContactTable(array, std::move(*contacts));
+    return ContactTable(model, std::move(*contacts));
   }
 
   Status write(const ForceFrame& force) {
@@ -56,8 +56,8 @@ class ContactTable {
   Status commit() { return contacts_.commit(); }
 
  private:
-  ContactTable(const ArrayDescription& array, files::ContactsCsvWriter contacts)
-      : tracker_(array), contacts_(std::move(contacts)) {}
+  ContactTable(const pipeline::Model& model, files::ContactsCsvWriter contacts)
+      : tracker_(model.array, {}, model.strip), contacts_(std::move(contacts)) {}
 
   fusion::ContactTracker tracker_;
   ContactReport report_;
@@ -67,14 +67,15 @@ class ContactTable {
 /// Those of forces.csv, of the standard deviations of the forces and of the contacts that are asked for.
 class Tables {
  public:
-  static Result<Tables> create(const RunOptions& options, const ArrayDescription& array) {
+  static Result<Tables> create(const RunOptions& options, const pipeline::Model& model) {
+    const ArrayDescription& array = model.array;
     Tables tables;
     const Status forces = create_forces(tables.forces_, options.out, array, files::ForceColumn::newtons);
     if (!forces) return forces.error();
     const Status sigmas = create_forces(tables.sigmas_, options.sigma, array, files::ForceColumn::sigma_newtons);
     if (!sigmas) return sigmas.error();
     if (options.contacts.empty()) return tables;
-    Result<ContactTable> contacts = ContactTable::create(options.contacts, array);
+    Result<ContactTable> contacts = ContactTable::create(options.contacts, model);
     if (!contacts) return contacts.error();
     tables.contacts_.emplace(std::move(*contacts));
     return tables;
@@ -195,7 +196,7 @@ Status run(const RunOptions& options) {
   if (Status distinct = check_outputs(options); !distinct) return distinct;
   Result<std::unique_ptr<Operation>> operation = open_operation(options.model, options.in);
   if (!operation) return operation.error();
-  Result<Tables> tables = Tables::create(options, (*operation)->model.array);
+  Result<Tables> tables = Tables::create(options, (*operation)->model);
   if (!tables) return tables.error();
 
   compensation::OffsetDrift& drift = (*operation)->pipeline.drift();

@@ -14,6 +14,13 @@ namespace {
 std::mutex stderr_mutex;
 bool line_is_open = false;
 
+/// ", 12 s left"; empty while nobody can tell, at the end, and below a second.
+std::string time_left(std::chrono::steady_clock::time_point start, double share) {
+  const double past_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double left_s = share > 0.0 ? past_s * (1.0 - share) / share : 0.0;
+  return left_s < 1.0 ? "" : fmt::format(", {:.0f} s left", left_s);
+}
+
 void end_line() {
   if (line_is_open) std::fputs("\n", stderr);
   line_is_open = false;
@@ -52,14 +59,17 @@ void Progress::show(const std::string& stage, double share) {
   if (stage != stage_) {
     line_.end();
     stage_ = stage;
+    start_ = std::chrono::steady_clock::now();
     last_shown_ = -1;
   }
   const int step = static_cast<int>(share * (line_.is_terminal() ? kTerminalSteps : kPlainSteps));
   if (step <= last_shown_) return;
   last_shown_ = step;
-  if (!line_.is_terminal()) return say(fmt::format("{}: {} %", stage, step * 100 / kPlainSteps));
+  const std::string left = time_left(start_, share);
+  if (!line_.is_terminal()) return say(fmt::format("{}: {} %{}", stage, step * 100 / kPlainSteps, left));
   const int filled = step * kBarWidth / kTerminalSteps;
-  line_.redraw(fmt::format("{:<12} [{:#<{}}{:.<{}}] {:3} %", stage, "", filled, "", kBarWidth - filled, step));
+  line_.redraw(
+      fmt::format("{:<12} [{:#<{}}{:.<{}}] {:3} %{:<16}", stage, "", filled, "", kBarWidth - filled, step, left));
 }
 
 void LiveLine::show(const std::string& text) {

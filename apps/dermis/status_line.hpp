@@ -34,7 +34,7 @@ class StatusLine {
   bool is_terminal_;
 };
 
-/// How far long work is: a bar, or a plain line every quarter where there is no terminal.
+/// How far long work is and how long it still takes: a bar, or a plain line every quarter where there is no terminal.
 class Progress {
  public:
   /// `share` in [0, 1] of `stage`.
@@ -44,6 +44,7 @@ class Progress {
   StatusLine line_;
   std::string stage_;
   int last_shown_ = -1;
+  std::chrono::steady_clock::time_point start_{};  // of the stage
 };
 
 /// How live work goes, or a plain line every 5 s where there is no terminal.

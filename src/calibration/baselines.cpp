@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/monotone_knots.hpp"
 #include "calibration/unloaded_fit.hpp"
+#include "dermis/core/parallel.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -20,14 +22,8 @@ struct Point {
   double temperature_offset = 0.0;
 };
 
-struct Knot {
-  double signal = 0.0;
-  double newtons = 0.0;
-  double weight = 0.0;
-};
-
-double signal_of(const Sample& sample, std::size_t taxel, fusion::LookUpSignal signal) {
-  return signal == fusion::LookUpSignal::reading ? sample.reading[taxel] : sample.siemens[taxel];
+double signal_of(const SampleDatabase& database, const Sample& sample, std::size_t taxel, fusion::LookUpSignal signal) {
+  return signal == fusion::LookUpSignal::reading ? bare_reading(database, sample, taxel) : sample.siemens[taxel];
 }
 
 /// The loaded points of a taxel and those of frames without any load, sorted by force.
@@ -38,7 +34,7 @@ std::vector<Point> known_points(const SampleDatabase& database, std::size_t taxe
     const double newtons = sample.known_newtons[taxel];
     const bool is_unloaded = sample.unloaded && newtons == 0.0;
     if (!(newtons > 0.0) && !is_unloaded) continue;  // NaN: unknown, or the reading is saturated
-    points.push_back({newtons, signal_of(sample, taxel, signal), temperature_offset(sample, temperatures)});
+    points.push_back({newtons, signal_of(database, sample, taxel, signal), temperature_offset(sample, temperatures)});
   }
   std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.newtons < b.newtons; });
   return points;
@@ -76,46 +72,14 @@ double temperature_coefficient(std::span<Point> points) {
   return variance > 0.0 ? -covariance / variance : 0.0;
 }
 
-/// Pools neighbours until the signal rises with the force (Ayer et al. 1955).
-void pool_adjacent_violators(std::vector<Knot>& knots) {
-  std::vector<Knot> pooled;
-  for (Knot knot : knots) {
-    while (!pooled.empty() && pooled.back().signal >= knot.signal) {
-      const Knot& previous = pooled.back();
-      const double weight = previous.weight + knot.weight;
-      knot = {(previous.signal * previous.weight + knot.signal * knot.weight) / weight,
-              (previous.newtons * previous.weight + knot.newtons * knot.weight) / weight, weight};
-      pooled.pop_back();
-    }
-    pooled.push_back(knot);
-  }
-  knots = std::move(pooled);
-}
-
-/// At most kMaxKnots, by merging equal numbers of neighbours.
-void thin_out(std::vector<Knot>& knots) {
-  if (knots.size() <= kMaxKnots) return;
-  std::vector<Knot> thinned(kMaxKnots);
-  for (std::size_t k = 0; k < knots.size(); ++k) {
-    Knot& target = thinned[k * kMaxKnots / knots.size()];
-    target.signal += knots[k].signal * knots[k].weight;
-    target.newtons += knots[k].newtons * knots[k].weight;
-    target.weight += knots[k].weight;
-  }
-  for (Knot& knot : thinned) {
-    knot.signal /= knot.weight;
-    knot.newtons /= knot.weight;
-  }
-  knots = std::move(thinned);
-}
-
+/// Newtons and signal, both rising.
 std::vector<Knot> table_of_levels(std::vector<Point>& points, double coefficient) {
   for (Point& point : points) point.signal *= 1.0 + coefficient * point.temperature_offset;
   std::vector<Knot> knots;
   for_each_level(points, [&](std::span<const Point> level) {
-    knots.push_back({mean(level, &Point::signal), mean(level, &Point::newtons), static_cast<double>(level.size())});
+    knots.push_back({mean(level, &Point::newtons), mean(level, &Point::signal), static_cast<double>(level.size())});
   });
-  thin_out(knots);
+  thin_out(knots, kMaxKnots);
   pool_adjacent_violators(knots);
   return knots;
 }
@@ -135,21 +99,23 @@ class SharedLine {
 
   [[nodiscard]] std::vector<Knot> table(std::size_t taxel) const {
     const double rise = std::max(highest_[taxel] - unloaded_[taxel], 1e-12);
-    return {{unloaded_[taxel], 0.0, 1.0}, {unloaded_[taxel] + rise, slope_ * rise, 1.0}};
+    return {{0.0, unloaded_[taxel], 1.0}, {slope_ * rise, unloaded_[taxel] + rise, 1.0}};
   }
 
  private:
   void find_range(const SampleDatabase& database, fusion::LookUpSignal signal) {
-    for (std::size_t taxel = 0; taxel < unloaded_.size(); ++taxel) {
-      double frames = 0.0;
-      for (const Sample& sample : database.samples) {
-        const double value = signal_of(sample, taxel, signal);
+    std::vector<double> frames(unloaded_.size());
+    for (const Sample& sample : database.samples) {
+      for (std::size_t taxel = 0; taxel < unloaded_.size(); ++taxel) {
+        const double value = signal_of(database, sample, taxel, signal);
         highest_[taxel] = std::max(highest_[taxel], value);
         if (!sample.unloaded || sample.known_newtons[taxel] != 0.0F) continue;
         unloaded_[taxel] += value;
-        frames += 1.0;
+        frames[taxel] += 1.0;
       }
-      if (frames > 0.0) unloaded_[taxel] /= frames;
+    }
+    for (std::size_t taxel = 0; taxel < unloaded_.size(); ++taxel) {
+      if (frames[taxel] > 0.0) unloaded_[taxel] /= frames[taxel];
     }
   }
 
@@ -164,7 +130,7 @@ class SharedLine {
     for (const Sample& sample : database.samples) {
       for (const TotalForce& total : sample.totals) {
         double s = 0.0;
-        for (const std::size_t taxel : total.taxels) s += signal_of(sample, taxel, signal) - unloaded_[taxel];
+        for (const std::size_t taxel : total.taxels) s += signal_of(database, sample, taxel, signal) - unloaded_[taxel];
         const double t = s * temperature_offset(sample, temperatures);
         ss += s * s;
         st += s * t;
@@ -200,19 +166,20 @@ fusion::LookUpTables make_tables(const SampleDatabase& database, const char* nam
   tables.reference_celsius = temperatures.span.centre_celsius;
   tables.temperature_coefficient.resize(taxels);
   std::vector<std::vector<Knot>> knots(taxels);
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+  parallel_for(taxels, [&](std::size_t taxel) {
     std::vector<Point> points = known_points(database, taxel, signal, temperatures);
     const bool is_known = !points.empty() && points.back().newtons > 0.0;
     double& coefficient = tables.temperature_coefficient[taxel];
     if (with_temperature) coefficient = is_known ? temperature_coefficient(points) : shared.coefficient();
     knots[taxel] = is_known ? table_of_levels(points, coefficient) : shared.table(taxel);
-    tables.knots = std::max({tables.knots, knots[taxel].size(), std::size_t{2}});
-  }
+  });
+  tables.knots = 2;
+  for (const std::vector<Knot>& table : knots) tables.knots = std::max(tables.knots, table.size());
   for (std::vector<Knot>& table : knots) {
     table.resize(tables.knots, table.back());  // repeated last knots: the table is clamped there
     for (const Knot& knot : table) {
-      tables.knot_signal.push_back(knot.signal);
-      tables.knot_newtons.push_back(knot.newtons);
+      tables.knot_signal.push_back(knot.y);
+      tables.knot_newtons.push_back(knot.x);
     }
   }
   return tables;

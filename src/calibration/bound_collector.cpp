@@ -14,14 +14,14 @@ BoundCollector::BoundCollector(const pipeline::Model& model, std::size_t labelle
 
 void BoundCollector::offer(const Sample& truth, const EstimatorRow& row) {
   if (!bound_ || offered_++ % stride_ != 0) return;
-  const auto is_judged = [](float newtons) { return newtons >= kJudgedNewtons; };
+  const auto is_judged = [&](float newtons) { return newtons >= row.judged_from_n(); };
   if (std::none_of(truth.known_newtons.begin(), truth.known_newtons.end(), is_judged)) return;
   const std::vector<float> bound =
       bound_->newtons(row.pipeline().conductance(), row.pipeline().conditioned().sigma_ratio);
   ++frames_;
   for (std::size_t taxel = 0; taxel < bound.size(); ++taxel) {
     const double newtons = truth.known_newtons[taxel];
-    if (!(newtons >= kJudgedNewtons) || !std::isfinite(bound[taxel])) continue;
+    if (!(newtons >= row.judged_from_n()) || !std::isfinite(bound[taxel])) continue;
     const double error = static_cast<double>(row.force().newtons[taxel]) - newtons;
     bounds_.push_back(static_cast<double>(bound[taxel]) / newtons);
     errors_.push_back(std::abs(error) / newtons);

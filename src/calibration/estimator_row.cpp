@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "calibration/estimator_row.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "dermis/preprocessing/conditioner.hpp"
@@ -20,14 +21,15 @@ bool EstimatorRow::run(const RawFrame& raw) {
   pipeline_.process(raw, force_);
   if (has(force_.status, FrameStatus::rejected)) return false;
   newtons_[0] = force_.newtons;
+  const std::optional<double> celsius = pipeline_.conditioned().temperature_celsius;
   preprocessing::bare_readings(model_.array, raw, reading_);
   for (std::size_t k = 0; k < model_.baselines.size(); ++k) {
     const fusion::LookUpTables& tables = model_.baselines[k];
     const bool bare = tables.signal == fusion::LookUpSignal::reading;
-    tables.estimate(bare ? reading_ : pipeline_.conductance().siemens, raw.temperature_celsius, newtons_[k + 1]);
+    tables.estimate(bare ? reading_ : pipeline_.conductance().siemens, celsius, newtons_[k + 1]);
   }
   if (further_ != nullptr) {
-    further_->estimate(pipeline_.conditioned().ratio, raw.temperature_celsius, newtons_.back());
+    further_->estimate(pipeline_.conditioned().ratio, celsius, newtons_.back());
   }
   return true;
 }

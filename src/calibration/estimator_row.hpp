@@ -21,6 +21,10 @@ class EstimatorRow {
   bool run(const RawFrame& raw);
 
   [[nodiscard]] const ArrayDescription& array() const noexcept { return model_.array; }
+  /// True force from which on taxels are judged [N].
+  [[nodiscard]] double judged_from_n() const noexcept {
+    return kJudgedShare * static_cast<double>(model_.networks.sigma_knots_newtons.back());
+  }
   [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
   /// Of the last frame, [estimators][taxels].
   [[nodiscard]] const std::vector<std::vector<float>>& newtons() const noexcept { return newtons_; }

@@ -32,11 +32,13 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   Evaluation evaluation;
   evaluation.array = model.array;
   EstimatorRow row(model, std::move(*pipeline), further);
+  evaluation.judged_from_n = row.judged_from_n();
   Judgement judgement(row.names().size());
   ExampleChoice examples;
-  const std::vector<std::vector<Load>> loads_of = group_by_frame(loads, frames.size());
-  const auto labelled = std::count_if(loads_of.begin(), loads_of.end(), [](const auto& some) { return !some.empty(); });
-  BoundCollector bound(model, static_cast<std::size_t>(labelled));
+  const LoadsOfFrames loads_of(loads, frames.size());
+  std::size_t labelled = 0;
+  for (std::size_t frame = 0; frame < frames.size(); ++frame) labelled += loads_of[frame].empty() ? 0 : 1;
+  BoundCollector bound(model, labelled);
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
     const bool accepted = row.run(frames[frame]);
     if (loads_of[frame].empty()) continue;

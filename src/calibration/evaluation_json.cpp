@@ -62,6 +62,7 @@ std::string to_json(const Evaluation& evaluation) {
   estimators.front()["coverage_taxels"] = evaluation.coverage.count;
   Json root = {{"frames", evaluation.frames},
                {"frames_rejected", evaluation.frames_rejected},
+               {"judged_from_n", evaluation.judged_from_n},
                {"estimators", std::move(estimators)},
                {"by_force", breakdown_json(evaluation, evaluation.by_force)},
                {"by_temperature", breakdown_json(evaluation, evaluation.by_temperature)},

@@ -16,7 +16,7 @@ void ExampleChoice::offer(std::size_t frame, const Sample& truth, const Estimato
   if (!truth.totals.empty()) return;
   const std::vector<float>& newtons = truth.known_newtons;
   const auto loaded =
-      std::count_if(newtons.begin(), newtons.end(), [](float known) { return known >= kJudgedNewtons; });
+      std::count_if(newtons.begin(), newtons.end(), [&](float known) { return known >= row.judged_from_n(); });
   std::vector<TactileExample>& examples = loaded >= kSeveral ? rich_ : plain_;
   if (loaded == 0 || examples.size() >= kMostExamples) return;
   examples.push_back({frame, row.reading(), row.pipeline().conductance().siemens, row.newtons()[0],

@@ -309,6 +309,7 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   }
   training.tested_own = tested_presses(division.own, own, evidence);
   training.tested_shared = std::move(shared.tested);
+  training.tested_unpressed = std::move(shared.tested_unpressed);
   report_fit(division.own, own, report);
   report.choice = describe(report, shared.has_gains);
   return training;

@@ -22,7 +22,7 @@ void add_taxels(std::size_t frame, const RawFrame& raw, const Sample& truth, con
         const float ghost = row.newtons()[k][taxel];
         if (!std::isnan(ghost)) judgement.ghost_n[k].push_back(ghost);  // no force is no ghost
       }
-    } else if (newtons >= kJudgedNewtons) {
+    } else if (newtons >= row.judged_from_n()) {
       JudgedTaxel judged{frame, taxel, newtons, raw.temperature_celsius, raw.supply_v, contacts, {}, 0.0F};
       for (const std::vector<float>& forces : row.newtons()) judged.newtons.push_back(forces[taxel]);
       judged.sigma_newtons = row.force().sigma_newtons[taxel];

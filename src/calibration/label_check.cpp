@@ -6,17 +6,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <iterator>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "calibration/frame_sums.hpp"
+#include "calibration/label_shift.hpp"
 #include "calibration/labels.hpp"
 #include "dermis/calibration/sample_temperatures.hpp"
 #include "dermis/core/quantile.hpp"
-#include "dermis/preprocessing/conditioner.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -27,38 +25,7 @@ constexpr int kHuberRounds = 30;
 constexpr std::size_t kLeastUnloaded = 5;  // frames, for a majority
 constexpr double kPressedSigmas = 6.0;
 constexpr double kPressedShare = 0.005;  // of what a typical load reads
-constexpr std::ptrdiff_t kMostShift = 10;
-constexpr std::size_t kLeastForShift = 20;  // frames
-constexpr double kClearCorrelation = 0.5;
-constexpr double kPoorCorrelation = 0.9;
 constexpr double kMostPascal = 5e6;
-
-/// A frame with all its taxels in one number.
-struct FrameSum {
-  std::size_t frame = 0;
-  double ratio = 0.0;             // sum over the taxels
-  double sigma = 0.0;             // of the sum, by the noise of the array's description
-  std::optional<double> newtons;  // total; none: not labelled
-  std::optional<double> temperature_celsius;
-};
-
-/// Of all frames after settling that are not rejected.
-std::vector<FrameSum> sum_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                 std::span<const Load> loads, Nanos settle_time) {
-  const std::vector<std::optional<double>> newtons = newtons_of_frames(array, frames.size(), loads);
-  preprocessing::Conditioner conditioner(array);
-  ConditionedFrame conditioned;
-  std::vector<FrameSum> sums;
-  for (std::size_t k = 0; k < frames.size(); ++k) {
-    if (frames[k].time - frames.front().time < settle_time) continue;
-    conditioner.process(frames[k], conditioned);
-    if (conditioner.rejection() != preprocessing::Rejection::none) continue;
-    const double ratio = std::reduce(conditioned.ratio.begin(), conditioned.ratio.end());
-    const double sigma = conditioned.sigma_ratio * std::sqrt(static_cast<double>(array.taxel_count()));
-    sums.push_back({k, ratio, sigma, newtons[k], conditioned.temperature_celsius});
-  }
-  return sums;
-}
 
 // ------------------------------------------------------------------------------------------------- unloaded frames
 
@@ -69,7 +36,7 @@ struct UnloadedSum {
   double sigma = 0.0;
 
   [[nodiscard]] double excess(const FrameSum& sum) const {
-    return sum.ratio - level - per_celsius * sum.temperature_celsius.value_or(0.0);
+    return sum.ratio - level - (per_celsius != 0.0 ? per_celsius * sum.celsius : 0.0);
   }
 };
 
@@ -83,9 +50,9 @@ bool span_temperatures(const std::vector<const FrameSum*>& sums) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   for (const FrameSum* sum : sums) {
-    if (!sum->temperature_celsius) return false;
-    lowest = std::min(lowest, *sum->temperature_celsius);
-    highest = std::max(highest, *sum->temperature_celsius);
+    if (std::isnan(sum->celsius)) return false;
+    lowest = std::min(lowest, sum->celsius);
+    highest = std::max(highest, sum->celsius);
   }
   return highest - lowest >= SampleTemperatures::kLeastSpanCelsius;
 }
@@ -111,10 +78,10 @@ UnloadedSum fit_unloaded_sum(const std::vector<const FrameSum*>& sums) {
     for (const FrameSum* sum : sums) {  // West 1979: means and moments in one pass
       const double weight = limit / std::max(limit, std::abs(fit.excess(*sum)));
       weights += weight;
-      const double from_mean = *sum->temperature_celsius - celsius;
+      const double from_mean = sum->celsius - celsius;
       celsius += weight / weights * from_mean;
       ratio += weight / weights * (sum->ratio - ratio);
-      variance += weight * from_mean * (*sum->temperature_celsius - celsius);
+      variance += weight * from_mean * (sum->celsius - celsius);
       covariance += weight * from_mean * (sum->ratio - ratio);
     }
     fit.per_celsius = covariance / variance;
@@ -137,89 +104,6 @@ std::vector<std::size_t> pressed_frames(const std::vector<const FrameSum*>& unlo
     if (fit.excess(*sum) > limit) pressed.push_back(sum->frame);
   }
   return pressed;
-}
-
-// --------------------------------------------------------------------------------------------------- shifted labels
-
-/// Places of the values when they rise, from -1 to 1; equal values share theirs.
-std::vector<double> ranks(const std::vector<double>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-  std::vector<double> rank(values.size());
-  for (std::size_t first = 0; first < order.size();) {
-    std::size_t last = first;
-    while (last < order.size() && values[order[last]] == values[order[first]]) ++last;
-    const double place = static_cast<double>(first + last) / static_cast<double>(order.size()) - 1.0;
-    for (; first < last; ++first) rank[order[first]] = place;
-  }
-  return rank;
-}
-
-double correlation(const std::vector<std::pair<double, double>>& pairs) {
-  double x = 0.0;
-  double y = 0.0;
-  for (const auto& [a, b] : pairs) {
-    x += a / static_cast<double>(pairs.size());
-    y += b / static_cast<double>(pairs.size());
-  }
-  double xx = 0.0;
-  double xy = 0.0;
-  double yy = 0.0;
-  for (const auto& [a, b] : pairs) {
-    xx += (a - x) * (a - x);
-    xy += (a - x) * (b - y);
-    yy += (b - y) * (b - y);
-  }
-  return xx * yy > 0.0 ? xy / std::sqrt(xx * yy) : 0.0;
-}
-
-/// Rank correlation of the loads with the readings so many frames later.
-class ShiftedLabels {
- public:
-  explicit ShiftedLabels(const std::vector<FrameSum>& sums) : sums_(sums) {
-    std::vector<double> ratios;
-    std::vector<double> newtons;
-    for (const FrameSum& sum : sums) {
-      ratios.push_back(sum.ratio);
-      newtons.push_back(sum.newtons.value_or(-1.0));
-    }
-    readings_ = ranks(ratios);
-    loads_ = ranks(newtons);
-  }
-
-  [[nodiscard]] double correlation_at(std::ptrdiff_t shift) const {
-    std::vector<std::pair<double, double>> pairs;
-    const auto size = static_cast<std::ptrdiff_t>(sums_.size());
-    for (std::ptrdiff_t k = std::max<std::ptrdiff_t>(-shift, 0); k < std::min(size, size - shift); ++k) {
-      const auto labelled = static_cast<std::size_t>(k);
-      if (sums_[labelled].newtons) pairs.emplace_back(loads_[labelled], readings_[static_cast<std::size_t>(k + shift)]);
-    }
-    return pairs.size() < kLeastForShift ? 0.0 : correlation(pairs);
-  }
-
- private:
-  const std::vector<FrameSum>& sums_;
-  std::vector<double> readings_;
-  std::vector<double> loads_;
-};
-
-std::optional<std::string> remark_on_shift(const std::vector<FrameSum>& sums) {
-  const ShiftedLabels labels(sums);
-  const double now = labels.correlation_at(0);
-  if (now > kPoorCorrelation) return std::nullopt;
-  std::ptrdiff_t best = 0;
-  double highest = now;
-  for (std::ptrdiff_t shift = -kMostShift; shift <= kMostShift; ++shift) {
-    const double shifted = labels.correlation_at(shift);
-    if (shifted <= highest) continue;
-    highest = shifted;
-    best = shift;
-  }
-  if (highest < kClearCorrelation || 2.0 * (1.0 - highest) > 1.0 - now) return std::nullopt;
-  return fmt::format(
-      "the loads fit the readings {} frame{} {} (rank correlation {:.2f}, as labelled {:.2f}): check them",
-      std::abs(best), std::abs(best) == 1 ? "" : "s", best > 0 ? "later" : "earlier", highest, now);
 }
 
 // ------------------------------------------------------------------------------------------------------------ units
@@ -246,18 +130,16 @@ LabelCheck check_labels(const ArrayDescription& array, std::span<const RawFrame>
   std::vector<const FrameSum*> unloaded;
   std::vector<const FrameSum*> loaded;
   for (const FrameSum& sum : sums) {
-    if (sum.newtons) (*sum.newtons > 0.0 ? loaded : unloaded).push_back(&sum);
+    if (sum.is_labelled()) (sum.newtons > 0.0 ? loaded : unloaded).push_back(&sum);
   }
-  const std::vector<std::size_t> pressed = pressed_frames(unloaded, loaded);
-  const auto is_pressed = [&](std::size_t frame) { return std::binary_search(pressed.begin(), pressed.end(), frame); };
-  std::copy_if(loads.begin(), loads.end(), std::back_inserter(check.loads),
-               [&](const Load& load) { return !is_pressed(load.frame); });
-  if (!pressed.empty()) {
-    check.remarks.push_back(fmt::format("{} of {} unloaded frames are pressed: left out, the first {}", pressed.size(),
-                                        unloaded.size(), pressed.front()));
+  check.pressed_frames = pressed_frames(unloaded, loaded);
+  if (!check.pressed_frames.empty()) {
+    check.remarks.push_back(fmt::format("{} of {} unloaded frames are pressed: left out, the first {}",
+                                        check.pressed_frames.size(), unloaded.size(), check.pressed_frames.front()));
   }
-  if (const auto remark = remark_on_shift(sums)) check.remarks.push_back(*remark);
-  if (const auto remark = remark_on_units(array, loads)) check.remarks.push_back(*remark);
+  const LoadsOfFrames loads_of(loads, frames.size());
+  if (auto remark = remark_on_shift(sums, loads_of, array)) check.remarks.push_back(*std::move(remark));
+  if (auto remark = remark_on_units(array, loads)) check.remarks.push_back(*std::move(remark));
   return check;
 }
 

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,8 +17,12 @@ namespace dermis::calibration {
 /// Labels that people wrote, held against the readings: the sum of all taxels rises with the load, whatever the
 /// circuit.
 struct LabelCheck {
-  std::vector<Load> loads;           ///< Without those of frames that are called unloaded but are pressed.
-  std::vector<std::string> remarks;  ///< What is wrong with the labels, a sentence each.
+  std::vector<std::size_t> pressed_frames;  ///< Called unloaded, but pressed; rising.
+  std::vector<std::string> remarks;         ///< What is wrong with the labels, a sentence each.
+
+  [[nodiscard]] bool is_pressed(std::size_t frame) const {
+    return std::binary_search(pressed_frames.begin(), pressed_frames.end(), frame);
+  }
 };
 
 /// `loads` as check_loads() wants them.

@@ -4,7 +4,9 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace dermis::calibration {
@@ -34,10 +36,16 @@ std::vector<std::optional<double>> newtons_of_frames(const ArrayDescription& arr
   return newtons;
 }
 
-std::vector<std::vector<Load>> group_by_frame(std::span<const Load> loads, std::size_t frame_count) {
-  std::vector<std::vector<Load>> groups(frame_count);
-  for (const Load& load : loads) groups[load.frame].push_back(load);
-  return groups;
+LoadsOfFrames::LoadsOfFrames(std::span<const Load> loads, std::size_t frame_count)
+    : loads_(loads), first_(frame_count + 1) {
+  const auto is_earlier = [](const Load& a, const Load& b) { return a.frame < b.frame; };
+  if (!std::is_sorted(loads.begin(), loads.end(), is_earlier)) {
+    sorted_.assign(loads.begin(), loads.end());
+    std::stable_sort(sorted_.begin(), sorted_.end(), is_earlier);
+    loads_ = sorted_;
+  }
+  for (const Load& load : loads_) ++first_[load.frame + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
 }
 
 void expand_loads(const ArrayDescription& array, std::span<const Load> loads, Sample& sample) {

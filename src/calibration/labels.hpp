@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,7 +23,23 @@ namespace dermis::calibration {
                                                                    std::span<const Load> loads);
 
 /// The loads of every frame; none for unlabelled frames.
-[[nodiscard]] std::vector<std::vector<Load>> group_by_frame(std::span<const Load> loads, std::size_t frame_count);
+class LoadsOfFrames {
+ public:
+  /// Refers to `loads`, which name frames below `frame_count`.
+  LoadsOfFrames(std::span<const Load> loads, std::size_t frame_count);
+  LoadsOfFrames(const LoadsOfFrames&) = delete;
+  LoadsOfFrames& operator=(const LoadsOfFrames&) = delete;
+
+  [[nodiscard]] std::size_t frame_count() const noexcept { return first_.size() - 1; }
+  [[nodiscard]] std::span<const Load> operator[](std::size_t frame) const noexcept {
+    return loads_.subspan(first_[frame], first_[frame + 1] - first_[frame]);
+  }
+
+ private:
+  std::vector<Load> sorted_;          // by frame, where they are not
+  std::span<const Load> loads_;       // by frame
+  std::vector<std::uint32_t> first_;  // of each frame in loads_ [frames + 1]
+};
 
 /// Forces of every taxel that the loads of one frame tell: `known_newtons` [taxels], `totals` and `unloaded`. Taxels
 /// that the sheet does not have carry nothing.

@@ -14,6 +14,7 @@
 #include "calibration/label_check.hpp"
 #include "calibration/labels.hpp"
 #include "calibration/rail_search.hpp"
+#include "calibration/sample_choice.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/parallel.hpp"
 #include "dermis/core/quantile.hpp"
@@ -34,19 +35,21 @@ struct SelectedFrame {
   ConditionedFrame conditioned;
 };
 
-/// Labelled frames of the calibrate phase, in order, with supply removed, a batch at a time.
+/// The chosen frames of the calibrate phase, in order, with supply removed, a batch at a time.
 class Selection {
  public:
-  Selection(const ArrayDescription& array, Nanos settle_time)
-      : phase_(settle_time, preprocessing::Phase::calibrate), conditioner_(array), missing_(array) {}
+  Selection(const ArrayDescription& array, std::vector<bool> is_chosen, Nanos settle_time)
+      : is_chosen_(std::move(is_chosen)),
+        phase_(settle_time, preprocessing::Phase::calibrate),
+        conditioner_(array),
+        missing_(array) {}
 
   /// Empty at the end.
-  std::vector<SelectedFrame> next_batch(std::span<const RawFrame> frames,
-                                        const std::vector<std::vector<Load>>& loads_of, SampleDatabase& database) {
+  std::vector<SelectedFrame> next_batch(std::span<const RawFrame> frames, SampleDatabase& database) {
     std::vector<SelectedFrame> batch;
     for (; next_ < frames.size() && batch.size() < kFramesPerBatch; ++next_) {
-      const bool labelled = !loads_of[next_].empty();
-      if (phase_.select(frames[next_].time, labelled) != preprocessing::Destination::sample_database) continue;
+      const auto destination = phase_.select(frames[next_].time, is_chosen_[next_]);
+      if (destination != preprocessing::Destination::sample_database) continue;
       ConditionedFrame conditioned;
       conditioner_.process(frames[next_], conditioned);
       if (conditioner_.rejection() == preprocessing::Rejection::none) {
@@ -61,24 +64,26 @@ class Selection {
   }
 
   [[nodiscard]] const preprocessing::MissingReadings& missing() const { return missing_; }
+  [[nodiscard]] double share_done() const {
+    return static_cast<double>(next_) / static_cast<double>(is_chosen_.size());
+  }
 
  private:
+  std::vector<bool> is_chosen_;  // [frames]
   preprocessing::PhaseSelector phase_;
   preprocessing::Conditioner conditioner_;
   preprocessing::MissingReadings missing_;
   std::size_t next_ = 0;
 };
 
-Sample make_sample(const ArrayDescription& array, std::size_t frame, const RawFrame& raw, std::span<const Load> loads,
-                   const ConditionedFrame& conditioned, ConductanceFrame& conductance) {
+Sample make_sample(const ArrayDescription& array, std::size_t frame, std::span<const Load> loads,
+                   const ConditionedFrame& conditioned, const ConductanceFrame& conductance) {
   Sample sample;
   sample.frame = frame;
   sample.temperature_celsius = conductance.temperature_celsius;
-  sample.reading.resize(array.taxel_count());
-  preprocessing::bare_readings(array, raw, sample.reading);
-  sample.ratio = conditioned.ratio;
+  sample.ratio.assign(conditioned.ratio.begin(), conditioned.ratio.end());
   sample.sigma_ratio = conditioned.sigma_ratio;
-  sample.siemens = std::move(conductance.siemens);
+  sample.siemens.assign(conductance.siemens.begin(), conductance.siemens.end());
   sample.taxels = conditioned.taxels;
   expand_loads(array, loads, sample);
   // A reading at the end of the ADC no longer tells its force, of one that is missing the neighbours tell some.
@@ -135,23 +140,22 @@ Status check_rejected(const SampleDatabase& database) {
 }
 
 /// Appends the samples of a batch.
-void invert_batch(std::span<const SelectedFrame> batch, std::span<const RawFrame> frames,
-                  const std::vector<std::vector<Load>>& loads_of, SampleDatabase& database) {
+void invert_batch(std::span<const SelectedFrame> batch, const LoadsOfFrames& loads_of, SampleDatabase& database) {
   const ArrayDescription& array = database.array;
   const std::size_t before = database.samples.size();
   database.samples.resize(before + batch.size());
   parallel_for((batch.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
     Result<compensation::Compensator> solver = compensation::Compensator::create(array);
+    ConductanceFrame conductance;
     const std::size_t end = std::min(batch.size(), (task + 1) * kFramesPerTask);
     for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
       const auto& [index, conditioned] = batch[k];
-      ConductanceFrame conductance;
       solver->forget();  // whatever task a frame is in, its bits are the same
       solver->process(conditioned, conductance);
       Sample& sample = database.samples[before + k];
       sample.frame = index;
       if (has(conductance.status, FrameStatus::not_converged)) continue;
-      sample = make_sample(array, index, frames[index], loads_of[index], conditioned, conductance);
+      sample = make_sample(array, index, loads_of[index], conditioned, conductance);
     }
   });
 }
@@ -170,9 +174,18 @@ Status check_missing(const SampleDatabase& database, const preprocessing::Missin
   return bad_input("labelled frames have " + missing.describe() + ": check adc_bits");
 }
 
+std::optional<std::string> remark_on_choice(const LoadsOfFrames& loads_of, const std::vector<bool>& is_chosen) {
+  std::size_t labelled = 0;
+  for (std::size_t frame = 0; frame < is_chosen.size(); ++frame) labelled += loads_of[frame].empty() ? 0 : 1;
+  const auto chosen = static_cast<std::size_t>(std::count(is_chosen.begin(), is_chosen.end(), true));
+  if (chosen == labelled) return std::nullopt;
+  return fmt::format("{} labelled frames repeat: {} of them are used, evenly over places and forces", labelled, chosen);
+}
+
 /// The samples of an array whose circuit is known.
 Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                     std::span<const Load> loads, Nanos settle_time) {
+                                     std::span<const Load> loads, Nanos settle_time,
+                                     const std::function<void(double)>& progress) {
   SampleDatabase database;
   database.array = array;
   const Result<compensation::Compensator> compensator = compensation::Compensator::create(array);
@@ -182,12 +195,15 @@ Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<co
       readout.adc_reference_v && readout.supply_v ? *readout.adc_reference_v / *readout.supply_v : 1.0;
   database.siemens_per_count = compensator->siemens_per_ratio() * reference / readout.full_scale_counts();
 
-  const std::vector<std::vector<Load>> loads_of = group_by_frame(loads, frames.size());
-  Selection selection(array, settle_time);
+  const LoadsOfFrames loads_of(loads, frames.size());
+  std::vector<bool> is_chosen = choose_samples(array.taxel_count(), loads_of);
+  if (auto remark = remark_on_choice(loads_of, is_chosen)) database.remarks.push_back(*std::move(remark));
+  Selection selection(array, std::move(is_chosen), settle_time);
   while (true) {
-    const std::vector<SelectedFrame> batch = selection.next_batch(frames, loads_of, database);
+    const std::vector<SelectedFrame> batch = selection.next_batch(frames, database);
     if (batch.empty()) break;
-    invert_batch(batch, frames, loads_of, database);
+    invert_batch(batch, loads_of, database);
+    if (progress) progress(selection.share_done());
   }
   if (selection.missing().any()) {
     database.remarks.push_back(selection.missing().describe() + " with a label: left out");
@@ -202,11 +218,18 @@ Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<co
 }  // namespace
 
 Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                             std::span<const Load> loads, Nanos settle_time) {
+                                             std::span<const Load> loads, Nanos settle_time,
+                                             const std::function<void(double)>& progress) {
   if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
   ArrayDescription known = array;
   LabelCheck labels = check_labels(array, frames, loads, settle_time);
-  if (!known.readout.rail_counts) known.readout.rail_counts = find_rail(array, frames, labels.loads);
+  std::vector<Load> kept;
+  if (!labels.pressed_frames.empty()) {
+    std::copy_if(loads.begin(), loads.end(), std::back_inserter(kept),
+                 [&](const Load& load) { return !labels.is_pressed(load.frame); });
+    loads = kept;
+  }
+  if (!known.readout.rail_counts) known.readout.rail_counts = find_rail(array, frames, loads);
   if (!array.readout.rail_counts && known.readout.rail_counts) {
     labels.remarks.push_back(
         fmt::format("readings end at {} counts under whatever load: taken for saturated there (rail_counts)",
@@ -214,16 +237,24 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   }
   std::optional<CircuitFit> circuit;
   if (array.has_unknown_circuit()) {
-    Result<CircuitFit> fit = fit_circuit(known, frames, labels.loads, settle_time);
+    Result<CircuitFit> fit = fit_circuit(known, frames, loads, settle_time);
     if (!fit) return fit.error();
     known = fit->array;
     circuit = std::move(*fit);
   }
-  Result<SampleDatabase> database = invert_frames(known, frames, labels.loads, settle_time);
+  Result<SampleDatabase> database = invert_frames(known, frames, loads, settle_time, progress);
   if (!database) return database.error();
   database->circuit_fit = std::move(circuit);
   std::move(labels.remarks.begin(), labels.remarks.end(), std::back_inserter(database->remarks));
   return database;
+}
+
+double bare_reading(const SampleDatabase& database, const Sample& sample, std::size_t taxel) {
+  if (sample.taxels[taxel] == TaxelStatus::invalid) return 0.0;
+  const Readout& readout = database.array.readout;
+  const double full_scale = sample.sigma_ratio * readout.full_scale_counts() / readout.adc_noise_counts;  // as a ratio
+  const auto ratio = static_cast<double>(sample.ratio[taxel]);
+  return readout.pressure_raises_reading ? ratio / full_scale : 1.0 - (1.0 - ratio) / full_scale;
 }
 
 }  // namespace dermis::calibration

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "dermis/core/parallel.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
@@ -24,6 +25,7 @@ constexpr std::size_t kMostShares = 200'000;         // to choose among the star
 constexpr double kActive = 3.0;                      // in standard deviations of the unloaded reading
 constexpr double kGainDeviation = 0.15;              // of a gain: docs/derivations.md, "Spread of the taxels"
 constexpr double kMostGain = 4.0;
+constexpr std::size_t kLeastTaxelsForScatter = 5;
 constexpr int kGainRounds = 3;
 constexpr std::size_t kFolds = 5;
 constexpr std::uint64_t kSeed = 20;
@@ -352,6 +354,31 @@ std::vector<TestedLoad> tested_loads(const std::vector<RawLoad>& raw, const Shar
   return tested;
 }
 
+/// The errors of the loads on single taxels as those of taxels that were never pressed: the network alone, without the
+/// gain. If their mean square over the n taxels is m, the variance is m n / (n - 1), that of a new taxel larger by
+/// 1 + 1/n, and because it is itself uncertain, the 68 % point of Student's distribution is that of (n - 1) / (n - 2)
+/// times it.
+std::vector<TestedLoad> tested_as_unpressed(const std::vector<RawLoad>& raw, const SharedProblem& problem,
+                                            const ForceNetwork& network) {
+  std::vector<TestedLoad> tested;
+  std::set<std::size_t> taxels;
+  for (std::size_t k = 0; k < raw.size(); ++k) {
+    const SharedLoad& load = problem.loads()[k];
+    if (load.shares.size() != 1) continue;
+    const Share& share = load.shares.front();
+    taxels.insert(share.taxel);
+    const double estimate = std::exp(network.log_newtons(share.inputs, {}));
+    const double relative_error = 1.0 - load.newtons / estimate;  // the standard deviation is a share of the estimate
+    tested.push_back({raw[k].sample, {share.taxel}, load.newtons, 0.0, relative_error * load.newtons});
+  }
+  const auto count = static_cast<double>(taxels.size());
+  const bool tells = taxels.size() >= kLeastTaxelsForScatter;
+  for (TestedLoad& load : tested) {
+    load.error_n = tells ? load.error_n * std::sqrt((count + 1.0) / (count - 2.0)) : kGainDeviation * load.newtons;
+  }
+  return tested;
+}
+
 }  // namespace
 
 SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatures& temperatures,
@@ -379,6 +406,7 @@ SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatu
   shared.network = problem.network(chosen.shape, chosen.free);
   shared.gain = problem.gain();
   shared.tested = tested_loads(loads, problem, chosen, mean_square);
+  shared.tested_unpressed = tested_as_unpressed(loads, problem, shared.network);
   shared.leave_one_out_error = kRelativeErrorOfResidual * std::sqrt(mean_square);
   return shared;
 }

@@ -18,6 +18,7 @@ struct SharedNetwork {
   bool has_gains = false;
   double leave_one_out_error = 0.0;  ///< Root mean square relative error of a load that is held out.
   std::vector<TestedLoad> tested;
+  std::vector<TestedLoad> tested_unpressed;  ///< Of single taxels, with the errors of taxels that no load pressed.
 };
 
 /// Trains through the sum: for every load, sum over its taxels of gain_i f(e_i, t) = newtons. The number of hidden

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/parallel.hpp"
@@ -57,7 +58,8 @@ std::vector<std::size_t> free_taxels(const SampleDatabase& database, const std::
   std::vector<std::size_t> taxels;
   for (std::size_t taxel = 0; taxel < database.array.taxel_count(); ++taxel) {
     const auto at_end = std::count_if(unloaded.begin(), unloaded.end(), [&](const Sample* sample) {
-      return sample->reading[taxel] < half_count || sample->reading[taxel] > 1.0 - half_count;
+      const double reading = bare_reading(database, *sample, taxel);
+      return reading < half_count || reading > 1.0 - half_count;
     });
     const double share = static_cast<double>(at_end) / static_cast<double>(unloaded.size());
     if (share <= kMostShareAtEnd) taxels.push_back(taxel);
@@ -68,7 +70,8 @@ std::vector<std::size_t> free_taxels(const SampleDatabase& database, const std::
 /// Half the square of the difference of two readings [counts^2]: on average the variance of one.
 double half_square_difference(const SampleDatabase& database, const Sample& a, const Sample& b, std::size_t taxel) {
   const double sigma = std::hypot(a.sigma_ratio, b.sigma_ratio);
-  const double difference = (a.ratio[taxel] - b.ratio[taxel]) / sigma * database.array.readout.adc_noise_counts;
+  const double difference =
+      (double{a.ratio[taxel]} - double{b.ratio[taxel]}) / sigma * database.array.readout.adc_noise_counts;
   return difference * difference;
 }
 
@@ -107,7 +110,7 @@ class ErrorBudget {
   }
 
   const ForceFrame& forces(const Sample& sample, double sigma_ratio) {
-    conditioned_.ratio = sample.ratio;
+    conditioned_.ratio.assign(sample.ratio.begin(), sample.ratio.end());
     conditioned_.sigma_ratio = sigma_ratio;
     conditioned_.temperature_celsius = sample.temperature_celsius;
     conditioned_.taxels = sample.taxels;
@@ -266,16 +269,30 @@ Profile likeliest_profile(const std::vector<JudgedLoad>& loads, double supply_no
   return scaled(profile, loads, &JudgedLoad::square_error, supply_noise);
 }
 
-/// The profile of the taxels that carry the loads, in the networks and for the report.
-RelativeSigma set_relative_sigma(const std::vector<TestedLoad>& loads, const Profile& profile,
+std::set<std::size_t> taxels_of(const std::vector<TestedLoad>& loads) {
+  std::set<std::size_t> taxels;
+  for (const TestedLoad& load : loads) taxels.insert(load.taxels.begin(), load.taxels.end());
+  return taxels;
+}
+
+std::set<std::size_t> unpressed_taxels(const ForceTraining& training) {
+  const std::set<std::size_t> own = taxels_of(training.tested_own);
+  const std::set<std::size_t> shared = taxels_of(training.tested_shared);
+  std::set<std::size_t> unpressed;
+  for (std::size_t taxel = 0; taxel < training.networks.taxel_count(); ++taxel) {
+    if (!own.contains(taxel) && !shared.contains(taxel)) unpressed.insert(taxel);
+  }
+  return unpressed;
+}
+
+/// The profile of these taxels, in the networks and for the report.
+RelativeSigma set_relative_sigma(const std::set<std::size_t>& taxels, const Profile& profile,
                                  fusion::ForceNetworks& networks) {
   RelativeSigma sigma{};
   for (std::size_t k = 0; k < profile.size(); ++k) {
     sigma[k] = std::sqrt(profile[k]);
     float* const of_taxel = networks.relative_sigma.data() + k * networks.taxel_count();
-    for (const TestedLoad& load : loads) {
-      for (const std::size_t taxel : load.taxels) of_taxel[taxel] = static_cast<float>(sigma[k]);
-    }
+    for (const std::size_t taxel : taxels) of_taxel[taxel] = static_cast<float>(sigma[k]);
   }
   return sigma;
 }
@@ -348,6 +365,9 @@ std::string describe(const UncertaintyReport& report, const ArrayDescription& ar
   if (report.relative_sigma_of_shared) {
     text += ", forces of the shared network " + range_text(*report.relative_sigma_of_shared);
   }
+  if (report.relative_sigma_of_unpressed) {
+    text += ", of taxels that were not pressed " + range_text(*report.relative_sigma_of_unpressed);
+  }
   return text;
 }
 
@@ -364,15 +384,22 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   if (!own) return own.error();
   const Result<std::vector<JudgedLoad>> shared = judge_loads(database, training.tested_shared, model);
   if (!shared) return shared.error();
+  const Result<std::vector<JudgedLoad>> judged_unpressed = judge_loads(database, training.tested_unpressed, model);
+  if (!judged_unpressed) return judged_unpressed.error();
   report.supply_noise = likeliest_supply_noise(*own, *shared);
   model.array.readout.supply_noise = report.supply_noise;
   if (!shared->empty()) {
-    report.relative_sigma_of_shared =
-        set_relative_sigma(training.tested_shared, likeliest_profile(*shared, report.supply_noise), model.networks);
+    report.relative_sigma_of_shared = set_relative_sigma(
+        taxels_of(training.tested_shared), likeliest_profile(*shared, report.supply_noise), model.networks);
   }
   if (!own->empty()) {
-    report.relative_sigma =
-        set_relative_sigma(training.tested_own, likeliest_profile(*own, report.supply_noise), model.networks);
+    report.relative_sigma = set_relative_sigma(taxels_of(training.tested_own),
+                                               likeliest_profile(*own, report.supply_noise), model.networks);
+  }
+  const std::set<std::size_t> unpressed = unpressed_taxels(training);
+  if (!judged_unpressed->empty() && !unpressed.empty()) {
+    report.relative_sigma_of_unpressed =
+        set_relative_sigma(unpressed, likeliest_profile(*judged_unpressed, report.supply_noise), model.networks);
   }
   return report;
 }

@@ -8,11 +8,13 @@
 #include <cstdlib>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "dermis/core/neighbours.hpp"
 #include "fusion/contact_gauge.hpp"
 #include "fusion/contact_tracks.hpp"
 #include "fusion/stressed_areas.hpp"
+#include "fusion/strip.hpp"
 
 namespace dermis::fusion {
 namespace {
@@ -21,13 +23,6 @@ Status check_range(const char* name, double value, double low, double high) {
   if (value >= low && value <= high) return Done{};
   return bad_input("contacts." + std::string(name) + ": is " + std::to_string(value) + ", must be " +
                    std::to_string(low) + " to " + std::to_string(high));
-}
-
-/// Of the axes along which there are several taxels.
-double larger_pitch(const ArrayDescription& array) {
-  if (array.rows == 1 && array.cols > 1) return array.col_pitch_m;
-  if (array.cols == 1 && array.rows > 1) return array.row_pitch_m;
-  return std::max(array.row_pitch_m, array.col_pitch_m);
 }
 
 }  // namespace
@@ -41,15 +36,15 @@ Status ContactOptions::validate() const {
 
 class ContactTracker::Implementation {
  public:
-  Implementation(const ArrayDescription& array, const ContactOptions& contact_options)
+  Implementation(const ArrayDescription& array, const ContactOptions& contact_options, std::optional<StripTable> strip)
       : options(contact_options),
         rows_(array.rows),
         cols_(array.cols),
         row_pitch_m_(array.row_pitch_m),
         col_pitch_m_(array.col_pitch_m),
-        pitch_m_(larger_pitch(array)),
-        areas_(array.rows, array.cols),
-        gauge_(array),
+        pitch_m_(strip_pitch_m(array).value_or(std::max(array.row_pitch_m, array.col_pitch_m))),
+        areas_(array.rows, array.cols, strip.has_value()),
+        gauge_(array, std::move(strip)),
         tracks_(kReachPitches * pitch_m_) {
     assert(array.validate().has_value());
     found_.reserve(array.taxel_count());
@@ -214,8 +209,9 @@ class ContactTracker::Implementation {
   std::vector<FoundContact> found_;
 };
 
-ContactTracker::ContactTracker(const ArrayDescription& array, const ContactOptions& options)
-    : implementation_(std::make_unique<Implementation>(array, options)) {
+ContactTracker::ContactTracker(const ArrayDescription& array, const ContactOptions& options,
+                               std::optional<StripTable> strip)
+    : implementation_(std::make_unique<Implementation>(array, options, std::move(strip))) {
   assert(options.validate().has_value());
 }
 

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "dermis/core/neighbours.hpp"
+#include "fusion/strip.hpp"
 
 namespace dermis::fusion {
 namespace {
@@ -29,7 +31,8 @@ double taxel_area(const ArrayDescription& array) {
   return array.taxel_area_m2.value_or(std::numbers::pi / 4.0 * diameter * diameter);
 }
 
-bool is_strip(const ArrayDescription& array) {
+/// All taxels are at an edge.
+bool is_narrow(const ArrayDescription& array) {
   return array.rows == 1 || array.cols == 1;
 }
 
@@ -37,9 +40,8 @@ bool is_strip(const ArrayDescription& array) {
 /// it.
 double taxel_radius(const ArrayDescription& array) {
   const double radius = std::sqrt(taxel_area(array) / std::numbers::pi);
-  if (array.rows == 1 && array.cols > 1) return std::min(radius, 0.5 * array.col_pitch_m);
-  if (array.cols == 1 && array.rows > 1) return std::min(radius, 0.5 * array.row_pitch_m);
-  return radius;
+  const std::optional<double> pitch = strip_pitch_m(array);
+  return pitch ? std::min(radius, 0.5 * *pitch) : radius;
 }
 
 /// Of a place anywhere on a cell of this pitch [1/radii of a taxel^2].
@@ -49,16 +51,17 @@ double strength_on_cell(double pitch_m, double taxel_radius_m) {
 
 }  // namespace
 
-ContactGauge::ContactGauge(const ArrayDescription& array)
+ContactGauge::ContactGauge(const ArrayDescription& array, std::optional<StripTable> strip)
     : rows_(array.rows),
       cols_(array.cols),
       row_pitch_m_(array.row_pitch_m),
       col_pitch_m_(array.col_pitch_m),
       taxel_area_m2_(taxel_area(array)),
       taxel_radius_m_(taxel_radius(array)),
-      small_contacts_(is_strip(array) ? nullptr
-                                      : SmallContactTable::of({array.col_pitch_m / taxel_radius_m_,
-                                                               array.row_pitch_m / taxel_radius_m_})),
+      strip_(std::move(strip)),
+      small_contacts_(is_narrow(array) ? nullptr
+                                       : SmallContactTable::of({array.col_pitch_m / taxel_radius_m_,
+                                                                array.row_pitch_m / taxel_radius_m_})),
       visited_(array.taxel_count()) {
   const double pitch = std::sqrt(row_pitch_m_ * col_pitch_m_);
   prior_.log_radius = static_cast<float>(std::log(kPriorRadiusPitches * pitch / taxel_radius_m_));
@@ -80,12 +83,40 @@ Contact ContactGauge::measure(const ForceFrame& force, std::span<const std::uint
   pressed_sigma_ = static_cast<float>(pressed_sigma);
   sum_forces(force, taxels, contact);
   find_moments(force, taxels, contact);
+  if (strip_) {
+    correct(force, taxels, contact);
+    return contact;
+  }
   if (const std::optional<Place> found = place(force, taxels, contact, expected)) {
     contact.position = found->position;
     contact.sigma_position_m = found->sigma;
     contact.area_m2 = std::numbers::pi * found->radius_m * found->radius_m;
   }
   return contact;
+}
+
+/// The centre of mass is that of the signals, each of which has a noise of one: where all taxels follow one power law,
+/// it does not depend on the force. Saturated taxels have no signal: there it is that of the forces.
+void ContactGauge::correct(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const {
+  const auto along = rows_ == 1 ? &PlaneVector::x : &PlaneVector::y;
+  double sum = 0.0;
+  double moment = 0.0;
+  for (const std::uint32_t taxel : taxels) {
+    const double signal = force.signal_to_noise[taxel];
+    sum += signal;
+    moment += signal * centre(taxel).*along;
+  }
+  if (!std::isfinite(sum)) {
+    contact.position.*along = strip_->at(contact.position.*along).position_m;
+    return;
+  }
+  const double middle = moment / sum;
+  double variance = 0.0;
+  for (const std::uint32_t taxel : taxels) variance += std::pow((centre(taxel).*along - middle) / sum, 2);
+  const StripTable::Place place = strip_->at(middle);
+  const double sigma = std::hypot(strip_->sigma_m, place.slope * std::sqrt(variance));
+  contact.position.*along = place.position_m;
+  if (sigma > 0.0) contact.sigma_position_m.*along = sigma;
 }
 
 /// One or two taxels tell no more than the table. On a block of three or four, the patch of about the radius that

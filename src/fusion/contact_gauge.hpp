@@ -12,6 +12,7 @@
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frames.hpp"
+#include "dermis/fusion/strip_table.hpp"
 #include "fusion/contact_tracks.hpp"
 #include "fusion/patch_fit.hpp"
 #include "fusion/small_contact_table.hpp"
@@ -21,7 +22,8 @@ namespace dermis::fusion {
 /// Fine positioning and the size of the force: what the taxels of one stressed area tell about the contact on it.
 class ContactGauge {
  public:
-  explicit ContactGauge(const ArrayDescription& array);
+  /// `strip`: learned positions, which then take the place of the fit; consistent.
+  explicit ContactGauge(const ArrayDescription& array, std::optional<StripTable> strip = {});
 
   /// `taxels`: those of the area, by falling force; at least one. Other taxels from `pressed_sigma` standard deviations
   /// of the noise on belong to other contacts. `expected`, or null: where to begin the search for a patch on many
@@ -50,6 +52,8 @@ class ContactGauge {
   void find_moments(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
   [[nodiscard]] std::optional<Place> place(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                            const Contact& contact, const ExpectedContact* expected);
+  /// Puts a contact on a strip to the learned position.
+  void correct(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
   /// Empty where the taxels tell nothing.
   [[nodiscard]] std::optional<Place> fit(std::span<const std::uint32_t> taxels, const Patch& start,
                                          PatchProfile profile);
@@ -74,6 +78,7 @@ class ContactGauge {
   double col_pitch_m_;
   double taxel_area_m2_;
   double taxel_radius_m_;
+  std::optional<StripTable> strip_;
   PatchPrior prior_;
   std::shared_ptr<const SmallContactTable> small_contacts_;  // null for a strip, which is all edge
   std::uint32_t origin_taxel_ = 0;

@@ -22,8 +22,8 @@ bool is_idle(const float* signal_to_noise, float sigma) {
 
 }  // namespace
 
-StressedAreas::StressedAreas(std::size_t rows, std::size_t cols)
-    : rows_(rows), cols_(cols), order_at_((rows + 2) * (cols + 2), kNone) {
+StressedAreas::StressedAreas(std::size_t rows, std::size_t cols, bool overlapping)
+    : rows_(rows), cols_(cols), overlapping_(overlapping), order_at_((rows + 2) * (cols + 2), kNone) {
   const std::size_t taxels = rows * cols;
   pressed_.reserve(taxels);
   peaks_.reserve(taxels);
@@ -119,7 +119,8 @@ void StressedAreas::meet(std::int32_t a, std::int32_t b, const Pressed& valley) 
   const float scale = are_held ? kHeldShare : 1.0F;
   const float depth = low.newtons - valley.newtons;
   const float noise = std::sqrt(low.sigma * low.sigma + valley.sigma * valley.sigma);
-  if (depth < scale * kValleySigma * noise || depth < scale * kValleyShare * low.newtons) low.higher = higher;
+  const bool is_valley = depth >= scale * kValleySigma * noise && depth >= scale * kValleyShare * low.newtons;
+  if (overlapping_ || !is_valley) low.higher = higher;
 }
 
 void StressedAreas::group() {

@@ -24,7 +24,8 @@ class StressedAreas {
   static constexpr float kValleyShare = 0.1F;
   static constexpr float kHeldShare = 0.5F;  ///< Of what parts two contacts: keeps them apart that are there already.
 
-  StressedAreas(std::size_t rows, std::size_t cols);
+  /// `overlapping`: each taxel feels what presses beside it, so that a valley of the forces parts no contacts.
+  StressedAreas(std::size_t rows, std::size_t cols, bool overlapping);
 
   /// A taxel is pressed from `sigma` standard deviations of the additive noise on.
   /// `held`: the taxels nearest to the contacts of the frame before.
@@ -65,6 +66,7 @@ class StressedAreas {
 
   std::size_t rows_;
   std::size_t cols_;
+  bool overlapping_;
   std::vector<Pressed> pressed_;        // by falling force
   std::vector<std::int32_t> order_at_;  // [rows + 2, cols + 2]: index into pressed_, kNone
   std::vector<Peak> peaks_;

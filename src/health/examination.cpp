@@ -92,7 +92,7 @@ class Examination::Implementation {
     }
     if (!first_time_) first_time_ = raw.time;
     last_time_ = raw.time;
-    follow_temperature(raw);
+    follow_temperature(pipeline.conditioned());
     follow(pipeline.line_faults().faults(), frame, model_.array, counted_.faults);
     missing_.add(pipeline.conditioned());
     const auto& taxels = pipeline.conditioned().taxels;
@@ -122,9 +122,9 @@ class Examination::Implementation {
   }
 
  private:
-  void follow_temperature(const RawFrame& raw) {
-    if (!raw.temperature_celsius) return;
-    const double celsius = *raw.temperature_celsius;
+  void follow_temperature(const ConditionedFrame& conditioned) {
+    if (!conditioned.temperature_celsius) return;
+    const double celsius = *conditioned.temperature_celsius;
     const TemperatureRange range = counted_.temperature.value_or(TemperatureRange{celsius, celsius});
     counted_.temperature = {std::min(range.coldest_celsius, celsius), std::max(range.hottest_celsius, celsius)};
   }

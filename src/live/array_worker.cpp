@@ -61,7 +61,7 @@ ArrayWorker::ArrayWorker(std::size_t index, LiveArray array, std::unique_ptr<pip
       options_(options),
       pipeline_(std::move(pipeline)),
       settings_(options.settings),
-      tracker_(array_.model->array, settings_.contacts) {
+      tracker_(array_.model->array, settings_.contacts, array_.model->strip) {
   pipeline_->drift().set_options(settings_.drift);
 }
 

@@ -146,13 +146,33 @@ LookUpTables get_baseline(const SafetensorsFile& file, std::size_t index, std::s
   return tables;
 }
 
+void put_strip(SafetensorsFile& file, const fusion::StripTable& strip) {
+  const std::size_t knots = strip.centre_m.size();
+  file.metadata["strip.knots"] = std::to_string(knots);
+  put(file, "strip.centre_m", {knots}, strip.centre_m);
+  put(file, "strip.position_m", {knots}, strip.position_m);
+  put<double>(file, "strip.sigma_m", {1}, {strip.sigma_m});
+}
+
+fusion::StripTable get_strip(const SafetensorsFile& file, TensorReader& reader) {
+  const std::size_t knots = metadata_count(file, "strip.knots");
+  fusion::StripTable strip;
+  reader.get("strip.centre_m", {knots}, strip.centre_m);
+  reader.get("strip.position_m", {knots}, strip.position_m);
+  std::vector<double> sigma;
+  reader.get("strip.sigma_m", {1}, sigma);
+  if (!sigma.empty()) strip.sigma_m = sigma.front();
+  return strip;
+}
+
 bool is_consistent(const Model& model) {
   const std::size_t taxels = model.array.taxel_count();
   if (model.networks.taxel_count() != taxels || !model.networks.is_consistent()) return false;
   for (const LookUpTables& tables : model.baselines) {
     if (tables.taxel_count() != taxels || !tables.is_consistent()) return false;
   }
-  return true;
+  const bool is_strip = (model.array.rows > 1) != (model.array.cols > 1);
+  return !model.strip || (is_strip && model.strip->is_consistent());
 }
 
 /// An array.toml is enough where readings are forces.
@@ -176,6 +196,7 @@ Status write_model(const std::string& path, const Model& model) {
   for (std::size_t index = 0; index < model.baselines.size(); ++index) {
     put_baseline(file, index, model.baselines[index]);
   }
+  if (model.strip) put_strip(file, *model.strip);
   return files::write_safetensors(path, file);
 }
 
@@ -209,6 +230,7 @@ Result<Model> read_model(const std::string& path) {
   for (std::size_t index = 0; index < baselines; ++index) {
     model.baselines.push_back(get_baseline(*file, index, taxels, reader));
   }
+  if (file->metadata.contains("strip.knots")) model.strip = get_strip(*file, reader);
   if (reader.first_error()) return bad_input(path + ": " + reader.first_error()->message);
   if (!is_consistent(model)) {
     return bad_input(path + ": holds values out of range; write it again with 'dermis calibrate'");

@@ -13,8 +13,9 @@
 namespace dermis::preprocessing {
 namespace {
 
-bool is_finite_or_absent(const std::optional<double>& value) {
-  return !value || std::isfinite(*value);
+/// NaN is how recordings without a sensor write its column.
+std::optional<double> without_nan(const std::optional<double>& value) {
+  return value && std::isnan(*value) ? std::nullopt : value;
 }
 
 /// Ratio of the taxels around one that have a reading; 0 where none has.
@@ -69,9 +70,8 @@ std::size_t Conditioner::count_missing(const RawFrame& raw) const noexcept {
 
 Rejection Conditioner::inspect(const RawFrame& raw) const noexcept {
   if (raw.counts.size() != array_.taxel_count()) return Rejection::wrong_shape;
-  if (!is_finite_or_absent(raw.temperature_celsius) || !is_finite_or_absent(raw.supply_v)) {
-    return Rejection::not_a_number;
-  }
+  const bool has_infinite_temperature = raw.temperature_celsius && std::isinf(*raw.temperature_celsius);
+  if (has_infinite_temperature || (raw.supply_v && !std::isfinite(*raw.supply_v))) return Rejection::not_a_number;
   if (raw.supply_v && *raw.supply_v <= 0.0) return Rejection::supply_not_positive;
   const Readout& readout = array_.readout;
   const bool needs_supply = readout.adc_reference_v && readout.circuit != Circuit::none;
@@ -82,7 +82,7 @@ Rejection Conditioner::inspect(const RawFrame& raw) const noexcept {
 
 void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
   conditioned.time = raw.time;
-  conditioned.temperature_celsius = raw.temperature_celsius;
+  conditioned.temperature_celsius = without_nan(raw.temperature_celsius);
   conditioned.status = FrameStatus::ok;
   conditioned.ratio.resize(array_.taxel_count());
   conditioned.taxels.resize(array_.taxel_count());

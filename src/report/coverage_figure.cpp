@@ -45,7 +45,8 @@ Axis percent_axis(std::string label) {
 Figure coverage_figure(const Evaluation& evaluation) {
   Figure figure{"coverage.svg", "How sure dermis is, and how often it is right", "", {}};
   if (evaluation.coverage.count == 0) {
-    figure.caption = "No taxel with a known force of at least 1 N has a standard deviation.";
+    figure.caption = fmt::format("No taxel with a known force of at least {:.3g} N has a standard deviation.",
+                                 evaluation.judged_from_n);
     return figure;
   }
   Plot plot("", percent_axis("interval that dermis gives [%]"), percent_axis("true forces within it [%]"), kWidth,

@@ -34,7 +34,6 @@ std::optional<double> share_within(const Evaluation& evaluation, std::size_t est
   std::size_t judged = 0;
   std::size_t within = 0;
   for (const auto& taxel : evaluation.taxels) {
-    if (taxel.true_newtons < calibration::kJudgedNewtons) continue;
     ++judged;
     if (std::abs(static_cast<double>(taxel.newtons[estimator]) / taxel.true_newtons - 1.0) <= tolerance) ++within;
   }
@@ -145,9 +144,10 @@ std::vector<Tile> headline_tiles(const Evaluation& evaluation) {
 
 void add_estimator_legend(Page& page, const Evaluation& evaluation, const pipeline::Model& model) {
   page.paragraph(
-      "Relative errors are those of taxels that carry at least 1 N; ghost: force reported on unloaded "
-      "taxels; total: sum over the taxels of one load. Bold: the best of a column. \"No force\": the "
-      "percentile falls on taxels without an estimate, which count as the worst error.",
+      fmt::format("Relative errors are those of taxels that carry at least {:.3g} N; ghost: force reported on unloaded "
+                  "taxels; total: sum over the taxels of one load. Bold: the best of a column. \"No force\": the "
+                  "percentile falls on taxels without an estimate, which count as the worst error.",
+                  evaluation.judged_from_n),
       "note");
   std::vector<Fact> facts;
   if (!evaluation.estimators.empty()) facts.emplace_back(evaluation.estimators.front().name, describe(model));

@@ -26,7 +26,8 @@ std::string summary_sentence(const Evaluation& evaluation) {
   const EstimatorResult& first = evaluation.estimators.front();
   std::string sentence = first.name + " on ";
   if (first.relative_error.count > 0) {
-    sentence += counted(first.relative_error.count, "loaded taxel") + " of at least 1 N";
+    sentence += counted(first.relative_error.count, "loaded taxel") +
+                fmt::format(" of at least {:.3g} N", evaluation.judged_from_n);
     if (first.totals_judged > 0) sentence += " and ";
   }
   if (first.totals_judged > 0) sentence += counted(first.totals_judged, "total") + " over several taxels";

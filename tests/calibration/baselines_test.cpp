@@ -17,14 +17,17 @@ SampleDatabase linear_database(std::size_t taxels) {
   SampleDatabase database;
   database.array.rows = 1;
   database.array.cols = taxels;
+  database.array.readout.adc_bits = 10;
   return database;
 }
 
 Sample unloaded_sample(std::size_t taxels, double temperature) {
   Sample sample;
   sample.temperature_celsius = temperature;
-  sample.reading.assign(taxels, 0.1);
-  sample.siemens.assign(taxels, 1e-3);
+  sample.ratio.assign(taxels, 0.1F);
+  sample.sigma_ratio = 1.0 / 1023.0;
+  sample.siemens.assign(taxels, 1e-3F);
+  sample.taxels.assign(taxels, TaxelStatus::ok);
   sample.known_newtons.assign(taxels, 0.0F);
   sample.unloaded = true;
   return sample;
@@ -33,8 +36,8 @@ Sample unloaded_sample(std::size_t taxels, double temperature) {
 Sample pressed_sample(std::size_t taxels, std::size_t taxel, double newtons, double temperature) {
   Sample sample = unloaded_sample(taxels, temperature);
   sample.unloaded = false;
-  sample.reading[taxel] += 0.05 * newtons * (1.0 + 0.01 * (temperature - 20.0));
-  sample.siemens[taxel] += 1e-3 * newtons;
+  sample.ratio[taxel] += static_cast<float>(0.05 * newtons * (1.0 + 0.01 * (temperature - 20.0)));
+  sample.siemens[taxel] += static_cast<float>(1e-3 * newtons);
   sample.known_newtons[taxel] = static_cast<float>(newtons);
   return sample;
 }
@@ -74,7 +77,7 @@ TEST(Baselines, take_a_linear_temperature_effect_out) {
     for (const double newtons : {1.0, 2.0, 4.0, 8.0}) {
       Sample sample = pressed_sample(1, 0, newtons, 20.0);
       sample.temperature_celsius = temperature;
-      sample.reading[0] *= 1.0 + 0.005 * (temperature - 20.0);
+      sample.ratio[0] *= static_cast<float>(1.0 + 0.005 * (temperature - 20.0));
       database.samples.push_back(sample);
     }
   }
@@ -92,7 +95,7 @@ TEST(Baselines, rise_where_noise_makes_the_signal_fall) {
   SampleDatabase database = linear_database(1);
   database.samples = {unloaded_sample(1, 20.0), pressed_sample(1, 0, 1.0, 20.0), pressed_sample(1, 0, 2.0, 20.0),
                       pressed_sample(1, 0, 3.0, 20.0)};
-  std::swap(database.samples[2].reading, database.samples[3].reading);
+  std::swap(database.samples[2].ratio, database.samples[3].ratio);
   for (const auto& table : make_baselines(database)) {
     std::vector<float> newtons(1);
     double last = -1.0;
@@ -110,7 +113,7 @@ TEST(Baselines, fit_one_slope_where_only_totals_are_known) {
   for (const double newtons : {2.0, 4.0, 9.0}) {
     Sample sample = unloaded_sample(3, 20.0);
     sample.unloaded = false;
-    sample.reading = {0.1 + 0.03 * newtons, 0.1 + 0.02 * newtons, 0.1};
+    sample.ratio = {static_cast<float>(0.1 + 0.03 * newtons), static_cast<float>(0.1 + 0.02 * newtons), 0.1F};
     sample.known_newtons.assign(3, kUnknown);
     sample.totals = {{{0, 1, 2}, newtons}};
     database.samples.push_back(sample);
@@ -130,7 +133,7 @@ TEST(Baselines, keep_their_temperature_term_where_labels_scatter) {
       const double weighed = newtons * (1.0 + 0.002 * (k++ % 5 - 2));
       Sample sample = pressed_sample(1, 0, weighed, 20.0);
       sample.temperature_celsius = temperature;
-      sample.reading[0] *= 1.0 + 0.005 * (temperature - 20.0);
+      sample.ratio[0] *= static_cast<float>(1.0 + 0.005 * (temperature - 20.0));
       database.samples.push_back(sample);
     }
   }

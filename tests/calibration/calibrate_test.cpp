@@ -49,7 +49,7 @@ ErrorSummary judge_true_law(const ArrayDescription& array, simulation::Simulator
     compensator->process(conditioned, conductance);
     for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
       const double truth = simulator.truth().force_n[taxel];
-      if (truth < kJudgedNewtons) continue;
+      if (truth < 1.0) continue;
       const double newtons =
           simulator.rubber().force_from_conductance(taxel, conductance.siemens[taxel], *frame.temperature_celsius);
       errors.push_back(std::abs(newtons / truth - 1.0));

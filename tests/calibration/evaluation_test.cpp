@@ -17,6 +17,7 @@ namespace {
 pipeline::Model exact_model() {
   pipeline::Model model = support::hand_made_model(2, 2);
   model.array.readout.drive_ohm.assign(2, 0.0);
+  model.networks.sigma_knots_newtons = {0.05F, 50.0F};
   return model;
 }
 
@@ -75,6 +76,19 @@ TEST(Evaluation, judges_loaded_taxels_ghosts_and_totals) {
   EXPECT_EQ(dermis.totals_judged, 1U);
   EXPECT_NEAR(*dermis.total_rmse_n, 1.0, 0.01);
   EXPECT_NEAR(*dermis.total_relative_error.max, 1.0 / 8.0, 1e-3);
+}
+
+TEST(Evaluation, judges_from_a_fiftieth_of_the_heaviest_calibrated_load) {
+  pipeline::Model model = exact_model();
+  model.networks.sigma_knots_newtons = {0.01F, 2.0F};
+  const std::vector<RawFrame> frames = {frame_under(model, {0.039, 0, 0, 0}), frame_under(model, {0.041, 0, 0, 0})};
+  const std::vector<Load> loads = {{0, LoadKind::force, {0, 0, 0, 0}, 0.039},
+                                   {1, LoadKind::force, {0, 0, 0, 0}, 0.041}};
+  const auto evaluation = evaluate(model, frames, loads);
+  ASSERT_TRUE(evaluation);
+  EXPECT_NEAR(evaluation->judged_from_n, 0.04, 1e-6);
+  ASSERT_EQ(evaluation->taxels.size(), 1U);
+  EXPECT_EQ(evaluation->taxels.front().frame, 1U);
 }
 
 TEST(Evaluation, counts_separate_stressed_areas) {

@@ -50,7 +50,7 @@ TEST(SampleDatabase, keeps_labelled_frames_and_what_their_loads_tell) {
   const Sample& press = database->samples[1];
   EXPECT_FALSE(press.unloaded);
   EXPECT_EQ(press.known_newtons, (std::vector<float>{0, 5, 0, 0, 0, 0}));
-  EXPECT_NEAR(press.siemens[0], 100.0 / 1023.0, 1e-12);
+  EXPECT_NEAR(press.siemens[0], 100.0 / 1023.0, 1e-8);
 
   const Sample& shared = database->samples[2];
   EXPECT_TRUE(std::isnan(shared.known_newtons[0]) && std::isnan(shared.known_newtons[3]));
@@ -69,7 +69,7 @@ TEST(SampleDatabase, leaves_out_what_comes_before_settling) {
   const auto database = build_sample_database(bare_array(), frames_of(6), loads, std::chrono::seconds(2));
   ASSERT_TRUE(database);
   ASSERT_EQ(database->samples.size(), 1U);
-  EXPECT_NEAR(database->samples[0].siemens[0], 400.0 / 1023.0, 1e-12);
+  EXPECT_NEAR(database->samples[0].siemens[0], 400.0 / 1023.0, 1e-7);
 }
 
 TEST(SampleDatabase, asks_for_an_unloaded_frame) {
@@ -197,7 +197,10 @@ TEST(SampleDatabase, a_missing_reading_costs_its_taxel_alone_and_is_named) {
   for (std::size_t taxel = 0; taxel < 6; ++taxel) {
     EXPECT_EQ(std::isnan(newtons[taxel]), taxel == 2 || taxel == 4) << taxel;
     EXPECT_TRUE(std::isfinite(database->samples[1].siemens[taxel])) << taxel;
-    EXPECT_TRUE(std::isfinite(database->samples[1].reading[taxel])) << taxel;
+    EXPECT_TRUE(std::isfinite(database->samples[1].ratio[taxel])) << taxel;
+    const bool has_reading = taxel != 2 && taxel != 4;
+    EXPECT_NEAR(bare_reading(*database, database->samples[1], taxel),
+                has_reading ? double{frames[1].counts[taxel]} / 1023.0 : 0.0, 1e-7);
   }
   EXPECT_EQ(database->samples[2].totals.size(), 1U);
   ASSERT_EQ(database->remarks.size(), 1U);
@@ -281,6 +284,63 @@ TEST(SampleDatabase, says_that_labels_are_shifted) {
   ASSERT_FALSE(database->remarks.empty());
   EXPECT_NE(database->remarks.back().find("the loads fit the readings 3 frames later"), std::string::npos)
       << database->remarks.back();
+}
+
+TEST(SampleDatabase, says_that_labels_of_presses_of_equal_force_are_shifted) {
+  for (const std::size_t late : {0U, 3U}) {
+    Recording presses;
+    for (std::size_t k = 0; k < 600; ++k) {
+      RawFrame& frame = presses.frames.emplace_back();
+      frame.time = std::chrono::milliseconds(10 * k);
+      frame.counts.assign(6, 20.0F);
+      const auto pressed = [](std::size_t time) { return time / 20 % 6; };
+      if (k >= 20) {
+        frame.counts[pressed(k - late)] = 300.0F;
+        frame.counts[(pressed(k - late) + 1) % 6] = 120.0F;
+      }
+      const std::size_t row = pressed(k) / 3;
+      const std::size_t col = pressed(k) % 3;
+      presses.loads.push_back(
+          {k, LoadKind::force, k < 20 ? kAll : TaxelRegion{row, col, row, col}, k < 20 ? 0.0 : 5.0});
+    }
+    const auto database = build_sample_database(bare_array(), presses.frames, presses.loads);
+    ASSERT_TRUE(database) << database.error().message;
+    if (late == 0) {
+      EXPECT_TRUE(database->remarks.empty()) << database->remarks[0];
+    } else {
+      EXPECT_EQ(database->remarks,
+                (std::vector<std::string>{"the loads fit the readings 3 frames later (577 of 577 then press where the "
+                                          "array feels it, as labelled 493 of 580): check them"}));
+    }
+  }
+}
+
+TEST(SampleDatabase, keeps_some_of_many_frames_of_a_place_and_all_of_a_rare_one) {
+  constexpr std::size_t kMany = 9000;
+  Recording presses;
+  const auto add = [&](const TaxelRegion& where, double newtons) {
+    presses.loads.push_back({presses.frames.size(), LoadKind::force, where, newtons});
+    RawFrame& frame = presses.frames.emplace_back();
+    frame.time = std::chrono::milliseconds(presses.frames.size());
+    frame.counts.assign(6, static_cast<float>(20.0 + newtons));
+  };
+  for (std::size_t k = 0; k < 10; ++k) add(kAll, 0.0);
+  for (std::size_t k = 0; k < kMany; ++k) add({0, 0, 0, 0}, 1.0 + static_cast<double>(k * 7 % kMany) / 100.0);
+  for (std::size_t k = 0; k < 100; ++k) add({1, 1, 1, 1}, 5.0);
+  const auto database = build_sample_database(bare_array(), presses.frames, presses.loads);
+  ASSERT_TRUE(database) << database.error().message;
+  ASSERT_EQ(database->samples.size(), 10U + 4000U + 100U);
+  EXPECT_EQ(database->remarks.back(),
+            "9110 labelled frames repeat: 4110 of them are used, evenly over places and forces");
+  float lightest = 1000.0F;
+  float heaviest = 0.0F;
+  for (const Sample& sample : database->samples) {
+    if (sample.known_newtons[0] <= 0.0F) continue;
+    lightest = std::min(lightest, sample.known_newtons[0]);
+    heaviest = std::max(heaviest, sample.known_newtons[0]);
+  }
+  EXPECT_EQ(lightest, 1.0F);
+  EXPECT_EQ(heaviest, 90.99F);
 }
 
 TEST(SampleDatabase, asks_whether_grams_are_newtons) {

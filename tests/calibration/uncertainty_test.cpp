@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 #include "calibration/simulated.hpp"
 #include "dermis/calibration/calibrate.hpp"
@@ -28,13 +30,13 @@ SampleDatabase unloaded_database(std::size_t samples, double level, double noise
     const double supply = random.uniform(0.8, 1.2);  // of the reference: what a count is worth
     sample.unloaded = true;
     sample.sigma_ratio = database.array.readout.adc_noise_counts / (1023.0 * supply);
+    sample.taxels.assign(36, TaxelStatus::ok);
     sample.known_newtons.assign(36, 0.0F);
     for (std::size_t taxel = 0; taxel < 36; ++taxel) {
       const double drift = 0.01 * static_cast<double>(k);
       double counts = level * supply + drift + noise_counts * random.normal();
       if (rounded) counts = std::clamp(std::round(counts), 0.0, 1023.0);
-      sample.reading.push_back(counts / 1023.0);
-      sample.ratio.push_back(counts / 1023.0 / supply);
+      sample.ratio.push_back(static_cast<float>(counts / 1023.0 / supply));
     }
   }
   return database;
@@ -64,9 +66,9 @@ TEST(Uncertainty, adc_noise_is_not_made_up_where_the_end_of_the_adc_hides_it) {
 
 TEST(Uncertainty, adc_noise_is_not_raised_by_a_touch_or_a_flickering_taxel) {
   SampleDatabase database = unloaded_database(60, 40.0, 1.0, true, 12);
-  for (double& ratio : database.samples[20].ratio) ratio *= 3.0;
+  for (float& ratio : database.samples[20].ratio) ratio *= 3.0F;
   Random random(1);
-  for (Sample& sample : database.samples) sample.ratio[5] += 0.1 * random.normal();
+  for (Sample& sample : database.samples) sample.ratio[5] += static_cast<float>(0.1 * random.normal());
   const auto measured = measure_adc_noise(database);
   ASSERT_TRUE(measured);
   EXPECT_NEAR(*measured / std::sqrt(13.0 / 12.0), 1.0, 0.06);
@@ -130,6 +132,43 @@ TEST(Uncertainty, intervals_cover_what_they_promise_at_virtual_ground) {
   array.readout.drive_ohm.assign(8, 25.0);
   array.readout.load_ohm.assign(8, 150.0);
   expect_calibrated(coverage_of(array, {}));
+}
+
+/// Presses on every eighth taxel, or on all others.
+std::vector<Load> some_presses(const ArrayDescription& array, const std::vector<Load>& loads, bool every_eighth) {
+  std::vector<Load> some;
+  std::copy_if(loads.begin(), loads.end(), std::back_inserter(some), [&](const Load& load) {
+    const std::size_t taxel = array.index(load.where.first_row, load.where.first_col);
+    return load.value == 0.0 || (taxel % 8 == 3) == every_eighth;
+  });
+  return some;
+}
+
+TEST(Uncertainty, intervals_cover_what_they_promise_on_taxels_that_were_never_pressed) {
+  const ArrayDescription array = reference_array(12, 10);
+  constexpr std::size_t kPieces = 8;  // the scatter of 15 taxels tells that of the piece to a fifth
+  double count = 0.0;
+  double within_68 = 0.0;
+  double within_95 = 0.0;
+  for (std::size_t piece = 1; piece <= kPieces; ++piece) {
+    simulation::SimulationOptions physics;
+    physics.rubber.seed = piece;
+    const Recording presses = record(array, "paper_calibration", 1, physics);
+    const auto calibration = calibrate(array, presses.frames, some_presses(array, presses.loads, true));
+    ASSERT_TRUE(calibration) << calibration.error().message;
+    EXPECT_TRUE(calibration->report.uncertainty.relative_sigma_of_unpressed);
+    const Recording others = record(array, "paper_calibration", 2, physics);
+    const auto evaluation = evaluate(calibration->model, others.frames, some_presses(array, others.loads, false));
+    ASSERT_TRUE(evaluation) << evaluation.error().message;
+    const auto judged = static_cast<double>(evaluation->coverage.count);
+    count += judged;
+    within_68 += judged * *evaluation->coverage.share_68;
+    within_95 += judged * *evaluation->coverage.share_95;
+  }
+  EXPECT_GE(within_68 / count, 0.63);
+  EXPECT_LE(within_68 / count, 0.73);
+  EXPECT_GE(within_95 / count, 0.92);
+  EXPECT_LE(within_95 / count, 0.98);
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ TEST(LoadsCsv, refuses_a_frame_that_does_not_exist) {
 }
 
 TEST(LoadsCsv, refuses_an_unknown_kind) {
-  EXPECT_EQ(error_of("0,weight,all,0"), "loads.csv:2: unknown kind 'weight'; write force or pressure");
+  EXPECT_EQ(error_of("0,weight,all,0"), "loads.csv:2: unknown kind 'weight'; write force, pressure or position");
 }
 
 TEST(LoadsCsv, refuses_a_pressure_without_taxel_area) {
@@ -123,6 +123,46 @@ TEST(LoadsCsv, refuses_loads_that_share_a_taxel_and_names_both_lines) {
             "loads.csv:4: overlaps line 2 at r1c1 of frame 4; name each taxel once per frame");
   EXPECT_EQ(error_of("4,force,r0c0,1\n4,force,all,1\n"),
             "loads.csv:3: overlaps line 2 at r0c0 of frame 4; name each taxel once per frame");
+}
+
+ArrayDescription test_strip() {
+  ArrayDescription array = test_array();
+  array.rows = 1;
+  array.cols = 7;
+  return array;
+}
+
+Result<std::vector<TouchPosition>> parse_positions(const std::string& lines, const ArrayDescription& array) {
+  std::istringstream in(kHeader + lines);
+  return read_touch_positions(in, "loads.csv", array, kFrames);
+}
+
+TEST(LoadsCsv, keeps_loads_and_positions_of_a_strip_apart) {
+  const std::string lines = "5,position,all,12.5\n5,force,all,2\n3,position,all,-0.5\n0,force,all,0\n";
+  const auto positions = parse_positions(lines, test_strip());
+  ASSERT_TRUE(positions) << positions.error().message;
+  ASSERT_EQ(positions->size(), 2U);
+  EXPECT_EQ((*positions)[0].frame, 3U);
+  EXPECT_DOUBLE_EQ((*positions)[0].along_m, -0.0005);
+  EXPECT_EQ((*positions)[1].frame, 5U);
+  EXPECT_DOUBLE_EQ((*positions)[1].along_m, 0.0125);
+  const auto loads = parse(kHeader + lines, test_strip());
+  ASSERT_TRUE(loads) << loads.error().message;
+  ASSERT_EQ(loads->size(), 2U);
+  EXPECT_EQ((*loads)[0].frame, 5U);
+}
+
+TEST(LoadsCsv, refuses_positions_that_are_none) {
+  const auto refused = [](const std::string& lines, const ArrayDescription& array) {
+    const auto positions = parse_positions(lines, array);
+    return positions ? "" : positions.error().message;
+  };
+  EXPECT_EQ(refused("0,position,all,3", test_array()),
+            "loads.csv:2: a position is a place along an array of one row or one column; this one is 16x16");
+  EXPECT_EQ(refused("0,position,r0c3,3", test_strip()), "loads.csv:2: a position is one of the whole strip; write all");
+  EXPECT_EQ(refused("0,position,all,nan", test_strip()), "loads.csv:2: value 'nan' is not a position in mm");
+  EXPECT_EQ(refused("0,position,all,1\n0,position,all,1\n", test_strip()),
+            "loads.csv:3: frame 0 has a position already; write one");
 }
 
 TEST(LoadsCsv, names_a_path_that_cannot_be_opened) {

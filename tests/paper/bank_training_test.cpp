@@ -39,7 +39,8 @@ TEST(BankTraining, normalises_the_database_to_the_unit_interval) {
   std::vector<float> greatest(16, -1.0F);
   std::vector<float> inputs(16);
   for (const Sample& sample : database.samples) {
-    training.bank().normalise(sample.ratio, sample.temperature_celsius, inputs);
+    training.bank().normalise(std::vector<double>(sample.ratio.begin(), sample.ratio.end()), sample.temperature_celsius,
+                              inputs);
     for (std::size_t k = 0; k < 16; ++k) {
       least[k] = std::min(least[k], inputs[k]);
       greatest[k] = std::max(greatest[k], inputs[k]);

@@ -108,6 +108,7 @@ TEST_F(ReportTest, takes_estimators_that_judged_nothing) {
 
 TEST_F(ReportTest, takes_one_taxel_judged_once) {
   calibration::Evaluation evaluation = empty_sample(1, 1);
+  evaluation.judged_from_n = 1.0;
   evaluation.frames = 1;
   evaluation.frames_rejected = 1;
   evaluation.taxels.push_back({0, 0, 10.0, 20.0, 5.0, 1, {10.0F, 0.0F, 1e30F, 9.0F}, 0.1F});

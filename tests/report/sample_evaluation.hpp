@@ -125,6 +125,7 @@ inline calibration::Evaluation empty_sample(std::size_t rows, std::size_t cols) 
 inline calibration::Evaluation sample_evaluation(std::size_t rows, std::size_t cols, std::size_t frames) {
   calibration::Evaluation evaluation = empty_sample(rows, cols);
   evaluation.frames = frames;
+  evaluation.judged_from_n = 1.0;
   Random random(7);
   for (std::size_t frame = 0; frame < frames; ++frame) {
     const double temperature = random.uniform(0.0, 50.0);
@@ -153,6 +154,7 @@ inline calibration::Evaluation sample_evaluation(std::size_t rows, std::size_t c
 inline calibration::Evaluation paper_sample() {
   calibration::Evaluation evaluation = empty_sample(16, 16);
   evaluation.frames = 48;
+  evaluation.judged_from_n = 1.0;
   Random random(3);
   for (std::size_t frame = 0; frame < 48; ++frame) {
     const double truth = frame < 16 ? 10.0 : frame < 32 ? 20.0 : 50.0;
@@ -167,6 +169,7 @@ inline calibration::Evaluation paper_sample() {
 inline calibration::Evaluation totals_sample() {
   calibration::Evaluation evaluation = empty_sample(8, 8);
   evaluation.frames = 200;
+  evaluation.judged_from_n = 1.0;
   Random random(5);
   for (std::size_t frame = 0; frame < 200; ++frame) {
     const double truth = random.log_uniform(5.0, 300.0);

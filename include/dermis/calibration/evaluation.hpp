@@ -15,8 +15,8 @@
 
 namespace dermis::calibration {
 
-/// Taxels are judged by relative error from this true force on [N].
-inline constexpr double kJudgedNewtons = 1.0;
+/// Taxels are judged by relative error from this share of the heaviest calibrated load on.
+inline constexpr double kJudgedShare = 0.02;
 
 /// An estimator from outside that is judged beside dermis and the baselines.
 class FurtherEstimator {
@@ -65,7 +65,7 @@ struct BoundComparison {
 struct EstimatorResult {
   std::string name;                    ///< "dermis" first, then the baselines, then a further estimator.
   std::string description;             ///< Of a further estimator; of the others the model tells.
-  ErrorSummary relative_error;         ///< |estimate / truth - 1| of taxels of at least kJudgedNewtons; dimensionless.
+  ErrorSummary relative_error;         ///< |estimate / truth - 1| of judged taxels; dimensionless.
   ErrorSummary ghost_n;                ///< Force on unloaded taxels that give one [N].
   std::size_t totals_judged = 0;       ///< `force` loads over several taxels.
   std::optional<double> total_rmse_n;  ///< Root mean square error of their sums over live taxels [N].
@@ -117,6 +117,7 @@ struct Evaluation {
   ArrayDescription array;
   std::size_t frames = 0;  ///< Labelled frames judged.
   std::size_t frames_rejected = 0;
+  double judged_from_n = 0.0;  ///< True force from which on taxels are judged [N]: kJudgedShare.
   std::vector<EstimatorResult> estimators;
   Coverage coverage;  ///< Of dermis, over all judged taxels.
   BoundComparison bound;

@@ -50,6 +50,8 @@ struct ForceTraining {
   TrainingReport report;
   std::vector<TestedLoad> tested_own;     ///< Of taxels with a network of their own, one taxel each.
   std::vector<TestedLoad> tested_shared;  ///< Of the shared network.
+  /// Of the shared network on single taxels, with the errors of taxels that no load pressed.
+  std::vector<TestedLoad> tested_unpressed;
 };
 
 /// Trains what the samples support: a network per taxel where its own force is known often enough, one shared network

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -26,10 +27,9 @@ struct TotalForce {
 struct Sample {
   std::size_t frame = 0;  ///< Index in the recording.
   std::optional<double> temperature_celsius;
-  std::vector<double> reading;       ///< Bare readings [taxels], counts / full scale, for the baselines; 0: missing.
-  std::vector<double> ratio;         ///< Reading / supply [taxels], for further estimators.
+  std::vector<float> ratio;          ///< Reading / supply [taxels].
   double sigma_ratio = 0.0;          ///< Standard deviation of every ratio for the array's adc_noise_counts.
-  std::vector<double> siemens;       ///< Conductances [taxels].
+  std::vector<float> siemens;        ///< Conductances [taxels].
   std::vector<TaxelStatus> taxels;   ///< What is known about each [taxels].
   std::vector<float> known_newtons;  ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
   std::vector<TotalForce> totals;
@@ -51,9 +51,14 @@ struct SampleDatabase {
 /// frame labelled `force,all,0`), a load beyond the frames, more than a tenth of the labelled frames rejected, a
 /// circuit that cannot be inverted. Frames that are called unloaded but are pressed are left out; what is unknown of
 /// the circuit is found first: fit_circuit(). A taxel without a reading has the conductance that its neighbours
-/// suggest, and no known force.
+/// suggest, and no known force. Of very many frames some become samples: see choose_samples(). `progress` gets the
+/// share of them that is done.
 [[nodiscard]] Result<SampleDatabase> build_sample_database(const ArrayDescription& array,
                                                            std::span<const RawFrame> frames,
-                                                           std::span<const Load> loads, Nanos settle_time = Nanos{0});
+                                                           std::span<const Load> loads, Nanos settle_time = Nanos{0},
+                                                           const std::function<void(double)>& progress = {});
+
+/// Bare reading of a taxel, counts / full scale, turned round where pressure lowers it; 0 where there is none.
+[[nodiscard]] double bare_reading(const SampleDatabase& database, const Sample& sample, std::size_t taxel);
 
 }  // namespace dermis::calibration

@@ -31,9 +31,10 @@ using RelativeSigma = std::array<double, fusion::kSigmaKnots>;
 struct UncertaintyReport {
   std::optional<double> adc_noise_counts;  ///< Empty: it could not be measured, and the array's stays.
   double temperature_sigma_celsius = 0.0;
-  double supply_noise = 0.0;                              ///< Relative.
-  std::optional<RelativeSigma> relative_sigma;            ///< Of taxels with a network of their own.
-  std::optional<RelativeSigma> relative_sigma_of_shared;  ///< Of taxels on the shared network.
+  double supply_noise = 0.0;                                 ///< Relative.
+  std::optional<RelativeSigma> relative_sigma;               ///< Of taxels with a network of their own.
+  std::optional<RelativeSigma> relative_sigma_of_shared;     ///< Of taxels on the shared network.
+  std::optional<RelativeSigma> relative_sigma_of_unpressed;  ///< Of those of them that no load pressed.
 };
 
 /// "readings +- 1.05 counts, supply +- 0.10 %, temperature +- 0.30 C, forces +- 0.2 to 0.4 % beside that".

@@ -37,6 +37,12 @@ struct Load {
   double value = 0.0;  ///< [N] for force, [Pa] for pressure; >= 0.
 };
 
+/// Where the only contact on a strip, an array of one row or one column, was in a frame.
+struct TouchPosition {
+  std::size_t frame = 0;  ///< Index of the frame, from 0.
+  double along_m = 0.0;   ///< From the centre of the first taxel, along the strip [m].
+};
+
 /// "r3c5", "r0c0:r3c3", or "all" where the region is the whole array.
 [[nodiscard]] std::string to_string(const TaxelRegion& region, const ArrayDescription& array);
 

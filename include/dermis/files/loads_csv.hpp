@@ -13,14 +13,23 @@
 
 namespace dermis::files {
 
-/// Reads loads.csv (docs/file-formats.md) in the order of its lines. Errors name the line: a taxel or a frame that does
-/// not exist (frames are 0 ... frame_count - 1), a negative value, a pressure without taxel_area_m2, two loads of one
-/// frame that share a taxel.
+/// Reads the forces and pressures of loads.csv (docs/file-formats.md) in the order of its lines. Errors name the line:
+/// a taxel or a frame that does not exist (frames are 0 ... frame_count - 1), a negative value, a pressure without
+/// taxel_area_m2, two loads of one frame that share a taxel, a position on an array that is no strip.
 [[nodiscard]] Result<std::vector<Load>> read_loads(const std::string& path, const ArrayDescription& array,
                                                    std::size_t frame_count);
 /// The same from a stream; `name` stands for the path in messages.
 [[nodiscard]] Result<std::vector<Load>> read_loads(std::istream& in, const std::string& name,
                                                    const ArrayDescription& array, std::size_t frame_count);
+
+/// Reads the positions of loads.csv, by their frames. Errors name the line: as above, and two positions of one frame.
+[[nodiscard]] Result<std::vector<TouchPosition>> read_touch_positions(const std::string& path,
+                                                                      const ArrayDescription& array,
+                                                                      std::size_t frame_count);
+/// The same from a stream.
+[[nodiscard]] Result<std::vector<TouchPosition>> read_touch_positions(std::istream& in, const std::string& name,
+                                                                      const ArrayDescription& array,
+                                                                      std::size_t frame_count);
 
 /// Writes loads.csv.
 [[nodiscard]] Status write_loads(const std::string& path, const ArrayDescription& array,

@@ -4,11 +4,13 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/fusion/strip_table.hpp"
 
 namespace dermis::fusion {
 
@@ -32,8 +34,10 @@ struct ContactOptions {
 /// Not thread-safe: one per stream of frames.
 class ContactTracker {
  public:
-  /// `array` and `options` must be valid; without taxel_area_m2 a taxel is a disc of 0.7 of the smaller pitch.
-  explicit ContactTracker(const ArrayDescription& array, const ContactOptions& options = {});
+  /// `array` and `options` must be valid, `strip`, the model's learned positions where it has them, consistent; without
+  /// taxel_area_m2 a taxel is a disc of 0.7 of the smaller pitch.
+  explicit ContactTracker(const ArrayDescription& array, const ContactOptions& options = {},
+                          std::optional<StripTable> strip = {});
   ContactTracker(ContactTracker&&) noexcept;
   ContactTracker& operator=(ContactTracker&&) noexcept;
   ~ContactTracker();

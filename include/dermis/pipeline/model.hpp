@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/force_fusion.hpp"
 #include "dermis/fusion/look_up.hpp"
+#include "dermis/fusion/strip_table.hpp"
 
 namespace dermis::pipeline {
 
@@ -19,6 +21,7 @@ struct Model {
   ArrayDescription array;
   fusion::ForceNetworks networks;
   std::vector<fusion::LookUpTables> baselines;
+  std::optional<fusion::StripTable> strip{};      ///< Learned positions on a strip, where the calibration had some.
   std::map<std::string, std::string> provenance;  ///< Hashes, counts and statistics of the calibration, as text.
 };
 

@@ -14,7 +14,7 @@ namespace dermis::preprocessing {
 enum class Rejection {
   none,
   wrong_shape,           ///< Not rows x cols readings.
-  not_a_number,          ///< The temperature or the supply is NaN or infinite.
+  not_a_number,          ///< The supply is NaN or infinite, or the temperature infinite.
   too_few_readings,      ///< More than half of the taxels have no reading.
   supply_not_positive,   ///< A measured supply of 0 V or less.
   supply_unknown,        ///< The ADC has a reference in volts, and neither the frame nor the array tells the supply.
@@ -33,8 +33,8 @@ enum class Rejection {
 /// and 1 - ratio where pressure lowers the reading. Readings within half a count of the end that pressure drives them
 /// to, of the ADC or readout.rail_counts, or beyond it are marked saturated. A taxel without a reading (NaN, infinite,
 /// above 2^adc_bits - 1, or below 0 where readings are counts) is invalid and has the mean ratio of its neighbours that
-/// have one; a taxel that the sheet does not have is invalid and has the ratio 0. Not thread-safe: one conditioner per
-/// stream of frames.
+/// have one; a taxel that the sheet does not have is invalid and has the ratio 0. A temperature of NaN is none. Not
+/// thread-safe: one conditioner per stream of frames.
 class Conditioner {
  public:
   /// The array must be valid (ArrayDescription::validate). A reference in volts needs a supply, either nominal

@@ -73,7 +73,7 @@ void average_into(Labelled& mean, const Labelled& next) {
 }
 
 std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
-                                      const std::vector<std::vector<Load>>& loads_of, Nanos settle_time) {
+                                      const LoadsOfFrames& loads_of, Nanos settle_time) {
   preprocessing::PhaseSelector phase(settle_time, preprocessing::Phase::calibrate);
   preprocessing::Conditioner conditioner(array);
   ConditionedFrame conditioned;
@@ -107,7 +107,7 @@ std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<c
 Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time) {
   if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
-  std::vector<Labelled> labelled = labelled_frames(array, frames, group_by_frame(loads, frames.size()), settle_time);
+  std::vector<Labelled> labelled = labelled_frames(array, frames, LoadsOfFrames(loads, frames.size()), settle_time);
   if (labelled.empty()) return bad_input("no labelled frame is left after settling");
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;

@@ -36,8 +36,9 @@ std::vector<PaperBank::Range> ratio_ranges(const SampleDatabase& database) {
   std::vector<PaperBank::Range> ranges(database.array.taxel_count(), {kInfinity, -kInfinity});
   for (const Sample& sample : database.samples) {
     for (std::size_t taxel = 0; taxel < ranges.size(); ++taxel) {
-      ranges[taxel].low = std::min(ranges[taxel].low, sample.ratio[taxel]);
-      ranges[taxel].high = std::max(ranges[taxel].high, sample.ratio[taxel]);
+      const auto ratio = static_cast<double>(sample.ratio[taxel]);
+      ranges[taxel].low = std::min(ranges[taxel].low, ratio);
+      ranges[taxel].high = std::max(ranges[taxel].high, ratio);
     }
   }
   for (PaperBank::Range& range : ranges) {
@@ -49,7 +50,7 @@ std::vector<PaperBank::Range> ratio_ranges(const SampleDatabase& database) {
 std::vector<std::size_t> constant_readings(const SampleDatabase& database) {
   std::vector<std::size_t> taxels;
   for (std::size_t taxel = 0; taxel < database.array.taxel_count(); ++taxel) {
-    const double first = database.samples.front().ratio[taxel];
+    const float first = database.samples.front().ratio[taxel];
     const bool is_constant = std::all_of(database.samples.begin(), database.samples.end(),
                                          [&](const Sample& sample) { return sample.ratio[taxel] == first; });
     if (is_constant) taxels.push_back(taxel);
@@ -130,7 +131,8 @@ void BankTraining::fill_patterns(const SampleDatabase& database) {
   choices_.assign(networks, {{}, {}, Random(0)});
   for (std::size_t p = 0; p < database.samples.size(); ++p) {
     const Sample& sample = database.samples[p];
-    bank_.normalise(sample.ratio, sample.temperature_celsius, std::span(inputs_).subspan(p * width, width));
+    const std::vector<double> ratio(sample.ratio.begin(), sample.ratio.end());
+    bank_.normalise(ratio, sample.temperature_celsius, std::span(inputs_).subspan(p * width, width));
     for (std::size_t taxel = 0; taxel < networks; ++taxel) {
       const double newtons = sample.known_newtons[taxel];
       if (std::isnan(newtons)) continue;

@@ -100,7 +100,8 @@ double calibration_volts(const SampleDatabase& database, std::size_t taxel, doub
   std::vector<std::pair<double, double>> presses;  // ln force, ln ratio
   for (const calibration::Sample& sample : database.samples) {
     const double force = sample.known_newtons[taxel];
-    if (force > 0.0 && sample.ratio[taxel] > 0.0) presses.emplace_back(std::log(force), std::log(sample.ratio[taxel]));
+    const auto ratio = static_cast<double>(sample.ratio[taxel]);
+    if (force > 0.0 && ratio > 0.0) presses.emplace_back(std::log(force), std::log(ratio));
   }
   std::sort(presses.begin(), presses.end());
   const auto above = std::lower_bound(presses.begin(), presses.end(), std::pair{std::log(newtons) - 1e-9, -1e300});

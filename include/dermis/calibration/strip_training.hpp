@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <span>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/fusion/strip_table.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::calibration {
+
+/// Learns where a strip is touched from touches at known positions: isotonic regression of the position on the centre
+/// of mass of the signals that `model` gives. `positions` by rising frame. Errors: an array that is no strip, fewer
+/// than 16 positions with a contact, positions that do not rise with the centre of mass.
+[[nodiscard]] Result<fusion::StripTable> train_strip(const pipeline::Model& model, std::span<const RawFrame> frames,
+                                                     std::span<const TouchPosition> positions);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace dermis::calibration {
+
+/// A point of a table y(x), the mean of `weight` points.
+struct Knot {
+  double x = 0.0;
+  double y = 0.0;
+  double weight = 1.0;
+};
+
+/// `knots` by rising x: at most `most` of them, by merging equal numbers of neighbours.
+void thin_out(std::vector<Knot>& knots, std::size_t most);
+
+/// `knots` by rising x: pools neighbours until y rises with x (Ayer et al. 1955).
+void pool_adjacent_violators(std::vector<Knot>& knots);
+
+}  // namespace dermis::calibration
