@@ -99,7 +99,7 @@ std::vector<bool> choose_samples(std::size_t taxels, const LoadsOfFrames& loads)
   const std::size_t most = kMostBytes / (sizeof(Sample) + kAllocations * kBytesPerAllocation + kBytesPerTaxel * taxels);
   const std::vector<Candidate> candidates = candidates_of(loads);
   const std::vector<std::span<const Candidate>> places = by_place(candidates);
-  const std::size_t quota = quota_of(places, most);
+  const std::size_t quota = candidates.size() <= most ? candidates.size() : quota_of(places, most);
   std::vector<Candidate> chosen;
   for (const auto& place : places) {
     for_each_evenly(place, std::min(place.size(), quota), [&](const Candidate& one) { chosen.push_back(one); });

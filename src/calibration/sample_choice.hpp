@@ -9,9 +9,9 @@
 
 namespace dermis::calibration {
 
-/// Which frames become samples [frames], never an unlabelled one. Of the frames that press in the same places at most
-/// 4,000 do, and fewer where all of them together would fill more memory than the samples may: places that are pressed
-/// less often keep all of theirs. Those of one place are chosen evenly over their forces, both ends included.
+/// Which frames become samples [frames]: all labelled ones, unless they would fill more than 180 MB. Then at most 4,000
+/// of the frames that press in the same places do, or fewer, until they fit; places that are pressed less often keep
+/// all of theirs. Those of one place are chosen evenly over their forces, both ends included.
 [[nodiscard]] std::vector<bool> choose_samples(std::size_t taxels, const LoadsOfFrames& loads);
 
 }  // namespace dermis::calibration

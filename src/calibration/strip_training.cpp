@@ -86,7 +86,7 @@ double scatter_m(const fusion::StripTable& table, const std::vector<KnownTouch>&
     noise += std::pow(place.slope * touch.sigma_centre_m, 2);
   }
   const auto count = static_cast<double>(touches.size());
-  const double fitted = static_cast<double>(table.centre_m.size());
+  const auto fitted = static_cast<double>(table.centre_m.size());
   return std::sqrt(std::max(square / std::max(count - fitted, 1.0) - noise / count, 0.0));
 }
 

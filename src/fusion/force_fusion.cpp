@@ -16,7 +16,8 @@ namespace {
 
 constexpr float kNoForce = std::numeric_limits<float>::quiet_NaN();
 constexpr float kNoUpperBound = std::numeric_limits<float>::infinity();
-constexpr float kCommonSigmas = 2.0F;  // of an error that all taxels share
+constexpr double kUnlearnedPerCelsius = 0.005;  // 1/C, standard deviation of the temperature coefficient of rubber
+constexpr float kCommonSigmas = 2.0F;           // of an error that all taxels share
 
 template <typename Values, typename Predicate>
 bool all(const Values& values, std::size_t size, Predicate predicate) {
@@ -102,7 +103,7 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
   const Temperature temperature = this->temperature(conductance, force);
   prepare_inputs(conductance, temperature.offset);
   bank_.evaluate(inputs_, outputs_, gradient_);
-  compute_forces(temperature.sigma, force);
+  compute_forces(temperature, force);
   compute_signals(temperature.sigma, force);
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) apply_status(taxel, force);
 }
@@ -112,14 +113,14 @@ ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conduc
   const TemperatureSpan& calibrated = networks_.unloaded.temperature;
   if (!conductance.temperature_celsius) {
     if (uses_temperature()) force.status |= FrameStatus::temperature_unknown;
-    return {0.0, calibrated.half_span_celsius / std::numbers::sqrt3};  // anywhere in the calibrated span
+    return {0.0, calibrated.half_span_celsius / std::numbers::sqrt3, 0.0};  // anywhere in the calibrated span
   }
   const double offset = *conductance.temperature_celsius - calibrated.centre_celsius;
   const double clamped = calibrated.offset(*conductance.temperature_celsius);
   const double outside = std::abs(offset - clamped);
   constexpr double kSensorNoiseCelsius = 1.0;
   if (uses_temperature() && outside > kSensorNoiseCelsius) force.status |= FrameStatus::temperature_clamped;
-  return {clamped, std::hypot(networks_.temperature_sigma_celsius, outside)};
+  return {clamped, std::hypot(networks_.temperature_sigma_celsius, outside), outside};
 }
 
 void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept {
@@ -138,7 +139,7 @@ void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, double tem
   std::fill(inputs_.begin() + static_cast<std::ptrdiff_t>(2 * taxels), inputs_.end(), t);
 }
 
-void ForceFusion::compute_forces(double temperature_sigma, ForceFrame& force) const noexcept {
+void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& force) const noexcept {
   const float first = std::log(networks_.sigma_knots_newtons[0]);
   const float last = std::log(networks_.sigma_knots_newtons[1]);
   ForceSources sources;
@@ -149,9 +150,11 @@ void ForceFusion::compute_forces(double temperature_sigma, ForceFrame& force) co
   sources.gradient = gradient_;
   sources.offset_per_celsius = offset_per_celsius_;
   sources.relative_variance = relative_variance_;
-  sources.temperature_sigma = static_cast<float>(temperature_sigma);
+  sources.temperature_sigma = static_cast<float>(temperature.sigma);
   if (uses_temperature()) {
     sources.temperature_per_celsius = static_cast<float>(1.0 / networks_.unloaded.temperature.half_span_celsius);
+  } else {
+    sources.unlearned_variance = static_cast<float>(std::pow(kUnlearnedPerCelsius * temperature.outside, 2));
   }
   sources.log_first_knot = first;
   sources.knots_per_log = static_cast<float>(kSigmaKnots - 1) / (last - first);

@@ -89,6 +89,7 @@ void compute_forces(const ForceSources& sources, float* newtons, float* sigma_ne
     }
     const auto drift = hn::Mul(per_celsius, hn::Set(d, sources.temperature_sigma));
     auto variance = material_variance(d, sources, log_reached, first);
+    variance = hn::Add(variance, hn::Set(d, sources.unlearned_variance));
     variance = hn::MulAdd(noise, noise, variance);
     variance = hn::MulAdd(drift, drift, variance);
     const auto at_reached = hn::Exp(d, hn::Min(log_reached, hn::Set(d, kLargestLog)));

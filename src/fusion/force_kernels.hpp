@@ -31,6 +31,7 @@ struct ForceSources {
   std::span<const float> relative_variance;   ///< relative_sigma^2 [kSigmaKnots, taxels]
   float temperature_sigma = 0.0F;             ///< [C]
   float temperature_per_celsius = 0.0F;       ///< Rise of the third input [1/C]; 0 where there is none.
+  float unlearned_variance = 0.0F;            ///< Relative, of temperatures that were not calibrated.
   float log_first_knot = 0.0F;                ///< ln of the first knot of relative_sigma.
   float knots_per_log = 0.0F;                 ///< Knots for a rise of ln(newtons) by one.
 };

@@ -41,7 +41,8 @@ class Workflow(SmallArray):
 
     def test_evaluation_as_json(self):
         result = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))
-        self.assertEqual(set(result), {"frames", "frames_rejected", "estimators", *BREAKDOWNS, "cramer_rao_bound"})
+        self.assertEqual(set(result), {"frames", "frames_rejected", "judged_from_n", "estimators", *BREAKDOWNS,
+                                       "cramer_rao_bound"})
         self.assertEqual((result["frames"], result["frames_rejected"]), (200, 0))
         names = [entry["name"] for entry in result["estimators"]]
         self.assertEqual(names, ["dermis", "raw_lookup", "temperature_lookup", "crosstalk_lookup"])

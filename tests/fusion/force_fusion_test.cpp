@@ -423,6 +423,22 @@ TEST(ForceNetworks, consistent_networks_are_consistent) {
   for (const std::size_t inputs : {2U, 3U}) EXPECT_TRUE(support::random_networks(9, inputs, 4, 1).is_consistent());
 }
 
+TEST(ForceFusion, a_temperature_that_nobody_calibrated_costs_half_a_percent_a_degree) {
+  auto networks = support::random_networks(8, 2, 2, 4);
+  networks.unloaded.per_celsius.assign(8, 0.0);
+  const TemperatureSpan& span = networks.unloaded.temperature;
+  const double hottest = span.centre_celsius + span.half_span_celsius;
+  std::vector<double> siemens;
+  for (const double offset : networks.unloaded.offset_siemens) siemens.push_back(offset + 3e-4);
+  const auto calibrated = fuse(networks, make_frame(siemens, hottest));
+  const auto hotter = fuse(networks, make_frame(siemens, hottest + 10.0));
+  for (std::size_t k = 0; k < 8; ++k) {
+    ASSERT_EQ(hotter.newtons[k], calibrated.newtons[k]);
+    const double expected = std::hypot(calibrated.sigma_newtons[k], 0.05F * calibrated.newtons[k]);
+    EXPECT_NEAR(hotter.sigma_newtons[k] / expected, 1.0, 1e-4) << "taxel " << k;
+  }
+}
+
 TEST(ForceNetworks, half_span_is_not_negative_even_where_temperature_is_not_an_input) {
   ForceNetworks networks = power_law();
   networks.unloaded.temperature.half_span_celsius = 0.0;

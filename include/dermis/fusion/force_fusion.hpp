@@ -65,6 +65,9 @@ struct ForceNetworks {
 ///
 ///   (sigma_newtons / newtons)^2 = (p / e)^2 (sigma_siemens^2 + offset_sigma^2) + (q sigma_T)^2 + relative_sigma^2
 ///
+/// and, where temperature is not an input, the square of 0.5 %/C times what lies outside the calibrated temperatures:
+/// pressure-sensitive rubber drifts by 0.2 to 1 %/C (FlexiForce: 0.36), and nobody measured this one's.
+///
 /// sigma_T is the noise of the temperature sensor, and what the temperature was clamped by; half_span / sqrt(3) where
 /// the frame has none. Below e = sigma_siemens (+) offset_sigma the right side times newtons is that of this
 /// conductance, reached along the power law: what an unloaded taxel shows is its detection limit, the force that would
@@ -89,11 +92,12 @@ class ForceFusion {
   struct Temperature {
     double offset = 0.0;
     double sigma = 0.0;
+    double outside = 0.0;  // that the clamp took
   };
   [[nodiscard]] bool uses_temperature() const noexcept { return networks_.shape.inputs == kInputsWithTemperature; }
   [[nodiscard]] Temperature temperature(const ConductanceFrame& conductance, ForceFrame& force) const noexcept;
   void prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept;
-  void compute_forces(double temperature_sigma, ForceFrame& force) const noexcept;
+  void compute_forces(const Temperature& temperature, ForceFrame& force) const noexcept;
   void compute_signals(double temperature_sigma, ForceFrame& force) const noexcept;
   void apply_status(std::size_t taxel, ForceFrame& force) const noexcept;
 
