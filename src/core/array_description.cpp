@@ -113,6 +113,9 @@ Status validate_readout(const ArrayDescription& array) {
   if (!(readout.supply_noise >= 0.0 && readout.supply_noise <= kMostSupplyNoise)) {
     return bad_input("readout.supply_noise: must be 0 to 0.1");
   }
+  if (!(readout.drive_error_correlation >= 0.0 && readout.drive_error_correlation <= 1.0)) {
+    return bad_input("readout.drive_error_correlation: must be 0 to 1");
+  }
   if (readout.circuit == Circuit::none) return Done{};
   if (readout.idle_columns == IdleColumns::floating && readout.circuit != Circuit::divider) {
     return bad_input("readout.idle_columns: belongs to circuit = \"divider\"");
