@@ -81,6 +81,7 @@ using Profile = std::array<double, fusion::kSigmaKnots>;
 struct JudgedLoad {
   double square_noise = 0.0;
   double square_error = 0.0;
+  double newtons = 0.0;
   double instruments = 0.0;  // ADC, temperature sensor, unloaded conductance
   double supply = 0.0;       // for a supply error of kUnitSupplyNoise, which all taxels share
   Profile material{};        // for a relative error of 1 at each knot
@@ -106,7 +107,10 @@ class ErrorBudget {
     return ErrorBudget(std::move(*compensator), std::move(model.networks));
   }
 
+  /// Again the same where the sample is the last one.
   const ForceFrame& forces(const Sample& sample, double sigma_ratio) {
+    if (&sample == last_) return force_;
+    last_ = &sample;
     conditioned_.ratio = sample.ratio;
     conditioned_.sigma_ratio = sigma_ratio;
     conditioned_.temperature_celsius = sample.temperature_celsius;
@@ -124,6 +128,7 @@ class ErrorBudget {
 
   compensation::Compensator compensator_;
   fusion::ForceFusion fusion_;
+  const Sample* last_ = nullptr;
   ConditionedFrame conditioned_;
   ConductanceFrame conductance_;
   ForceFrame force_;
@@ -134,6 +139,7 @@ JudgedLoad judge(const TestedLoad& load, const fusion::ForceNetworks& networks, 
   JudgedLoad judged;
   judged.square_noise = load.noise_n * load.noise_n;
   judged.square_error = load.error_n * load.error_n;
+  judged.newtons = load.newtons;
   double supply_n = 0.0;
   for (const std::size_t taxel : load.taxels) {
     const auto newtons = static_cast<double>(without_supply.newtons[taxel]);
@@ -151,19 +157,30 @@ JudgedLoad judge(const TestedLoad& load, const fusion::ForceNetworks& networks, 
   return judged;
 }
 
+/// Those of one sample in a row.
+std::vector<const TestedLoad*> some_of(const std::vector<TestedLoad>& loads) {
+  const std::size_t count = std::min(loads.size(), kMostLoads);
+  std::vector<const TestedLoad*> chosen;
+  for (std::size_t k = 0; k < count; ++k) chosen.push_back(&loads[k * loads.size() / count]);
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [](const TestedLoad* a, const TestedLoad* b) { return a->sample < b->sample; });
+  return chosen;
+}
+
 Result<std::vector<JudgedLoad>> judge_loads(const SampleDatabase& database, const std::vector<TestedLoad>& loads,
                                             const pipeline::Model& model) {
   const double noise_ratio = model.array.readout.adc_noise_counts / database.array.readout.adc_noise_counts;
   const Result<ErrorBudget> checked = ErrorBudget::create(model, 0.0);
   if (!checked) return checked.error();
-  const std::size_t count = std::min(loads.size(), kMostLoads);
+  const std::vector<const TestedLoad*> chosen = some_of(loads);
+  const std::size_t count = chosen.size();
   std::vector<JudgedLoad> judged(count);
   parallel_for((count + kLoadsPerTask - 1) / kLoadsPerTask, [&](std::size_t task) {
     Result<ErrorBudget> without_supply = ErrorBudget::create(model, 0.0);
     Result<ErrorBudget> with_supply = ErrorBudget::create(model, JudgedLoad::kUnitSupplyNoise);
     const std::size_t end = std::min(count, (task + 1) * kLoadsPerTask);
     for (std::size_t k = task * kLoadsPerTask; k < end; ++k) {
-      const TestedLoad& load = loads[k * loads.size() / count];
+      const TestedLoad& load = *chosen[k];
       const Sample& sample = database.samples[load.sample];
       const double sigma_ratio = noise_ratio * sample.sigma_ratio;
       judged[k] = judge(load, model.networks, without_supply->forces(sample, sigma_ratio),
@@ -264,6 +281,20 @@ Profile likeliest_profile(const std::vector<JudgedLoad>& loads, double supply_no
     }
   }
   return scaled(profile, loads, &JudgedLoad::square_error, supply_noise);
+}
+
+/// What the noise of the samples has left in the networks stays where readings are less noisy: the least a profile is.
+void add_uncertainty_of_networks(const std::vector<JudgedLoad>& loads, Profile& profile) {
+  for (std::size_t k = 0; k < profile.size(); ++k) {
+    double square = 0.0;
+    double weight = 0.0;
+    for (const JudgedLoad& load : loads) {
+      const double share = load.material[k] / (load.newtons * load.newtons);
+      square += share * (load.square_error - load.square_noise) / (load.newtons * load.newtons);
+      weight += share;
+    }
+    if (weight > 0.0) profile[k] = std::max(profile[k], square / weight);
+  }
 }
 
 /// The profile of the taxels that carry the loads, in the networks and for the report.
@@ -367,12 +398,14 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   report.supply_noise = likeliest_supply_noise(*own, *shared);
   model.array.readout.supply_noise = report.supply_noise;
   if (!shared->empty()) {
-    report.relative_sigma_of_shared =
-        set_relative_sigma(training.tested_shared, likeliest_profile(*shared, report.supply_noise), model.networks);
+    Profile profile = likeliest_profile(*shared, report.supply_noise);
+    add_uncertainty_of_networks(*shared, profile);
+    report.relative_sigma_of_shared = set_relative_sigma(training.tested_shared, profile, model.networks);
   }
   if (!own->empty()) {
-    report.relative_sigma =
-        set_relative_sigma(training.tested_own, likeliest_profile(*own, report.supply_noise), model.networks);
+    Profile profile = likeliest_profile(*own, report.supply_noise);
+    add_uncertainty_of_networks(*own, profile);
+    report.relative_sigma = set_relative_sigma(training.tested_own, profile, model.networks);
   }
   return report;
 }
