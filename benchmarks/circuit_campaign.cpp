@@ -31,8 +31,8 @@ namespace dermis {
 namespace {
 
 constexpr double kCelsius = 25.0;
-constexpr int kFramesOfMean = 25;  // a quarter of a second
-constexpr int kUnloadedFrames = 12;
+constexpr int kFramesOfMean = 25;     // a quarter of a second
+constexpr int kUnloadedFrames = 100;  // single ones, as the guide keeps them
 constexpr int kTestFrames = 150;
 
 template <typename T>
@@ -167,7 +167,7 @@ class Rig {
 
 Recording guided(Rig& rig, const calibration::CalibrationPlan& plan) {
   Recording recording;
-  rig.record({}, kUnloadedFrames, kFramesOfMean, recording);
+  rig.record({}, kUnloadedFrames, 1, recording);
   for (std::size_t k = 0; k < plan.press_count(); ++k) {
     rig.record({{plan.taxel_of(k), plan.weight_of(k)}}, static_cast<int>(plan.frames_per_press()), 2 * kFramesOfMean,
                recording);

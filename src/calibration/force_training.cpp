@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "calibration/shared_training.hpp"
@@ -24,6 +26,7 @@ constexpr std::size_t kPointsPerParameterOfUnit = 2;
 constexpr std::size_t kLeastPoints = 8;  // for a network of its own
 constexpr std::size_t kMostPoints =
     4000;  // more would lower the error of its two dozen numbers by less than 1 % of noise
+constexpr std::size_t kFirstNetworks = 16;  // trained from random starts, and the others from these
 constexpr std::size_t kLeastForceLevels = 3;
 constexpr double kLevelWidth = 1.05;      // labels weighed by a load cell scatter about their level
 constexpr double kLeastForceRange = 2.0;  // heaviest over lightest load
@@ -39,13 +42,29 @@ struct Evidence {
   std::vector<bool> dead;                       ///< [taxels]
 };
 
+/// Mean of the unloaded samples; 0: not known. What noise does to a conductance depends on all that presses.
+double unloaded_sigma_siemens(const SampleDatabase& database, std::size_t taxel) {
+  double sum = 0.0;
+  double count = 0.0;
+  for (const Sample& sample : database.samples) {
+    if (sample.sigma_siemens.empty()) return 0.0;
+    if (!sample.unloaded) continue;
+    sum += static_cast<double>(sample.sigma_siemens[taxel]);
+    count += 1.0;
+  }
+  return count > 0.0 ? sum / count : 0.0;
+}
+
 std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size_t taxel, const Evidence& evidence) {
   std::vector<TaxelPoint> points;
+  const double unloaded_sigma = unloaded_sigma_siemens(database, taxel);
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
     const Sample& sample = database.samples[k];
     const double newtons = sample.known_newtons[taxel];
     if (!(newtons > 0.0)) continue;
-    points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.temperatures),
+    double noise = evidence.unloaded.noise_siemens[taxel];
+    if (unloaded_sigma > 0.0) noise *= static_cast<double>(sample.sigma_siemens[taxel]) / unloaded_sigma;
+    points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.temperatures), noise,
                       normalised_temperature(sample, evidence.temperatures), newtons, k});
   }
   return points;
@@ -226,17 +245,31 @@ Division divide(const Evidence& evidence, const ArrayDescription& array) {
   return division;
 }
 
+/// At most `most` of `count`, evenly.
+std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
+  std::vector<std::size_t> places;
+  for (std::size_t k = 0; k < std::min(count, most); ++k) places.push_back(k * count / std::min(count, most));
+  return places;
+}
+
 std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& division,
                                     const std::function<void(double)>& progress) {
   std::vector<ForceNetwork> networks(division.own.size());
   std::atomic<std::size_t> done = 0;
-  parallel_for(division.own.size(), [&](std::size_t k) {
-    const std::size_t taxel = division.own[k];
-    const std::vector<TaxelPoint>& points = evidence.points[taxel];
+  const auto train = [&](std::size_t k, std::span<const ForceNetwork> others) {
+    const std::vector<TaxelPoint>& points = evidence.points[division.own[k]];
     const bool uses_temperature = evidence.temperatures.is_input;
-    networks[k] = train_taxel(force_shape(uses_temperature, hidden_units(points.size(), uses_temperature)), points,
-                              evidence.unloaded.noise_siemens[taxel], taxel);
+    const auto shape = force_shape(uses_temperature, hidden_units(points.size(), uses_temperature));
+    std::optional<ForceNetwork> like = train_taxel_like(others, shape, points);
+    networks[k] = like ? *std::move(like) : train_taxel(shape, points, division.own[k]);
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(division.own.size()));
+  };
+  const std::vector<std::size_t> first = spread(division.own.size(), kFirstNetworks);
+  parallel_for(first.size(), [&](std::size_t k) { train(first[k], {}); });
+  std::vector<ForceNetwork> others;
+  for (const std::size_t k : first) others.push_back(networks[k]);
+  parallel_for(networks.size(), [&](std::size_t k) {
+    if (networks[k].parameters.empty()) train(k, others);
   });
   return networks;
 }

@@ -59,14 +59,18 @@ std::string describe_quiet(bool is_disturbed) {
 }
 
 std::string describe_press(const GuideState& state, const ArrayDescription& array) {
-  const std::string here = array.taxel_name(state.taxel);
+  std::string here = array.taxel_name(state.taxel);
+  if (state.together_with) here += " and as much on " + array.taxel_name(*state.together_with);
   const std::string there = state.pressed_taxel ? array.taxel_name(*state.pressed_taxel) : "another taxel";
   const std::string weight = describe_weight(state.weight_n);
   switch (state.hint) {
     case GuideHint::none:
-    case GuideHint::press: return fmt::format("Put {} on {}.", weight, here);
+    case GuideHint::press:
+      return fmt::format("{}Put {} on {}.", state.together_with ? "The circuit is not certain yet. " : "", weight,
+                         here);
     case GuideHint::hold: return "Hold still.";
-    case GuideHint::release: return fmt::format("{} is done. Take it off.", here);
+    case GuideHint::release:
+      return state.together_with ? "Done. Take both off." : fmt::format("{} is done. Take it off.", here);
     case GuideHint::other_taxel: return fmt::format("That is {}: put {} on {}.", there, weight, here);
     case GuideHint::unsteady: return "Not steady yet: hold still.";
     case GuideHint::too_short: return fmt::format("Too short: put {} on {} again and wait.", weight, here);

@@ -54,6 +54,7 @@ class GuidedCalibration::Implementation {
   void follow_press(const RawFrame& raw, double seconds);
   void keep_press();
   void ask_for_next();
+  void expect_press(std::optional<std::size_t> last_taxel);
   void start_fit(bool is_last);
   void start_last_fit();
   void fail(std::string why);
@@ -99,7 +100,7 @@ void GuidedCalibration::Implementation::wait_for_quiet(const RawFrame& raw) {
   if (!quiet_.is_done()) return;
   unloaded_ = std::make_shared<const std::vector<RawFrame>>(quiet_.frames());
   recogniser_.emplace(TouchSense(quiet_.mean(), ratio_per_count(array_)), plan_.hold_time);
-  recogniser_->expect(presses_.taxel(), {});
+  expect_press({});
   stage_ = GuideStage::pressing;
 }
 
@@ -119,7 +120,11 @@ void GuidedCalibration::Implementation::keep_press() {
 
 void GuidedCalibration::Implementation::ask_for_next() {
   if (!presses_.advance()) return start_last_fit();
-  recogniser_->expect(presses_.taxel(), presses_.last_taxel());
+  expect_press(presses_.last_taxel());
+}
+
+void GuidedCalibration::Implementation::expect_press(std::optional<std::size_t> last_taxel) {
+  recogniser_->expect(presses_.taxel(), presses_.together_with(), last_taxel);
 }
 
 void GuidedCalibration::Implementation::start_last_fit() {
@@ -145,6 +150,12 @@ void GuidedCalibration::Implementation::accept_fit(GuideFitter::Outcome outcome)
   fit_.unpressed_error = outcome.unpressed_error;
   if (!outcome.calibration) return;
   if (!*outcome.calibration) return fail(outcome.calibration->error().message);
+  const std::vector<PressPair>& telling = outcome.calibration->value().report.telling_presses;
+  if (!telling.empty() && !presses_.has_pairs()) {
+    presses_.ask_for(telling);
+    stage_ = GuideStage::pressing;
+    return ask_for_next();
+  }
   fit_.calibration = std::make_shared<const Calibration>(std::move(outcome.calibration->value()));
   stage_ = GuideStage::done;
 }
@@ -165,7 +176,7 @@ Status GuidedCalibration::Implementation::repeat() {
   presses_.repeat();
   fit_.presses = std::min(fit_.presses, presses_.kept().size());
   stage_ = GuideStage::pressing;
-  recogniser_->expect(presses_.taxel(), presses_.last_taxel());
+  expect_press(presses_.last_taxel());
   return Done{};
 }
 
@@ -183,6 +194,7 @@ GuideState GuidedCalibration::Implementation::state() const {
   state.stage = stage_;
   state.taxel = presses_.taxel();
   state.weight_n = presses_.weight_n();
+  state.together_with = presses_.together_with();
   if (recogniser_) {
     state.hint = recogniser_->hint();
     state.reading = recogniser_->reading();
@@ -196,7 +208,10 @@ GuideState GuidedCalibration::Implementation::state() const {
   state.median_relative_error = fit_.error;
   state.unpressed_relative_error = fit_.unpressed_error;
   state.taxel_presses.resize(array_.taxel_count());
-  for (const auto& press : presses_.kept()) ++state.taxel_presses[press->taxel];
+  for (const auto& press : presses_.kept()) {
+    ++state.taxel_presses[press->taxel];
+    if (press->together_with) ++state.taxel_presses[*press->together_with];
+  }
   state.message = message(state);
   return state;
 }

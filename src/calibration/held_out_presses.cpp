@@ -22,10 +22,12 @@ constexpr std::size_t kTaxelFolds = 4;
 
 using PressesOfTaxel = std::map<std::size_t, GuidedPresses>;
 
-/// From the lightest.
+/// Those of single taxels, from the lightest.
 PressesOfTaxel by_taxel(const GuidedPresses& presses) {
   PressesOfTaxel grouped;
-  for (const auto& press : presses) grouped[press->taxel].push_back(press);
+  for (const auto& press : presses) {
+    if (!press->together_with) grouped[press->taxel].push_back(press);
+  }
   for (auto& [taxel, of_taxel] : grouped) {
     std::stable_sort(of_taxel.begin(), of_taxel.end(),
                      [](const auto& a, const auto& b) { return a->newtons < b->newtons; });
@@ -100,6 +102,12 @@ std::vector<double> errors_on(const GuidedPresses& left_out, const ArrayDescript
   return errors_of(fit->model, left_out);
 }
 
+Load load_of(const ArrayDescription& array, std::size_t frame, std::size_t taxel, double newtons) {
+  const std::size_t row = taxel / array.cols;
+  const std::size_t col = taxel % array.cols;
+  return {frame, LoadKind::force, {row, col, row, col}, newtons};
+}
+
 }  // namespace
 
 GuidedData labelled_frames(const ArrayDescription& array, const std::vector<RawFrame>& unloaded,
@@ -110,10 +118,11 @@ GuidedData labelled_frames(const ArrayDescription& array, const std::vector<RawF
     data.frames.push_back(frame);
   }
   for (const auto& press : presses) {
-    const std::size_t row = press->taxel / array.cols;
-    const std::size_t col = press->taxel % array.cols;
     for (const RawFrame& frame : press->frames) {
-      data.loads.push_back({data.frames.size(), LoadKind::force, {row, col, row, col}, press->newtons});
+      data.loads.push_back(load_of(array, data.frames.size(), press->taxel, press->newtons));
+      if (press->together_with) {
+        data.loads.push_back(load_of(array, data.frames.size(), *press->together_with, press->newtons));
+      }
       data.frames.push_back(frame);
     }
   }

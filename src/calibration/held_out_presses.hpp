@@ -18,6 +18,7 @@ struct GuidedPress {
   std::size_t taxel = 0;
   double newtons = 0.0;
   std::vector<RawFrame> frames;
+  std::optional<std::size_t> together_with = {};  // another taxel, with as much
 };
 using GuidedPresses = std::vector<std::shared_ptr<const GuidedPress>>;
 

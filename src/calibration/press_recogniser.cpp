@@ -10,16 +10,19 @@ namespace {
 
 constexpr double kReleasedShare = 0.15;  // of the excess of the press
 constexpr double kLostShare = 0.5;
+constexpr double kTogetherShare = 0.25;      // of the excess of the taxel that feels more of two with the same weight
 constexpr double kOtherTaxelSeconds = 0.15;  // while a weight is put on
 
 }  // namespace
 
 PressRecogniser::PressRecogniser(TouchSense sense, Nanos hold_time) : sense_(std::move(sense)), hold_(hold_time) {}
 
-void PressRecogniser::expect(std::size_t taxel, std::optional<std::size_t> last_taxel) {
+void PressRecogniser::expect(std::size_t taxel, std::optional<std::size_t> together_with,
+                             std::optional<std::size_t> last_taxel) {
   rest();
   hint_ = GuideHint::press;
   taxel_ = taxel;
+  together_with_ = together_with;
   last_taxel_ = last_taxel;
 }
 
@@ -33,19 +36,38 @@ PressRecogniser::Event PressRecogniser::feed(const RawFrame& raw, std::span<cons
   touch_ = sense_.feel(ratio, taxel_);
   reading_ = sense_.relative(ratio, taxel_);
   if (!touch_.strongest) sense_.follow(ratio, seconds);
-  if (hint_ == GuideHint::release) return is_released(ratio, taxel_) ? Event::released : Event::none;
+  if (hint_ == GuideHint::release) {
+    const bool is_off = is_released(ratio, taxel_) && (!together_with_ || is_released(ratio, *together_with_));
+    return is_off ? Event::released : Event::none;
+  }
   hold_.has_begun() ? follow_hold(raw, ratio) : wait_for_press(raw, ratio, seconds);
   return hold_.is_done() ? Event::held : Event::none;
 }
 
+/// Also nothing.
+bool PressRecogniser::is_asked_for(std::optional<std::size_t> taxel) const {
+  return !taxel || taxel == taxel_ || taxel == together_with_;
+}
+
+bool PressRecogniser::is_pressed_as_asked(std::span<const double> ratio) const {
+  if (!together_with_) return touch_.strongest == taxel_ && !touch_.beside;
+  if (!touch_.strongest || !is_asked_for(touch_.strongest) || !is_asked_for(touch_.beside)) return false;
+  const double least = kTogetherShare * sense_.excess(ratio, *touch_.strongest);
+  const auto is_felt = [&](std::size_t taxel) {
+    return sense_.excess(ratio, taxel) > std::max(least, sense_.threshold(taxel));
+  };
+  return is_felt(taxel_) && is_felt(*together_with_);
+}
+
 void PressRecogniser::wait_for_press(const RawFrame& raw, std::span<const double> ratio, double seconds) {
-  if (touch_.strongest == taxel_ && !touch_.beside) {
+  if (is_pressed_as_asked(ratio)) {
     hold_.feed(raw, ratio, sense_.excess(ratio, taxel_), sense_.noise(taxel_));
     other_seconds_ = 0.0;
     hint_ = GuideHint::hold;
     return;
   }
-  const bool is_touched = touch_.strongest && !is_memory(ratio);
+  const bool waits_for_second = together_with_ && is_asked_for(touch_.strongest) && is_asked_for(touch_.beside);
+  const bool is_touched = touch_.strongest && !waits_for_second && !is_memory(ratio);
   other_seconds_ = is_touched ? other_seconds_ + seconds : 0.0;
   if (other_seconds_ > kOtherTaxelSeconds) {
     hint_ = touch_.strongest == taxel_ ? GuideHint::several : GuideHint::other_taxel;
@@ -56,7 +78,7 @@ void PressRecogniser::wait_for_press(const RawFrame& raw, std::span<const double
 
 void PressRecogniser::follow_hold(const RawFrame& raw, std::span<const double> ratio) {
   const double excess = sense_.excess(ratio, taxel_);
-  if (touch_.strongest != taxel_ || touch_.beside || excess < kLostShare * hold_.mean_excess()) {
+  if (!is_pressed_as_asked(ratio) || excess < kLostShare * hold_.mean_excess()) {
     hold_.clear();
     hint_ = touch_.strongest ? GuideHint::hold : GuideHint::too_short;
     return;

@@ -23,8 +23,9 @@ class PressRecogniser {
 
   PressRecogniser(TouchSense sense, Nanos hold_time);
 
-  /// A press of `taxel` is asked for. The material may still show the press of `last_taxel` for a while.
-  void expect(std::size_t taxel, std::optional<std::size_t> last_taxel);
+  /// A press of `taxel` is asked for, where there is another one of both at the same time. The material may still show
+  /// the press of `last_taxel` for a while.
+  void expect(std::size_t taxel, std::optional<std::size_t> together_with, std::optional<std::size_t> last_taxel);
   /// Nothing is asked for.
   void rest();
 
@@ -43,6 +44,8 @@ class PressRecogniser {
   [[nodiscard]] std::optional<std::size_t> pressed_taxel() const noexcept;
 
  private:
+  [[nodiscard]] bool is_asked_for(std::optional<std::size_t> taxel) const;
+  [[nodiscard]] bool is_pressed_as_asked(std::span<const double> ratio) const;
   void wait_for_press(const RawFrame& raw, std::span<const double> ratio, double seconds);
   void follow_hold(const RawFrame& raw, std::span<const double> ratio);
   [[nodiscard]] bool is_released(std::span<const double> ratio, std::size_t taxel) const;
@@ -52,6 +55,7 @@ class PressRecogniser {
   PressHold hold_;
   GuideHint hint_ = GuideHint::none;
   std::size_t taxel_ = 0;
+  std::optional<std::size_t> together_with_;
   std::optional<std::size_t> last_taxel_;
   double kept_excess_ = 0.0;  // of the last hold that was kept
   Touch touch_;

@@ -11,9 +11,23 @@ namespace dermis::calibration {
 PressSequence::PressSequence(CalibrationPlan plan) : plan_(std::move(plan)), steps_(plan_.press_count(), Step::open) {}
 
 void PressSequence::keep(std::vector<RawFrame> frames) {
-  kept_.push_back(std::make_shared<const GuidedPress>(GuidedPress{taxel(), weight_n(), std::move(frames)}));
+  kept_.push_back(
+      std::make_shared<const GuidedPress>(GuidedPress{taxel(), weight_n(), std::move(frames), together_with()}));
   kept_steps_.push_back(step_);
   steps_[step_] = Step::kept;
+}
+
+const PressPair* PressSequence::pair() const {
+  return step_ < plan_.press_count() ? nullptr : &pairs_[step_ - plan_.press_count()];
+}
+
+std::optional<std::size_t> PressSequence::together_with() const {
+  return pair() ? std::optional(pair()->second) : std::nullopt;
+}
+
+void PressSequence::ask_for(std::vector<PressPair> pairs) {
+  pairs_ = std::move(pairs);
+  steps_.resize(plan_.press_count() + pairs_.size(), Step::open);
 }
 
 bool PressSequence::advance() {

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kMostOfPlace = 4000;  // as many points as a network of its own is trained on
 constexpr std::size_t kMostBytes = 180'000'000;
-constexpr std::size_t kBytesPerTaxel = 13;  // of a sample: ratio, siemens, status, force
-constexpr std::size_t kAllocations = 4;     // of a sample, and what each of them costs
+constexpr std::size_t kBytesPerTaxel = 17;  // of a sample: ratio, siemens, sigma, status, force
+constexpr std::size_t kAllocations = 5;     // of a sample, and what each of them costs
 constexpr std::size_t kBytesPerAllocation = 16;
 
 /// A labelled frame and where it is pressed.

@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "calibration/circuit_fit/circuit_choice.hpp"
 #include "calibration/label_check.hpp"
 #include "calibration/labels.hpp"
 #include "calibration/rail_search.hpp"
@@ -84,6 +85,7 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, std::span<c
   sample.ratio.assign(conditioned.ratio.begin(), conditioned.ratio.end());
   sample.sigma_ratio = conditioned.sigma_ratio;
   sample.siemens.assign(conductance.siemens.begin(), conductance.siemens.end());
+  sample.sigma_siemens.assign(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end());
   sample.taxels = conditioned.taxels;
   expand_loads(array, loads, sample);
   // A reading at the end of the ADC no longer tells its force, of one that is missing the neighbours tell some.
@@ -182,6 +184,11 @@ std::optional<std::string> remark_on_choice(const LoadsOfFrames& loads_of, const
   return fmt::format("{} labelled frames repeat: {} of them are used, evenly over places and forces", labelled, chosen);
 }
 
+bool has_floating_lines(const Readout& readout) {
+  if (readout.circuit != Circuit::divider) return false;
+  return readout.idle_rows == IdleRows::floating || readout.idle_columns == IdleColumns::floating;
+}
+
 /// The samples of an array whose circuit is known.
 Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time,
@@ -236,13 +243,19 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
                     *known.readout.rail_counts));
   }
   std::optional<CircuitFit> circuit;
-  if (array.has_unknown_circuit()) {
+  if (array.has_unknown_circuit() || has_floating_lines(array.readout)) {
     Result<CircuitFit> fit = fit_circuit(known, frames, loads, settle_time);
     if (!fit) return fit.error();
     known = fit->array;
-    circuit = std::move(*fit);
+    if (!fit->statements.empty()) circuit = std::move(*fit);
   }
   Result<SampleDatabase> database = invert_frames(known, frames, loads, settle_time, progress);
+  if (!database && array.readout.circuit == Circuit::automatic && known.readout.circuit != Circuit::none) {
+    circuit->statements.push_back("the circuit that was found does not do: " + database.error().message +
+                                  "; readings are taken as they are");
+    circuit->array = without_circuit(array);
+    database = invert_frames(circuit->array, frames, loads, settle_time, progress);
+  }
   if (!database) return database.error();
   database->circuit_fit = std::move(circuit);
   std::move(labels.remarks.begin(), labels.remarks.end(), std::back_inserter(database->remarks));

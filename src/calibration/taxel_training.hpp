@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "calibration/force_network.hpp"
@@ -12,14 +13,21 @@ namespace dermis::calibration {
 /// A known force on one taxel.
 struct TaxelPoint {
   double excess_siemens = 0.0;  ///< > 0
+  double noise_siemens = 0.0;   ///< Standard deviation of it.
   double temperature = 0.0;     ///< About [-1, 1]; 0 where temperature is not an input.
   double newtons = 0.0;         ///< > 0
   std::size_t sample = 0;       ///< Where it comes from in the database.
 };
 
-/// Trains ln(newtons) of one taxel on its points by Levenberg-Marquardt. Every point counts by its noise:
-/// `noise_siemens` of the reading plus a floor for what the temperature and supply meters add.
+/// Trains ln(newtons) of one taxel on its points by Levenberg-Marquardt, from several random starts. Every point counts
+/// by its noise and a floor for what the temperature and supply meters add.
 [[nodiscard]] ForceNetwork train_taxel(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
-                                       double noise_siemens, std::uint64_t seed);
+                                       std::uint64_t seed);
+
+/// The same from one start: of the networks of other taxels that have this shape, the one that fits the points best.
+/// Taxels of a sheet are alike, and their networks lie near each other. Empty: no network has this shape.
+[[nodiscard]] std::optional<ForceNetwork> train_taxel_like(std::span<const ForceNetwork> others,
+                                                           const network::PerceptronShape& shape,
+                                                           std::span<const TaxelPoint> points);
 
 }  // namespace dermis::calibration

@@ -22,60 +22,11 @@ namespace {
 constexpr double kOneSigmaShare = 0.682689;  // of a normal distribution within one standard deviation
 constexpr double kTwoSigmaShare = 0.954500;  // within two
 constexpr double kOutlierRatio = 9.0;        // of mean squares: three standard deviations
-constexpr std::size_t kLeastUnloadedSamples = 5;
-constexpr double kMostShareAtEnd = 0.1;  // cuts 8 % off the standard deviation
-constexpr std::size_t kLeastTemperatures = 20;
-constexpr double kMostTemperatureNoise = 1.0;
-constexpr std::size_t kMostLoads = 4000;  // more do not make the estimates better
+constexpr std::size_t kMostLoads = 4000;     // more do not make the estimates better
 constexpr std::size_t kLoadsPerTask = 100;
 constexpr double kLeastRelativeSigma = 1e-3;
 constexpr double kStartRelativeSigma = 0.1;
 constexpr std::size_t kLoadsPerKnot = 50;
-
-double mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-/// Leaves out what is far above the median.
-void erase_outliers(std::vector<double>& mean_squares) {
-  const double most = kOutlierRatio * quantile(mean_squares, 0.5);
-  std::erase_if(mean_squares, [&](double square) { return square > most; });
-}
-
-// ---------------------------------------------------------------------------------------- noise of the instruments
-
-std::vector<const Sample*> unloaded_samples(const SampleDatabase& database) {
-  std::vector<const Sample*> samples;
-  for (const Sample& sample : database.samples) {
-    if (sample.unloaded) samples.push_back(&sample);
-  }
-  return samples;
-}
-
-/// Taxels that hardly any unloaded sample shows at an end of the ADC.
-std::vector<std::size_t> free_taxels(const SampleDatabase& database, const std::vector<const Sample*>& unloaded) {
-  const double half_count = 0.5 / database.array.readout.full_scale_counts();
-  std::vector<std::size_t> taxels;
-  for (std::size_t taxel = 0; taxel < database.array.taxel_count(); ++taxel) {
-    const auto at_end = std::count_if(unloaded.begin(), unloaded.end(), [&](const Sample* sample) {
-      const double reading = bare_reading(database, *sample, taxel);
-      return reading < half_count || reading > 1.0 - half_count;
-    });
-    const double share = static_cast<double>(at_end) / static_cast<double>(unloaded.size());
-    if (share <= kMostShareAtEnd) taxels.push_back(taxel);
-  }
-  return taxels;
-}
-
-/// Half the square of the difference of two readings [counts^2]: on average the variance of one.
-double half_square_difference(const SampleDatabase& database, const Sample& a, const Sample& b, std::size_t taxel) {
-  const double sigma = std::hypot(a.sigma_ratio, b.sigma_ratio);
-  const double difference =
-      (double{a.ratio[taxel]} - double{b.ratio[taxel]}) / sigma * database.array.readout.adc_noise_counts;
-  return difference * difference;
-}
-
-// -------------------------------------------------------------------------------------------- error on tested loads
 
 /// Squares of the relative error at the knots of fusion::ForceNetworks::relative_sigma.
 using Profile = std::array<double, fusion::kSigmaKnots>;
@@ -84,6 +35,7 @@ using Profile = std::array<double, fusion::kSigmaKnots>;
 struct JudgedLoad {
   double square_noise = 0.0;
   double square_error = 0.0;
+  double newtons = 0.0;
   double instruments = 0.0;  // ADC, temperature sensor, unloaded conductance
   double supply = 0.0;       // for a supply error of kUnitSupplyNoise, which all taxels share
   Profile material{};        // for a relative error of 1 at each knot
@@ -109,7 +61,10 @@ class ErrorBudget {
     return ErrorBudget(std::move(*compensator), std::move(model.networks));
   }
 
+  /// Again the same where the sample is the last one.
   const ForceFrame& forces(const Sample& sample, double sigma_ratio) {
+    if (&sample == last_) return force_;
+    last_ = &sample;
     conditioned_.ratio.assign(sample.ratio.begin(), sample.ratio.end());
     conditioned_.sigma_ratio = sigma_ratio;
     conditioned_.temperature_celsius = sample.temperature_celsius;
@@ -127,6 +82,7 @@ class ErrorBudget {
 
   compensation::Compensator compensator_;
   fusion::ForceFusion fusion_;
+  const Sample* last_ = nullptr;
   ConditionedFrame conditioned_;
   ConductanceFrame conductance_;
   ForceFrame force_;
@@ -137,6 +93,7 @@ JudgedLoad judge(const TestedLoad& load, const fusion::ForceNetworks& networks, 
   JudgedLoad judged;
   judged.square_noise = load.noise_n * load.noise_n;
   judged.square_error = load.error_n * load.error_n;
+  judged.newtons = load.newtons;
   double supply_n = 0.0;
   for (const std::size_t taxel : load.taxels) {
     const auto newtons = static_cast<double>(without_supply.newtons[taxel]);
@@ -154,19 +111,30 @@ JudgedLoad judge(const TestedLoad& load, const fusion::ForceNetworks& networks, 
   return judged;
 }
 
+/// Those of one sample in a row.
+std::vector<const TestedLoad*> some_of(const std::vector<TestedLoad>& loads) {
+  const std::size_t count = std::min(loads.size(), kMostLoads);
+  std::vector<const TestedLoad*> chosen;
+  for (std::size_t k = 0; k < count; ++k) chosen.push_back(&loads[k * loads.size() / count]);
+  std::stable_sort(chosen.begin(), chosen.end(),
+                   [](const TestedLoad* a, const TestedLoad* b) { return a->sample < b->sample; });
+  return chosen;
+}
+
 Result<std::vector<JudgedLoad>> judge_loads(const SampleDatabase& database, const std::vector<TestedLoad>& loads,
                                             const pipeline::Model& model) {
   const double noise_ratio = model.array.readout.adc_noise_counts / database.array.readout.adc_noise_counts;
   const Result<ErrorBudget> checked = ErrorBudget::create(model, 0.0);
   if (!checked) return checked.error();
-  const std::size_t count = std::min(loads.size(), kMostLoads);
+  const std::vector<const TestedLoad*> chosen = some_of(loads);
+  const std::size_t count = chosen.size();
   std::vector<JudgedLoad> judged(count);
   parallel_for((count + kLoadsPerTask - 1) / kLoadsPerTask, [&](std::size_t task) {
     Result<ErrorBudget> without_supply = ErrorBudget::create(model, 0.0);
     Result<ErrorBudget> with_supply = ErrorBudget::create(model, JudgedLoad::kUnitSupplyNoise);
     const std::size_t end = std::min(count, (task + 1) * kLoadsPerTask);
     for (std::size_t k = task * kLoadsPerTask; k < end; ++k) {
-      const TestedLoad& load = loads[k * loads.size() / count];
+      const TestedLoad& load = *chosen[k];
       const Sample& sample = database.samples[load.sample];
       const double sigma_ratio = noise_ratio * sample.sigma_ratio;
       judged[k] = judge(load, model.networks, without_supply->forces(sample, sigma_ratio),
@@ -285,6 +253,20 @@ std::set<std::size_t> unpressed_taxels(const ForceTraining& training) {
   return unpressed;
 }
 
+/// What the noise of the samples has left in the networks stays where readings are less noisy: the least a profile is.
+void add_uncertainty_of_networks(const std::vector<JudgedLoad>& loads, Profile& profile) {
+  for (std::size_t k = 0; k < profile.size(); ++k) {
+    double square = 0.0;
+    double weight = 0.0;
+    for (const JudgedLoad& load : loads) {
+      const double share = load.material[k] / (load.newtons * load.newtons);
+      square += share * (load.square_error - load.square_noise) / (load.newtons * load.newtons);
+      weight += share;
+    }
+    if (weight > 0.0) profile[k] = std::max(profile[k], square / weight);
+  }
+}
+
 /// The profile of these taxels, in the networks and for the report.
 RelativeSigma set_relative_sigma(const std::set<std::size_t>& taxels, const Profile& profile,
                                  fusion::ForceNetworks& networks) {
@@ -312,45 +294,6 @@ std::string range_text(const RelativeSigma& sigma) {
 }
 
 }  // namespace
-
-std::optional<double> measure_adc_noise(const SampleDatabase& database) {
-  const std::vector<const Sample*> unloaded = unloaded_samples(database);
-  if (unloaded.size() < kLeastUnloadedSamples) return std::nullopt;
-  const std::vector<std::size_t> taxels = free_taxels(database, unloaded);
-  if (2 * taxels.size() < database.array.taxel_count()) return std::nullopt;
-  std::vector<double> of_pair(unloaded.size() - 1);
-  for (std::size_t k = 0; k < of_pair.size(); ++k) {
-    for (const std::size_t taxel : taxels) {
-      of_pair[k] += half_square_difference(database, *unloaded[k], *unloaded[k + 1], taxel);
-    }
-  }
-  const double most = kOutlierRatio * quantile(of_pair, 0.5);  // beyond: something touched the array
-  std::vector<double> of_taxel;
-  for (const std::size_t taxel : taxels) {
-    std::vector<double> squares;
-    for (std::size_t k = 0; k < of_pair.size(); ++k) {
-      if (of_pair[k] > most) continue;
-      squares.push_back(half_square_difference(database, *unloaded[k], *unloaded[k + 1], taxel));
-    }
-    of_taxel.push_back(mean(squares));
-  }
-  erase_outliers(of_taxel);
-  return std::sqrt(std::max(mean(of_taxel), 1.0 / 12.0));
-}
-
-double measure_temperature_noise(const SampleDatabase& database) {
-  std::vector<double> celsius;
-  for (const Sample& sample : database.samples) {
-    if (sample.temperature_celsius) celsius.push_back(*sample.temperature_celsius);
-  }
-  if (celsius.size() < kLeastTemperatures) return 0.0;
-  std::vector<double> differences;
-  for (std::size_t k = 1; k + 1 < celsius.size(); ++k) {
-    differences.push_back(std::abs(celsius[k - 1] - 2.0 * celsius[k] + celsius[k + 1]));
-  }
-  const double sigma = quantile(std::move(differences), kOneSigmaShare) / std::sqrt(6.0);  // 1 + 4 + 1 variances
-  return sigma <= kMostTemperatureNoise ? sigma : 0.0;
-}
 
 std::string describe(const UncertaintyReport& report, const ArrayDescription& array) {
   std::string text = report.adc_noise_counts
@@ -389,12 +332,14 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   report.supply_noise = likeliest_supply_noise(*own, *shared);
   model.array.readout.supply_noise = report.supply_noise;
   if (!shared->empty()) {
-    report.relative_sigma_of_shared = set_relative_sigma(
-        taxels_of(training.tested_shared), likeliest_profile(*shared, report.supply_noise), model.networks);
+    Profile profile = likeliest_profile(*shared, report.supply_noise);
+    add_uncertainty_of_networks(*shared, profile);
+    report.relative_sigma_of_shared = set_relative_sigma(taxels_of(training.tested_shared), profile, model.networks);
   }
   if (!own->empty()) {
-    report.relative_sigma = set_relative_sigma(taxels_of(training.tested_own),
-                                               likeliest_profile(*own, report.supply_noise), model.networks);
+    Profile profile = likeliest_profile(*own, report.supply_noise);
+    add_uncertainty_of_networks(*own, profile);
+    report.relative_sigma = set_relative_sigma(taxels_of(training.tested_own), profile, model.networks);
   }
   const std::set<std::size_t> unpressed = unpressed_taxels(training);
   if (!judged_unpressed->empty() && !unpressed.empty()) {

@@ -126,6 +126,9 @@ Status validate_readout(const ArrayDescription& array) {
   if (!(readout.supply_noise >= 0.0 && readout.supply_noise <= kMostSupplyNoise)) {
     return bad_input("readout.supply_noise: must be 0 to 0.1");
   }
+  if (!(readout.drive_error_correlation >= 0.0 && readout.drive_error_correlation <= 1.0)) {
+    return bad_input("readout.drive_error_correlation: must be 0 to 1");
+  }
   if (Status valid = validate_calibrated(array); !valid) return valid;
   if (readout.circuit == Circuit::none) return Done{};
   if (readout.idle_columns == IdleColumns::floating && readout.circuit != Circuit::divider) {

@@ -139,6 +139,7 @@ void read_readout(ConfigFile& file, ArrayDescription& array) {
   file.integer("readout.adc_bits", readout.adc_bits);
   file.number("readout.adc_noise_counts", readout.adc_noise_counts);
   file.number_per_line("readout.drive_error_ohm", array.driven_lines(), readout.drive_error_ohm);
+  file.number("readout.drive_error_correlation", readout.drive_error_correlation);
   file.number("readout.supply_noise", readout.supply_noise);
   if (!file.is_text("readout.adc_reference_v", "supply")) {
     file.number("readout.adc_reference_v", readout.adc_reference_v);
@@ -212,6 +213,9 @@ std::string circuit_toml(const Readout& readout) {
   if (readout.circuit == Circuit::none) return text;
   text += per_line_toml("drive_ohm", readout.drive_ohm);
   text += per_line_toml("drive_error_ohm", readout.drive_error_ohm);
+  if (readout.drive_error_correlation > 0.0) {
+    text += fmt::format("drive_error_correlation = {}\n", readout.drive_error_correlation);
+  }
   text += per_line_toml("load_ohm", readout.load_ohm);
   text += per_line_toml("column_switch_ohm", readout.column_switch_ohm);
   text += per_line_toml("amplifier_offset_v", readout.amplifier_offset_v);

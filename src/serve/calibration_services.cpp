@@ -47,7 +47,7 @@ Status write_frames(const std::string& path, const ArrayDescription& array, cons
 
 sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time) {
   const bool press = state.stage == GuideStage::pressing && state.hint != GuideHint::release;
-  return {press, state.hint == GuideHint::other_taxel, state.taxel, state.weight_n, hold_time};
+  return {press, state.hint == GuideHint::other_taxel, state.taxel, state.weight_n, state.together_with, hold_time};
 }
 
 /// What `dermis calibrate` needs to make the model again, or a better one.

@@ -48,6 +48,7 @@ void Rehearsal::put_on(const GuideWords& words) {
   const bool is_mistake = ++presses_ % kPressesToAMistake == 0;
   pressed_ = (words.taxel + (is_mistake ? 1 : 0)) % force_n_.size();
   force_n_[*pressed_] = words.weight_n;
+  if (words.together_with && *words.together_with < force_n_.size()) force_n_[*words.together_with] = words.weight_n;
   seconds_ = 0.0;
 }
 
@@ -62,7 +63,7 @@ void Rehearsal::move_hand(double seconds) {
   const bool sees_mistake = words.other_taxel && seconds_ > while_s + kSeesMistakeSeconds;
   release_seconds_ = words.press ? 0.0 : release_seconds_ + seconds;
   if (!sees_mistake && release_seconds_ <= 0.5 * while_s) return;
-  force_n_[*pressed_] = 0.0;
+  std::fill(force_n_.begin(), force_n_.end(), 0.0);
   pressed_.reset();
   seconds_ = 0.0;
   release_seconds_ = 0.0;

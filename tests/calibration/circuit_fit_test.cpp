@@ -170,6 +170,44 @@ TEST(CircuitFit, refuses_an_array_that_is_never_pressed) {
   EXPECT_NE(fit.error().message.find("no frame presses"), std::string::npos) << fit.error().message;
 }
 
+TEST(CircuitFit, leaves_readings_as_they_are_where_the_adc_does_not_resolve_the_circuit) {
+  ArrayDescription truth = reference_array(24, 16);
+  truth.readout.idle_rows = IdleRows::floating;
+  truth.readout.load_ohm.assign(16, 100e3);
+  truth.readout.adc_bits = 8;
+  simulation::SimulationOptions options;
+  options.rubber.resistance_at_10n_ohm = 2e3;
+  options.rubber.unloaded_ohm = 100e3;
+  const Recording recording = record(truth, "uniform", 1, options);
+  Recording some;  // of every tenth frame
+  for (Load load : recording.loads) {
+    if (load.frame % 10 != 0) continue;
+    load.frame = some.frames.size();
+    some.loads.push_back(load);
+    some.frames.push_back(recording.frames[10 * load.frame]);
+  }
+  const CircuitFit known = fit_of(truth, some);
+  EXPECT_EQ(known.array.readout.circuit, Circuit::none);
+  EXPECT_TRUE(says(known, "does not resolve this circuit"));
+  ArrayDescription unknown = truth;
+  unknown.readout = {};
+  unknown.readout.circuit = Circuit::automatic;
+  unknown.readout.adc_bits = 8;
+  EXPECT_TRUE(says(fit_of(unknown, some), "does not resolve \"divider, idle rows floating\""));
+}
+
+TEST(CircuitFit, takes_no_notice_of_what_depends_on_saturated_readings) {
+  ArrayDescription truth = reference_array(4, 12);
+  truth.readout.circuit = Circuit::transimpedance;
+  truth.readout.drive_ohm.assign(4, 40.0);
+  truth.readout.load_ohm.assign(12, 1000.0);
+  truth.readout.adc_bits = 16;
+  ArrayDescription unknown = truth;
+  unknown.readout.drive_ohm.assign(4, kFitOhm);
+  const CircuitFit fit = fit_of(unknown, record(truth, "calibration", 1));
+  EXPECT_LE(worst_error(fit.array.readout.drive_ohm, truth.readout.drive_ohm), 0.1);
+}
+
 TEST(CircuitFit, takes_frames_in_which_no_taxel_is_idle) {
   ArrayDescription truth = reference_array(64, 8);
   const Recording recording = record(truth, "uniform", 1);

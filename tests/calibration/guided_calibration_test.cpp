@@ -347,6 +347,36 @@ TEST(GuidedCalibration, finds_the_loads_of_an_array_whose_circuit_is_unknown) {
   EXPECT_FALSE(guide->calibration()->model.array.has_unknown_circuit());
 }
 
+TEST(GuidedCalibration, asks_for_pairs_of_presses_that_tell_circuits_apart_and_takes_them) {
+  ArrayDescription array = reference_array(4, 8);
+  array.readout.circuit = Circuit::transimpedance;
+  array.readout.drive_ohm.assign(4, 10.0);
+  array.readout.load_ohm.assign(8, 150.0);
+  array.readout.adc_bits = 10;
+  ArrayDescription unknown = array;
+  unknown.readout = {};
+  unknown.readout.circuit = Circuit::automatic;
+  unknown.readout.adc_bits = 10;
+  CalibrationPlan plan;
+  plan.taxels = {0, 3, 6, 16, 19, 22};
+  plan.weights_n = {2.0, 6.0, 20.0};
+  const auto guide = begin(unknown, plan);
+  Session session = session_of(array);
+  session.walk(*guide);
+  GuideState state = guide->state();
+  ASSERT_EQ(state.stage, GuideStage::pressing) << state.message;
+  ASSERT_TRUE(state.together_with);
+  EXPECT_NE(state.message.find("as much on"), std::string::npos) << state.message;
+  EXPECT_EQ(state.presses_done, plan.press_count());
+  const std::size_t pairs = state.presses_total - state.presses_done;
+  session.walk(*guide);
+  state = guide->state();
+  ASSERT_EQ(state.stage, GuideStage::done) << state.message;
+  EXPECT_EQ(state.presses_done, plan.press_count() + pairs);
+  EXPECT_EQ(guide->calibration()->model.array.readout.circuit, Circuit::transimpedance);
+  EXPECT_TRUE(guide->calibration()->report.telling_presses.empty());
+}
+
 TEST(GuidedCalibration, says_why_a_fit_failed_and_goes_on) {
   ArrayDescription array = reference_array(4, 4);
   array.readout.adc_reference_v = 0.5;

@@ -100,6 +100,7 @@ class SimulatedUser {
 
   void put_on(const GuideState& guide) {
     target_ = guide.taxel;
+    together_with_ = guide.together_with;
     if (random_.uniform() < sloppiness_.wrong_taxel) {
       target_ = (guide.taxel + 1 + random_.below(force_n_.size() - 1)) % force_n_.size();
       ++wrong_taxels;
@@ -123,6 +124,7 @@ class SimulatedUser {
     }
     const double put_on = std::min(1.0, seconds_ / kPutOnSeconds);
     const double shake = seconds_ > shake_at_ && seconds_ < shake_at_ + 0.2 ? 1.4 : 1.0;
+    if (together_with_) force_n_[*together_with_] = newtons_ * put_on;
     force_n_[*target_] = newtons_ * put_on * shake * (1.0 + sloppiness_.wobble * random_.normal());
   }
 
@@ -130,6 +132,7 @@ class SimulatedUser {
   Random random_;
   std::vector<double> force_n_;
   std::optional<std::size_t> target_;
+  std::optional<std::size_t> together_with_;
   double newtons_ = 0.0;
   bool is_short_ = false;
   double shake_at_ = 0.0;

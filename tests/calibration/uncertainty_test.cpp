@@ -171,5 +171,23 @@ TEST(Uncertainty, intervals_cover_what_they_promise_on_taxels_that_were_never_pr
   EXPECT_LE(within_95 / count, 0.98);
 }
 
+// A bladder loads all taxels, and the inversion makes much noise of such readings; a contact's are less noisy.
+TEST(Uncertainty, keeps_what_the_noise_of_the_samples_has_left_in_the_networks) {
+  const ArrayDescription array = reference_array(32, 32);
+  const Recording uniform = record(array, "uniform", 1);
+  const auto calibration = calibrate(array, uniform.frames, uniform.loads);
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  const Recording contacts = record(array, "multitouch", 2, {}, 100);
+  const auto evaluation = evaluate(calibration->model, contacts.frames, contacts.loads);
+  ASSERT_TRUE(evaluation) << evaluation.error().message;
+  EXPECT_GT(*evaluation->coverage.share_68, 0.63);
+  EXPECT_GT(*evaluation->coverage.share_95, 0.92);
+  const auto& estimators = evaluation->estimators;
+  const auto lookup = std::find_if(estimators.begin(), estimators.end(),
+                                   [](const auto& estimator) { return estimator.name == "crosstalk_lookup"; });
+  ASSERT_NE(lookup, estimators.end());
+  EXPECT_LE(*estimators.front().relative_error.median, *lookup->relative_error.median);
+}
+
 }  // namespace
 }  // namespace dermis::calibration

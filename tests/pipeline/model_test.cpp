@@ -51,6 +51,7 @@ Model make_model() {
   model.array.taxel_area_m2 = 3.848e-5;
   model.array.readout.drive_ohm = {20.0, 21.5};
   model.array.readout.drive_error_ohm = {0.5, 1.0 / 3.0};
+  model.array.readout.drive_error_correlation = 0.25;
   model.array.readout.load_ohm = {200.0, 201.25, 1.0 / 3.0};
   model.array.readout.adc_bits = 14;
   model.array.readout.adc_noise_counts = 1.0 / 3.0;
@@ -80,6 +81,7 @@ void expect_equal(const Model& a, const Model& b) {
   EXPECT_EQ(a.array.readout.idle_rows, b.array.readout.idle_rows);
   EXPECT_EQ(a.array.readout.drive_ohm, b.array.readout.drive_ohm);
   EXPECT_EQ(a.array.readout.drive_error_ohm, b.array.readout.drive_error_ohm);
+  EXPECT_EQ(a.array.readout.drive_error_correlation, b.array.readout.drive_error_correlation);
   EXPECT_EQ(a.array.readout.load_ohm, b.array.readout.load_ohm);
   EXPECT_EQ(a.array.readout.adc_bits, b.array.readout.adc_bits);
   EXPECT_EQ(a.array.readout.adc_noise_counts, b.array.readout.adc_noise_counts);

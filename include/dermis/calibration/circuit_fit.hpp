@@ -23,6 +23,9 @@ struct CircuitCandidate {
   double misfit = 0.0;
   bool chosen = false;
   bool indistinguishable = false;  ///< Less than a thousand to one worse than the chosen one.
+  /// Where the ADC does not resolve this circuit under these loads: the noise of a reading over the conductance of its
+  /// taxel. 0: it does.
+  double noise_share = 0.0;
 };
 
 /// Two taxels that are to be pressed at the same time, with the same load each.
@@ -52,6 +55,7 @@ struct CircuitFit {
 /// that nothing presses must then keep its conductance, whatever presses beside it, and a pressed one must follow one
 /// smooth law of force and temperature in all frames. Gauss-Newton on what is left, the laws of the taxels eliminated
 /// (variable projection, Golub and Pereyra 1973). Deterministic, whatever the number of threads.
+/// A circuit that the ADC does not resolve under these loads, also a known one, becomes Circuit::none.
 /// Errors: those of build_sample_database() that concern frames and loads; no pressed frame.
 [[nodiscard]] Result<CircuitFit> fit_circuit(const ArrayDescription& array, std::span<const RawFrame> frames,
                                              std::span<const Load> loads, Nanos settle_time = Nanos{0});

@@ -38,6 +38,7 @@ struct GuideState {
   std::string message;                       ///< What to do now, or what was reached, or what went wrong; for a person.
   std::size_t taxel = 0;                     ///< To be pressed, row-major.
   double weight_n = 0.0;                     ///< With.
+  std::optional<std::size_t> together_with;  ///< Another taxel, to be pressed at the same time with as much.
   double reading = 1.0;                      ///< Of that taxel now over that of the unloaded taxel: 1 unloaded, rising.
   double hold_share = 0.0;                   ///< Of the quiet time or the hold that is done, 0 ... 1.
   std::optional<std::size_t> pressed_taxel;  ///< The taxel that feels most; with hint `several` the other one.
@@ -56,7 +57,8 @@ struct GuidedData {
 
 /// Walks a person through the calibration of one live array: unloaded first, then press after press, each recognised
 /// from the frames. While the person works, what is there is fitted on a thread of its own and judged by presses that
-/// were left out. Thread-safe.
+/// were left out. Where they do not tell the circuit, the pairs of taxels that would are asked for after the last
+/// press, once. Thread-safe.
 class GuidedCalibration {
  public:
   /// Errors: those of CalibrationPlan::validate(); an array that is not valid.

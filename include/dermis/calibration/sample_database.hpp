@@ -30,6 +30,7 @@ struct Sample {
   std::vector<float> ratio;          ///< Reading / supply [taxels].
   double sigma_ratio = 0.0;          ///< Standard deviation of every ratio for the array's adc_noise_counts.
   std::vector<float> siemens;        ///< Conductances [taxels].
+  std::vector<float> sigma_siemens;  ///< Standard deviation of each from noise of the readings; empty: not known.
   std::vector<TaxelStatus> taxels;   ///< What is known about each [taxels].
   std::vector<float> known_newtons;  ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
   std::vector<TotalForce> totals;

@@ -68,6 +68,7 @@ struct Readout {
   int adc_bits = 12;                       ///< Resolution [bit], 1 ... 24.
   double adc_noise_counts = 1.0;           ///< Standard deviation of a reading, rounding included [counts], > 0.
   std::vector<double> drive_error_ohm;     ///< Standard deviation of each of drive_ohm [ohm], >= 0; empty: exact.
+  double drive_error_correlation = 0.0;    ///< Share of their variance that all drivers have in common, 0 ... 1.
   double supply_noise = 0.0;               ///< Relative standard deviation of the measured supply, 0 ... 0.1.
   std::optional<double> adc_reference_v;   ///< Full scale of the ADC [V], > 0; empty: the supply itself (ratiometric).
   std::optional<double> supply_v;          ///< Nominal supply [V], > 0, for frames that carry none.

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstddef>
 #include <mutex>
+#include <optional>
 
 #include "dermis/core/frames.hpp"
 
@@ -16,7 +17,8 @@ struct GuideWords {
   bool other_taxel = false;  ///< Another taxel is pressed instead.
   std::size_t taxel = 0;     ///< Row-major.
   double weight_n = 0.0;
-  Nanos hold_time{};  ///< How long a weight is to lie.
+  std::optional<std::size_t> together_with{};  ///< Another taxel, to be pressed at the same time with as much.
+  Nanos hold_time{};                           ///< How long a weight is to lie.
 };
 
 /// Between a calibration that asks for presses and the simulated hand that does them (sim:rehearsal). Thread-safe.

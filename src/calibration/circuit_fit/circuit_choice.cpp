@@ -12,7 +12,9 @@
 
 #include "calibration/circuit_fit/common_ratio.hpp"
 #include "calibration/circuit_fit/frame_selection.hpp"
+#include "calibration/circuit_fit/gauss_newton.hpp"
 #include "calibration/circuit_fit/judge_frames.hpp"
+#include "calibration/circuit_fit/resolution.hpp"
 #include "calibration/circuit_fit/telling_presses.hpp"
 #include "dermis/core/parallel.hpp"
 
@@ -22,6 +24,8 @@ namespace {
 const double kSureSquare = 2.0 * std::log(1000.0);  // odds of a thousand to one tell one circuit from another
 
 constexpr std::size_t kFewFrames = 60;  // refute most circuits
+constexpr double kNearly = 1.1;         // of the misfit that the best circuit leaves
+constexpr double kEnough = 0.3;         // a step this small against the standard errors ends a fit
 
 struct Kind {
   const char* name;
@@ -64,7 +68,8 @@ ArrayDescription as_kind(const ArrayDescription& array, const Kind& kind) {
 /// What a kind makes of the frames.
 struct Trial {
   const Kind* kind = nullptr;
-  std::optional<CommonRatio> fit = {};  // empty: it cannot give them
+  std::optional<CommonRatio> fit = {};  // empty: it cannot give them, or is not resolved
+  double noise_share = 0.0;             // 0: it is resolved
   FrameMisfit misfit = {std::numeric_limits<double>::infinity(), 0.0};
 };
 
@@ -84,20 +89,58 @@ void judge(std::vector<Trial>& trials, const std::vector<const CircuitFrame*>& f
     least.rubber_variance = std::min(least.rubber_variance, trial.fit->scatter.rubber_variance);
   }
   for (Trial& trial : trials) {
-    if (trial.fit) trial.misfit = sum(judge_frames(trial.fit->array, trial.fit->rubber, least, frames));
+    if (!trial.fit) continue;
+    trial.misfit = judge_frames(trial.fit->array, trial.fit->rubber, least, trial.fit->inverted, frames);
   }
+}
+
+/// With resistances of each line's own. Where two circuits explain the frames nearly as well, what lines differ by may
+/// decide for the wrong one.
+void fit_lines(const ArrayDescription& array, const std::vector<const CircuitFrame*>& frames, Trial& trial) {
+  const LineParameters lines(as_kind(array, *trial.kind));
+  const Estimate start{lines.start(trial.fit->ratio), trial.fit->rubber, trial.fit->scatter};
+  const Result<Iteration> fitted = iterate(lines, frames, start, kEnough);
+  if (!fitted) return;
+  const ArrayDescription found = lines.array_at(fitted->estimate.parameters);
+  Result<InvertedFrames> inverted = invert_frames(found, frames);
+  if (!inverted) return;
+  const LineParameters known(found);
+  const Iteration laws = fit_laws(known, *inverted, frames, {{}, fitted->estimate.rubber, fitted->estimate.scatter});
+  trial.fit->array = found;
+  trial.fit->inverted = *std::move(inverted);
+  trial.fit->rubber = laws.estimate.rubber;
+  trial.fit->scatter = laws.estimate.scatter;
+}
+
+/// Those that are near the best of the circuits, where there are several.
+void fit_lines_of_rivals(const ArrayDescription& array, const std::vector<const CircuitFrame*>& frames,
+                         std::vector<Trial>& trials) {
+  double least = std::numeric_limits<double>::infinity();
+  const auto is_circuit = [](const Trial& trial) { return trial.fit && trial.kind->circuit != Circuit::none; };
+  for (const Trial& trial : trials) {
+    if (is_circuit(trial)) least = std::min(least, trial.misfit.square);
+  }
+  std::vector<Trial*> near;
+  for (Trial& trial : trials) {
+    if (is_circuit(trial) && trial.misfit.square <= kNearly * least) near.push_back(&trial);
+  }
+  if (near.size() < 2) return;
+  for (Trial* const trial : near) fit_lines(array, frames, *trial);
+  judge(trials, frames);
 }
 
 void try_kinds(const ArrayDescription& array, const CircuitFrames& all, std::size_t most, std::vector<Trial>& trials) {
   const auto frames = select_frames(all, most);
   parallel_for(trials.size(), [&](std::size_t k) {
     const LineParameters lines(as_kind(array, *trials[k].kind));
+    trials[k] = {.kind = trials[k].kind, .noise_share = unresolved_share(lines.array(), all)};
+    if (trials[k].noise_share > 0.0) return;
     const Rubber unknown = unknown_rubber(all, array.taxel_count(), 1.0 / lines.reference_ohm());
     Result<CommonRatio> fit = fit_common_ratio(lines, frames, unknown);
-    trials[k] = {.kind = trials[k].kind};
     if (fit) trials[k].fit = *std::move(fit);
   });
   judge(trials, frames);
+  fit_lines_of_rivals(array, frames, trials);
 }
 
 /// The sum of squares by which a circuit must be better to be told from another: readings that no circuit explains to
@@ -106,16 +149,22 @@ double sure_square(const FrameMisfit& best) {
   return kSureSquare * std::max(1.0, best.square / best.readings);
 }
 
+bool is_unresolved(const Trial& trial) {
+  return trial.noise_share > 0.0;
+}
+
 bool has_less(const Trial& a, const Trial& b) {
   return a.misfit.square < b.misfit.square;
 }
 
-/// Lines that taxels share have crosstalk, however small: no circuit only where none of them is anywhere near.
+/// Lines that taxels share have crosstalk, however small: no circuit only where none of them is anywhere near, or where
+/// the true one may be among those that are not resolved.
 const Trial& choose(const std::vector<Trial>& trials) {
   const auto none = std::find_if(trials.begin(), trials.end(),
                                  [](const Trial& trial) { return trial.kind->circuit == Circuit::none; });
   const auto best = std::min_element(trials.begin(), none, has_less);
   if (none == trials.end()) return *best;
+  if (std::any_of(trials.begin(), trials.end(), is_unresolved)) return *none;
   const bool is_refuted = none->misfit.square + sure_square(none->misfit) < best->misfit.square;
   return is_refuted ? *none : *best;
 }
@@ -140,8 +189,9 @@ std::vector<PressPair> presses_to_tell(const std::vector<Trial>& trials, const T
 std::vector<Trial> rivals(const std::vector<Trial>& trials) {
   const Trial& chosen = choose(trials);
   std::vector<Trial> rivals;
-  std::copy_if(trials.begin(), trials.end(), std::back_inserter(rivals),
-               [&](const Trial& trial) { return trial.kind == chosen.kind || !is_told(trial, chosen); });
+  std::copy_if(trials.begin(), trials.end(), std::back_inserter(rivals), [&](const Trial& trial) {
+    return trial.kind == chosen.kind || is_unresolved(trial) || !is_told(trial, chosen);
+  });
   return rivals;
 }
 
@@ -154,7 +204,8 @@ std::vector<CircuitCandidate> candidates_of(const std::vector<Trial>& trials, co
   for (const Trial& trial : trials) {
     const double misfit = std::sqrt(trial.misfit.square / std::max(1.0, trial.misfit.readings));
     const bool is_chosen = trial.kind == chosen.kind;
-    candidates.push_back({trial.kind->name, misfit, is_chosen, !is_chosen && !is_told(trial, chosen)});
+    candidates.push_back(
+        {trial.kind->name, misfit, is_chosen, !is_chosen && !is_told(trial, chosen), trial.noise_share});
   }
   std::stable_sort(candidates.begin(), candidates.end(), [](const CircuitCandidate& a, const CircuitCandidate& b) {
     return a.chosen != b.chosen ? a.chosen : a.misfit < b.misfit;
@@ -163,6 +214,11 @@ std::vector<CircuitCandidate> candidates_of(const std::vector<Trial>& trials, co
 }
 
 }  // namespace
+
+ArrayDescription without_circuit(const ArrayDescription& array) {
+  return as_kind(array, *std::find_if(std::begin(kKinds), std::end(kKinds),
+                                      [](const Kind& kind) { return kind.circuit == Circuit::none; }));
+}
 
 Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames) {
   std::vector<Trial> trials = all_kinds();

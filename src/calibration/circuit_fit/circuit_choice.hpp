@@ -22,4 +22,7 @@ struct CircuitChoice {
 /// the same laws for the taxels, so that none is better by having more to fit. Errors: no kind explains the frames.
 [[nodiscard]] Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames);
 
+/// `array` with readings that are taken as proportional to conductance.
+[[nodiscard]] ArrayDescription without_circuit(const ArrayDescription& array);
+
 }  // namespace dermis::calibration

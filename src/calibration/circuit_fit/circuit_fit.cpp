@@ -9,6 +9,7 @@
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/circuit_statements.hpp"
 #include "calibration/circuit_fit/resistance_fit.hpp"
+#include "calibration/circuit_fit/resolution.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -30,9 +31,18 @@ Result<CircuitFit> fit_circuit(const ArrayDescription& array, std::span<const Ra
                                std::span<const Load> loads, Nanos settle_time) {
   const Result<CircuitFrames> labelled = circuit_frames(array, frames, loads, settle_time);
   if (!labelled) return labelled.error();
-  if (Status checked = check_frames(*labelled); !checked) return checked.error();
   CircuitFit result;
   result.array = array;
+  result.frames = labelled->frames.size();
+  const double share = array.readout.circuit == Circuit::automatic ? 0.0 : unresolved_share(array, *labelled);
+  if (share > 0.0) {
+    result.array = without_circuit(array);
+    result.statements = {describe_unresolved("this circuit", share) +
+                         ": readings are taken as they are, and forces hold for loads like these"};
+    return result;
+  }
+  if (!array.has_unknown_circuit()) return result;
+  if (Status checked = check_frames(*labelled); !checked) return checked.error();
   if (array.readout.circuit == Circuit::automatic) {
     Result<CircuitChoice> choice = choose_circuit(array, *labelled);
     if (!choice) return choice.error();
@@ -50,7 +60,6 @@ Result<CircuitFit> fit_circuit(const ArrayDescription& array, std::span<const Ra
   result.load_error = std::move(fit->errors.load);
   result.common_drive_error = fit->errors.common_drive;
   result.rubber_scatter = fit->rubber_scatter;
-  result.frames = labelled->frames.size();
   return result;
 }
 

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "calibration/labels.hpp"
 #include "dermis/core/neighbours.hpp"
@@ -23,6 +25,8 @@ constexpr double kSameCelsius = 1.0;  // frames this near in temperature are ave
 struct Labelled {
   CircuitFrame frame;
   std::optional<double> celsius;
+  double squares = 0.0;  // of idle readings about their mean, in the variances that are said of them
+  double freedom = 0.0;
 };
 
 /// Rubber spreads a load to the taxels around it: what is beside a pressed taxel is not known to be idle.
@@ -36,6 +40,15 @@ void forget_neighbours(const ArrayDescription& array, std::vector<float>& newton
   }
 }
 
+/// A reading at the end of the ADC does not tell its conductance, on which all readings of both its lines depend.
+void forget_lines_of(const ArrayDescription& array, std::size_t saturated, std::vector<float>& newtons) {
+  for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
+    const bool is_on_its_lines =
+        taxel / array.cols == saturated / array.cols || taxel % array.cols == saturated % array.cols;
+    if (is_on_its_lines) newtons[taxel] = std::numeric_limits<float>::quiet_NaN();
+  }
+}
+
 std::vector<float> known_newtons(const ArrayDescription& array, std::span<const Load> loads,
                                  const ConditionedFrame& conditioned) {
   Sample sample;
@@ -46,6 +59,9 @@ std::vector<float> known_newtons(const ArrayDescription& array, std::span<const 
     }
   }
   forget_neighbours(array, sample.known_newtons);
+  for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
+    if (conditioned.taxels[taxel] == TaxelStatus::saturated) forget_lines_of(array, taxel, sample.known_newtons);
+  }
   return sample.known_newtons;
 }
 
@@ -65,7 +81,11 @@ void average_into(Labelled& mean, const Labelled& next) {
   const auto count = static_cast<double>(mean.frame.averaged);
   const double share = 1.0 / (count + 1.0);
   for (std::size_t k = 0; k < mean.frame.ratio.size(); ++k) {
-    mean.frame.ratio[k] += share * (next.frame.ratio[k] - mean.frame.ratio[k]);
+    const double difference = next.frame.ratio[k] - mean.frame.ratio[k];
+    mean.frame.ratio[k] += share * difference;
+    if (mean.frame.newtons[k] != 0.0F) continue;
+    mean.squares += (1.0 - share) * std::pow(difference / next.frame.sigma_ratio, 2);
+    mean.freedom += 1.0;
   }
   if (mean.celsius) *mean.celsius += share * (*next.celsius - *mean.celsius);
   mean.frame.sigma_ratio *= std::sqrt(count / (count + 1.0));
@@ -102,6 +122,20 @@ std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<c
   return labelled;
 }
 
+/// Frames may be means of many: their noise is what repetitions of as many differ by.
+void measure_noise(std::vector<Labelled>& labelled) {
+  constexpr double kLeastVariance = 1e-3;  // of what is said: rounding hides the noise of means
+  std::map<std::size_t, std::pair<double, double>> sums;
+  for (const Labelled& frame : labelled) {
+    sums[frame.frame.averaged].first += frame.squares;
+    sums[frame.frame.averaged].second += frame.freedom;
+  }
+  for (Labelled& frame : labelled) {
+    const auto& [squares, freedom] = sums[frame.frame.averaged];
+    if (freedom > 0.0) frame.frame.sigma_ratio *= std::sqrt(std::max(kLeastVariance, squares / freedom));
+  }
+}
+
 }  // namespace
 
 Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
@@ -109,6 +143,7 @@ Result<CircuitFrames> circuit_frames(const ArrayDescription& array, std::span<co
   if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
   std::vector<Labelled> labelled = labelled_frames(array, frames, LoadsOfFrames(loads, frames.size()), settle_time);
   if (labelled.empty()) return bad_input("no labelled frame is left after settling");
+  measure_noise(labelled);
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   bool all_have_it = true;

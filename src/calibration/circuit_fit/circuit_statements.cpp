@@ -110,7 +110,19 @@ std::vector<std::string> describe_choice(const ArrayDescription& array, const st
                                          const std::vector<PressPair>& telling_presses) {
   std::vector<std::string> statements{describe_candidates(candidates)};
   if (const auto doubt = describe_doubt(array, candidates, telling_presses)) statements.push_back(*doubt);
+  for (const CircuitCandidate& candidate : candidates) {
+    if (candidate.noise_share == 0.0) continue;
+    statements.push_back(describe_unresolved('"' + candidate.name + '"', candidate.noise_share) +
+                         ": readings are taken as they are; single presses would tell of it");
+  }
   return statements;
+}
+
+std::string describe_unresolved(const std::string& circuit, double noise_share) {
+  return fmt::format(
+      "the ADC does not resolve {} under these loads (the noise of a reading is {:.0f} % of the conductance of its "
+      "taxel)",
+      circuit, 100.0 * noise_share);
 }
 
 std::vector<std::string> describe_fit(const ResistanceFit& fit) {

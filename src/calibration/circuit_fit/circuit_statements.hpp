@@ -15,6 +15,9 @@ namespace dermis::calibration {
                                                        const std::vector<CircuitCandidate>& candidates,
                                                        const std::vector<PressPair>& telling_presses);
 
+/// "the ADC does not resolve "divider, idle rows floating" under these loads (...)".
+[[nodiscard]] std::string describe_unresolved(const std::string& circuit, double noise_share);
+
 /// The resistances with their standard errors, and what the frames cannot determine.
 [[nodiscard]] std::vector<std::string> describe_fit(const ResistanceFit& fit);
 

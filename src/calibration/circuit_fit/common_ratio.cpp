@@ -17,7 +17,22 @@ namespace {
 
 constexpr std::array kRatios = {0.0, 3e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0};  // tried first
 constexpr int kRefinements = 8;
-constexpr double kFineEnough = 0.01;  // of the logarithm of the ratio
+constexpr double kFineEnough = 0.01;     // of the logarithm of the ratio
+constexpr std::size_t kFirstFrames = 8;  // to see whether the circuit can give them
+
+/// At most `most` of them, evenly.
+std::vector<const CircuitFrame*> spread(const std::vector<const CircuitFrame*>& frames, std::size_t most) {
+  const std::size_t count = std::min(most, frames.size());
+  std::vector<const CircuitFrame*> some;
+  for (std::size_t k = 0; k < count; ++k) some.push_back(frames[k * frames.size() / count]);
+  return some;
+}
+
+/// Most frames cannot be given.
+bool is_impossible(const InvertedFrames& inverted) {
+  const auto unsolved = std::count_if(inverted.begin(), inverted.end(), [](const auto& frame) { return !frame; });
+  return 2 * static_cast<std::size_t>(unsolved) > inverted.size();
+}
 
 /// Empty: the circuit cannot give most of the frames.
 Result<std::optional<CommonRatio>> try_ratio(const LineParameters& lines,
@@ -26,12 +41,16 @@ Result<std::optional<CommonRatio>> try_ratio(const LineParameters& lines,
   CommonRatio trial;
   trial.ratio = ratio;
   trial.array = lines.array_at(lines.start(ratio));
+  for (const std::size_t most : {kFirstFrames, frames.size()}) {
+    Result<InvertedFrames> inverted = invert_frames(trial.array, spread(frames, most));
+    if (!inverted) return inverted.error();
+    if (is_impossible(*inverted)) return std::optional<CommonRatio>();
+    trial.inverted = *std::move(inverted);
+  }
   const LineParameters known(trial.array);
-  const Result<Iteration> laws = iterate(known, frames, {Eigen::VectorXd(0), unknown, Scatter{}}, 1.0);
-  if (!laws) return laws.error();
-  if (2 * laws->unsolved > frames.size()) return std::optional<CommonRatio>();
-  trial.rubber = laws->estimate.rubber;
-  trial.scatter = laws->estimate.scatter;
+  const Iteration laws = fit_laws(known, trial.inverted, frames, {Eigen::VectorXd(0), unknown, Scatter{}});
+  trial.rubber = laws.estimate.rubber;
+  trial.scatter = laws.estimate.scatter;
   return std::optional(std::move(trial));
 }
 
@@ -98,7 +117,7 @@ class RatioSearch {
 
  private:
   void judge(CommonRatio& trial) const {
-    trial.misfit = sum(judge_frames(trial.array, trial.rubber, scatter_, frames_)).square;
+    trial.misfit = judge_frames(trial.array, trial.rubber, scatter_, trial.inverted, frames_).square;
   }
 
   const LineParameters& lines_;

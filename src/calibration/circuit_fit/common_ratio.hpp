@@ -6,6 +6,7 @@
 
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/estimate.hpp"
+#include "calibration/circuit_fit/inverted_frame.hpp"
 #include "calibration/circuit_fit/line_parameters.hpp"
 #include "calibration/circuit_fit/rubber.hpp"
 #include "dermis/core/result.hpp"
@@ -18,7 +19,8 @@ struct CommonRatio {
   ArrayDescription array;  ///< With numbers for all resistances.
   Rubber rubber;
   Scatter scatter;
-  double misfit = 0.0;  ///< Sum of squares that is left of the frames, see judge_frames().
+  InvertedFrames inverted;  ///< The frames that it was fitted to.
+  double misfit = 0.0;      ///< Sum of squares that is left of the frames, see judge_frames().
 };
 
 /// The ratio that leaves least of the frames, all laws fitted anew for each that is tried: the whole range is searched,

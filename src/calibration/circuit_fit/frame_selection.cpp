@@ -11,7 +11,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kMostWork = 2e8;          // frames x taxels x inversions of one pass
-constexpr double kNewtonSlowness = 100.0;  // of an inversion by Newton's method, against the fixed point
+constexpr double kNewtonSlowness = 20.0;   // of an inversion by Newton's method, against the fixed point
 constexpr double kMostWorkOfChoice = 3e5;  // frames x taxels
 constexpr double kMostWorkOfSlowChoice = 3e4;
 constexpr std::uint64_t kSelectionSeed = 1;
@@ -27,9 +27,8 @@ double share(std::size_t places, std::size_t frames) {
 }  // namespace
 
 std::size_t affordable_frames(const LineParameters& lines) {
-  const Readout& readout = lines.array().readout;
   const auto cost = static_cast<double>(lines.array().taxel_count() * static_cast<std::size_t>(lines.count() + 4));
-  const bool is_slow = readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::floating;
+  const bool is_slow = is_inverted_by_newton(lines.array());
   return static_cast<std::size_t>(kMostWork / cost / (is_slow ? kNewtonSlowness : 1.0));
 }
 

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "calibration/circuit_fit/gauss_newton.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -20,9 +22,14 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr int kMaxIterations = 8;
+constexpr double kLeastShare = 0.02;  // of a step
+constexpr double kSigmas = 3.0;       // of the cost, a sum of squares, by which it may rise
+constexpr int kLawIterations = 2;
 
-Elimination eliminate_unloaded(const Measurements& measurements, const Rubber& rubber) {
-  return eliminate_laws(measurements.idle, VectorXd::Ones(rubber.unloaded_terms));
+Elimination eliminate_unloaded(const Measurements& measurements, const Estimate& estimate) {
+  NormalEquations idle = measurements.idle;
+  idle *= 1.0 / estimate.scatter.noise_variance;
+  return eliminate_laws(idle, VectorXd::Ones(estimate.rubber.unloaded_terms));
 }
 
 Elimination eliminate_pressed(const Measurements& measurements, const Elimination& idle, const Rubber& rubber,
@@ -61,31 +68,93 @@ std::vector<Assumption> assumptions_at(const LineParameters& lines, const Estima
   return all;
 }
 
-Result<Iteration> iterate_once(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
-                               const Estimate& before) {
-  const Result<Measurements> measurements = measure(lines, frames, before, Slopes::all);
-  if (!measurements) return measurements.error();
-  const Elimination idle = eliminate_unloaded(*measurements, before.rubber);
-  const Rubber unloaded = with_unloaded_laws(before.rubber, idle);
-  const Elimination pressed = eliminate_pressed(*measurements, idle, unloaded, before.scatter);
-  const std::optional<SheetComparison> sheet = compare_sheet(lines, idle);
-  const Step step = solve_step(lines, idle, pressed, assumptions_at(lines, before, sheet));
+/// The measurements of an estimate, the laws eliminated, and the step that follows.
+struct Linearisation {
+  Rubber unloaded;  // with its unloaded laws
+  Elimination idle;
+  Elimination pressed;
+  std::optional<SheetComparison> sheet;
+  Step step;
+  double cost = 0.0;  // at no step
+};
 
-  Estimate after{lines.moved(before.parameters, step.of_parameters()), with_pressed_laws(unloaded, pressed, step),
-                 before.scatter};
-  if (sheet) after.scatter.sheet = sheet->scatter;
-  after.scatter = learn_scatter(lines, after, step, idle, pressed, measurements->pressed);
-  return Iteration{std::move(after), step.covariance, step.largest(), idle.readings > 0.0, measurements->unsolved};
+Linearisation linearise(const LineParameters& lines, const Measurements& measurements, const Estimate& estimate) {
+  Linearisation result;
+  result.idle = eliminate_unloaded(measurements, estimate);
+  result.unloaded = with_unloaded_laws(estimate.rubber, result.idle);
+  result.pressed = eliminate_pressed(measurements, result.idle, result.unloaded, estimate.scatter);
+  result.sheet = compare_sheet(lines, result.idle);
+  const std::vector<Assumption> assumptions = assumptions_at(lines, estimate, result.sheet);
+  result.step = solve_step(lines, result.idle, result.pressed, assumptions);
+  result.cost = cost_without_step(lines, result.idle, result.pressed, assumptions);
+  return result;
+}
+
+double readings_of(const Linearisation& linearisation) {
+  return linearisation.idle.readings + linearisation.pressed.readings;
+}
+
+/// By how much an estimate leaves more than `here`, both with the scatter that is given and for as many readings.
+double rise_from(const Linearisation& here, const LineParameters& lines, const Measurements& measurements,
+                 Estimate estimate, const Scatter& scatter) {
+  estimate.scatter = scatter;
+  const Linearisation there = linearise(lines, measurements, estimate);
+  return there.cost * readings_of(here) / readings_of(there) - here.cost;
+}
+
+/// What a share of the step leads to; the scatter is what the whole of it would leave.
+Iteration follow(const LineParameters& lines, const Linearisation& here, const Measurements& measurements,
+                 const Estimate& before, double share) {
+  Step step = here.step;
+  step.shorten(share);
+  Estimate after{lines.moved(before.parameters, step.of_parameters()),
+                 with_pressed_laws(here.unloaded, here.pressed, step), before.scatter};
+  if (here.sheet) after.scatter.sheet = here.sheet->scatter;
+  after.scatter = learn_scatter(lines, after, step, here.idle, here.pressed, measurements.pressed);
+  return {std::move(after), here.step.covariance, here.step.largest(), here.idle.readings > 0.0, measurements.unsolved};
 }
 
 }  // namespace
 
+// Where a conductance is what little a reading leaves of the supply, a step may be far too long: it is halved until it
+// leads uphill by no more than chance would, all steps together, and where it never does, the fit ends.
 Result<Iteration> iterate(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
                           const Estimate& start, double enough) {
-  Result<Iteration> last = iterate_once(lines, frames, start);
-  for (int k = 1; k < kMaxIterations && last; ++k) {
-    last = iterate_once(lines, frames, last->estimate);
-    if (last && last->step < enough) break;
+  Result<Measurements> measurements = measure(lines, frames, start);
+  if (!measurements) return measurements.error();
+  Linearisation here = linearise(lines, *measurements, start);
+  Iteration last = follow(lines, here, *measurements, start, 1.0);
+  Estimate before = start;
+  const double chance = kSigmas * std::sqrt(2.0 * readings_of(here));
+  double allowed = chance;
+  for (int k = 1; k < kMaxIterations && (k == 1 || last.step >= enough); ++k) {
+    for (double share = 0.5;; share *= 0.5) {
+      Result<Measurements> next = measure(lines, frames, last.estimate);
+      if (!next) return next.error();
+      const double rise = rise_from(here, lines, *next, last.estimate, before.scatter);
+      if (!(rise > allowed)) {
+        allowed = std::min(chance, allowed - rise);
+        measurements = std::move(next);
+        break;
+      }
+      if (share < kLeastShare) return follow(lines, here, *measurements, before, 0.0);
+      last = follow(lines, here, *measurements, before, share);
+    }
+    before = last.estimate;
+    here = linearise(lines, *measurements, before);
+    last = follow(lines, here, *measurements, before, 1.0);
+  }
+  return last;
+}
+
+Iteration fit_laws(const LineParameters& known, const InvertedFrames& inverted,
+                   const std::vector<const CircuitFrame*>& frames, const Estimate& start) {
+  Estimate estimate = start;
+  Iteration last;
+  for (int k = 0; k < kLawIterations; ++k) {
+    const Measurements measurements = measure(inverted, frames, estimate);
+    last = follow(known, linearise(known, measurements, estimate), measurements, estimate, 1.0);
+    estimate = last.estimate;
   }
   return last;
 }

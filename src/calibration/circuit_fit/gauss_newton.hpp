@@ -8,6 +8,7 @@
 
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/estimate.hpp"
+#include "calibration/circuit_fit/inverted_frame.hpp"
 #include "calibration/circuit_fit/line_parameters.hpp"
 #include "dermis/core/result.hpp"
 
@@ -26,5 +27,9 @@ struct Iteration {
 /// errors. Errors: a circuit that cannot be inverted.
 [[nodiscard]] Result<Iteration> iterate(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
                                         const Estimate& start, double enough);
+
+/// The laws in a circuit whose resistances are known, of frames that are inverted already.
+[[nodiscard]] Iteration fit_laws(const LineParameters& known, const InvertedFrames& inverted,
+                                 const std::vector<const CircuitFrame*>& frames, const Estimate& start);
 
 }  // namespace dermis::calibration

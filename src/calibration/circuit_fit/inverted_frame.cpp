@@ -6,8 +6,13 @@
 #include <cmath>
 #include <utility>
 
+#include "calibration/circuit_fit/line_parameters.hpp"
+#include "dermis/core/parallel.hpp"
+
 namespace dermis::calibration {
 namespace {
+
+constexpr std::size_t kKnownFramesPerTask = 16;  // few, so that no core is idle at the end
 
 /// The readings that the circuit would give with the idle taxels at their laws, and their inversion.
 struct SmoothFrame {
@@ -62,6 +67,21 @@ std::optional<InvertedFrame> invert_frame(SlopedInversion& inversion, const Circ
   if (invert_into(inversion, frame, rubber, inverted)) return inverted;
   inversion.forget();
   return std::nullopt;
+}
+
+Result<InvertedFrames> invert_frames(const ArrayDescription& array, const std::vector<const CircuitFrame*>& frames) {
+  const LineParameters known(array);
+  const auto create = [&] { return SlopedInversion::create(known, Eigen::VectorXd(0), Slopes::none); };
+  if (auto trial = create(); !trial) return trial.error();
+  InvertedFrames inverted(frames.size());
+  parallel_for((frames.size() + kKnownFramesPerTask - 1) / kKnownFramesPerTask, [&](std::size_t task) {
+    auto inversion = create();
+    const std::size_t end = std::min(frames.size(), (task + 1) * kKnownFramesPerTask);
+    for (std::size_t k = task * kKnownFramesPerTask; k < end; ++k) {
+      inverted[k] = invert_frame(*inversion, *frames[k], {});
+    }
+  });
+  return inverted;
 }
 
 }  // namespace dermis::calibration

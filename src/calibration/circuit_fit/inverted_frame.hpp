@@ -10,6 +10,8 @@
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/rubber.hpp"
 #include "calibration/circuit_fit/sloped_inversion.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/result.hpp"
 
 namespace dermis::calibration {
 
@@ -30,5 +32,11 @@ struct InvertedFrame {
 /// noise, and the fit would do away with the noise by making all conductances small.
 [[nodiscard]] std::optional<InvertedFrame> invert_frame(SlopedInversion& inversion, const CircuitFrame& frame,
                                                         const Rubber& rubber);
+
+/// The same of many frames, on all cores, where all resistances of `array` are known: no law is needed. Errors: a
+/// circuit that cannot be inverted.
+using InvertedFrames = std::vector<std::optional<InvertedFrame>>;
+[[nodiscard]] Result<InvertedFrames> invert_frames(const ArrayDescription& array,
+                                                   const std::vector<const CircuitFrame*>& frames);
 
 }  // namespace dermis::calibration

@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <optional>
 #include <utility>
+#include <vector>
 
-#include "calibration/circuit_fit/inverted_frame.hpp"
 #include "calibration/circuit_fit/pressed_readings.hpp"
 #include "dermis/compensation/circuit_model.hpp"
 #include "dermis/core/parallel.hpp"
@@ -17,6 +17,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kMostSquare = 25.0;  // of a reading
+constexpr std::size_t kJudgedPerTask = 16;
 
 bool is_judged(const Rubber& rubber, std::size_t taxel, float newtons) {
   const TaxelLaw& law = rubber.laws[taxel];
@@ -85,28 +86,16 @@ class Judge {
 
 }  // namespace
 
-std::vector<FrameMisfit> judge_frames(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter,
-                                      const std::vector<const CircuitFrame*>& frames) {
-  const LineParameters known(array);
-  std::vector<FrameMisfit> misfits(frames.size());
-  parallel_for((misfits.size() + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
-    auto inversion = SlopedInversion::create(known, Eigen::VectorXd(0), Slopes::none);
-    if (!inversion) return;
+FrameMisfit judge_frames(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter,
+                         const InvertedFrames& inverted, const std::vector<const CircuitFrame*>& frames) {
+  std::vector<FrameMisfit> parts((frames.size() + kJudgedPerTask - 1) / kJudgedPerTask);
+  parallel_for(parts.size(), [&](std::size_t task) {
     Judge judge(array, rubber, scatter);
-    const std::size_t end = std::min(misfits.size(), (task + 1) * kFramesPerTask);
-    for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
-      misfits[k] = judge.misfit(*frames[k], invert_frame(*inversion, *frames[k], rubber));
-    }
+    const std::size_t end = std::min(frames.size(), (task + 1) * kJudgedPerTask);
+    for (std::size_t k = task * kJudgedPerTask; k < end; ++k) parts[task] += judge.misfit(*frames[k], inverted[k]);
   });
-  return misfits;
-}
-
-FrameMisfit sum(const std::vector<FrameMisfit>& frames) {
   FrameMisfit all;
-  for (const FrameMisfit& frame : frames) {
-    all.square += frame.square;
-    all.readings += frame.readings;
-  }
+  for (const FrameMisfit& part : parts) all += part;
   return all;
 }
 

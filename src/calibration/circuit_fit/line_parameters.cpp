@@ -39,6 +39,10 @@ std::vector<Index> parameters_of_lines(std::size_t count, const std::vector<std:
 
 }  // namespace
 
+bool is_inverted_by_newton(const ArrayDescription& array) {
+  return array.readout.circuit == Circuit::divider && array.readout.idle_rows == IdleRows::floating;
+}
+
 LineParameters::LineParameters(const ArrayDescription& array) : array_(array) {
   const Readout& readout = array.readout;
   if (readout.circuit == Circuit::none) return;

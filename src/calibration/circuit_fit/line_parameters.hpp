@@ -20,6 +20,9 @@ struct LineGroup {
   double unit = 1.0;                     ///< What a relative spread of 1 means.
 };
 
+/// Rows that float have no faster inverse.
+[[nodiscard]] bool is_inverted_by_newton(const ArrayDescription& array);
+
 /// The unknown resistances of an array as parameters of a fit: drivers as a multiple of a reference resistance, so that
 /// 0 ohm is a value like any other; loads as logarithms. Drivers come first.
 class LineParameters {

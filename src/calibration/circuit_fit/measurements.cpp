@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "calibration/circuit_fit/inverted_frame.hpp"
+#include "calibration/circuit_fit/sloped_inversion.hpp"
 #include "dermis/core/parallel.hpp"
 
 namespace dermis::calibration {
@@ -38,7 +38,7 @@ void add_idle(const CircuitFrame& frame, const InvertedFrame& inverted, const Es
     if (frame.newtons[taxel] != 0.0F) continue;
     if (!is_readable(rubber.laws[taxel].unloaded, basis, rubber.reference_siemens, sigma)) continue;
     const double relative_sigma = sigma / rubber.reference_siemens;
-    const double weight = 1.0 / (estimate.scatter.noise_variance * relative_sigma * relative_sigma);
+    const double weight = 1.0 / (relative_sigma * relative_sigma);
     auto row = rows.col(used++);
     row.head(slopes) = inverted.slopes_of(taxel) / rubber.reference_siemens;
     row[slopes] = inverted.siemens[taxel] / rubber.reference_siemens;
@@ -58,6 +58,20 @@ void add_pressed(const CircuitFrame& frame, const InvertedFrame& inverted, const
   }
 }
 
+Measurements no_measurements(const Rubber& rubber, Index parameters) {
+  return {NormalEquations(rubber.laws.size(), rubber.unloaded_terms, parameters + 1), {}, 0};
+}
+
+void add(const CircuitFrame& frame, const std::optional<InvertedFrame>& inverted, const Estimate& estimate,
+         Measurements& measurements) {
+  if (!inverted) {
+    ++measurements.unsolved;
+    return;
+  }
+  add_idle(frame, *inverted, estimate, measurements.idle);
+  add_pressed(frame, *inverted, estimate.rubber.force_scale, measurements.pressed);
+}
+
 Measurements merge(std::vector<Measurements> parts) {
   Measurements all = std::move(parts.front());
   for (std::size_t k = 1; k < parts.size(); ++k) {
@@ -71,26 +85,26 @@ Measurements merge(std::vector<Measurements> parts) {
 }  // namespace
 
 Result<Measurements> measure(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
-                             const Estimate& estimate, Slopes slopes) {
+                             const Estimate& estimate) {
   if (auto trial = SlopedInversion::create(lines, estimate.parameters, Slopes::none); !trial) return trial.error();
   const Rubber& rubber = estimate.rubber;
-  const Index columns = (slopes == Slopes::all ? lines.count() : 0) + 1;
-  const NormalEquations none(rubber.laws.size(), rubber.unloaded_terms, columns);
+  const Measurements nothing = no_measurements(rubber, lines.count());
   const std::size_t tasks = std::max<std::size_t>(1, (frames.size() + kFramesPerTask - 1) / kFramesPerTask);
-  std::vector<Measurements> parts(tasks, Measurements{none, {}, 0});
+  std::vector<Measurements> parts(tasks, nothing);
   parallel_for(tasks, [&](std::size_t task) {
-    auto inversion = SlopedInversion::create(lines, estimate.parameters, slopes);
+    auto inversion = SlopedInversion::create(lines, estimate.parameters, Slopes::all);
     for (std::size_t k = task * kFramesPerTask; k < std::min(frames.size(), (task + 1) * kFramesPerTask); ++k) {
-      const std::optional<InvertedFrame> inverted = invert_frame(*inversion, *frames[k], rubber);
-      if (!inverted) {
-        ++parts[task].unsolved;
-        continue;
-      }
-      add_idle(*frames[k], *inverted, estimate, parts[task].idle);
-      add_pressed(*frames[k], *inverted, rubber.force_scale, parts[task].pressed);
+      add(*frames[k], invert_frame(*inversion, *frames[k], rubber), estimate, parts[task]);
     }
   });
   return merge(std::move(parts));
+}
+
+Measurements measure(const InvertedFrames& inverted, const std::vector<const CircuitFrame*>& frames,
+                     const Estimate& estimate) {
+  Measurements all = no_measurements(estimate.rubber, 0);
+  for (std::size_t k = 0; k < frames.size(); ++k) add(*frames[k], inverted[k], estimate, all);
+  return all;
 }
 
 }  // namespace dermis::calibration

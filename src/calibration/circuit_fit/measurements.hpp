@@ -7,23 +7,27 @@
 
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/estimate.hpp"
+#include "calibration/circuit_fit/inverted_frame.hpp"
 #include "calibration/circuit_fit/line_parameters.hpp"
 #include "calibration/circuit_fit/normal_equations.hpp"
 #include "calibration/circuit_fit/pressed_readings.hpp"
-#include "calibration/circuit_fit/sloped_inversion.hpp"
 #include "dermis/core/result.hpp"
 
 namespace dermis::calibration {
 
 /// What the frames say in one circuit.
 struct Measurements {
-  NormalEquations idle;  ///< Columns: parameters, conductance over the reference.
+  NormalEquations idle;  ///< Columns: parameters, conductance over the reference; by the noise that is said of them.
   std::vector<PressedReading> pressed;
   std::size_t unsolved = 0;  ///< Frames that the circuit cannot give.
 };
 
 /// Inverts the frames on all cores. Errors: a circuit that cannot be inverted.
 [[nodiscard]] Result<Measurements> measure(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
-                                           const Estimate& estimate, Slopes slopes);
+                                           const Estimate& estimate);
+
+/// The same of frames that are inverted already, in a circuit without parameters.
+[[nodiscard]] Measurements measure(const InvertedFrames& inverted, const std::vector<const CircuitFrame*>& frames,
+                                   const Estimate& estimate);
 
 }  // namespace dermis::calibration

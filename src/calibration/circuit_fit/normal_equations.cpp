@@ -39,6 +39,12 @@ NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   return *this;
 }
 
+NormalEquations& NormalEquations::operator*=(double factor) {
+  global *= factor;
+  for (MatrixXd& sums : local) sums *= factor;
+  return *this;
+}
+
 Elimination eliminate_laws(const NormalEquations& equations, const VectorXd& prior_precision) {
   Elimination result;
   result.normal = equations.global.selfadjointView<Eigen::Lower>();

@@ -21,6 +21,8 @@ struct NormalEquations {
                  double weight);
 
   NormalEquations& operator+=(const NormalEquations& other);
+  /// All weights times `factor`.
+  NormalEquations& operator*=(double factor);
 };
 
 /// The laws that minimise, as linear functions of the step: law = [law_slope, law] (step, 1).

@@ -14,7 +14,8 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr std::size_t kStartFrames = 300;   // the start is found with these
+constexpr std::size_t kStartFrames = 300;  // the start is found with these, fewer where they are large
+constexpr std::size_t kLeastStartFrames = 60;
 constexpr std::size_t kFirstFrames = 1500;  // and the way to the solution with these
 constexpr double kEnoughAtFirst = 0.1;      // a step this small against the standard errors ends the fit
 constexpr double kEnough = 0.25;            // the same, with all frames
@@ -24,6 +25,7 @@ ResistanceFit report(const LineParameters& lines, const Iteration& last) {
   fit.array = lines.array_at(last.estimate.parameters);
   fit.errors = standard_errors(lines, last.estimate.parameters, last.covariance);
   fit.array.readout.drive_error_ohm = fit.errors.drive_ohm;
+  fit.array.readout.drive_error_correlation = fit.errors.correlation;
   fit.rubber_scatter = std::sqrt(last.estimate.scatter.rubber_variance);
   fit.sheet_scatter = last.estimate.scatter.sheet;
   fit.has_idle_readings = last.has_idle_readings;
@@ -38,10 +40,12 @@ Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const Circu
   const std::size_t most = affordable_frames(lines);
   const auto first = select_frames(frames, std::min(kFirstFrames, most));
   const Rubber unknown = unknown_rubber(frames, array.taxel_count(), 1.0 / lines.reference_ohm());
-  const auto few = select_frames(frames, std::min(kStartFrames, most));
+  const std::size_t quick = affordable_frames_of_choice(array.taxel_count(), false);
+  const auto few = select_frames(frames, std::min({kStartFrames, most, std::max(kLeastStartFrames, quick)}));
   const Result<CommonRatio> common = fit_common_ratio(lines, few, unknown);
   if (!common) return common.error();
-  const Estimate start{lines.start(common->ratio), common->rubber, Scatter{}};
+  Estimate start{lines.start(common->ratio), common->rubber, common->scatter};
+  start.scatter.rubber_variance = std::max(start.scatter.rubber_variance, kRubberScatter * kRubberScatter);
   Result<Iteration> last = iterate(lines, first, start, kEnoughAtFirst);
   if (last && most > first.size() && first.size() < frames.frames.size()) {
     last = iterate(lines, select_frames(frames, most), last->estimate, kEnough);

@@ -19,9 +19,16 @@ Result<SlopedInversion> SlopedInversion::create(const LineParameters& lines, con
                                                 Slopes slopes) {
   SlopedInversion result;
   const Index count = slopes == Slopes::all ? parameters.size() : 0;
+  result.slope_count_ = count;
+  const bool is_slow = is_inverted_by_newton(lines.array());
+  if (is_slow && count > 0) {
+    Result<SolvedSlopes> solved = SolvedSlopes::create(lines, parameters);
+    if (!solved) return solved.error();
+    result.solved_slopes_.emplace(*std::move(solved));
+  }
   compensation::InversionOptions options;  // far below the noise; differences need more
-  if (count > 0) options.tolerance_ratio = kTolerance;
-  for (Index p = -1; p < count; ++p) {
+  if (count > 0 && !is_slow) options.tolerance_ratio = kTolerance;
+  for (Index p = -1; p < (is_slow ? 0 : count); ++p) {
     VectorXd shifted = parameters;
     if (p >= 0) shifted[p] += kSlopeStep;
     auto inversion = compensation::make_crosstalk_inversion(lines.array_at(shifted), options);
@@ -45,6 +52,10 @@ void SlopedInversion::propagate_noise(double sigma_ratio, std::vector<double>& s
 
 bool SlopedInversion::differentiate(const std::vector<double>& ratio, const std::vector<double>& siemens,
                                     Eigen::MatrixXd& slopes) {
+  if (solved_slopes_) {
+    solved_slopes_->differentiate(siemens, slopes);
+    return slopes.allFinite();
+  }
   shifted_.resize(ratio.size());
   for (Index p = 0; p < slopes.cols(); ++p) {
     if (!inversions_[static_cast<std::size_t>(p) + 1]->invert(ratio, shifted_).solved) return false;

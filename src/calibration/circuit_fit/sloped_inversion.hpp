@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "calibration/circuit_fit/line_parameters.hpp"
+#include "calibration/circuit_fit/solved_slopes.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/result.hpp"
 
@@ -19,7 +21,7 @@ inline constexpr std::size_t kFramesPerTask = 256;
 /// Whether derivatives by the parameters are wanted.
 enum class Slopes { none, all };
 
-/// Inversions of one circuit at the parameters and a little beside each of them.
+/// Inversions of one circuit at the parameters, and their slopes.
 class SlopedInversion {
  public:
   static Result<SlopedInversion> create(const LineParameters& lines, const Eigen::VectorXd& parameters, Slopes slopes);
@@ -27,7 +29,7 @@ class SlopedInversion {
   /// Does not start from the last frame.
   void forget();
 
-  [[nodiscard]] Eigen::Index slope_count() const { return static_cast<Eigen::Index>(inversions_.size()) - 1; }
+  [[nodiscard]] Eigen::Index slope_count() const { return slope_count_; }
 
   /// false: the circuit cannot give these readings.
   [[nodiscard]] bool invert(const std::vector<double>& ratio, std::vector<double>& siemens);
@@ -40,7 +42,9 @@ class SlopedInversion {
                                    Eigen::MatrixXd& slopes);
 
  private:
+  Eigen::Index slope_count_ = 0;
   std::vector<std::unique_ptr<compensation::CrosstalkInversion>> inversions_;
+  std::optional<SolvedSlopes> solved_slopes_;  // where they are faster than an inversion beside each parameter
   std::vector<double> shifted_;
 };
 

@@ -9,6 +9,18 @@ namespace dermis::calibration {
 
 using Eigen::Index;
 
+namespace {
+
+/// The mean correlation of two of them.
+double common_share(const Eigen::MatrixXd& covariance) {
+  const Eigen::VectorXd sigma = covariance.diagonal().cwiseSqrt();
+  const double variances = covariance.trace();
+  const double others = sigma.sum() * sigma.sum() - variances;
+  return others > 0.0 ? std::clamp((covariance.sum() - variances) / others, 0.0, 1.0) : 0.0;
+}
+
+}  // namespace
+
 StandardErrors standard_errors(const LineParameters& lines, const Eigen::VectorXd& parameters,
                                const Eigen::MatrixXd& covariance) {
   StandardErrors errors;
@@ -30,6 +42,7 @@ StandardErrors standard_errors(const LineParameters& lines, const Eigen::VectorX
   if (drives > 0) {
     const double sigma = std::sqrt(covariance.topLeftCorner(drives, drives).sum()) / static_cast<double>(drives);
     errors.common_drive = std::min(1.0, sigma / parameters.head(drives).mean());
+    errors.correlation = common_share(covariance.topLeftCorner(drives, drives));
   }
   return errors;
 }

@@ -36,6 +36,16 @@ double Step::largest() const {
   return largest;
 }
 
+double cost_without_step(const LineParameters& lines, const Elimination& idle, const Elimination& pressed,
+                         const std::vector<Assumption>& assumptions) {
+  double cost = idle.cost() + pressed.cost();
+  for (const Assumption& assumption : assumptions) cost += std::pow(assumption.value / assumption.sigma, 2);
+  const MatrixXd shapes = pressed.normal.block(lines.count(), lines.count(), kSheetTerms, kSheetTerms) +
+                          MatrixXd::Identity(kSheetTerms, kSheetTerms);
+  const Eigen::VectorXd gradient = pressed.normal.col(lines.count() + kSheetTerms).segment(lines.count(), kSheetTerms);
+  return cost - gradient.dot(shapes.ldlt().solve(gradient));
+}
+
 Step solve_step(const LineParameters& lines, const Elimination& idle, const Elimination& pressed,
                 const std::vector<Assumption>& assumptions) {
   const Index unknowns = lines.count() + kSheetTerms;

@@ -20,6 +20,9 @@ struct Step {
   [[nodiscard]] Eigen::VectorXd of_parameters() const { return solution.head(parameters); }
   [[nodiscard]] Eigen::VectorXd sheet() const { return solution.tail(solution.size() - parameters); }
 
+  /// Goes only a share of the way of the parameters.
+  void shorten(double share) { solution.head(parameters) *= share; }
+
   /// The largest step of a parameter, in its standard errors.
   [[nodiscard]] double largest() const;
 };
@@ -27,5 +30,9 @@ struct Step {
 /// Solves the normal equations of all readings and assumptions, the taxels' laws eliminated.
 [[nodiscard]] Step solve_step(const LineParameters& lines, const Elimination& idle, const Elimination& pressed,
                               const std::vector<Assumption>& assumptions);
+
+/// What the equations leave at the present parameters, with the best laws.
+[[nodiscard]] double cost_without_step(const LineParameters& lines, const Elimination& idle, const Elimination& pressed,
+                                       const std::vector<Assumption>& assumptions);
 
 }  // namespace dermis::calibration

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "dermis/calibration/uncertainty.hpp"
+#include "dermis/core/quantile.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+constexpr double kOneSigmaShare = 0.682689;  // of a normal distribution within one standard deviation
+constexpr double kOutlierRatio = 9.0;        // of mean squares: three standard deviations
+constexpr std::size_t kLeastUnloadedSamples = 5;
+constexpr double kMostShareAtEnd = 0.1;  // cuts 8 % off the standard deviation
+constexpr std::size_t kLeastTemperatures = 20;
+constexpr double kMostTemperatureNoise = 1.0;
+
+double mean(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Leaves out what is far above the median.
+void erase_outliers(std::vector<double>& mean_squares) {
+  const double most = kOutlierRatio * quantile(mean_squares, 0.5);
+  std::erase_if(mean_squares, [&](double square) { return square > most; });
+}
+
+std::vector<const Sample*> unloaded_samples(const SampleDatabase& database) {
+  std::vector<const Sample*> samples;
+  for (const Sample& sample : database.samples) {
+    if (sample.unloaded) samples.push_back(&sample);
+  }
+  return samples;
+}
+
+/// Taxels that hardly any unloaded sample shows at an end of the ADC.
+std::vector<std::size_t> free_taxels(const SampleDatabase& database, const std::vector<const Sample*>& unloaded) {
+  const double half_count = 0.5 / database.array.readout.full_scale_counts();
+  std::vector<std::size_t> taxels;
+  for (std::size_t taxel = 0; taxel < database.array.taxel_count(); ++taxel) {
+    const auto at_end = std::count_if(unloaded.begin(), unloaded.end(), [&](const Sample* sample) {
+      const double reading = bare_reading(database, *sample, taxel);
+      return reading < half_count || reading > 1.0 - half_count;
+    });
+    const double share = static_cast<double>(at_end) / static_cast<double>(unloaded.size());
+    if (share <= kMostShareAtEnd) taxels.push_back(taxel);
+  }
+  return taxels;
+}
+
+/// Half the square of the difference of two readings [counts^2]: on average the variance of one.
+double half_square_difference(const SampleDatabase& database, const Sample& a, const Sample& b, std::size_t taxel) {
+  const double sigma = std::hypot(a.sigma_ratio, b.sigma_ratio);
+  const double difference =
+      (double{a.ratio[taxel]} - double{b.ratio[taxel]}) / sigma * database.array.readout.adc_noise_counts;
+  return difference * difference;
+}
+
+}  // namespace
+
+std::optional<double> measure_adc_noise(const SampleDatabase& database) {
+  const std::vector<const Sample*> unloaded = unloaded_samples(database);
+  if (unloaded.size() < kLeastUnloadedSamples) return std::nullopt;
+  const std::vector<std::size_t> taxels = free_taxels(database, unloaded);
+  if (2 * taxels.size() < database.array.taxel_count()) return std::nullopt;
+  std::vector<double> of_pair(unloaded.size() - 1);
+  for (std::size_t k = 0; k < of_pair.size(); ++k) {
+    for (const std::size_t taxel : taxels) {
+      of_pair[k] += half_square_difference(database, *unloaded[k], *unloaded[k + 1], taxel);
+    }
+  }
+  const double most = kOutlierRatio * quantile(of_pair, 0.5);  // beyond: something touched the array
+  std::vector<double> of_taxel;
+  for (const std::size_t taxel : taxels) {
+    std::vector<double> squares;
+    for (std::size_t k = 0; k < of_pair.size(); ++k) {
+      if (of_pair[k] > most) continue;
+      squares.push_back(half_square_difference(database, *unloaded[k], *unloaded[k + 1], taxel));
+    }
+    of_taxel.push_back(mean(squares));
+  }
+  erase_outliers(of_taxel);
+  return std::sqrt(std::max(mean(of_taxel), 1.0 / 12.0));
+}
+
+double measure_temperature_noise(const SampleDatabase& database) {
+  std::vector<double> celsius;
+  for (const Sample& sample : database.samples) {
+    if (sample.temperature_celsius) celsius.push_back(*sample.temperature_celsius);
+  }
+  if (celsius.size() < kLeastTemperatures) return 0.0;
+  std::vector<double> differences;
+  for (std::size_t k = 1; k + 1 < celsius.size(); ++k) {
+    differences.push_back(std::abs(celsius[k - 1] - 2.0 * celsius[k] + celsius[k + 1]));
+  }
+  const double sigma = quantile(std::move(differences), kOneSigmaShare) / std::sqrt(6.0);  // 1 + 4 + 1 variances
+  return sigma <= kMostTemperatureNoise ? sigma : 0.0;
+}
+
+}  // namespace dermis::calibration
