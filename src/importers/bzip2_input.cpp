@@ -27,12 +27,13 @@ void Bzip2Input::end() {
   is_open_ = false;
 }
 
-void Bzip2Input::rewind() {
+bool Bzip2Input::rewind() {
   end();
   state_ = {};
   is_damaged_ = false;
   in_.clear();
   in_.seekg(0);
+  return in_.good();
 }
 
 /// Compressed bytes; false at the end of the stream.

@@ -19,13 +19,13 @@ class Bzip2Input {
   Bzip2Input& operator=(const Bzip2Input&) = delete;
   ~Bzip2Input();
 
-  /// Fills `into`; fewer bytes at the end, or where the compressed bytes are cut or damaged.
+  /// Fills `into`; fewer bytes at the end, where the compressed bytes are cut or damaged, or where the stream is bad.
   [[nodiscard]] std::size_t read(std::span<char> into);
   /// The bytes are no bzip2 from where read() ended.
   [[nodiscard]] bool is_damaged() const noexcept { return is_damaged_; }
 
-  /// To the first byte again.
-  void rewind();
+  /// To the first byte again; false where the stream cannot seek.
+  [[nodiscard]] bool rewind();
 
  private:
   void begin();

@@ -91,6 +91,8 @@ class Dsa final : public FrameSource {
   /// Looks through the file for the matrices, which come first, and the temperatures, which come last.
   Status open() {
     std::vector<FrameShape> matrices;
+    const bool is_number = options_.array.empty() || files::parse_number(options_.array, matrix_);
+    if (!is_number || matrix_ > kMostMatrices) matrix_ = kMostMatrices;
     DsaEvent event;
     do {
       if (Status read = events_.next(event); !read) return read;
@@ -103,7 +105,7 @@ class Dsa final : public FrameSource {
       if (temperatures_.size() > kMostTemperatures) return events_.error("has more than a million temperatures");
     } while (event.kind != DsaEvent::Kind::end);
     if (matrices_.empty()) return events_.error("there is no frame");
-    events_.rewind();
+    if (Status begun = events_.rewind(); !begun) return begun;
     return check_shape(events_.name(), shape_, options_.shape);
   }
 
@@ -132,7 +134,6 @@ class Dsa final : public FrameSource {
  private:
   Status choose(const std::vector<FrameShape>& matrices) {
     const std::size_t count = matrices.size();
-    if (!options_.array.empty() && !files::parse_number(options_.array, matrix_)) matrix_ = count;
     if (count == 0) return events_.error("has no matrix");
     if (matrix_ >= count || (options_.array.empty() && count > 1)) {
       return bad_input(events_.name() + ": has " + std::to_string(count) + " matrices; name one by its number, as " +

@@ -5,10 +5,13 @@
 #include <expat.h>
 
 #include <algorithm>
+#include <functional>
+#include <set>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "dermis/files/input.hpp"
 #include "dermis/files/text.hpp"
 #include "importers/bzip2_input.hpp"
 
@@ -17,6 +20,9 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMostTextBytes = std::size_t{1} << 26U;
+constexpr std::size_t kMostUnparsedBytes = std::size_t{1} << 20U;  // expat begins a token again with each piece
+constexpr std::size_t kMostNameBytes = std::size_t{1} << 16U;      // expat keeps each name
+constexpr std::size_t kMostDepth = 32;
 
 struct FreeParser {
   void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
@@ -38,48 +44,75 @@ struct DsaEvents::State {
   std::size_t taken = 0;  ///< Bytes that the parser got.
   bool is_suspended = false;
   bool is_over = false;
+  const char* refusal = nullptr;  ///< Why no DSA recording is so.
+  std::size_t depth = 0;
+  std::set<std::string, std::less<>> names{};  ///< Of elements and attributes.
+  std::size_t name_bytes = 0;
 
   // Of the element that is open.
   std::string text{};
   DsaEvent open{};
   bool has_event = false;
-  bool has_doctype = false;
-  bool is_text_too_long = false;
   bool is_shape_wrong = false;
 
   void begin();
   [[nodiscard]] XML_Status advance();
   [[nodiscard]] Status fail(DsaEvent& event);
+  [[nodiscard]] Error error(const std::string& message) const;
+  void refuse(const char* why);
+  void add_name(std::string_view name);
+  void start_element(std::string_view element, const XML_Char** attributes);
   void end_element(std::string_view element);
   void deliver(DsaEvent::Kind kind);
 };
 
 void DsaEvents::State::begin() {
   parser.reset(XML_ParserCreate(nullptr));
-  is_suspended = is_over = has_event = has_doctype = is_text_too_long = is_shape_wrong = false;
-  taken = 0;
+  is_suspended = is_over = has_event = is_shape_wrong = false;
+  refusal = nullptr;
+  taken = depth = name_bytes = 0;
+  names.clear();
   open = {};
   XML_SetUserData(parser.get(), this);
   XML_SetElementHandler(
-      parser.get(), [](void* data, const XML_Char*, const XML_Char**) { static_cast<State*>(data)->text.clear(); },
+      parser.get(),
+      [](void* data, const XML_Char* element, const XML_Char** attributes) {
+        static_cast<State*>(data)->start_element(element, attributes);
+      },
       [](void* data, const XML_Char* element) { static_cast<State*>(data)->end_element(element); });
   XML_SetCharacterDataHandler(parser.get(), [](void* data, const XML_Char* text, int size) {
     auto& state = *static_cast<State*>(data);
     for (const char c : std::string_view(text, static_cast<std::size_t>(size))) {
       if (!is_space(c)) state.text += c;
     }
-    if (state.text.size() <= kMostTextBytes) return;
-    state.is_text_too_long = true;
-    XML_StopParser(state.parser.get(), XML_FALSE);
+    if (state.text.size() > kMostTextBytes) state.refuse("has an element of more than 64 MiB");
   });
   XML_SetStartDoctypeDeclHandler(parser.get(), [](void* data, const XML_Char*, const XML_Char*, const XML_Char*, int) {
-    auto& state = *static_cast<State*>(data);
-    state.has_doctype = true;
-    XML_StopParser(state.parser.get(), XML_FALSE);
+    static_cast<State*>(data)->refuse("has a document type, which no DSA recording has");
   });
 }
 
+void DsaEvents::State::refuse(const char* why) {
+  refusal = why;
+  XML_StopParser(parser.get(), XML_FALSE);
+}
+
+void DsaEvents::State::add_name(std::string_view name) {
+  if (names.find(name) != names.end()) return;
+  names.emplace(name);
+  name_bytes += name.size();
+  if (name_bytes > kMostNameBytes) refuse("has names of elements and attributes of more than 64 KiB");
+}
+
+void DsaEvents::State::start_element(std::string_view element, const XML_Char** attributes) {
+  text.clear();
+  add_name(element);
+  for (; *attributes != nullptr; attributes += 2) add_name(*attributes);
+  if (++depth > kMostDepth) refuse("has elements more than 32 deep in each other, which no DSA recording has");
+}
+
 void DsaEvents::State::end_element(std::string_view element) {
+  --depth;
   if (element == "cells_x") is_shape_wrong = is_shape_wrong || !files::parse_number(text, open.shape.cols);
   if (element == "cells_y") is_shape_wrong = is_shape_wrong || !files::parse_number(text, open.shape.rows);
   if (element == "time_stamp") open.time_ms = text;
@@ -99,28 +132,33 @@ void DsaEvents::State::deliver(DsaEvent::Kind kind) {
 XML_Status DsaEvents::State::advance() {
   if (is_suspended) return XML_ResumeParser(parser.get());
   const auto parsed = static_cast<std::size_t>(std::max(XML_GetCurrentByteIndex(parser.get()), XML_Index{0}));
-  is_text_too_long = taken > parsed + kMostTextBytes;  // the parser keeps what it cannot parse yet
-  if (is_text_too_long) return XML_STATUS_ERROR;
+  if (taken > parsed + kMostUnparsedBytes) {
+    refusal = "has a tag or a comment of more than 1 MiB";
+    return XML_STATUS_ERROR;
+  }
   const std::size_t size = bytes.read(piece);
+  if (in->bad()) return XML_STATUS_ERROR;
   taken += size;
   const bool is_last = size < piece.size() && !bytes.is_damaged();
   return XML_Parse(parser.get(), piece.data(), static_cast<int>(size), is_last ? XML_TRUE : XML_FALSE);
 }
 
-/// Why expat stopped for good.
+/// Why there is nothing more to parse.
 Status DsaEvents::State::fail(DsaEvent& event) {
   is_over = true;
-  const XML_Error error = XML_GetErrorCode(parser.get());
-  const bool is_cut = error == XML_ERROR_NO_ELEMENTS || error == XML_ERROR_UNCLOSED_TOKEN ||
-                      error == XML_ERROR_PARTIAL_CHAR || error == XML_ERROR_UNCLOSED_CDATA_SECTION;
-  if (is_cut) {
-    event = {};
-    event.is_cut = true;
-    return Done{};
-  }
-  if (has_doctype) return bad_input("has a document type, which no DSA recording has");
-  if (is_text_too_long) return bad_input("has an element of more than 64 MiB");
-  return bad_input(std::string("is no XML: ") + XML_ErrorString(error));
+  if (in->bad()) return files::read_failure(name);
+  if (refusal != nullptr) return error(refusal);
+  const XML_Error code = XML_GetErrorCode(parser.get());
+  const bool is_cut = code == XML_ERROR_NO_ELEMENTS || code == XML_ERROR_UNCLOSED_TOKEN ||
+                      code == XML_ERROR_PARTIAL_CHAR || code == XML_ERROR_UNCLOSED_CDATA_SECTION;
+  if (!is_cut) return error(std::string("is no XML: ") + XML_ErrorString(code));
+  event = {};
+  event.is_cut = true;
+  return Done{};
+}
+
+Error DsaEvents::State::error(const std::string& message) const {
+  return bad_input(name + ":" + std::to_string(XML_GetCurrentLineNumber(parser.get())) + ": " + message);
 }
 
 DsaEvents::DsaEvents(std::unique_ptr<std::istream> in, std::string name)
@@ -140,7 +178,7 @@ Status DsaEvents::next(DsaEvent& event) {
     XML_GetParsingStatus(state.parser.get(), &parsing);
     state.is_suspended = parsing.parsing == XML_SUSPENDED;
     if (status == XML_STATUS_ERROR) {
-      if (const Status failed = state.fail(event); !failed) return error(failed.error().message);
+      if (Status failed = state.fail(event); !failed) return failed;
     }
     if (state.bytes.is_damaged() && !state.is_suspended) {
       state.is_over = true;
@@ -154,9 +192,10 @@ Status DsaEvents::next(DsaEvent& event) {
   return Done{};
 }
 
-void DsaEvents::rewind() {
-  state_->bytes.rewind();
+Status DsaEvents::rewind() {
+  if (!state_->bytes.rewind()) return bad_input(name() + ": cannot be read from a pipe; save it as a file");
   state_->begin();
+  return Done{};
 }
 
 const std::string& DsaEvents::name() const noexcept {
@@ -168,7 +207,7 @@ std::string DsaEvents::place() const {
 }
 
 Error DsaEvents::error(const std::string& message) const {
-  return bad_input(place() + ": " + message);
+  return state_->error(message);
 }
 
 }  // namespace dermis::importers

@@ -23,7 +23,8 @@ struct DsaEvent {
 };
 
 /// Reads the XML of a DSA recording, compressed by bzip2 or not, event by event. Memory: an event of at most 64 MiB.
-/// Document types are refused, and so no entity can grow. Not thread-safe.
+/// Document types are refused, and so no entity can grow; so is what else no recording has: tags of more than 1 MiB,
+/// names of more than 64 KiB in all, more than 32 elements in each other. Not thread-safe.
 class DsaEvents {
  public:
   /// `in` must be able to seek.
@@ -34,7 +35,8 @@ class DsaEvents {
 
   /// The next event, `end` again and again at the end. Errors name the line of the XML.
   [[nodiscard]] Status next(DsaEvent& event);
-  void rewind();
+  /// To the first event again; of a stream that can seek.
+  [[nodiscard]] Status rewind();
 
   [[nodiscard]] const std::string& name() const noexcept;
   [[nodiscard]] std::string place() const;

@@ -51,6 +51,8 @@ bool read_header(Decoding& decoding, FrameShape& shape) {
   if (setjmp(png_jmpbuf(decoding.png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng knows no other way
   png_set_read_fn(decoding.png, &decoding, take_bytes);
   png_set_user_limits(decoding.png, kMaxLines, kMaxLines);
+  // Texts and profiles are passed over: unpacked, they may take any memory.
+  png_set_keep_unknown_chunks(decoding.png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
   png_read_info(decoding.png, decoding.info);
   const int colour = png_get_color_type(decoding.png, decoding.info);
   if (colour != PNG_COLOR_TYPE_GRAY && colour != PNG_COLOR_TYPE_GRAY_ALPHA) {

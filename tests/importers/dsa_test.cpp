@@ -118,6 +118,45 @@ TEST(Dsa, names_what_is_wrong) {
             "f: has 2x3 taxels, the array is 3x2");
 }
 
+TEST(Dsa, refuses_what_would_fill_the_memory) {
+  Importer importer(open_dsa, {.array = "0"});
+  std::string deep;
+  std::string names;
+  std::string attributes;
+  for (int i = 0; i < 100'000; ++i) {
+    deep += "<a>";
+    names += "<n" + std::to_string(i) + "/>";
+    attributes += "<n a" + std::to_string(i) + "=\"\"/>";
+  }
+  EXPECT_EQ(importer.error(deep), "f:1: has elements more than 32 deep in each other, which no DSA recording has");
+  for (const std::string& many : {names, attributes}) {
+    EXPECT_EQ(importer.error("<root>" + many), "f:1: has names of elements and attributes of more than 64 KiB");
+  }
+  EXPECT_EQ(importer.error("<root><!--" + std::string(20'000'000, 'x')),
+            "f:1: has a tag or a comment of more than 1 MiB");
+}
+
+TEST(Dsa, has_the_temperature_of_its_axis_also_where_temperatures_come_first) {
+  std::string text = two_frames();
+  const std::size_t begin = text.find("<temperatures>");
+  const std::size_t end = text.find("<joint_angles>");
+  const std::string temperatures = text.substr(begin, end - begin);
+  text.erase(begin, end - begin).insert(text.find("<data>"), temperatures);
+  const auto frames = Importer(open_dsa, {.array = "1"}).read(text);
+  ASSERT_TRUE(frames);
+  EXPECT_EQ((*frames)[1].temperature_celsius, 24.0);
+}
+
+TEST(Dsa, tells_a_file_that_cannot_be_read_or_is_a_pipe) {
+  Importer importer(open_dsa, {.array = "0"});
+  for (const std::string& bytes : {two_frames(), compressed(two_frames())}) {
+    const Error unreadable = importer.fault(bytes.substr(0, bytes.size() - 9), BadFile::Fault::read);
+    EXPECT_EQ(unreadable.kind, ErrorKind::failed);
+    EXPECT_EQ(unreadable.message, "cannot read 'f': Input/output error");
+    EXPECT_EQ(importer.fault(bytes, BadFile::Fault::seek).message, "f: cannot be read from a pipe; save it as a file");
+  }
+}
+
 TEST(Dsa, gives_a_value_or_a_one_line_error_for_mutations) {
   Importer importer(open_dsa, {.array = "0"});
   importer.expect_value_or_one_line_error(two_frames(), 10000);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
+#include <ios>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -15,6 +17,36 @@
 #include "support/random_frames.hpp"
 
 namespace dermis::importers {
+
+/// Bytes of a file that cannot be read to its end, or that is a pipe.
+class BadFile final : public std::stringbuf {
+ public:
+  enum class Fault { read, seek };
+  BadFile(const std::string& bytes, Fault fault) : std::stringbuf(bytes, std::ios::in), fault_(fault) {}
+
+ private:
+  int_type underflow() override {
+    const int_type next = std::stringbuf::underflow();
+    if (fault_ == Fault::read && next == traits_type::eof()) {
+      errno = EIO;
+      throw std::ios_base::failure("as std::filebuf does");
+    }
+    return next;
+  }
+  std::streamsize xsgetn(char* into, std::streamsize size) override {
+    const std::streamsize read = std::stringbuf::xsgetn(into, size);
+    if (read < size) underflow();
+    return read;
+  }
+  pos_type seekoff(off_type by, std::ios::seekdir from, std::ios::openmode mode) override {
+    return fault_ == Fault::seek ? pos_type(off_type(-1)) : std::stringbuf::seekoff(by, from, mode);
+  }
+  pos_type seekpos(pos_type to, std::ios::openmode mode) override {
+    return fault_ == Fault::seek ? pos_type(off_type(-1)) : std::stringbuf::seekpos(to, mode);
+  }
+
+  Fault fault_;
+};
 
 /// One of the importers on bytes in memory.
 class Importer {
@@ -60,6 +92,16 @@ class Importer {
     if (frames) return "no error";
     EXPECT_EQ(frames.error().kind, ErrorKind::bad_input);
     return frames.error().message;
+  }
+
+  /// On a file with this fault.
+  Error fault(const std::string& bytes, BadFile::Fault fault) {
+    BadFile file(bytes, fault);
+    const auto source = open_(std::make_unique<std::istream>(&file), "f", options_);
+    if (!source) return source.error();
+    const auto frames = support::read_all(**source);
+    if (!frames) return frames.error();
+    return failed("no error");
   }
 
   void expect_value_or_one_line_error(const std::string& bytes, std::uint64_t mutations) {

@@ -3,6 +3,7 @@
 #include "dermis/importers/png_stack.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <zlib.h>
 
 #include <cstdint>
@@ -66,6 +67,26 @@ TEST(PngStack, says_what_is_wrong_with_a_picture) {
   EXPECT_EQ(error(whole.substr(0, whole.size() - 20)), "p.png: is cut short");
   EXPECT_NE(error("GIF89a........................"), "no error");
   EXPECT_NE(error(png(1025, {std::string(1025, 'a')})), "no error");
+}
+
+TEST(PngStack, leaves_out_texts_whatever_memory_they_would_take) {
+  const std::string text(std::size_t{1} << 22U, 'x');
+  std::string packed(text.size(), '\0');
+  uLongf size = packed.size();
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(text.data()), text.size());
+  const std::string one = chunk("zTXt", std::string("k\0\0", 3) + packed.substr(0, size));
+  std::string all;
+  for (int i = 0; i < 300; ++i) all += one;
+  constexpr std::size_t kAfterHeader = 33;
+  const std::string bytes = png(3, {"abc", "def"}).insert(kAfterHeader, all);
+  const auto most_memory_kib = [] {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+  };
+  const auto before = most_memory_kib();
+  EXPECT_EQ(levels(bytes), (std::vector<std::uint16_t>{'a', 'b', 'c', 'd', 'e', 'f'}));
+  EXPECT_LT(most_memory_kib() - before, 50'000) << "of 1.2 GB of text";
 }
 
 TEST(PngStack, of_a_folder_come_in_the_order_of_their_numbers) {
