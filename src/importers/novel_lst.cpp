@@ -76,10 +76,10 @@ class Listing {
     }
   }
 
-  void rewind() {
-    lines_.rewind();
+  Status rewind() {
     picture_.reset();
     columns_.clear();
+    return lines_.rewind();
   }
 
  private:
@@ -90,7 +90,7 @@ class Listing {
       std::size_t number = 0;
       picture_.reset();
       columns_.clear();
-      if (cells.next(word) && files::parse_number(word, number)) picture_ = number;
+      if (cells.next_filled(word) && files::parse_number(word, number)) picture_ = number;
     }
     constexpr std::string_view kPerPicture = "picture:";
     const std::size_t at = line.find(kPerPicture);
@@ -99,7 +99,8 @@ class Listing {
     std::string_view number;
     std::string_view unit;
     double time = 0.0;
-    if (!cells.next(number) || !cells.next(unit) || !files::parse_number(number, time) || !(time > 0.0)) return;
+    if (!cells.next_filled(number) || !cells.next_filled(unit) || !files::parse_number(number, time) || !(time > 0.0))
+      return;
     seconds_per_picture_ = unit.find("ms") != std::string_view::npos ? 1e-3 * time : time;
   }
 
@@ -168,7 +169,7 @@ class NovelLst final : public FrameSource {
     if (last_row >= first_row_ + shape_.rows || last_col >= first_col_ + shape_.cols) {
       return check_shape(listing_.lines().name(), {last_row + 1, last_col + 1}, options_.shape);
     }
-    listing_.rewind();
+    if (Status begun = listing_.rewind(); !begun) return begun;
     return read_line();
   }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/files/input.hpp"
 #include "importers/imported_frame.hpp"
 
 namespace dermis::importers {
@@ -36,6 +37,7 @@ class Packed10 final : public FrameSource {
 
   Result<bool> next(RawFrame& frame) override {
     in_->read(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
+    if (in_->bad()) return files::read_failure(name_);
     if (in_->gcount() == 0) return false;
     if (static_cast<std::size_t>(in_->gcount()) < bytes_.size()) {
       tell_cut(options_, name_, frames_);

@@ -25,7 +25,7 @@ struct Entry {
 Entry entry_of(std::string_view line) {
   Cells cells(line, Cells::Separator::any);
   Entry entry;
-  if (cells.next(entry.key)) static_cast<void>(cells.next(entry.value));
+  if (cells.next_filled(entry.key)) static_cast<void>(cells.next_filled(entry.value));
   return entry;
 }
 
@@ -83,8 +83,7 @@ class Tekscan final : public FrameSource {
   Status read_unit(std::string_view text) {
     Cells cells(text, Cells::Separator::comma);
     std::string_view unit;
-    while (cells.next(unit) && unit.empty()) {
-    }
+    static_cast<void>(cells.next_filled(unit));
     const std::optional<double> factor = factor_of_unit(unit);
     if (!factor) return lines_.error("UNITS " + files::in_quotes(unit) + " is not a unit that is known");
     factor_ = *factor;

@@ -15,6 +15,7 @@
 namespace dermis::importers {
 namespace {
 
+constexpr std::size_t kPieceBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 25U;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
@@ -56,20 +57,33 @@ std::string_view trimmed(std::string_view text) noexcept {
   return text;
 }
 
-TextLines::TextLines(std::unique_ptr<std::istream> in, std::string name) : in_(std::move(in)), name_(std::move(name)) {}
+TextLines::TextLines(std::unique_ptr<std::istream> in, std::string name)
+    : in_(std::move(in)), name_(std::move(name)), piece_(kPieceBytes) {}
+
+/// What has come already, at least a byte; false at the end.
+bool TextLines::fill() {
+  if (in_->peek() == std::istream::traits_type::eof()) return false;
+  const std::streamsize size = in_->readsome(piece_.data(), static_cast<std::streamsize>(piece_.size()));
+  rest_ = {piece_.data(), static_cast<std::size_t>(size)};
+  return size > 0;
+}
 
 Result<bool> TextLines::next(std::string_view& line) {
-  constexpr int kEnd = std::istream::traits_type::eof();
   line_.clear();
-  std::streambuf& bytes = *in_->rdbuf();
-  int byte = bytes.sbumpc();
-  if (byte == kEnd) return false;
-  ++number_;
-  for (; byte != kEnd && byte != '\n'; byte = bytes.sbumpc()) {
-    if (line_.size() == kMaxLineBytes) return error("is longer than 32 MiB");
-    line_ += static_cast<char>(byte);
+  if (rest_.empty() && !fill()) {
+    if (in_->bad()) return files::read_failure(name_);
+    return false;
   }
-  was_cut_ = byte == kEnd;
+  ++number_;
+  was_cut_ = true;
+  while (was_cut_ && (!rest_.empty() || fill())) {
+    const std::string_view part = rest_.substr(0, rest_.find('\n'));
+    if (line_.size() + part.size() > kMaxLineBytes) return error("is longer than 32 MiB");
+    line_ += part;
+    was_cut_ = part.size() == rest_.size();
+    rest_.remove_prefix(part.size() + (was_cut_ ? 0 : 1));
+  }
+  if (in_->bad()) return files::read_failure(name_);
   if (number_ == 1 && (line_.starts_with("\xFF\xFE") || line_.starts_with("\xFE\xFF"))) {
     return error("is UTF-16 text; save it as UTF-8");
   }
@@ -79,11 +93,14 @@ Result<bool> TextLines::next(std::string_view& line) {
   return true;
 }
 
-void TextLines::rewind() {
+Status TextLines::rewind() {
   in_->clear();
   in_->seekg(0);
+  if (!in_->good()) return bad_input(name_ + ": cannot be read from a pipe; save it as a file");
+  rest_ = {};
   number_ = 0;
   was_cut_ = false;
+  return Done{};
 }
 
 std::string TextLines::place() const {
@@ -95,12 +112,23 @@ Error TextLines::error(const std::string& message) const {
 }
 
 Cells::Cells(std::string_view line, Separator separator) noexcept
-    : rest_(trimmed(line)), separator_(','), blanks_separate_(separator == Separator::any), at_end_(rest_.empty()) {
-  if (blanks_separate_ && rest_.find_first_of(";\t") != std::string_view::npos) separator_ = ';';
+    : rest_(line), separator_(','), blanks_separate_(separator == Separator::any), at_end_(false) {
+  const auto has = [text = trimmed(line)](char c) { return text.find(c) != std::string_view::npos; };
+  if (blanks_separate_ && has('\t')) separator_ = '\t';
+  if (blanks_separate_ && has(';')) separator_ = ';';
+  skip_blanks();
+  at_end_ = rest_.empty();
 }
 
 bool Cells::ends_cell(char c) const noexcept {
   return c == separator_ || (blanks_separate_ && is_blank(c));
+}
+
+/// At both ends of the rest.
+void Cells::skip_blanks() noexcept {
+  const auto is_skipped = [this](char c) { return is_blank(c) && c != separator_; };
+  while (!rest_.empty() && is_skipped(rest_.front())) rest_.remove_prefix(1);
+  while (!rest_.empty() && is_skipped(rest_.back())) rest_.remove_suffix(1);
 }
 
 bool Cells::next(std::string_view& cell) noexcept {
@@ -112,9 +140,19 @@ bool Cells::next(std::string_view& cell) noexcept {
   cell = trimmed(rest_.substr(0, end));
   if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
   at_end_ = end == rest_.size();
-  rest_ = trimmed(rest_.substr(end));
-  if (!rest_.empty() && rest_.front() == separator_) rest_ = trimmed(rest_.substr(1));
+  rest_.remove_prefix(end);
+  skip_blanks();
+  if (rest_.empty() || rest_.front() != separator_) return true;
+  rest_.remove_prefix(1);
+  skip_blanks();
   return true;
+}
+
+bool Cells::next_filled(std::string_view& cell) noexcept {
+  while (next(cell)) {
+    if (!cell.empty()) return true;
+  }
+  return false;
 }
 
 bool parse_reading(std::string_view text, float& value) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dermis/core/result.hpp"
 
@@ -28,7 +29,7 @@ class TextLines {
   [[nodiscard]] bool ends_in_comma() const noexcept { return was_cut_ && line_.ends_with(','); }
 
   /// To the first line again; of a stream that can seek.
-  void rewind();
+  [[nodiscard]] Status rewind();
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
   /// Of the last line: "name:line".
@@ -37,8 +38,12 @@ class TextLines {
   [[nodiscard]] Error error(const std::string& message) const;
 
  private:
+  bool fill();
+
   std::unique_ptr<std::istream> in_;
   std::string name_;
+  std::vector<char> piece_;  ///< Of the text,
+  std::string_view rest_;    ///< and what of it is to come.
   std::string line_;
   std::size_t number_ = 0;
   bool was_cut_ = false;
@@ -52,15 +57,19 @@ class Cells {
  public:
   enum class Separator {
     comma,
-    any,  ///< One comma, or blanks; where the line has semicolons or tabs, these, and a comma belongs to a number.
+    any,  ///< One comma, or blanks; where the line has semicolons or tabs, one of these, and a comma belongs to a
+          ///< number.
   };
   Cells(std::string_view line, Separator separator) noexcept;
 
   /// False when the line has no further cell.
   [[nodiscard]] bool next(std::string_view& cell) noexcept;
+  /// The next one that is not empty.
+  [[nodiscard]] bool next_filled(std::string_view& cell) noexcept;
 
  private:
   [[nodiscard]] bool ends_cell(char c) const noexcept;
+  void skip_blanks() noexcept;
 
   std::string_view rest_;
   char separator_;  ///< Between two of them, there is a cell.

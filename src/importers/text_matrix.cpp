@@ -25,14 +25,12 @@ struct Block {
   [[nodiscard]] FrameShape shape() const { return {rows, cols}; }
 };
 
-/// Else it ends a block.
+/// Else it ends a block. Separators with nothing between are missing readings.
 bool is_row(std::string_view line) {
   Cells cells(line, Cells::Separator::any);
   std::string_view cell;
-  while (cells.next(cell) && cell.empty()) {
-  }
   float value = 0.0F;
-  return !cell.empty() && parse_reading(cell, value);
+  return cells.next_filled(cell) ? parse_reading(cell, value) : !trimmed(line).empty();
 }
 
 /// Values of a row; a separator at its end ends the last one.
@@ -113,7 +111,8 @@ class TextMatrix final : public FrameSource {
     const Status read =
         parse_row(line, Cells::Separator::any, std::span(block_.values).subspan(block_.rows * block_.cols));
     if (!read && !(lines_.was_cut() && frames_ > 0)) return lines_.error(read.error().message);
-    is_cut_ = !read;
+    const std::optional<FrameShape> known = shape();
+    is_cut_ = !read || (lines_.was_cut() && count_values(line) < (known ? known->cols : block_.cols));
     ++block_.rows;
     return Done{};
   }

@@ -26,7 +26,7 @@ std::optional<Nanos> parse_date(std::string_view text) {
                                                      "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"};
   Cells cells(text, Cells::Separator::any);
   std::array<std::string_view, 3> parts;
-  for (std::string_view& part : parts) static_cast<void>(cells.next(part));
+  for (std::string_view& part : parts) static_cast<void>(cells.next_filled(part));
   std::size_t year = 0;
   std::size_t day = 0;
   const auto* const month = std::find(kMonths.begin(), kMonths.end(), parts[1]);
@@ -86,7 +86,7 @@ class Xsensor final : public FrameSource {
     }
     if (sensors.empty()) return lines_.error("the file ends before its first SENSELS");
     if (Status chosen = choose(sensors); !chosen) return chosen;
-    lines_.rewind();
+    if (Status begun = lines_.rewind(); !begun) return begun;
     heading_ = {};
     return check_shape(lines_.name(), sensor_.shape, options_.shape);
   }

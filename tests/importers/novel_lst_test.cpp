@@ -69,6 +69,13 @@ TEST(NovelLst, names_what_is_wrong) {
   EXPECT_EQ(importer.error(page("1", "\t11\r\n7\t1\r\n")), "f:7: the file does not tell the time per picture");
 }
 
+TEST(NovelLst, tells_a_file_that_cannot_be_read_or_is_a_pipe) {
+  Importer importer(open_novel_lst);
+  EXPECT_EQ(importer.fault(with_tabs(), BadFile::Fault::read).message, "cannot read 'f': Input/output error");
+  EXPECT_EQ(importer.fault(with_tabs(), BadFile::Fault::seek).message,
+            "f: cannot be read from a pipe; save it as a file");
+}
+
 TEST(NovelLst, gives_a_value_or_a_one_line_error_for_mutations) {
   Importer importer(open_novel_lst);
   importer.expect_value_or_one_line_error(with_tabs(), 10000);

@@ -30,6 +30,11 @@ TEST(Packed10, loses_only_the_frame_that_is_cut) {
   EXPECT_EQ(importer.notices(), std::vector<std::string>{"f: is cut off; the 1 frames before are read"});
 }
 
+TEST(Packed10, tells_a_file_that_cannot_be_read) {
+  Importer importer(open_packed10, {.shape = FrameShape{1, 4}, .rate_hz = 50.0});
+  EXPECT_EQ(importer.fault(std::string(9, '\0'), BadFile::Fault::read).message, "cannot read 'f': Input/output error");
+}
+
 TEST(Packed10, needs_a_shape) {
   EXPECT_EQ(Importer(open_packed10, {.rate_hz = 50.0}).error("abcde"),
             "f: packed readings do not tell their shape: say how many rows and cols");

@@ -53,14 +53,49 @@ TEST(TextMatrix, takes_what_is_empty_for_a_missing_reading) {
   EXPECT_EQ(frames[0][1], 2.0F);
 }
 
+TEST(TextMatrix, takes_separators_with_nothing_between_for_missing_readings) {
+  Importer importer(open_text_matrix, {.rate_hz = 1.0});
+  for (const std::string text :
+       {"1,2,3\n,,\n4,,6\n", "1\t2\t3\n;;\n4\t\t6\n", "1;2;3\n ; ; \n4;;6\n", "1\t2\t3\n,,\r\n4 \t \t 6\r\n"}) {
+    const Frames frames = importer.counts(text);
+    ASSERT_EQ(frames.size(), 1U) << text;
+    ASSERT_EQ(frames[0].size(), 9U) << text;
+    for (const std::size_t i : {3U, 4U, 5U, 7U}) EXPECT_TRUE(std::isnan(frames[0][i])) << text << i;
+    EXPECT_EQ(frames[0][8], 6.0F) << text;
+  }
+  EXPECT_EQ(importer.counts("1\t2\n \t \n3\t4\n"), (Frames{{1, 2}, {3, 4}})) << "a line of blanks is none";
+}
+
+TEST(TextMatrix, reads_lines_of_any_length) {
+  for (const std::size_t length : {65534U, 65535U, 65536U, 65537U, 200'000U}) {
+    const std::string line = "1" + std::string(length - 2, ' ') + "2";
+    EXPECT_EQ(Importer(open_text_matrix, {.rate_hz = 1.0}).counts(line + "\r\n" + line + "\n3 4"),
+              (Frames{{1, 2, 1, 2, 3, 4}}));
+  }
+}
+
+TEST(TextMatrix, tells_a_file_that_cannot_be_read) {
+  Importer importer(open_text_matrix, {.rate_hz = 1.0});
+  for (const std::string text : {"", "1,2", "1,2\n3,4\n\n"}) {
+    const Error error = importer.fault(text, BadFile::Fault::read);
+    EXPECT_EQ(error.kind, ErrorKind::failed);
+    EXPECT_EQ(error.message, "cannot read 'f': Input/output error");
+  }
+}
+
 TEST(TextMatrix, loses_only_the_block_that_is_cut) {
   Importer importer(open_text_matrix, {.rate_hz = 1.0});
   const Frames first = {kTwo[0]};
-  for (const std::string rest : {"7,8", "7,8,9", "7,8,9\n", "7,8,9\n10,1", "7,8,9\n10,11,1x"}) {
+  for (const std::string rest : {"7,8", "7,8,9", "7,8,9\n", "7,8,9\n10,1", "7,8,9\n10,11,", "7,8,9\n10,11,1x"}) {
     EXPECT_EQ(importer.counts("1,2,3\n4,5,6\n\n" + rest), first) << rest;
     ASSERT_EQ(importer.notices().size(), 1U) << rest;
     EXPECT_TRUE(importer.notices()[0].ends_with(": is cut off; the 1 frames before are read"));
   }
+  Importer strip(open_text_matrix, {.shape = FrameShape{1, 3}, .rate_hz = 1.0});
+  for (const std::string rest : {"4", "4,", "4,5,", "4,,"}) {
+    EXPECT_EQ(strip.counts("1,2,3\n" + rest), (Frames{{1, 2, 3}})) << rest;
+  }
+  EXPECT_EQ(strip.counts("1,2,3,\n4,5,6,"), (Frames{{1, 2, 3}, {4, 5, 6}})) << "a separator at the end of each row";
 }
 
 TEST(TextMatrix, names_the_line_that_is_wrong) {

@@ -98,6 +98,13 @@ TEST(Xsensor, names_the_line_that_is_wrong) {
             "f: has 2x3 taxels, the array is 3x2");
 }
 
+TEST(Xsensor, tells_a_file_that_cannot_be_read_or_is_a_pipe) {
+  Importer importer(open_xsensor);
+  EXPECT_EQ(importer.fault(two_frames(), BadFile::Fault::read).message, "cannot read 'f': Input/output error");
+  EXPECT_EQ(importer.fault(two_frames(), BadFile::Fault::seek).message,
+            "f: cannot be read from a pipe; save it as a file");
+}
+
 TEST(Xsensor, gives_a_value_or_a_one_line_error_for_mutations) {
   Importer(open_xsensor).expect_value_or_one_line_error(two_frames(), 20000);
 }
