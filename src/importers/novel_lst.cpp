@@ -53,8 +53,8 @@ class Listing {
   Listing(std::unique_ptr<std::istream> in, const std::string& name) : lines_(std::move(in), name) {}
 
   [[nodiscard]] const TextLines& lines() const { return lines_; }
-  /// The text ended within a table.
-  [[nodiscard]] bool is_cut() const { return lines_.was_cut() && picture_; }
+  /// Within whose pages the text ended before the end of a line; empty outside of pages with a table.
+  [[nodiscard]] std::optional<std::size_t> cut_picture() const { return lines_.was_cut() ? picture_ : std::nullopt; }
   [[nodiscard]] std::optional<double> seconds_per_picture() const { return seconds_per_picture_; }
 
   /// The next values, all of one line; `picture` is the number of theirs. False at the end.
@@ -175,22 +175,26 @@ class NovelLst final : public FrameSource {
 
   Result<bool> next(RawFrame& frame) override {
     if (is_at_end_) return false;
-    const Result<Nanos> time = time_of_frame(listing_.lines().place(), picture_, 1.0 / *listing_.seconds_per_picture());
+    const std::size_t picture = picture_;
+    const Result<Nanos> time = time_of(picture);
     if (!time) return time.error();
     begin_frame(frame, *time);
-    frame.acquisition.sequence = picture_;
+    frame.acquisition.sequence = picture;
     frame.counts.assign(shape_.taxel_count(), 0.0F);
-    for (const std::size_t picture = picture_; !is_at_end_ && picture_ == picture;) {
+    while (!is_at_end_ && picture_ == picture) {
       for (const Value& value : values_) {
         frame.counts[(value.row - first_row_) * shape_.cols + value.col - first_col_] = value.kilopascals;
       }
       if (const Status read = read_line(); !read) return read.error();
     }
-    if (is_at_end_ && listing_.is_cut() && frames_ > 0) {
+    const std::optional<std::size_t> cut = is_at_end_ ? listing_.cut_picture() : std::nullopt;
+    if (cut == picture && frames_ > 0) {
       tell_cut(options_, listing_.lines().place(), frames_);
       return false;
     }
     ++frames_;
+    last_picture_ = picture;
+    if (cut && cut != picture) tell_cut(options_, listing_.lines().place(), frames_);
     return true;
   }
 
@@ -198,6 +202,17 @@ class NovelLst final : public FrameSource {
   [[nodiscard]] std::string place() const override { return listing_.lines().place(); }
 
  private:
+  [[nodiscard]] Result<Nanos> time_of(std::size_t picture) const {
+    const std::string name = "picture " + std::to_string(picture);
+    if (picture < last_picture_) {
+      return listing_.lines().error(name + " follows picture " + std::to_string(last_picture_));
+    }
+    const std::optional<Nanos> time =
+        files::nanos_from_seconds(static_cast<double>(picture) * *listing_.seconds_per_picture());
+    if (!time) return listing_.lines().error(name + " would be later than 9e9 seconds, by the time per picture");
+    return *time;
+  }
+
   Status read_line() {
     const Result<bool> more = listing_.next(picture_, values_);
     if (!more) return more.error();
@@ -212,6 +227,7 @@ class NovelLst final : public FrameSource {
   std::size_t first_col_ = 0;
   std::vector<Value> values_;  ///< Of the line that comes next,
   std::size_t picture_ = 0;    ///< and its picture.
+  std::size_t last_picture_ = 0;
   bool is_at_end_ = false;
   std::size_t frames_ = 0;
 };

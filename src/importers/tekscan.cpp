@@ -43,6 +43,9 @@ class Tekscan final : public FrameSource {
       if (!*more) return lines_.error("the file ends before its first frame");
       if (Status read = read_header_line(line); !read) return read;
     }
+    for (const auto& [key, size] : {std::pair{"ROWS", shape_.rows}, std::pair{"COLS", shape_.cols}}) {
+      if (size == 0) return lines_.error(std::string("there is no ") + key + " above the first frame");
+    }
     return check_shape(lines_.name(), shape_, options_.shape);
   }
 
@@ -50,6 +53,7 @@ class Tekscan final : public FrameSource {
     if (!frame_number_) return false;
     const Result<Nanos> time = time_of(*frame_number_);
     if (!time) return time.error();
+    last_number_ = *frame_number_;
     begin_frame(frame, *time);
     frame.acquisition.sequence = *frame_number_;
     frame.counts.resize(shape_.taxel_count());
@@ -85,7 +89,7 @@ class Tekscan final : public FrameSource {
     std::string_view unit;
     static_cast<void>(cells.next_filled(unit));
     const std::optional<double> factor = factor_of_unit(unit);
-    if (!factor) return lines_.error("UNITS " + files::in_quotes(unit) + " is not a unit that is known");
+    if (!factor) return lines_.error("UNITS " + files::in_quotes(unit) + " is no unit that is known: " + known_units());
     factor_ = *factor;
     return Done{};
   }
@@ -134,11 +138,13 @@ class Tekscan final : public FrameSource {
   }
 
   [[nodiscard]] Result<Nanos> time_of(std::size_t number) const {
-    if (number < *first_number_) return lines_.error("frame " + std::to_string(number) + " follows a later one");
-    if (number > *first_number_ && seconds_per_frame_ == 0.0) return lines_.error("has no SECONDS_PER_FRAME above it");
+    const std::string frame = "frame " + std::to_string(number);
+    if (number < last_number_) return lines_.error(frame + " follows frame " + std::to_string(last_number_));
+    if (number > *first_number_ && seconds_per_frame_ == 0.0)
+      return lines_.error(frame + " has no SECONDS_PER_FRAME above it");
     const std::optional<Nanos> time =
         files::nanos_from_seconds(static_cast<double>(number - *first_number_) * seconds_per_frame_);
-    if (!time) return lines_.error("would be later than 9e9 seconds");
+    if (!time) return lines_.error(frame + " would be later than 9e9 seconds, by its SECONDS_PER_FRAME");
     return *time;
   }
 
@@ -148,6 +154,7 @@ class Tekscan final : public FrameSource {
   double seconds_per_frame_ = 0.0;
   double factor_ = 1.0;
   std::optional<std::size_t> first_number_;
+  std::size_t last_number_ = 0;
   std::optional<std::size_t> frame_number_;  ///< Of the frame that comes next.
   std::size_t frames_ = 0;
 };

@@ -190,4 +190,10 @@ std::optional<double> factor_of_unit(std::string_view unit) {
   return found->factor;
 }
 
+std::string known_units() {
+  std::string names;
+  for (const Unit& unit : kUnits) names.append(names.empty() ? "" : ", ").append(unit.name);
+  return names;
+}
+
 }  // namespace dermis::importers

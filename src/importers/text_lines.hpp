@@ -86,5 +86,7 @@ class Cells {
 /// What a reading in this unit is to be multiplied by: pressures become kilopascals, forces newtons, "raw" stays.
 /// Empty: the unit is not known.
 [[nodiscard]] std::optional<double> factor_of_unit(std::string_view unit);
+/// The units of factor_of_unit(), for messages.
+[[nodiscard]] std::string known_units();
 
 }  // namespace dermis::importers

@@ -19,6 +19,7 @@ namespace dermis::importers {
 namespace {
 
 constexpr std::size_t kMostSensors = 100;
+constexpr std::size_t kMostNameBytes = 200;
 
 /// "2022 Aug 16", since 1970.
 std::optional<Nanos> parse_date(std::string_view text) {
@@ -97,8 +98,10 @@ class Xsensor final : public FrameSource {
       if (!more || !*more) return more;
     } while (heading_.sensor != sensor_.name);
     if (heading_.shape != sensor_.shape) return lines_.error("the sensor has another number of rows and columns now");
-    if (!heading_.time) return lines_.error("the frame has no Time");
-    begin_frame(frame, heading_.date.value_or(Nanos{}) + *heading_.time);
+    const Result<Nanos> time = time_of_frame();
+    if (!time) return time.error();
+    begin_frame(frame, *time);
+    last_time_ = *time;
     frame.counts.resize(sensor_.shape.taxel_count());
     for (std::size_t row = 0; row < sensor_.shape.rows; ++row) {
       const auto counts = std::span(frame.counts).subspan(row * sensor_.shape.cols, sensor_.shape.cols);
@@ -132,6 +135,15 @@ class Xsensor final : public FrameSource {
     return Done{};
   }
 
+  [[nodiscard]] Result<Nanos> time_of_frame() const {
+    if (!heading_.time) return lines_.error("the frame has no Time");
+    const bool is_in_day = *heading_.time >= Nanos{} && *heading_.time <= std::chrono::hours(24);
+    if (heading_.date && !is_in_day) return lines_.error("the Time of the frame is not in the day of its Date");
+    const Nanos time = heading_.date.value_or(Nanos{}) + *heading_.time;
+    if (last_time_ && time < *last_time_) return lines_.error("the Time of the frame is before that of the last one");
+    return time;
+  }
+
   /// Reads up to the line SENSELS of the next sensor; false at the end.
   Result<bool> find_pressures() {
     while (true) {
@@ -160,6 +172,7 @@ class Xsensor final : public FrameSource {
       heading_.date.reset();
       heading_.is_group = false;
     } else if (key == "SENSOR") {
+      if (value.size() > kMostNameBytes) return lines_.error("the name of the sensor is longer than 200 bytes");
       heading_.sensor = value;
       heading_.is_group = false;
     } else if (key == "GROUP") {
@@ -170,13 +183,16 @@ class Xsensor final : public FrameSource {
       is_right = files::parse_number(value, heading_.shape.cols);
     } else if (key == "Date") {
       heading_.date = parse_date(value);
+      if (!heading_.date && heading_.frame > 0)
+        return lines_.error("Date " + files::in_quotes(value) + " is none like '2022 Aug 16'");
     } else if (key == "Time") {
       heading_.time = parse_time(value);
       is_right = heading_.time.has_value();
     } else if (key == "Units") {
       const std::optional<double> factor = factor_of_unit(value);
-      heading_.factor = factor.value_or(1.0);
-      is_right = factor.has_value();
+      if (!factor)
+        return lines_.error("Units " + files::in_quotes(value) + " are none that are known: " + known_units());
+      heading_.factor = *factor;
     }
     if (is_right) return Done{};
     return lines_.error(std::string(key) + " " + files::in_quotes(value) + " is not one that is known");
@@ -207,6 +223,7 @@ class Xsensor final : public FrameSource {
   ImportOptions options_;
   Sensor sensor_;
   Heading heading_;
+  std::optional<Nanos> last_time_;
   std::size_t frames_ = 0;
 };
 

@@ -59,13 +59,27 @@ TEST(NovelLst, loses_only_the_frame_that_is_cut) {
   const std::string whole = with_tabs();
   const std::size_t end = whole.find("\t1.0\t2.0") + 6;
   EXPECT_EQ(importer.counts(whole.substr(0, end)).size(), 1U);
-  EXPECT_EQ(importer.notices(), std::vector<std::string>{"f:19: is cut off; the 1 frames before are read"});
+  EXPECT_EQ(importer.notices(), std::vector<std::string>{"f:19: is cut off; the 1 frame before is read"});
+}
+
+TEST(NovelLst, keeps_the_picture_before_a_page_that_is_cut_above_its_values) {
+  Importer importer(open_novel_lst);
+  const std::string next = "Page\r\nPict-No.: 4    Time: 0.000 s\r\n\r\n\t12\t13\tForce";
+  const std::string whole = with_tabs().substr(0, with_tabs().find("Page\r\nPict-No.: MPP"));
+  for (std::size_t size = 0; size <= next.size(); ++size) {
+    EXPECT_EQ(importer.counts(whole + next.substr(0, size)), kPressed) << size;
+  }
+  EXPECT_EQ(importer.notices(), std::vector<std::string>{"f:26: is cut off; the 2 frames before are read"});
 }
 
 TEST(NovelLst, names_what_is_wrong) {
   Importer importer(open_novel_lst);
   EXPECT_EQ(importer.error(kHeader), "f:5: the file ends before its first table of pressures");
   EXPECT_EQ(importer.error(kHeader + page("1", "\t11\r\n7\tmuch\r\n")), "f:10: 'much' is not a number");
+  const std::string table = "\t11\r\n7\t1\r\n";
+  EXPECT_EQ(importer.error(kHeader + page("3", table) + page("2", table)), "f:17: picture 2 follows picture 3");
+  EXPECT_EQ(importer.error(kHeader + page("900000000000", table)),
+            "f:10: picture 900000000000 would be later than 9e9 seconds, by the time per picture");
   EXPECT_EQ(importer.error(page("1", "\t11\r\n7\t1\r\n")), "f:7: the file does not tell the time per picture");
 }
 

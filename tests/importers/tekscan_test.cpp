@@ -49,7 +49,9 @@ TEST(Tekscan, gives_pressures_as_kilopascals) {
     ASSERT_EQ(frames.size(), 2U) << unit;
     EXPECT_FLOAT_EQ(frames[1][5], 11.0F * factor) << unit;
   }
-  EXPECT_EQ(importer.error(header("furlongs") + kTwo), "f:11: UNITS 'furlongs' is not a unit that is known");
+  EXPECT_EQ(importer.error(header("furlongs") + kTwo),
+            "f:11: UNITS 'furlongs' is no unit that is known: raw, kpa, pa, mpa, n/mm2, n/cm2, bar, mbar, psi, mmhg, "
+            "kg/cm2, kgf/cm2, g/cm2, atm, n, newtons, kg, g, lb, lbs");
 }
 
 TEST(Tekscan, has_no_reading_outside_of_the_sensor) {
@@ -76,8 +78,12 @@ TEST(Tekscan, names_the_line_that_is_wrong) {
   EXPECT_EQ(importer.error(header() + "Frame 5\n0,1\n3,4,5\n"), "f:16: has 2 values instead of 3");
   EXPECT_EQ(importer.error(header() + "Frame 5\n0,1,x\n3,4,5\n"), "f:16: 'x' is not a number");
   EXPECT_EQ(importer.error(header() + "Frame 5\n0,1,2\n3,4,5\nFrame 4\n6,7,8\n9,10,11\n"),
-            "f:18: frame 4 follows a later one");
-  EXPECT_EQ(importer.error(header("RAW", "0") + kTwo), "f:19: has no SECONDS_PER_FRAME above it");
+            "f:18: frame 4 follows frame 5");
+  EXPECT_EQ(importer.error(header() + kTwo + "Frame 6\n6,7,8\n9,10,11\n"), "f:24: frame 6 follows frame 7");
+  EXPECT_EQ(importer.error(header("RAW", "9e9") + kTwo),
+            "f:19: frame 7 would be later than 9e9 seconds, by its SECONDS_PER_FRAME");
+  EXPECT_EQ(importer.error("DATA_TYPE MOVIE\nCOLS 3\nFrame 1\n0,1,2\n"), "f:3: there is no ROWS above the first frame");
+  EXPECT_EQ(importer.error(header("RAW", "0") + kTwo), "f:19: frame 7 has no SECONDS_PER_FRAME above it");
   EXPECT_EQ(importer.error(header("RAW", "soon") + kTwo),
             "f:7: SECONDS_PER_FRAME 'soon' is not a number that it can be");
   EXPECT_EQ(importer.error(header()), "f:14: the file ends before its first frame");

@@ -89,7 +89,7 @@ TEST(TextMatrix, loses_only_the_block_that_is_cut) {
   for (const std::string rest : {"7,8", "7,8,9", "7,8,9\n", "7,8,9\n10,1", "7,8,9\n10,11,", "7,8,9\n10,11,1x"}) {
     EXPECT_EQ(importer.counts("1,2,3\n4,5,6\n\n" + rest), first) << rest;
     ASSERT_EQ(importer.notices().size(), 1U) << rest;
-    EXPECT_TRUE(importer.notices()[0].ends_with(": is cut off; the 1 frames before are read"));
+    EXPECT_TRUE(importer.notices()[0].ends_with(": is cut off; the 1 frame before is read"));
   }
   Importer strip(open_text_matrix, {.shape = FrameShape{1, 3}, .rate_hz = 1.0});
   for (const std::string rest : {"4", "4,", "4,5,", "4,,"}) {

@@ -68,7 +68,9 @@ TEST(Xsensor, gives_pressures_as_kilopascals) {
   const auto frames = importer.counts(file(frame("1", "0", sensor("mat", kFirst)), "mmHg"));
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_FLOAT_EQ(frames[0][5], 0.66661195F);
-  EXPECT_EQ(importer.error(file("", "parsecs")), "f:2: Units 'parsecs' is not one that is known");
+  EXPECT_EQ(importer.error(file("", "parsecs")),
+            "f:2: Units 'parsecs' are none that are known: raw, kpa, pa, mpa, n/mm2, n/cm2, bar, mbar, psi, mmhg, "
+            "kg/cm2, kgf/cm2, g/cm2, atm, n, newtons, kg, g, lb, lbs");
 }
 
 TEST(Xsensor, reads_one_of_several_sensors) {
@@ -93,6 +95,16 @@ TEST(Xsensor, names_the_line_that_is_wrong) {
   EXPECT_EQ(importer.error(file(frame("1", "0", sensor("mat", "0,1\n3,4,5\n")))), "f:16: has 2 values instead of 3");
   EXPECT_EQ(importer.error(file(frame("1", "late", sensor("mat", kFirst)))),
             "f:7: Time 'late' is not one that is known");
+  for (const std::string time : {"9000000000", "86401", "-1"}) {
+    EXPECT_EQ(importer.error(file(frame("1", time, sensor("mat", kFirst)))),
+              "f:15: the Time of the frame is not in the day of its Date");
+  }
+  EXPECT_EQ(importer.error(file(frame("1", "2", sensor("mat", kFirst)) + frame("2", "1", sensor("mat", kFirst)))),
+            "f:35: the Time of the frame is before that of the last one");
+  EXPECT_EQ(importer.error(file("\"FRAME\",\"1\"\n\"Date\",\"16.8.22\"\n")),
+            "f:6: Date '16.8.22' is none like '2022 Aug 16'");
+  EXPECT_EQ(importer.error(file(sensor(std::string(201, 'n'), kFirst))),
+            "f:5: the name of the sensor is longer than 200 bytes");
   EXPECT_EQ(importer.error(file("")), "f:4: the file ends before its first SENSELS");
   EXPECT_EQ(Importer(open_xsensor, {.shape = FrameShape{3, 2}}).error(two_frames()),
             "f: has 2x3 taxels, the array is 3x2");
