@@ -3,10 +3,12 @@
 #include "dermis/importers/npz.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "dermis/files/input.hpp"
 #include "dermis/files/npy.hpp"
 #include "dermis/files/text.hpp"
 #include "importers/zip_entries.hpp"
@@ -39,21 +41,46 @@ Result<ZipEntry> choose(const std::vector<ZipEntry>& entries, const std::string&
                    files::in_quotes(file + "#" + std::string(array_name(entries.front()))) + "; it has: " + names);
 }
 
+class Npz final : public FrameSource {
+ public:
+  /// `reader` reads from `bytes`.
+  Npz(std::unique_ptr<files::NpyReader> reader, const ZipEntryStream& bytes, std::string name)
+      : reader_(std::move(reader)), bytes_(bytes), name_(std::move(name)) {}
+
+  Result<bool> next(RawFrame& frame) override {
+    Result<bool> more = reader_->next(frame);
+    if (bytes_.bad()) return files::read_failure(name_);
+    if ((!more || !*more) && bytes_.is_damaged()) {
+      return bad_input(name_ + ": is damaged: its bytes have not the checksum of the archive; save it again");
+    }
+    return more;
+  }
+
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return reader_->shape(); }
+
+ private:
+  std::unique_ptr<files::NpyReader> reader_;
+  const ZipEntryStream& bytes_;
+  std::string name_;
+};
+
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_npz(std::unique_ptr<std::istream> in, const std::string& name,
                                               const ImportOptions& options) {
   const Result<std::vector<ZipEntry>> entries = list_zip(*in);
+  if (in->bad()) return files::read_failure(name);
   if (!entries) return bad_input(name + ": " + entries.error().message);
   const Result<ZipEntry> entry = choose(*entries, name, options.array);
   if (!entry) return entry.error();
-  Result<std::unique_ptr<std::istream>> bytes = open_zip_entry(std::move(in), *entry);
-  if (!bytes) return bad_input(name + ": " + bytes.error().message);
+  Result<std::unique_ptr<ZipEntryStream>> opened = open_zip_entry(std::move(in), *entry, name);
+  if (!opened) return opened.error();
+  const ZipEntryStream& bytes = **opened;
   const std::string place = entries->size() > 1 ? name + "#" + std::string(array_name(*entry)) : name;
   Result<std::unique_ptr<files::NpyReader>> reader =
-      files::NpyReader::open(*std::move(bytes), place, {*options.rate_hz, options.shape});
+      files::NpyReader::open(*std::move(opened), place, {*options.rate_hz, options.shape});
   if (!reader) return reader.error();
-  return std::unique_ptr<FrameSource>(*std::move(reader));
+  return std::unique_ptr<FrameSource>(std::make_unique<Npz>(*std::move(reader), bytes, place));
 }
 
 }  // namespace dermis::importers

@@ -5,11 +5,13 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <ios>
 #include <optional>
 #include <streambuf>
 #include <string_view>
 #include <utility>
 
+#include "dermis/files/input.hpp"
 #include "dermis/files/text.hpp"
 
 namespace dermis::importers {
@@ -96,6 +98,7 @@ Status read_entry(std::string_view& list, ZipEntry& entry) {
   entry.name = list.substr(kHeaderBytes, name_bytes);
   entry.compressed_bytes = number_at(list, 20, 4);
   entry.offset = number_at(list, 42, 4);
+  entry.crc32 = static_cast<std::uint32_t>(number_at(list, 16, 4));
   const std::uint64_t method = number_at(list, 10, 2);
   entry.is_deflated = method == 8;
   const bool is_encrypted = (number_at(list, 8, 2) & 1U) != 0;
@@ -107,25 +110,37 @@ Status read_entry(std::string_view& list, ZipEntry& entry) {
   return Done{};
 }
 
-/// The bytes of one file, inflated where they are deflated.
-class EntryBytes final : public std::streambuf {
+}  // namespace
+
+/// Inflated where they are deflated.
+class ZipEntryStream::Bytes final : public std::streambuf {
  public:
-  EntryBytes(std::unique_ptr<std::istream> in, std::uint64_t bytes, bool is_deflated)
-      : in_(std::move(in)), left_(bytes), compressed_(kPieceBytes), plain_(kPieceBytes), is_deflated_(is_deflated) {
+  Bytes(std::unique_ptr<std::istream> in, const ZipEntry& entry)
+      : in_(std::move(in)),
+        left_(entry.compressed_bytes),
+        compressed_(kPieceBytes),
+        plain_(kPieceBytes),
+        is_deflated_(entry.is_deflated),
+        wanted_crc32_(entry.crc32) {
     constexpr int kNoHeader = -MAX_WBITS;
     is_over_ = is_deflated_ && inflateInit2(&state_, kNoHeader) != Z_OK;
   }
-  EntryBytes(const EntryBytes&) = delete;
-  EntryBytes& operator=(const EntryBytes&) = delete;
-  ~EntryBytes() override {
+  Bytes(const Bytes&) = delete;
+  Bytes& operator=(const Bytes&) = delete;
+  ~Bytes() override {
     if (is_deflated_) inflateEnd(&state_);
   }
+
+  [[nodiscard]] bool is_damaged() const noexcept { return is_at_end_ && crc32_ != wanted_crc32_; }
 
  private:
   int_type underflow() override {
     const std::size_t size = is_deflated_ ? inflate_piece() : read_piece(plain_);
+    if (in_->bad()) throw std::ios_base::failure("cannot be read");  // as of std::filebuf: makes the stream bad
+    crc32_ = ::crc32(crc32_, reinterpret_cast<const Bytef*>(plain_.data()), static_cast<uInt>(size));
+    is_at_end_ = size == 0;
     setg(plain_.data(), plain_.data(), plain_.data() + size);
-    return size == 0 ? traits_type::eof() : traits_type::to_int_type(plain_.front());
+    return is_at_end_ ? traits_type::eof() : traits_type::to_int_type(plain_.front());
   }
 
   std::size_t read_piece(std::vector<char>& into) {
@@ -155,21 +170,22 @@ class EntryBytes final : public std::streambuf {
   std::vector<char> plain_;
   z_stream state_{};
   bool is_deflated_;
-  bool is_over_ = false;
+  bool is_over_ = false;  ///< There is nothing more to inflate.
+  bool is_at_end_ = false;
+  uLong crc32_ = 0;
+  uLong wanted_crc32_;
 };
 
-class EntryStream final : public std::istream {
- public:
-  EntryStream(std::unique_ptr<std::istream> in, const ZipEntry& entry)
-      : std::istream(nullptr), bytes_(std::move(in), entry.compressed_bytes, entry.is_deflated) {
-    rdbuf(&bytes_);
-  }
+ZipEntryStream::ZipEntryStream(std::unique_ptr<std::istream> in, const ZipEntry& entry)
+    : std::istream(nullptr), bytes_(std::make_unique<Bytes>(std::move(in), entry)) {
+  rdbuf(bytes_.get());
+}
 
- private:
-  EntryBytes bytes_;
-};
+ZipEntryStream::~ZipEntryStream() = default;
 
-}  // namespace
+bool ZipEntryStream::is_damaged() const noexcept {
+  return bytes_->is_damaged();
+}
 
 Result<std::vector<ZipEntry>> list_zip(std::istream& in) {
   const std::optional<ListPlace> place = find_list(in);
@@ -186,15 +202,17 @@ Result<std::vector<ZipEntry>> list_zip(std::istream& in) {
   return entries;
 }
 
-Result<std::unique_ptr<std::istream>> open_zip_entry(std::unique_ptr<std::istream> in, const ZipEntry& entry) {
+Result<std::unique_ptr<ZipEntryStream>> open_zip_entry(std::unique_ptr<std::istream> in, const ZipEntry& entry,
+                                                       const std::string& name) {
   const std::string header = read_at(*in, entry.offset, kLocalHeaderBytes);
+  if (in->bad()) return files::read_failure(name);
   if (header.size() < kLocalHeaderBytes || !header.starts_with("PK\3\4")) {
-    return bad_input(files::in_quotes(entry.name) + " in it is not where the list of contents says");
+    return bad_input(name + ": " + files::in_quotes(entry.name) + " in it is not where the list of contents says");
   }
   const std::uint64_t data = entry.offset + kLocalHeaderBytes + number_at(header, 26, 2) + number_at(header, 28, 2);
   in->clear();
   in->seekg(static_cast<std::streamoff>(std::min<std::uint64_t>(data, 1ULL << 62U)));
-  return std::unique_ptr<std::istream>(std::make_unique<EntryStream>(std::move(in), entry));
+  return std::make_unique<ZipEntryStream>(std::move(in), entry);
 }
 
 }  // namespace dermis::importers

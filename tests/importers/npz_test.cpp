@@ -48,9 +48,11 @@ class Zip {
     const std::string field = is_zip64 ? field64 + little_endian(data.size(), 8) : "";
     const std::string sizes =
         is_zip64 ? little_endian(~0ULL, 8) : little_endian(data.size(), 4) + little_endian(bytes.size(), 4);
+    const auto checksum = crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size()));
     const std::string common = little_endian(20, 2) + little_endian(0, 2) +
-                               little_endian(static_cast<unsigned>(method), 2) + little_endian(0, 8) + sizes +
-                               little_endian(name.size(), 2) + little_endian(field.size(), 2);
+                               little_endian(static_cast<unsigned>(method), 2) + little_endian(0, 4) +
+                               little_endian(checksum, 4) + sizes + little_endian(name.size(), 2) +
+                               little_endian(field.size(), 2);
     files_ += "PK\3\4" + common + name + field + data;
     list_ += "PK\1\2" + little_endian(20, 2) + common + little_endian(0, 10) + little_endian(offset, 4) + name + field;
     ++count_;
@@ -111,6 +113,23 @@ TEST(Npz, names_what_is_wrong) {
   EXPECT_EQ(importer.error(Zip().add("a.npy", kArray, 12).bytes()), "f: 'a.npy' in it is not stored or deflated");
   EXPECT_EQ(importer.error(Zip().add("a.npy", npy("(2, 1, 2)", "abc"), 8).bytes()),
             "f: is cut short in frame 1 of 2; save it again");
+}
+
+TEST(Npz, tells_readings_that_are_damaged) {
+  Importer importer(open_npz, {.rate_hz = 10.0});
+  for (const std::string& data : {std::string("abcd"), std::string(300'000, 'x') + "abcd"}) {
+    std::string bytes = Zip().add("a.npy", npy("(" + std::to_string(data.size() / 2) + ", 1, 2)", data), 0).bytes();
+    bytes[bytes.find("abcd")] = 'b';
+    EXPECT_EQ(importer.error(bytes), "f: is damaged: its bytes have not the checksum of the archive; save it again");
+  }
+}
+
+TEST(Npz, tells_a_file_that_cannot_be_read) {
+  std::string bytes = Zip().add("a.npy", kArray, 0).bytes();
+  constexpr std::size_t kSizeInList = 20;
+  bytes.replace(bytes.find("PK\1\2") + kSizeInList, 4, little_endian(1'000'000, 4));  // beyond the end
+  EXPECT_EQ(Importer(open_npz, {.rate_hz = 10.0}).fault(bytes, BadFile::Fault::read).message,
+            "cannot read 'f': Input/output error");
 }
 
 TEST(Npz, gives_a_value_or_a_one_line_error_for_mutations) {

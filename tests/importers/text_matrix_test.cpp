@@ -68,9 +68,10 @@ TEST(TextMatrix, takes_separators_with_nothing_between_for_missing_readings) {
 
 TEST(TextMatrix, reads_lines_of_any_length) {
   for (const std::size_t length : {65534U, 65535U, 65536U, 65537U, 200'000U}) {
-    const std::string line = "1" + std::string(length - 2, ' ') + "2";
-    EXPECT_EQ(Importer(open_text_matrix, {.rate_hz = 1.0}).counts(line + "\r\n" + line + "\n3 4"),
-              (Frames{{1, 2, 1, 2, 3, 4}}));
+    const std::string blanks(length - 2, ' ');
+    std::string text = "1";
+    text.append(blanks).append("2\r\n1").append(blanks).append("2\n3 4");
+    EXPECT_EQ(Importer(open_text_matrix, {.rate_hz = 1.0}).counts(text), (Frames{{1, 2, 1, 2, 3, 4}}));
   }
 }
 
