@@ -94,10 +94,11 @@ void add_convert(Command& command) {
       .required();
   command.option("out", options->out, ".csv, .mcap, .h5, .hdf5, .npy or .wiresens.hdf5").required();
   command.option("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");
-  command.option("--rate", options->rate_hz, "Frames a second of a file without times (.npy, .npz, .txt, .png) [Hz]");
+  command.option("--rate", options->rate_hz,
+                 "Frames a second of a file without times (.npy, .npz, .txt, .png, .packed10) [Hz]");
   const Option rows =
       command
-          .option("--rows", options->rows, "Rows of the frames: checked, and needed for a .npy file of two dimensions")
+          .option("--rows", options->rows, "Rows of the frames: checked, and needed where the file does not tell them")
           .not_negative();
   const Option cols = command.option("--cols", options->cols, "Columns of the frames").not_negative().needs(rows);
   rows.needs(cols);

@@ -88,7 +88,8 @@ Status evaluate(const EvaluateOptions& options) {
 
 void add_evaluate(Command& command) {
   auto options = std::make_shared<EvaluateOptions>();
-  command.option("--model", options->model, "Model file of 'dermis calibrate'").required();
+  command.option("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
+      .required();
   command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
       .required();
   command.option("--loads", options->loads, "loads.csv: the truth").required();

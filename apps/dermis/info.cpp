@@ -134,7 +134,10 @@ Status print_info(const InfoOptions& options) {
 
 void add_info(Command& command) {
   auto options = std::make_shared<InfoOptions>();
-  command.option("file", options->file, ".mcap, .csv, .h5, .hdf5 or .npy").required();
+  command
+      .option("file", options->file,
+              ".mcap, .csv, .h5, .hdf5, .npy, or a file of another system (docs/file-formats.md)")
+      .required();
   command.flag("--json", options->json, "As JSON");
   command.action([options] { return print_info(*options); });
 }

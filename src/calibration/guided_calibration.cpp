@@ -184,6 +184,7 @@ Status GuidedCalibration::Implementation::finish() {
   const std::lock_guard lock(mutex_);
   if (stage_ != GuideStage::pressing) return bad_input("there is nothing to finish");
   if (presses_.kept().empty()) return bad_input("there is no press yet");
+  presses_.skip_rest();
   start_last_fit();
   return Done{};
 }

@@ -22,6 +22,21 @@ void thin_out(std::vector<Knot>& knots, std::size_t most) {
   knots = std::move(thinned);
 }
 
+void merge_equal(std::vector<Knot>& knots, double least_step) {
+  std::vector<Knot> merged;
+  for (const Knot& knot : knots) {
+    if (merged.empty() || knot.x - merged.back().x >= least_step) {
+      merged.push_back(knot);
+      continue;
+    }
+    Knot& previous = merged.back();
+    const double weight = previous.weight + knot.weight;
+    previous = {(previous.x * previous.weight + knot.x * knot.weight) / weight,
+                (previous.y * previous.weight + knot.y * knot.weight) / weight, weight};
+  }
+  knots = std::move(merged);
+}
+
 void pool_adjacent_violators(std::vector<Knot>& knots) {
   std::vector<Knot> pooled;
   for (Knot knot : knots) {

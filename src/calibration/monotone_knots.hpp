@@ -17,6 +17,9 @@ struct Knot {
 /// `knots` by rising x: at most `most` of them, by merging equal numbers of neighbours.
 void thin_out(std::vector<Knot>& knots, std::size_t most);
 
+/// `knots` by rising x: pools those that are less than `least_step` apart, so that the table has a slope everywhere.
+void merge_equal(std::vector<Knot>& knots, double least_step);
+
 /// `knots` by rising x: pools neighbours until y rises with x (Ayer et al. 1955).
 void pool_adjacent_violators(std::vector<Knot>& knots);
 

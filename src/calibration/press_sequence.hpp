@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -31,6 +32,7 @@ class PressSequence {
 
   void keep(std::vector<RawFrame> frames);
   void skip() { steps_[step_] = Step::skipped; }
+  void skip_rest() { std::replace(steps_.begin(), steps_.end(), Step::open, Step::skipped); }
   /// Asks for the first press that is neither kept nor skipped; false where there is none.
   bool advance();
   /// Asks for the last kept press again; there must be one.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "calibration/shared_loads.hpp"
 #include "dermis/core/parallel.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
 
@@ -19,10 +20,8 @@ constexpr std::size_t kLevelsPerHiddenUnit = 7;
 constexpr double kLevelWidth = 1.05;
 constexpr std::size_t kStarts = 6;
 constexpr int kMaxIterations = 120;
-constexpr std::size_t kMostPresses = 12;             // of one taxel alone; more tell little about all
 constexpr std::size_t kMostSharesForStart = 15'000;  // taxels of all loads together, thinned out evenly beyond:
 constexpr std::size_t kMostShares = 200'000;         // to choose among the starts, and for the final training
-constexpr double kActive = 3.0;                      // in standard deviations of the unloaded reading
 constexpr double kGainDeviation = 0.15;              // of a gain: docs/derivations.md, "Spread of the taxels"
 constexpr double kMostGain = 4.0;
 constexpr std::size_t kLeastTaxelsForScatter = 5;
@@ -46,95 +45,19 @@ struct SharedLoad {
   double weight = 0.0;  // 1 / (newtons + typical load)
 };
 
-/// All loads of the database with the excess conductances of their taxels, before normalisation.
-struct RawLoad {
-  std::size_t sample = 0;                              // in the database
-  std::vector<std::pair<std::size_t, double>> excess;  // taxel, siemens > 0
-  double temperature = 0.0;
-  double newtons = 0.0;
-};
-
-class LoadCollector {
- public:
-  LoadCollector(const SampleDatabase& database, const SampleTemperatures& temperatures, const UnloadedFit& unloaded,
-                const std::vector<bool>& dead)
-      : database_(database), temperatures_(temperatures), unloaded_(unloaded), dead_(dead), presses_(dead.size()) {
-    for (std::size_t k = 0; k < database.samples.size(); ++k) {
-      const Sample& sample = database.samples[k];
-      for (const TotalForce& total : sample.totals) add(k, total.taxels, total.newtons);
-      for (std::size_t taxel = 0; taxel < dead.size(); ++taxel) {
-        const double newtons = sample.known_newtons[taxel];
-        if (newtons > 0.0) presses_[taxel].push_back({k, newtons});
-      }
-    }
-    for (std::size_t taxel = 0; taxel < dead.size(); ++taxel) add_presses(taxel);
-  }
-
-  /// All loads, or as many of them, evenly, as hold about `most_shares` taxels.
-  [[nodiscard]] std::vector<RawLoad> loads(std::size_t most_shares) const {
-    std::size_t shares = 0;
-    for (const RawLoad& load : loads_) shares += load.excess.size();
-    if (shares <= most_shares) return loads_;
-    const std::size_t count = std::max<std::size_t>(loads_.size() * most_shares / shares, 1);
-    std::vector<RawLoad> kept;
-    for (std::size_t k = 0; k < count; ++k) kept.push_back(loads_[k * loads_.size() / count]);
-    return kept;
-  }
-
- private:
-  struct Press {
-    std::size_t sample;
-    double newtons;
-  };
-
-  /// At most kMostPresses of the presses on one taxel alone, evenly.
-  void add_presses(std::size_t taxel) {
-    const std::vector<Press>& presses = presses_[taxel];
-    const std::size_t count = std::min(presses.size(), kMostPresses);
-    for (std::size_t k = 0; k < count; ++k) {
-      const Press& press = presses[k * presses.size() / count];
-      add(press.sample, {taxel}, press.newtons);
-    }
-  }
-
-  void add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons) {
-    const Sample& sample = database_.samples[index];
-    RawLoad load;
-    load.sample = index;
-    load.newtons = newtons;
-    load.temperature = normalised_temperature(sample, temperatures_);
-    bool is_felt = false;
-    for (const std::size_t taxel : taxels) {
-      if (dead_[taxel]) continue;
-      const double excess = excess_siemens(sample, taxel, unloaded_, temperatures_);
-      if (excess <= 0.0) continue;
-      load.excess.emplace_back(taxel, excess);
-      is_felt = is_felt || excess > kActive * unloaded_.noise_siemens[taxel];
-    }
-    if (is_felt) loads_.push_back(std::move(load));
-  }
-
-  const SampleDatabase& database_;
-  const SampleTemperatures& temperatures_;
-  const UnloadedFit& unloaded_;
-  const std::vector<bool>& dead_;
-  std::vector<std::vector<Press>> presses_;  // [taxels]
-  std::vector<RawLoad> loads_;
-};
-
 /// The least-squares problem for given gains; its parameters are the free values of the network.
 class SharedProblem {
  public:
-  SharedProblem(const std::vector<RawLoad>& raw, const UnloadedFit& unloaded)
+  SharedProblem(const std::vector<MeasuredLoad>& raw, const UnloadedFit& unloaded)
       : gain_(unloaded.noise_siemens.size(), 1.0) {
     double log_newtons = 0.0;
     double active = 0.0;
     double active_siemens = 0.0;
-    for (const RawLoad& load : raw) {
+    for (const MeasuredLoad& load : raw) {
       log_newtons += std::log(load.newtons) / static_cast<double>(raw.size());
       for (const auto& [taxel, siemens] : load.excess) {
         heaviest_siemens_ = std::max(heaviest_siemens_, siemens);
-        if (siemens <= kActive * unloaded.noise_siemens[taxel]) continue;
+        if (siemens <= kFeltSigmas * unloaded.noise_siemens[taxel]) continue;
         active += 1.0;
         active_siemens += siemens;
       }
@@ -144,7 +67,7 @@ class SharedProblem {
     typical_share_newtons_ = typical_newtons * static_cast<double>(raw.size()) / active;
     ForceNetwork scale;
     scale.reference_siemens = reference_siemens_;
-    for (const RawLoad& load : raw) {
+    for (const MeasuredLoad& load : raw) {
       SharedLoad& shared = loads_.emplace_back();
       shared.newtons = load.newtons;
       shared.weight = 1.0 / (load.newtons + typical_newtons);
@@ -235,9 +158,9 @@ void train(const SharedProblem& problem, Candidate& candidate) {
 /// Hidden units that loads of so few different forces allow. With a handful of weights, each on many taxels, a network
 /// that can bend learns a stair with the weights as its steps: it is right on every load that is left out, because the
 /// other taxels carried the same weight, and wrong between the weights.
-std::size_t most_hidden_units(const std::vector<RawLoad>& loads) {
+std::size_t most_hidden_units(const std::vector<MeasuredLoad>& loads) {
   std::vector<double> single;
-  for (const RawLoad& load : loads) {
+  for (const MeasuredLoad& load : loads) {
     if (load.excess.size() == 1) single.push_back(load.newtons);
   }
   std::sort(single.begin(), single.end());
@@ -336,7 +259,7 @@ class GainFit {
 
 /// The errors of the loads as if each were left out. The leverage knows of the network's parameters but not of the
 /// gains: the errors are scaled to the mean square that held-out loads have with them.
-std::vector<TestedLoad> tested_loads(const std::vector<RawLoad>& raw, const SharedProblem& problem,
+std::vector<TestedLoad> tested_loads(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
                                      const Candidate& chosen, double mean_square) {
   const std::size_t count = raw.size();
   const std::vector<network::FittedResidual> fitted = network::fitted_residuals(
@@ -358,7 +281,7 @@ std::vector<TestedLoad> tested_loads(const std::vector<RawLoad>& raw, const Shar
 /// gain. If their mean square over the n taxels is m, the variance is m n / (n - 1), that of a new taxel larger by
 /// 1 + 1/n, and because it is itself uncertain, the 68 % point of Student's distribution is that of (n - 1) / (n - 2)
 /// times it.
-std::vector<TestedLoad> tested_as_unpressed(const std::vector<RawLoad>& raw, const SharedProblem& problem,
+std::vector<TestedLoad> tested_as_unpressed(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
                                             const ForceNetwork& network) {
   std::vector<TestedLoad> tested;
   std::set<std::size_t> taxels;
@@ -383,14 +306,14 @@ std::vector<TestedLoad> tested_as_unpressed(const std::vector<RawLoad>& raw, con
 
 SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatures& temperatures,
                            const UnloadedFit& unloaded, const std::vector<bool>& dead) {
-  const LoadCollector collector(database, temperatures, unloaded, dead);
-  const std::vector<RawLoad> loads = collector.loads(kMostShares);
+  const SharedLoads all(database, temperatures, unloaded, dead);
+  const std::vector<MeasuredLoad> loads = all.loads(kMostShares);
   SharedNetwork shared;
   shared.gain.assign(dead.size(), 1.0);
   if (loads.empty()) return shared;
 
   SharedProblem problem(loads, unloaded);
-  const SharedProblem thinned(collector.loads(kMostSharesForStart), unloaded);
+  const SharedProblem thinned(all.loads(kMostSharesForStart), unloaded);
   std::vector<Candidate> candidates = best_starts(thinned, temperatures.is_input, most_hidden_units(loads));
   Candidate chosen = choose_size(problem, candidates);
   double mean_square = chosen.leave_one_out;

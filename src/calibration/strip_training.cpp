@@ -17,6 +17,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr std::size_t kLeastTouches = 16;
+constexpr double kLeastStepM = 1e-6;  // between centres of mass
 constexpr std::size_t kTouchesPerKnot = 8;
 constexpr std::size_t kMostKnots = 64;
 
@@ -107,6 +108,7 @@ Result<fusion::StripTable> train_strip(const pipeline::Model& model, std::span<c
   std::vector<Knot> knots;
   for (const KnownTouch& touch : touches) knots.push_back({touch.centre_m, touch.position_m, 1.0});
   thin_out(knots, std::clamp(touches.size() / kTouchesPerKnot, std::size_t{2}, kMostKnots));
+  merge_equal(knots, kLeastStepM);
   pool_adjacent_violators(knots);
   if (knots.size() < 2) {
     return bad_input("positions do not rise with the centre of mass: they are counted from the first taxel on");

@@ -117,7 +117,8 @@ ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conduc
   }
   const double offset = *conductance.temperature_celsius - calibrated.centre_celsius;
   const double clamped = calibrated.offset(*conductance.temperature_celsius);
-  const double outside = std::abs(offset - clamped);
+  const bool is_known = calibrated.half_span_celsius > 0.0;  // at which temperatures the forces were calibrated
+  const double outside = is_known ? std::abs(offset - clamped) : 0.0;
   constexpr double kSensorNoiseCelsius = 1.0;
   if (uses_temperature() && outside > kSensorNoiseCelsius) force.status |= FrameStatus::temperature_clamped;
   return {clamped, std::hypot(networks_.temperature_sigma_celsius, outside), outside};

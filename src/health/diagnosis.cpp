@@ -15,11 +15,13 @@ std::string frames_text(const Diagnosis& diagnosis) {
   return text + fmt::format(", {:.1f} frames/s", static_cast<double>(accepted - 1) / diagnosis.seconds);
 }
 
-std::string temperature_text(const Diagnosis& diagnosis, const TemperatureSpan& calibrated) {
+std::string temperature_text(const Diagnosis& diagnosis, const pipeline::Model& model) {
   const std::string measured = diagnosis.temperature
                                    ? fmt::format("{:.1f} to {:.1f} C", diagnosis.temperature->coldest_celsius,
                                                  diagnosis.temperature->hottest_celsius)
                                    : "unknown";
+  const TemperatureSpan& calibrated = model.networks.unloaded.temperature;
+  if (calibrated.half_span_celsius == 0.0) return measured + ", unknown when calibrated";
   return measured + fmt::format(", calibrated {:.1f} to {:.1f} C",
                                 calibrated.centre_celsius - calibrated.half_span_celsius,
                                 calibrated.centre_celsius + calibrated.half_span_celsius);
@@ -40,7 +42,7 @@ std::string describe(const Diagnosis& diagnosis, const pipeline::Model& model) {
   text += fmt::format("unloaded     {}\n", diagnosis.offset_drift ? fmt::format("{:+.1f} % against the calibration",
                                                                                 100.0 * *diagnosis.offset_drift)
                                                                   : "unknown");
-  text += fmt::format("temperature  {}\n", temperature_text(diagnosis, model.networks.unloaded.temperature));
+  text += fmt::format("temperature  {}\n", temperature_text(diagnosis, model));
   text += fmt::format("circuit      {} frames unsolved, worst misfit {:.2f} standard deviations\n",
                       diagnosis.frames_unsolved, diagnosis.worst_misfit_sigma);
   if (!diagnosis.blind_lines.empty()) {

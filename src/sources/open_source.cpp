@@ -34,7 +34,8 @@ Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri
   const Result<recordings::FrameFormat> format = recordings::recognise_frames(uri.path);
   if (!format) return format.error();
   if (recordings::has_times(*format)) {
-    return bad_input("'" + uri.text + "': the file has times of its own; leave rate out");
+    return bad_input("'" + uri.text + "': the file has times of its own; write '" + uri.path +
+                     "' alone, without file: and rate");
   }
   return recordings::open_frames(uri.path,
                                  {.shape = given ? given : wanted, .rate_hz = uri.rate_hz, .notice = options.notice});

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "calibration/monotone_knots.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/fusion/contact.hpp"
@@ -156,6 +157,16 @@ TEST(StripTraining, says_what_is_wrong_with_positions) {
   ASSERT_FALSE(reversed);
   EXPECT_EQ(reversed.error().message,
             "positions do not rise with the centre of mass: they are counted from the first taxel on");
+}
+
+/// Touches that one taxel alone feels have its place, whatever theirs is.
+TEST(StripTraining, touches_with_equal_centres_of_mass_are_one_knot) {
+  std::vector<Knot> knots = {{0.0, 0.0, 1.0}, {0.0, 1e-3, 3.0}, {1e-9, 2e-3, 1.0}, {0.004, 3e-3, 2.0}};
+  merge_equal(knots, 1e-6);
+  ASSERT_EQ(knots.size(), 2U);
+  EXPECT_NEAR(knots[0].y, 1e-3, 1e-12);
+  EXPECT_EQ(knots[0].weight, 5.0);
+  EXPECT_EQ(knots[1].y, 3e-3);
 }
 
 }  // namespace

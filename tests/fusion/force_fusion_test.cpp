@@ -439,6 +439,16 @@ TEST(ForceFusion, a_temperature_that_nobody_calibrated_costs_half_a_percent_a_de
   }
 }
 
+TEST(ForceFusion, temperatures_cost_nothing_where_it_is_not_known_at_which_one_was_calibrated) {
+  auto networks = support::random_networks(8, 2, 2, 4);
+  networks.unloaded.temperature = {20.0, 0.0};
+  networks.unloaded.per_celsius.assign(8, 0.0);
+  const std::vector<double> siemens(8, 1e-3);
+  const auto without = fuse(networks, make_frame(siemens, {}));
+  const auto with = fuse(networks, make_frame(siemens, 45.0));
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(with.sigma_newtons[k], without.sigma_newtons[k]);
+}
+
 TEST(ForceNetworks, half_span_is_not_negative_even_where_temperature_is_not_an_input) {
   ForceNetworks networks = power_law();
   networks.unloaded.temperature.half_span_celsius = 0.0;

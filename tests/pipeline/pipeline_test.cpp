@@ -181,7 +181,8 @@ TEST(Pipeline, frames_influence_each_other_far_below_their_noise) {
 std::vector<double> round_contact(const ArrayDescription& array, double most_newtons) {
   std::vector<double> newtons(array.taxel_count());
   for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
-    const double row = static_cast<double>(taxel / array.cols) - 3.3;
+    const std::size_t row_index = taxel / array.cols;
+    const double row = static_cast<double>(row_index) - 3.3;
     const double col = static_cast<double>(taxel % array.cols) - 3.6;
     const double force = most_newtons * std::exp(-(row * row + col * col) / (2.0 * 1.3 * 1.3));
     if (force > 0.1) newtons[taxel] = force;

@@ -207,7 +207,8 @@ TEST(OpenSource, a_rate_gives_times_to_a_file_that_has_none) {
   EXPECT_EQ(refusal(other), folder.file("a.npy") + ": has 4x5 taxels, the array is 2x2");
   write_file(folder.file("a.csv"), some_frames(3));
   const std::string timed = "file:" + folder.file("a.csv") + "?rate=4";
-  EXPECT_EQ(refusal(timed), "'" + timed + "': the file has times of its own; leave rate out");
+  EXPECT_EQ(refusal(timed), "'" + timed + "': the file has times of its own; write '" + folder.file("a.csv") +
+                                "' alone, without file: and rate");
 }
 
 TEST(OpenSource, refuses_shapes_that_disagree) {

@@ -20,12 +20,25 @@ constexpr std::size_t kFirstFrames = 1500;  // and the way to the solution with 
 constexpr double kEnoughAtFirst = 0.1;      // a step this small against the standard errors ends the fit
 constexpr double kEnough = 0.25;            // the same, with all frames
 
-ResistanceFit report(const LineParameters& lines, const Iteration& last) {
+/// Errors that were given stay where the drivers were.
+void keep_given_errors(const Readout& given, Readout& fitted) {
+  if (given.drive_error_ohm.empty()) return;
+  const auto is_fitted = [](double ohm) { return ohm > 0.0; };
+  const bool any_fitted = std::any_of(fitted.drive_error_ohm.begin(), fitted.drive_error_ohm.end(), is_fitted);
+  if (!any_fitted) fitted.drive_error_correlation = given.drive_error_correlation;
+  fitted.drive_error_ohm.resize(given.drive_error_ohm.size());
+  for (std::size_t line = 0; line < given.drive_error_ohm.size(); ++line) {
+    if (!is_fitted(fitted.drive_error_ohm[line])) fitted.drive_error_ohm[line] = given.drive_error_ohm[line];
+  }
+}
+
+ResistanceFit report(const Readout& given, const LineParameters& lines, const Iteration& last) {
   ResistanceFit fit;
   fit.array = lines.array_at(last.estimate.parameters);
   fit.errors = standard_errors(lines, last.estimate.parameters, last.covariance);
   fit.array.readout.drive_error_ohm = fit.errors.drive_ohm;
   fit.array.readout.drive_error_correlation = fit.errors.correlation;
+  keep_given_errors(given, fit.array.readout);
   fit.rubber_scatter = std::sqrt(last.estimate.scatter.rubber_variance);
   fit.sheet_scatter = last.estimate.scatter.sheet;
   fit.has_idle_readings = last.has_idle_readings;
@@ -51,7 +64,7 @@ Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const Circu
     last = iterate(lines, select_frames(frames, most), last->estimate, kEnough);
   }
   if (!last) return last.error();
-  return report(lines, *last);
+  return report(array.readout, lines, *last);
 }
 
 }  // namespace dermis::calibration

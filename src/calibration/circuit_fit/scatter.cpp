@@ -12,6 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double kLeastNoiseVariance = 0.01;  // over what noise is said to be: readings that are cut at 0 have none
 constexpr double kLeastShapeSpread = 1e-4;
 constexpr double kLeastRubberScatter = 1e-4;
 constexpr double kMostRubberScatter = 1.0;
@@ -26,7 +27,7 @@ double learn_noise(const Elimination& idle, const Step& step, Index unloaded_ter
   const double freedom = idle.readings - static_cast<double>(unloaded_terms) * idle.taxels;
   if (!(freedom > 0.0)) return noise_variance;
   const VectorXd extended = with_one(step.of_parameters());
-  return noise_variance * (extended.dot(idle.normal * extended) / freedom);
+  return std::max(noise_variance * (extended.dot(idle.normal * extended) / freedom), kLeastNoiseVariance);
 }
 
 /// What the readings scatter about their laws more than their noise explains: a Newton step of its likelihood.

@@ -27,9 +27,9 @@ void DeadTaxelDetector::judge(const Observation& seen, FaultList& faults) noexce
   if (!seen.solved) return;
   const TaxelBlock block = TaxelBlock::of_frame(seen.frame, dead_.size());
   weigh(seen, block);
+  if (seen.witnesses.are_doubtful()) forget(seen.frame, block);
   const float most = add_up(seen.frame, block);
   if (most < static_cast<float>(kEvidence) && !faults.contains(LineFaultKind::dead_taxel)) return;
-  if (seen.witnesses.are_doubtful()) forget(seen.frame, block);
   for (std::size_t taxel = block.from; taxel < block.to; ++taxel) judge_taxel(seen, taxel, faults);
 }
 
@@ -76,6 +76,7 @@ void DeadTaxelDetector::forget(std::size_t frame, const TaxelBlock& block) noexc
   for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
     dead_[taxel] = 0.0F;
     since_[taxel] = static_cast<std::int32_t>(frame) + 1;
+    passed_over_[taxel] = 0;
   }
 }
 

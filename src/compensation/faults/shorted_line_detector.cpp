@@ -78,7 +78,7 @@ void ShortedLineDetector::judge_pair(const Observation& seen, Axis axis, std::si
   });
   const auto [different, equal_place] = compare_with_next(seen, axis, line, faults);
   if (faults.contains(kShorted[axis], line)) {
-    if (equal_place) count.against = 0;
+    if (equal_place && !different) count.against = 0;
     if (!different || ++count.against < kLineFrames) return;
     faults.remove(kShorted[axis], line);
     count = PressCount();

@@ -54,7 +54,7 @@ void SuppliedRowDetector::judge_row(const Observation& seen, std::size_t row, bo
                                     FaultList& faults) noexcept {
   const auto [place, alike, fails] = compare_row(seen, row, faults);
   if (is_known) {
-    if (place) count_.against = 0;
+    if (place && fails == 0) count_.against = 0;
     if (fails == 0 || ++count_.against < kLineFrames) return;
     faults.remove(kKind, row);
     forget_presses();
@@ -79,10 +79,12 @@ void SuppliedRowDetector::forget_presses() noexcept {
 SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observation& seen, std::size_t row,
                                                                  const FaultList& faults) const noexcept {
   Comparison found;
+  std::size_t judged = 0;
   std::size_t pressed = 0;
   for (std::size_t col = 0; col < array_.cols; ++col) {
     const std::size_t own = array_.index(row, col);
     if ((faults.causes(own) & ~kRowCause) != 0 || seen.conditioned.taxels[own] != TaxelStatus::ok) continue;
+    ++judged;
     if (!seen.is_pressed(own)) continue;
     ++pressed;
     const ColumnComparison press = compare_in_column(seen, row, col, faults);
@@ -91,7 +93,7 @@ SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observati
     found.place = col;
     found.alike = press.alike;
   }
-  if (pressed == array_.cols) found.place.reset();
+  if (pressed == judged) found.place.reset();
   return found;
 }
 
