@@ -14,7 +14,7 @@ namespace {
 
 std::string little_endian(std::uint64_t number, int size) {
   std::string bytes;
-  for (int i = 0; i < size; ++i) bytes += static_cast<char>(number >> (8 * i) & 0xFFU);
+  for (int i = 0; i < size; ++i) bytes += static_cast<char>(i < 8 ? number >> (8 * i) & 0xFFU : 0U);
   return bytes;
 }
 
@@ -97,7 +97,7 @@ TEST(Npz, reads_the_one_that_is_named) {
 
 TEST(Npz, reads_large_arrays_piece_by_piece) {
   std::string data;
-  for (int i = 0; i < 300000; ++i) data += static_cast<char>(i * i % 251);
+  for (std::uint64_t i = 0; i < 300000; ++i) data += static_cast<char>(i * i % 251);
   const auto frames =
       Importer(open_npz, {.rate_hz = 10.0}).counts(Zip().add("a.npy", npy("(300, 10, 100)", data), 8).bytes());
   ASSERT_EQ(frames.size(), 300U);
