@@ -2,14 +2,22 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/core/result.hpp"
 
-#include <algorithm>
+#include <cstddef>
+#include <utility>
 
 namespace dermis {
 namespace {
 
+/// The control characters of ASCII, and those beyond it that some terminals obey: U+0080 to U+009F, two bytes of UTF-8.
 std::string one_line(std::string text) {
-  const auto is_control = [](unsigned char c) { return c < 0x20U || c == 0x7FU; };
-  std::replace_if(text.begin(), text.end(), is_control, '?');
+  unsigned char before = 0;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const auto byte = static_cast<unsigned char>(text[k]);
+    const bool is_beyond_ascii = before == 0xC2U && byte >= 0x80U && byte < 0xA0U;
+    if (byte < 0x20U || byte == 0x7FU || is_beyond_ascii) text[k] = '?';
+    if (is_beyond_ascii) text[k - 1] = '?';
+    before = byte;
+  }
   return text;
 }
 

@@ -34,6 +34,21 @@ TEST(Result, tells_bad_input_from_failure) {
   EXPECT_EQ(failed("x").kind, ErrorKind::failed);
 }
 
+TEST(Result, messages_hold_no_control_characters) {
+  EXPECT_EQ(bad_input("a\nb\x1b[2Jc\x7f").message, "a?b?[2Jc?");
+  EXPECT_EQ(failed("a\xC2\x9B"
+                   "2Jb")
+                .message,
+            "a??2Jb")
+      << "ESC [ of ISO 8859";
+  EXPECT_EQ(failed("\xC2\xB0"
+                   "C, \xC3\x9F")
+                .message,
+            "\xC2\xB0"
+            "C, \xC3\x9F")
+      << "text";
+}
+
 TEST(Result, moves_its_value_out) {
   Result<std::unique_ptr<int>> result = std::make_unique<int>(3);
   const std::unique_ptr<int> value = *std::move(result);
