@@ -70,7 +70,7 @@ class FrameTimesReporter final : public benchmark::BenchmarkReporter {
     const std::string& name = run.run_name.function_name;
     const std::string work = name.substr(0, name.find('|'));
     const std::string engine = name.substr(name.find('|') + 1);
-    const std::string array = fmt::format("{0}x{0}", run.run_name.args);
+    const std::string array = size_of(run.run_name.args);
     const auto counter = [&](const char* key) { return run.counters.at(key).value; };
     fmt::print("{:<30}{:<10}{:<8}{:>10.2f}{:>10.2f}{:>10.1f}{:>14.2f}{:>9}\n", work, engine, array, counter("p50_us"),
                counter("p99_us"), counter("max_us"), counter("allocations"), counter("checked") == 1.0 ? "yes" : "NO");
@@ -83,6 +83,12 @@ class FrameTimesReporter final : public benchmark::BenchmarkReporter {
                      {"max", counter("max_us")},
                      {"allocations", counter("allocations")},
                      {"checked", counter("checked") == 1.0}});
+  }
+
+  /// "16" and "16/16" are both 16x16.
+  static std::string size_of(const std::string& arguments) {
+    const std::size_t slash = arguments.find('/');
+    return arguments.substr(0, slash) + "x" + arguments.substr(slash == std::string::npos ? 0 : slash + 1);
   }
 
   const char* note_;

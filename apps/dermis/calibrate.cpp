@@ -14,7 +14,6 @@
 #include "dermis/calibration/strip_training.hpp"
 #include "dermis/core/version.hpp"
 #include "dermis/files/array_toml.hpp"
-#include "dermis/files/atomic_file.hpp"
 #include "dermis/files/content_hash.hpp"
 #include "dermis/files/loads_csv.hpp"
 #include "dermis/paper/bank_training.hpp"
@@ -23,6 +22,7 @@
 #include "open_source.hpp"
 #include "seconds.hpp"
 #include "status_line.hpp"
+#include "writable.hpp"
 
 namespace dermis::app {
 namespace {
@@ -124,7 +124,7 @@ nlohmann::ordered_json circuit_json(const calibration::CircuitFit& fit) {
   }
   for (const calibration::CircuitCandidate& candidate : fit.candidates) {
     json["candidates"].push_back({{"name", candidate.name},
-                                  {"misfit", candidate.misfit},  // null: not possible
+                                  {"misfit", candidate.misfit},  // null: not possible, or not resolved
                                   {"chosen", candidate.chosen},
                                   {"indistinguishable", candidate.indistinguishable}});
   }
@@ -141,6 +141,9 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
                                  {"own_networks", training.own_networks},
                                  {"shared_networks", training.shared_networks},
                                  {"hidden_units", training.hidden_units},
+                                 {"groups", training.groups},
+                                 {"groups_on_tables", training.groups_on_tables},
+                                 {"table_taxels", taxel_names(training.table_taxels, array)},
                                  {"uses_temperature", training.uses_temperature},
                                  {"lightest_newtons", training.lightest_newtons},
                                  {"heaviest_newtons", training.heaviest_newtons},
@@ -159,6 +162,9 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
   if (uncertainty.relative_sigma_of_shared) {
     json["relative_sigma_of_shared"] = *uncertainty.relative_sigma_of_shared;
   }
+  if (uncertainty.relative_sigma_of_tables) {
+    json["relative_sigma_of_tables"] = *uncertainty.relative_sigma_of_tables;
+  }
   if (uncertainty.relative_sigma_of_unpressed) {
     json["relative_sigma_of_unpressed"] = *uncertainty.relative_sigma_of_unpressed;
   }
@@ -168,15 +174,6 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
     json["bank"]["constant_readings"] = taxel_names(bank->constant_readings, array);
   }
   fmt::print("{}\n", json.dump(2));
-}
-
-/// A folder that is missing or full is told before the work, not after it.
-Status check_writable(const std::string& path) {
-  const bool is_special = std::filesystem::exists(path) && !std::filesystem::is_regular_file(path);
-  if (is_special) return Done{};
-  const Result<files::AtomicFile> writable = files::AtomicFile::create(path);
-  if (!writable) return writable.error();
-  return Done{};
 }
 
 Result<BankTrainingReport> train_bank(const CalibrateOptions& options, const calibration::SampleDatabase& database,

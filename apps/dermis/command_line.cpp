@@ -73,6 +73,7 @@ template Option Command::option(const std::string&, double&, const std::string&)
 template Option Command::option(const std::string&, std::uint16_t&, const std::string&);
 template Option Command::option(const std::string&, std::uint64_t&, const std::string&);
 template Option Command::option(const std::string&, std::vector<double>&, const std::string&);
+template Option Command::option(const std::string&, std::vector<std::string>&, const std::string&);
 template Option Command::option(const std::string&, std::optional<double>&, const std::string&);
 template Option Command::option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
 
@@ -85,7 +86,15 @@ Command Command::subcommand(const std::string& name, const std::string& summary)
   return {*app_.add_subcommand(name, summary), chosen_};
 }
 
-void Command::action(Action action) {
+void Command::action(std::function<Status()> action) {
+  action_with_exit_status([action = std::move(action)]() -> Result<int> {
+    const Status status = action();
+    if (!status) return status.error();
+    return 0;
+  });
+}
+
+void Command::action_with_exit_status(Action action) {
   app_.callback([&chosen = chosen_, action = std::move(action)] { chosen = action; });
 }
 

@@ -16,8 +16,8 @@ class Option;
 
 namespace dermis::app {
 
-/// What the chosen command does.
-using Action = std::function<Status()>;
+/// What the chosen command does; the exit status of the process where it does not fail.
+using Action = std::function<Result<int>()>;
 
 /// An option of a command, to say more of it.
 class Option {
@@ -41,7 +41,7 @@ class Command {
   Command(CLI::App& app, Action& chosen) : app_(app), chosen_(chosen) {}
 
   /// `name`: "--in", or "in" for an argument that is known by its place. For a Value of std::string, double,
-  /// std::uint16_t, std::uint64_t, std::vector<double>, or std::optional of double or std::uint64_t.
+  /// std::uint16_t, std::uint64_t, std::vector of double or std::string, or std::optional of double or std::uint64_t.
   template <typename Value>
   Option option(const std::string& name, Value& value, const std::string& help);
   Option flag(const std::string& name, bool& value, const std::string& help);
@@ -49,7 +49,9 @@ class Command {
   /// A command of this command, of which the user must name one.
   Command subcommand(const std::string& name, const std::string& summary);
 
-  void action(Action action);
+  void action(std::function<Status()> action);
+  /// For a command whose exit status says more.
+  void action_with_exit_status(Action action);
 
  private:
   CLI::App& app_;

@@ -11,6 +11,8 @@ void add_simulate(Command& command);
 void add_calibrate(Command& command);
 void add_run(Command& command);
 void add_evaluate(Command& command);
+void add_learn(Command& command);
+void add_recognise(Command& command);
 void add_circuit(Command& command);
 void add_doctor(Command& command);
 void add_paper(Command& command);
@@ -22,6 +24,7 @@ void add_info(Command& command);
 void add_recover(Command& command);
 void add_image(Command& command);
 void add_top(Command& command);
+void add_watch(Command& command);
 void add_serve(Command& command);
 
 }  // namespace dermis::app

@@ -14,6 +14,7 @@
 #include "dermis/files/array_toml.hpp"
 #include "dermis/recordings/conversion.hpp"
 #include "dermis/recordings/recording.hpp"
+#include "shape_options.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 
@@ -27,8 +28,7 @@ struct ConvertOptions {
   std::string out;
   std::string array;
   std::optional<double> rate_hz;
-  std::optional<std::size_t> rows;
-  std::optional<std::size_t> cols;
+  ShapeOptions shape;
 };
 
 Status check(const ConvertOptions& options) {
@@ -42,20 +42,16 @@ Status check(const ConvertOptions& options) {
   if (options.rate_hz && !(*options.rate_hz > 0.0 && *options.rate_hz <= 1e9)) {
     return bad_input("--rate: must be more than 0 and at most 1e9 frames a second");
   }
-  const bool is_shape_wrong = (options.rows && (*options.rows < 1 || *options.rows > kMaxLines)) ||
-                              (options.cols && (*options.cols < 1 || *options.cols > kMaxLines));
-  if (is_shape_wrong) return bad_input(fmt::format("--rows, --cols: must be 1 to {}", kMaxLines));
   return Done{};
 }
 
 /// The shape that the frames must have, where one is given.
 Result<std::optional<FrameShape>> wanted_shape(const ConvertOptions& options,
                                                const std::optional<ArrayDescription>& array) {
-  std::optional<FrameShape> shape;
-  if (options.rows) shape = FrameShape{*options.rows, *options.cols};
-  if (!array) return shape;
+  Result<std::optional<FrameShape>> shape = options.shape.shape();
+  if (!shape || !array) return shape;
   const FrameShape of_array{array->rows, array->cols};
-  if (shape && *shape != of_array) {
+  if (*shape && **shape != of_array) {
     return bad_input(fmt::format("--rows, --cols: {} has {}x{} taxels", options.array, array->rows, array->cols));
   }
   return std::optional(of_array);
@@ -96,12 +92,7 @@ void add_convert(Command& command) {
   command.option("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");
   command.option("--rate", options->rate_hz,
                  "Frames a second of a file without times (.npy, .npz, .txt, .png, .packed10) [Hz]");
-  const Option rows =
-      command
-          .option("--rows", options->rows, "Rows of the frames: checked, and needed where the file does not tell them")
-          .not_negative();
-  const Option cols = command.option("--cols", options->cols, "Columns of the frames").not_negative().needs(rows);
-  rows.needs(cols);
+  options->shape.add(command);
   command.action([options] { return convert(*options); });
 }
 

@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "dermis/recordings/frame_file_info.hpp"
+#include "shape_options.hpp"
 
 namespace dermis::app {
 namespace {
@@ -19,6 +20,7 @@ using recordings::FrameFileInfo;
 
 struct InfoOptions {
   std::string file;
+  ShapeOptions shape;
   bool json = false;
 };
 
@@ -120,7 +122,9 @@ void print_text(const FrameFileInfo& info) {
 }
 
 Status print_info(const InfoOptions& options) {
-  const Result<FrameFileInfo> info = recordings::frame_file_info(options.file);
+  const Result<std::optional<FrameShape>> shape = options.shape.shape();
+  if (!shape) return shape.error();
+  const Result<FrameFileInfo> info = recordings::frame_file_info(options.file, *shape);
   if (!info) return info.error();
   if (options.json) {
     print_json(options.file, *info);
@@ -138,6 +142,7 @@ void add_info(Command& command) {
       .option("file", options->file,
               ".mcap, .csv, .h5, .hdf5, .npy, or a file of another system (docs/file-formats.md)")
       .required();
+  options->shape.add(command);
   command.flag("--json", options->json, "As JSON");
   command.action([options] { return print_info(*options); });
 }

@@ -26,6 +26,8 @@ constexpr std::array kCommands{
     CommandEntry{"calibrate", "Frames with known loads -> a model", add_calibrate},
     CommandEntry{"run", "Raw counts -> newtons per taxel, and contacts", add_run},
     CommandEntry{"evaluate", "Accuracy against known loads, beside the baseline estimators", add_evaluate},
+    CommandEntry{"learn", "Examples of poses or gestures -> classes that are recognised", add_learn},
+    CommandEntry{"recognise", "Name the poses or gestures of a stream, or say that they are unknown", add_recognise},
     CommandEntry{"circuit", "Compute a readout circuit: for people who design one", add_circuit},
     CommandEntry{"doctor", "Health of an array, in plain words: line faults, noise, drift", add_doctor},
     CommandEntry{"paper", "Reproduce the equations, figures and claims of the paper", add_paper},
@@ -37,6 +39,7 @@ constexpr std::array kCommands{
     CommandEntry{"recover", "Make a cut or damaged recording complete, and tell what is lost", add_recover},
     CommandEntry{"image", "A frame as PNG or SVG, or some seconds as an animated PNG", add_image},
     CommandEntry{"top", "A live heat map in the terminal, until Ctrl-C", add_top},
+    CommandEntry{"watch", "Hold forces against limits, and stop a program where one is crossed", add_watch},
     CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", add_serve},
 };
 
@@ -48,8 +51,8 @@ void fill_standard_descriptors() {
 }
 
 /// The action's own output is complete only when it has left the process.
-Status perform(const Action& action) {
-  Status status = action();
+Result<int> perform(const Action& action) {
+  Result<int> status = action();
   if (status && std::fflush(stdout) != 0) {
     return failed(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
   }
@@ -65,8 +68,8 @@ int run(int argc, char** argv) {
   const Result<Action> action = parse_command_line(argc, argv, kCommands);
   if (!action) return exit_status(action.error());
   if (!*action) return 0;
-  const Status status = perform(*action);
-  return status ? 0 : exit_status(status.error());
+  const Result<int> status = perform(*action);
+  return status ? *status : exit_status(status.error());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "dermis/acquisition/source_uri.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/recording.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "status_line.hpp"
@@ -20,14 +21,7 @@ Result<std::vector<RawFrame>> read_frames(const std::string& from, const ArrayDe
   const Result<std::unique_ptr<FrameSource>> source = open_source(from, &array);
   if (!source) return source.error();
   if ((*source)->is_live()) return bad_input("'" + from + "': is a device, which has no end; 'dermis record' it first");
-  std::vector<RawFrame> frames;
-  RawFrame frame;
-  while (true) {
-    const Result<bool> more = (*source)->next(frame);
-    if (!more) return more.error();
-    if (!*more) return frames;
-    frames.push_back(frame);
-  }
+  return recordings::read_frames(**source);
 }
 
 std::string file_of(const std::string& from) {

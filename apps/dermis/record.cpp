@@ -108,7 +108,8 @@ void add_record(Command& command) {
       .required();
   command.option("--out", options->out, "Recording to write: .mcap, or another format of frames").required();
   command.option("--array", options->array, "array.toml, to keep with the frames");
-  command.option("--model", options->model, "Record the forces of this model, too");
+  command.option("--model", options->model,
+                 "Record the forces, too: of this model, or array.toml where readings are forces");
   const Option frames = command.option("--frames", options->frames, "Stop after so many frames").not_negative();
   command
       .option("--seconds", options->seconds,

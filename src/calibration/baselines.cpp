@@ -3,85 +3,32 @@
 #include "dermis/calibration/baselines.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
-#include "calibration/monotone_knots.hpp"
+#include "calibration/level_table.hpp"
 #include "calibration/unloaded_fit.hpp"
 #include "dermis/core/parallel.hpp"
 
 namespace dermis::calibration {
 namespace {
 
-constexpr std::size_t kMaxKnots = 64;
-constexpr double kLevelWidth = 1.03;  // heaviest over lightest force of one level
-
-/// Signal of one taxel at a known force.
-struct Point {
-  double newtons = 0.0;
-  double signal = 0.0;
-  double temperature_offset = 0.0;
-};
-
 double signal_of(const SampleDatabase& database, const Sample& sample, std::size_t taxel, fusion::LookUpSignal signal) {
   return signal == fusion::LookUpSignal::reading ? bare_reading(database, sample, taxel) : sample.siemens[taxel];
 }
 
 /// The loaded points of a taxel and those of frames without any load, sorted by force.
-std::vector<Point> known_points(const SampleDatabase& database, std::size_t taxel, fusion::LookUpSignal signal,
-                                const SampleTemperatures& temperatures) {
-  std::vector<Point> points;
+std::vector<LevelPoint> known_points(const SampleDatabase& database, std::size_t taxel, fusion::LookUpSignal signal,
+                                     const SampleTemperatures& temperatures) {
+  std::vector<LevelPoint> points;
   for (const Sample& sample : database.samples) {
     const double newtons = sample.known_newtons[taxel];
     const bool is_unloaded = sample.unloaded && newtons == 0.0;
     if (!(newtons > 0.0) && !is_unloaded) continue;  // NaN: unknown, or the reading is saturated
     points.push_back({newtons, signal_of(database, sample, taxel, signal), temperature_offset(sample, temperatures)});
   }
-  std::sort(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.newtons < b.newtons; });
+  std::sort(points.begin(), points.end(),
+            [](const LevelPoint& a, const LevelPoint& b) { return a.newtons < b.newtons; });
   return points;
-}
-
-/// Calls visit(level) for every run of points of about equal force: labels weighed by a load cell scatter.
-template <typename Visit>
-void for_each_level(std::span<Point> points, Visit visit) {
-  for (std::size_t first = 0; first < points.size();) {
-    std::size_t last = first + 1;
-    while (last < points.size() && points[last].newtons <= kLevelWidth * points[first].newtons) ++last;
-    visit(points.subspan(first, last - first));
-    first = last;
-  }
-}
-
-double mean(std::span<const Point> level, double Point::*member) {
-  double sum = 0.0;
-  for (const Point& point : level) sum += point.*member;
-  return sum / static_cast<double>(level.size());
-}
-
-/// The k of signal * (1 + k dT) that makes the signals of equal force agree best.
-double temperature_coefficient(std::span<Point> points) {
-  double covariance = 0.0;
-  double variance = 0.0;
-  for_each_level(points, [&](std::span<const Point> level) {
-    const double signal = mean(level, &Point::signal);
-    if (level.front().newtons <= 0.0 || signal <= 0.0) return;
-    for (const Point& point : level) {
-      covariance += (point.signal / signal - 1.0) * point.temperature_offset;
-      variance += point.temperature_offset * point.temperature_offset;
-    }
-  });
-  return variance > 0.0 ? -covariance / variance : 0.0;
-}
-
-/// Newtons and signal, both rising.
-std::vector<Knot> table_of_levels(std::vector<Point>& points, double coefficient) {
-  for (Point& point : points) point.signal *= 1.0 + coefficient * point.temperature_offset;
-  std::vector<Knot> knots;
-  for_each_level(points, [&](std::span<const Point> level) {
-    knots.push_back({mean(level, &Point::newtons), mean(level, &Point::signal), static_cast<double>(level.size())});
-  });
-  thin_out(knots, kMaxKnots);
-  pool_adjacent_violators(knots);
-  return knots;
 }
 
 /// Straight lines for taxels that are only known through totals: newtons = slope * (signal - unloaded signal), with the
@@ -167,11 +114,11 @@ fusion::LookUpTables make_tables(const SampleDatabase& database, const char* nam
   tables.temperature_coefficient.resize(taxels);
   std::vector<std::vector<Knot>> knots(taxels);
   parallel_for(taxels, [&](std::size_t taxel) {
-    std::vector<Point> points = known_points(database, taxel, signal, temperatures);
+    std::vector<LevelPoint> points = known_points(database, taxel, signal, temperatures);
     const bool is_known = !points.empty() && points.back().newtons > 0.0;
     double& coefficient = tables.temperature_coefficient[taxel];
     if (with_temperature) coefficient = is_known ? temperature_coefficient(points) : shared.coefficient();
-    knots[taxel] = is_known ? table_of_levels(points, coefficient) : shared.table(taxel);
+    knots[taxel] = is_known ? level_table(std::move(points), coefficient) : shared.table(taxel);
   });
   tables.knots = 2;
   for (const std::vector<Knot>& table : knots) tables.knots = std::max(tables.knots, table.size());

@@ -9,8 +9,13 @@
 
 namespace dermis::calibration {
 
-EstimatorRow::EstimatorRow(const pipeline::Model& model, pipeline::Pipeline pipeline, FurtherEstimator* further)
-    : model_(model), pipeline_(std::move(pipeline)), further_(further), reading_(model.array.taxel_count()) {
+EstimatorRow::EstimatorRow(const pipeline::Model& model, pipeline::Pipeline pipeline, FurtherEstimator* further,
+                           double judged_from_n)
+    : model_(model),
+      pipeline_(std::move(pipeline)),
+      further_(further),
+      judged_from_n_(judged_from_n),
+      reading_(model.array.taxel_count()) {
   names_.emplace_back("dermis");
   for (const fusion::LookUpTables& tables : model.baselines) names_.push_back(tables.name);
   if (further != nullptr) names_.push_back(further->name());

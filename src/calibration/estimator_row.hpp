@@ -15,16 +15,15 @@ namespace dermis::calibration {
 class EstimatorRow {
  public:
   /// `model` and `further` (nullptr: none) are to outlive it; `pipeline` is that of the model.
-  EstimatorRow(const pipeline::Model& model, pipeline::Pipeline pipeline, FurtherEstimator* further);
+  EstimatorRow(const pipeline::Model& model, pipeline::Pipeline pipeline, FurtherEstimator* further,
+               double judged_from_n);
 
   /// Returns false where the frame is rejected.
   bool run(const RawFrame& raw);
 
   [[nodiscard]] const ArrayDescription& array() const noexcept { return model_.array; }
   /// True force from which on taxels are judged [N].
-  [[nodiscard]] double judged_from_n() const noexcept {
-    return kJudgedShare * static_cast<double>(model_.networks.sigma_knots_newtons.back());
-  }
+  [[nodiscard]] double judged_from_n() const noexcept { return judged_from_n_; }
   [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
   /// Of the last frame, [estimators][taxels].
   [[nodiscard]] const std::vector<std::vector<float>>& newtons() const noexcept { return newtons_; }
@@ -38,6 +37,7 @@ class EstimatorRow {
   const pipeline::Model& model_;
   pipeline::Pipeline pipeline_;
   FurtherEstimator* further_;
+  double judged_from_n_;
   ForceFrame force_;
   std::vector<std::string> names_;
   std::vector<double> reading_;

@@ -18,6 +18,31 @@
 #include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
+namespace {
+
+/// The most that the loads say of one taxel, of a total its share [N].
+double heaviest_of(const ArrayDescription& array, const LoadsOfFrames& loads_of) {
+  double heaviest = 0.0;
+  for (std::size_t frame = 0; frame < loads_of.frame_count(); ++frame) {
+    if (loads_of[frame].empty()) continue;
+    Sample truth;
+    expand_loads(array, loads_of[frame], truth);
+    for (const float newtons : truth.known_newtons) heaviest = std::max(heaviest, static_cast<double>(newtons));
+    for (const TotalForce& total : truth.totals) {
+      heaviest = std::max(heaviest, total.newtons / static_cast<double>(total.taxels.size()));
+    }
+  }
+  return heaviest;
+}
+
+/// Readings that are forces already have no calibration whose range could be followed: that of the loads is.
+double judged_from(const pipeline::Model& model, const LoadsOfFrames& loads_of) {
+  const auto [least, most] = model.networks.sigma_knots_newtons;
+  if (model.array.readout.quantity == Quantity::counts) return kJudgedShare * static_cast<double>(most);
+  return std::max(kJudgedShare * heaviest_of(model.array, loads_of), static_cast<double>(least));
+}
+
+}  // namespace
 
 Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFrame> frames, std::span<const Load> loads,
                             FurtherEstimator* further) {
@@ -31,11 +56,11 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
 
   Evaluation evaluation;
   evaluation.array = model.array;
-  EstimatorRow row(model, std::move(*pipeline), further);
+  const LoadsOfFrames loads_of(loads, frames.size());
+  EstimatorRow row(model, std::move(*pipeline), further, judged_from(model, loads_of));
   evaluation.judged_from_n = row.judged_from_n();
   Judgement judgement(row.names().size());
   ExampleChoice examples;
-  const LoadsOfFrames loads_of(loads, frames.size());
   std::size_t labelled = 0;
   for (std::size_t frame = 0; frame < frames.size(); ++frame) labelled += loads_of[frame].empty() ? 0 : 1;
   BoundCollector bound(model, labelled);

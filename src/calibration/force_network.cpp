@@ -12,6 +12,7 @@ namespace {
 // power law and the linear temperature term are left nearly free.
 constexpr double kHiddenDeviation = 1.5;
 constexpr double kDirectDeviation = 5.0;
+constexpr double kHeldDeviation = 1e-4;
 
 }  // namespace
 
@@ -54,12 +55,14 @@ std::vector<double> random_start(const network::PerceptronShape& shape, double n
 }
 
 void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals, std::span<double> jacobian,
-                     std::size_t columns) noexcept {
+                     std::size_t columns, PowerPrior power) noexcept {
   const network::PerceptronShape& shape = network.shape;
   for (std::size_t k = 0; k < shape.parameter_count(); ++k) {
     const bool is_level = k == shape.output_bias();
     const double centre = k == shape.direct_weight(0) ? 1.0 : 0.0;
-    const double deviation = k >= shape.direct_weight(0) ? kDirectDeviation : kHiddenDeviation;
+    const bool is_held = power == PowerPrior::held && k >= shape.direct_weight(0) && k < shape.direct_weight(2);
+    const double of_direct = is_held ? kHeldDeviation : kDirectDeviation;
+    const double deviation = k >= shape.direct_weight(0) ? of_direct : kHiddenDeviation;
     const double weight = is_level ? 0.0 : scale / deviation;
     const double slope = network::monotone::is_positive(shape, k) ? network.parameters[k] : 1.0;
     residuals[k] = weight * (network.parameters[k] - centre);

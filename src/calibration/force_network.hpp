@@ -22,6 +22,7 @@ struct ForceNetwork {
   std::vector<double> parameters;  ///< [shape.parameter_count()]
   std::vector<double> noise;       ///< ln(estimate / newtons) of each sample, as large as its noise.
   std::vector<double> new_errors;  ///< The same, as large as a new sample there would have.
+  std::vector<double> leverage;    ///< Of each sample on its own estimate.
 
   using Inputs = std::array<double, fusion::kInputsWithTemperature>;
 
@@ -39,10 +40,13 @@ struct ForceNetwork {
 [[nodiscard]] std::vector<double> random_start(const network::PerceptronShape& shape, double newtons_at_reference,
                                                Random& random);
 
+/// How sure the power of conductance is before the data say: hardly at all, or held at 1 where they cannot tell it.
+enum class PowerPrior { free, held };
+
 /// A Gaussian prior on the parameters, as residuals that are appended to those of the data: hidden weights are about 0,
 /// the power of conductance about 1. `scale`: standard deviation of a data residual.
 /// Fills residuals [parameter_count] and, where it is not empty, jacobian [parameter_count, columns].
 void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals, std::span<double> jacobian,
-                     std::size_t columns) noexcept;
+                     std::size_t columns, PowerPrior power = PowerPrior::free) noexcept;
 
 }  // namespace dermis::calibration

@@ -12,7 +12,9 @@
 #include <span>
 #include <utility>
 
+#include "calibration/even_choice.hpp"
 #include "calibration/shared_training.hpp"
+#include "calibration/table_choice.hpp"
 #include "calibration/taxel_training.hpp"
 #include "calibration/unloaded_fit.hpp"
 #include "dermis/core/parallel.hpp"
@@ -179,8 +181,9 @@ void put(fusion::ForceNetworks& networks, std::size_t taxel, const ForceNetwork&
   for (std::size_t input = 0; input < own.inputs; ++input) copy(bank.direct_weight(input), own.direct_weight(input));
 }
 
-/// The lightest and heaviest load of the calibration.
+/// The lightest and heaviest load of the calibration, and whether they are about the same.
 void report_loads(const SampleDatabase& database, TrainingReport& report) {
+  bool has_totals = false;
   report.lightest_newtons = std::numeric_limits<double>::infinity();
   const auto include = [&](double newtons) {
     if (!(newtons > 0.0)) return;
@@ -188,9 +191,16 @@ void report_loads(const SampleDatabase& database, TrainingReport& report) {
     report.heaviest_newtons = std::max(report.heaviest_newtons, newtons);
   };
   for (const Sample& sample : database.samples) {
-    for (const float newtons : sample.known_newtons) include(static_cast<double>(newtons));
-    for (const TotalForce& total : sample.totals) include(total.newtons);
+    for (const float newtons : sample.known_newtons) {
+      include(static_cast<double>(newtons));
+      report.heaviest_taxel_newtons = std::max(report.heaviest_taxel_newtons, static_cast<double>(newtons));
+    }
+    for (const TotalForce& total : sample.totals) {
+      include(total.newtons);
+      has_totals = has_totals || total.newtons > 0.0;
+    }
   }
+  report.is_one_load = !has_totals && report.heaviest_newtons < kLeastForceRange * report.lightest_newtons;
 }
 
 void report_fit(const std::vector<std::size_t>& own, const std::vector<ForceNetwork>& networks,
@@ -217,7 +227,8 @@ std::vector<TestedLoad> tested_presses(const std::vector<std::size_t>& own, cons
                          {own[k]},
                          newtons,
                          newtons * std::expm1(networks[k].noise[point]),
-                         newtons * std::expm1(networks[k].new_errors[point])});
+                         newtons * std::expm1(networks[k].new_errors[point]),
+                         networks[k].leverage[point]});
     }
   }
   return presses;
@@ -245,13 +256,6 @@ Division divide(const Evidence& evidence, const ArrayDescription& array) {
   return division;
 }
 
-/// At most `most` of `count`, evenly.
-std::vector<std::size_t> spread(std::size_t count, std::size_t most) {
-  std::vector<std::size_t> places;
-  for (std::size_t k = 0; k < std::min(count, most); ++k) places.push_back(k * count / std::min(count, most));
-  return places;
-}
-
 std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& division,
                                     const std::function<void(double)>& progress) {
   std::vector<ForceNetwork> networks(division.own.size());
@@ -264,7 +268,7 @@ std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& di
     networks[k] = like ? *std::move(like) : train_taxel(shape, points, division.own[k]);
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(division.own.size()));
   };
-  const std::vector<std::size_t> first = spread(division.own.size(), kFirstNetworks);
+  const std::vector<std::size_t> first = even_choice(division.own.size(), kFirstNetworks);
   parallel_for(first.size(), [&](std::size_t k) { train(first[k], {}); });
   std::vector<ForceNetwork> others;
   for (const std::size_t k : first) others.push_back(networks[k]);
@@ -284,6 +288,17 @@ std::string describe(const TrainingReport& report, bool has_gains) {
     text += fmt::format("{}{} taxels share one network of {} hidden units, trained through the sum of the loads, {}",
                         text.empty() ? "" : "; ", report.shared_networks, report.shared_hidden_units,
                         has_gains ? "with a gain each" : "without gains (they did not lower the leave-one-out error)");
+  }
+  if (report.is_one_load) {
+    text += fmt::format(
+        "; {} taxels have a straight line from their unloaded reading through their load instead: one load tells no "
+        "law",
+        report.table_taxels.size());
+  } else if (report.groups_on_tables > 0) {
+    text += fmt::format(
+        "; {} of {} groups of taxels ({} taxels): look-up table instead, clearly better on presses left "
+        "out",
+        report.groups_on_tables, report.groups, report.table_taxels.size());
   }
   return text;
 }
@@ -343,7 +358,10 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   training.tested_own = tested_presses(division.own, own, evidence);
   training.tested_shared = std::move(shared.tested);
   training.tested_unpressed = std::move(shared.tested_unpressed);
+  report.heaviest_taxel_newtons = std::max(report.heaviest_taxel_newtons, shared.heaviest_newtons);
   report_fit(division.own, own, report);
+  const auto choose = report.is_one_load ? take_lines : prefer_tables;
+  choose(evidence.points, evidence.temperatures, training);
   report.choice = describe(report, shared.has_gains);
   return training;
 }

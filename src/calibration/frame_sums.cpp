@@ -17,7 +17,16 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostForLevel = 101;  // frames
 
-/// Median ratio of every taxel over some of the frames that are called unloaded; 0 where there are none.
+std::uint32_t strongest_taxel(const std::vector<double>& ratio, const std::vector<double>& levels) {
+  std::size_t strongest = 0;
+  for (std::size_t taxel = 1; taxel < ratio.size(); ++taxel) {
+    if (ratio[taxel] - levels[taxel] > ratio[strongest] - levels[strongest]) strongest = taxel;
+  }
+  return static_cast<std::uint32_t>(strongest);
+}
+
+}  // namespace
+
 std::vector<double> unloaded_levels(const ArrayDescription& array, std::span<const RawFrame> frames,
                                     std::span<const std::optional<double>> newtons) {
   const auto unloaded =
@@ -39,16 +48,6 @@ std::vector<double> unloaded_levels(const ArrayDescription& array, std::span<con
   }
   return levels;
 }
-
-std::uint32_t strongest_taxel(const std::vector<double>& ratio, const std::vector<double>& levels) {
-  std::size_t strongest = 0;
-  for (std::size_t taxel = 1; taxel < ratio.size(); ++taxel) {
-    if (ratio[taxel] - levels[taxel] > ratio[strongest] - levels[strongest]) strongest = taxel;
-  }
-  return static_cast<std::uint32_t>(strongest);
-}
-
-}  // namespace
 
 std::vector<FrameSum> sum_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                  std::span<const Load> loads, Nanos settle_time) {

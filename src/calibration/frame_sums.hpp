@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,11 @@ struct FrameSum {
 
   [[nodiscard]] bool is_labelled() const noexcept { return !std::isnan(newtons); }
 };
+
+/// Median ratio of every taxel over some of the frames that are called unloaded; 0 where there are none. `newtons` as
+/// newtons_of_frames() has them.
+[[nodiscard]] std::vector<double> unloaded_levels(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                                  std::span<const std::optional<double>> newtons);
 
 /// Of all frames after settling that are not rejected.
 [[nodiscard]] std::vector<FrameSum> sum_frames(const ArrayDescription& array, std::span<const RawFrame> frames,

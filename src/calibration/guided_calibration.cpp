@@ -54,7 +54,7 @@ class GuidedCalibration::Implementation {
   void follow_press(const RawFrame& raw, double seconds);
   void keep_press();
   void ask_for_next();
-  void expect_press(std::optional<std::size_t> last_taxel);
+  void expect_press();
   void start_fit(bool is_last);
   void start_last_fit();
   void fail(std::string why);
@@ -100,7 +100,7 @@ void GuidedCalibration::Implementation::wait_for_quiet(const RawFrame& raw) {
   if (!quiet_.is_done()) return;
   unloaded_ = std::make_shared<const std::vector<RawFrame>>(quiet_.frames());
   recogniser_.emplace(TouchSense(quiet_.mean(), ratio_per_count(array_)), plan_.hold_time);
-  expect_press({});
+  expect_press();
   stage_ = GuideStage::pressing;
 }
 
@@ -120,11 +120,13 @@ void GuidedCalibration::Implementation::keep_press() {
 
 void GuidedCalibration::Implementation::ask_for_next() {
   if (!presses_.advance()) return start_last_fit();
-  expect_press(presses_.last_taxel());
+  expect_press();
 }
 
-void GuidedCalibration::Implementation::expect_press(std::optional<std::size_t> last_taxel) {
-  recogniser_->expect(presses_.taxel(), presses_.together_with(), last_taxel);
+void GuidedCalibration::Implementation::expect_press() {
+  std::optional<TaxelsOfPress> last;
+  if (!presses_.kept().empty()) last = {presses_.kept().back()->taxel, presses_.kept().back()->together_with};
+  recogniser_->expect({presses_.taxel(), presses_.together_with()}, last);
 }
 
 void GuidedCalibration::Implementation::start_last_fit() {
@@ -176,7 +178,7 @@ Status GuidedCalibration::Implementation::repeat() {
   presses_.repeat();
   fit_.presses = std::min(fit_.presses, presses_.kept().size());
   stage_ = GuideStage::pressing;
-  expect_press(presses_.last_taxel());
+  expect_press();
   return Done{};
 }
 

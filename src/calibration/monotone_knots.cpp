@@ -5,6 +5,28 @@
 #include <utility>
 
 namespace dermis::calibration {
+namespace {
+
+Knot pooled_knot(const Knot& a, const Knot& b) {
+  const double weight = a.weight + b.weight;
+  return {(a.x * a.weight + b.x * b.weight) / weight, (a.y * a.weight + b.y * b.weight) / weight, weight};
+}
+
+/// Pools a knot with those before it until rises(previous, knot).
+template <typename Rises>
+void pool_until(std::vector<Knot>& knots, Rises rises) {
+  std::vector<Knot> pooled;
+  for (Knot knot : knots) {
+    while (!pooled.empty() && !rises(pooled.back(), knot)) {
+      knot = pooled_knot(pooled.back(), knot);
+      pooled.pop_back();
+    }
+    pooled.push_back(knot);
+  }
+  knots = std::move(pooled);
+}
+
+}  // namespace
 
 void thin_out(std::vector<Knot>& knots, std::size_t most) {
   if (knots.size() <= most) return;
@@ -29,27 +51,19 @@ void merge_equal(std::vector<Knot>& knots, double least_step) {
       merged.push_back(knot);
       continue;
     }
-    Knot& previous = merged.back();
-    const double weight = previous.weight + knot.weight;
-    previous = {(previous.x * previous.weight + knot.x * knot.weight) / weight,
-                (previous.y * previous.weight + knot.y * knot.weight) / weight, weight};
+    merged.back() = pooled_knot(merged.back(), knot);
   }
   knots = std::move(merged);
 }
 
 void pool_adjacent_violators(std::vector<Knot>& knots) {
-  std::vector<Knot> pooled;
-  for (Knot knot : knots) {
-    while (!pooled.empty() && pooled.back().y >= knot.y) {
-      const Knot& previous = pooled.back();
-      const double weight = previous.weight + knot.weight;
-      knot = {(previous.x * previous.weight + knot.x * knot.weight) / weight,
-              (previous.y * previous.weight + knot.y * knot.weight) / weight, weight};
-      pooled.pop_back();
-    }
-    pooled.push_back(knot);
-  }
-  knots = std::move(pooled);
+  pool_until(knots, [](const Knot& a, const Knot& b) { return a.y < b.y; });
+}
+
+void pool_equal_floats(std::vector<Knot>& knots) {
+  pool_until(knots, [](const Knot& a, const Knot& b) {
+    return static_cast<float>(a.x) < static_cast<float>(b.x) && static_cast<float>(a.y) < static_cast<float>(b.y);
+  });
 }
 
 }  // namespace dermis::calibration

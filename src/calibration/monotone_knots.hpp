@@ -23,4 +23,7 @@ void merge_equal(std::vector<Knot>& knots, double least_step);
 /// `knots` by rising x: pools neighbours until y rises with x (Ayer et al. 1955).
 void pool_adjacent_violators(std::vector<Knot>& knots);
 
+/// `knots` by rising x and y: pools neighbours until both rise where they are rounded to single precision.
+void pool_equal_floats(std::vector<Knot>& knots);
+
 }  // namespace dermis::calibration

@@ -15,6 +15,14 @@
 
 namespace dermis::calibration {
 
+/// What a press is on: one taxel, or two at the same time.
+struct TaxelsOfPress {
+  std::size_t taxel = 0;
+  std::optional<std::size_t> together_with = {};
+
+  [[nodiscard]] bool has(std::size_t other) const { return other == taxel || other == together_with; }
+};
+
 /// Recognises in the frames of an array that the taxel which is asked for is pressed, held and released, and hints at
 /// what the person does instead.
 class PressRecogniser {
@@ -23,9 +31,8 @@ class PressRecogniser {
 
   PressRecogniser(TouchSense sense, Nanos hold_time);
 
-  /// A press of `taxel` is asked for, where there is another one of both at the same time. The material may still show
-  /// the press of `last_taxel` for a while.
-  void expect(std::size_t taxel, std::optional<std::size_t> together_with, std::optional<std::size_t> last_taxel);
+  /// A press is asked for. The material may still show the `last` one for a while.
+  void expect(const TaxelsOfPress& asked, const std::optional<TaxelsOfPress>& last);
   /// Nothing is asked for.
   void rest();
 
@@ -36,7 +43,7 @@ class PressRecogniser {
   std::vector<RawFrame> keep_hold(std::size_t count);
 
   [[nodiscard]] GuideHint hint() const noexcept { return hint_; }
-  /// Of the taxel that is asked for, over that of the unloaded taxel.
+  /// Of the taxel that is asked for (of two, the first), over that of the unloaded taxel.
   [[nodiscard]] double reading() const noexcept { return reading_; }
   /// Of the hold that is done.
   [[nodiscard]] double share(Nanos now) const noexcept;
@@ -44,7 +51,7 @@ class PressRecogniser {
   [[nodiscard]] std::optional<std::size_t> pressed_taxel() const noexcept;
 
  private:
-  [[nodiscard]] bool is_asked_for(std::optional<std::size_t> taxel) const;
+  [[nodiscard]] bool is_foreign(std::optional<std::size_t> taxel) const;
   [[nodiscard]] bool is_pressed_as_asked(std::span<const double> ratio) const;
   void wait_for_press(const RawFrame& raw, std::span<const double> ratio, double seconds);
   void follow_hold(const RawFrame& raw, std::span<const double> ratio);
@@ -54,9 +61,8 @@ class PressRecogniser {
   TouchSense sense_;
   PressHold hold_;
   GuideHint hint_ = GuideHint::none;
-  std::size_t taxel_ = 0;
-  std::optional<std::size_t> together_with_;
-  std::optional<std::size_t> last_taxel_;
+  TaxelsOfPress asked_;
+  std::optional<TaxelsOfPress> last_;
   double kept_excess_ = 0.0;  // of the last hold that was kept
   Touch touch_;
   double reading_ = 1.0;

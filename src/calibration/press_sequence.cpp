@@ -44,10 +44,6 @@ void PressSequence::repeat() {
   kept_steps_.pop_back();
 }
 
-std::optional<std::size_t> PressSequence::last_taxel() const {
-  return kept_.empty() ? std::nullopt : std::optional(kept_.back()->taxel);
-}
-
 std::size_t PressSequence::count() const {
   return steps_.size() - static_cast<std::size_t>(std::count(steps_.begin(), steps_.end(), Step::skipped));
 }

@@ -39,8 +39,6 @@ class PressSequence {
   void repeat();
 
   [[nodiscard]] const GuidedPresses& kept() const noexcept { return kept_; }
-  /// Of the last kept press.
-  [[nodiscard]] std::optional<std::size_t> last_taxel() const;
   /// Skipped ones left out.
   [[nodiscard]] std::size_t count() const;
 

@@ -12,16 +12,8 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kSigmasPerMedianDeviation = 1.4826;  // of Gaussian noise
-constexpr double kHuberSigmas = 1.345;                // 95 % of the efficiency of least squares (Huber 1964)
 constexpr double kKeptSigmas = 4.0;
 constexpr int kMostRounds = 30;
-
-double median_deviation(std::span<const Point> points, const RobustLine& line) {
-  std::vector<double> deviations;
-  deviations.reserve(points.size());
-  for (const Point& point : points) deviations.push_back(std::abs(line.residual(point)));
-  return kSigmasPerMedianDeviation * upper_median(std::move(deviations));
-}
 
 /// Weighted least squares; means and moments in one pass (West 1979).
 template <typename Weight>
@@ -63,8 +55,7 @@ RobustLine fit_huber(std::span<const Point> points, double least_deviation) {
   RobustLine line = median_line(points, 0.0);
   for (int round = 0; round < kMostRounds; ++round) {
     const double limit = kHuberSigmas * std::max(median_deviation(points, line), least_deviation);
-    const auto weight = [&](const Point& point) { return limit / std::max(limit, std::abs(line.residual(point))); };
-    const RobustLine next = median_line(points, fit_weighted(points, true, weight).slope);
+    const RobustLine next = median_line(points, huber_step(points, line, limit).slope);
     double change = 0.0;
     for (const Point& point : points) change = std::max(change, std::abs(next.residual(point) - line.residual(point)));
     line = next;
@@ -74,6 +65,18 @@ RobustLine fit_huber(std::span<const Point> points, double least_deviation) {
 }
 
 }  // namespace
+
+double median_deviation(std::span<const Point> points, const RobustLine& line) {
+  std::vector<double> deviations;
+  deviations.reserve(points.size());
+  for (const Point& point : points) deviations.push_back(std::abs(line.residual(point)));
+  return kSigmasPerMedianDeviation * upper_median(std::move(deviations));
+}
+
+RobustLine huber_step(std::span<const Point> points, const RobustLine& line, double limit) {
+  return fit_weighted(points, true,
+                      [&](const Point& point) { return limit / std::max(limit, std::abs(line.residual(point))); });
+}
 
 RobustLine fit_robust_line(std::span<const Point> points, bool has_slope, double least_deviation) {
   const RobustLine most = has_slope ? fit_huber(points, least_deviation) : median_line(points, 0.0);

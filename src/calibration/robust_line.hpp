@@ -19,6 +19,15 @@ struct RobustLine {
   [[nodiscard]] double residual(const Point& point) const { return point.y - level - slope * point.x; }
 };
 
+inline constexpr double kHuberSigmas = 1.345;  // 95 % of the efficiency of least squares (Huber 1964)
+
+/// Standard deviation of the points from the line, as far as they are Gaussian.
+[[nodiscard]] double median_deviation(std::span<const Point> points, const RobustLine& line);
+
+/// One step towards Huber's estimate: least squares in which points further than `limit` > 0 from `line` count by their
+/// distance, not the square of it.
+[[nodiscard]] RobustLine huber_step(std::span<const Point> points, const RobustLine& line, double limit);
+
 /// The line on which most of the points lie: least squares over those within four standard deviations of Huber's
 /// estimate (1964), each deviation being at least `least_deviation` > 0. At least one point; `has_slope`: else level.
 [[nodiscard]] RobustLine fit_robust_line(std::span<const Point> points, bool has_slope, double least_deviation);

@@ -3,6 +3,7 @@
 #include "dermis/calibration/sample_database.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +13,7 @@
 #include <utility>
 
 #include "calibration/circuit_fit/circuit_choice.hpp"
+#include "calibration/flicker.hpp"
 #include "calibration/label_check.hpp"
 #include "calibration/labels.hpp"
 #include "calibration/rail_search.hpp"
@@ -184,6 +186,20 @@ std::optional<std::string> remark_on_choice(const LoadsOfFrames& loads_of, const
   return fmt::format("{} labelled frames repeat: {} of them are used, evenly over places and forces", labelled, chosen);
 }
 
+/// Takes the taxels that flicker for ones that the sheet does not have: their readings would make those of their lines
+/// impossible.
+std::optional<std::string> leave_out_flickering(std::span<const RawFrame> frames, std::span<const Load> loads,
+                                                ArrayDescription& array) {
+  const std::vector<std::size_t> taxels = find_flickering_taxels(array, frames, loads);
+  if (taxels.empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const std::size_t taxel : taxels) names.push_back(array.taxel_name(taxel));
+  array.absent.insert(array.absent.end(), taxels.begin(), taxels.end());
+  std::sort(array.absent.begin(), array.absent.end());
+  return fmt::format("{} flicker{} while nothing presses: left out as if absent; check the contact",
+                     fmt::join(names, ", "), taxels.size() == 1 ? "s" : "");
+}
+
 bool has_floating_lines(const Readout& readout) {
   if (readout.circuit != Circuit::divider) return false;
   return readout.idle_rows == IdleRows::floating || readout.idle_columns == IdleColumns::floating;
@@ -229,14 +245,16 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
                                              const std::function<void(double)>& progress) {
   if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
   ArrayDescription known = array;
-  LabelCheck labels = check_labels(array, frames, loads, settle_time);
+  std::optional<std::string> flickering = leave_out_flickering(frames, loads, known);
+  LabelCheck labels = check_labels(known, frames, loads, settle_time);
+  if (flickering) labels.remarks.insert(labels.remarks.begin(), *std::move(flickering));
   std::vector<Load> kept;
   if (!labels.pressed_frames.empty()) {
     std::copy_if(loads.begin(), loads.end(), std::back_inserter(kept),
                  [&](const Load& load) { return !labels.is_pressed(load.frame); });
     loads = kept;
   }
-  if (!known.readout.rail_counts) known.readout.rail_counts = find_rail(array, frames, loads);
+  if (!known.readout.rail_counts) known.readout.rail_counts = find_rail(known, frames, loads);
   if (!array.readout.rail_counts && known.readout.rail_counts) {
     labels.remarks.push_back(
         fmt::format("readings end at {} counts under whatever load: taken for saturated there (rail_counts)",

@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t kMostHiddenUnits = 3;
 constexpr std::size_t kLevelsPerHiddenUnit = 7;
 constexpr double kLevelWidth = 1.05;
+constexpr double kLeastForceRange = 2.0;  // heaviest over lightest load that tell of a power
 constexpr std::size_t kStarts = 6;
 constexpr int kMaxIterations = 120;
 constexpr std::size_t kMostSharesForStart = 15'000;  // taxels of all loads together, thinned out evenly beyond:
@@ -45,6 +46,14 @@ struct SharedLoad {
   double weight = 0.0;  // 1 / (newtons + typical load)
 };
 
+/// Single taxels under about the same force: that they differ is their scatter, and says nothing of their law.
+bool are_one_load(const std::vector<MeasuredLoad>& loads) {
+  const auto [lightest, heaviest] = std::minmax_element(
+      loads.begin(), loads.end(), [](const auto& a, const auto& b) { return a.newtons < b.newtons; });
+  return heaviest->newtons < kLeastForceRange * lightest->newtons &&
+         std::all_of(loads.begin(), loads.end(), [](const MeasuredLoad& load) { return load.excess.size() == 1; });
+}
+
 /// The least-squares problem for given gains; its parameters are the free values of the network.
 class SharedProblem {
  public:
@@ -62,6 +71,7 @@ class SharedProblem {
         active_siemens += siemens;
       }
     }
+    if (are_one_load(raw)) power_ = PowerPrior::held;
     const double typical_newtons = std::exp(log_newtons);
     reference_siemens_ = active_siemens / active;
     typical_share_newtons_ = typical_newtons * static_cast<double>(raw.size()) / active;
@@ -117,12 +127,13 @@ class SharedProblem {
         residuals[k] = load.weight * (sum - load.newtons);
       }
       prior_residuals(network, kExpectedResidual, residuals.subspan(loads_.size(), n),
-                      jacobian.empty() ? jacobian : jacobian.subspan(loads_.size() * n), n);
+                      jacobian.empty() ? jacobian : jacobian.subspan(loads_.size() * n), n, power_);
     };
   }
 
  private:
   std::vector<SharedLoad> loads_;
+  PowerPrior power_ = PowerPrior::free;
   std::vector<double> gain_;  // [taxels]
   double reference_siemens_ = 1.0;
   double heaviest_siemens_ = 0.0;
@@ -273,8 +284,21 @@ std::vector<TestedLoad> tested_loads(const std::vector<MeasuredLoad>& raw, const
     load.newtons = raw[k].newtons;
     load.noise_n = scale * fitted[k].as_noise() / problem.loads()[k].weight;
     load.error_n = scale * fitted[k].as_new_error() / problem.loads()[k].weight;
+    load.leverage = fitted[k].leverage;
   }
   return tested;
+}
+
+/// The most that one taxel carried; never more than its load.
+double heaviest_share(const SharedProblem& problem, const ForceNetwork& network) {
+  double heaviest = 0.0;
+  for (const SharedLoad& load : problem.loads()) {
+    for (const Share& share : load.shares) {
+      const double newtons = problem.gain()[share.taxel] * std::exp(network.log_newtons(share.inputs, {}));
+      heaviest = std::max(heaviest, std::min(newtons, load.newtons));
+    }
+  }
+  return heaviest;
 }
 
 /// The errors of the loads on single taxels as those of taxels that were never pressed: the network alone, without the
@@ -292,7 +316,7 @@ std::vector<TestedLoad> tested_as_unpressed(const std::vector<MeasuredLoad>& raw
     taxels.insert(share.taxel);
     const double estimate = std::exp(network.log_newtons(share.inputs, {}));
     const double relative_error = 1.0 - load.newtons / estimate;  // the standard deviation is a share of the estimate
-    tested.push_back({raw[k].sample, {share.taxel}, load.newtons, 0.0, relative_error * load.newtons});
+    tested.push_back({raw[k].sample, {share.taxel}, load.newtons, 0.0, relative_error * load.newtons, 0.0});
   }
   const auto count = static_cast<double>(taxels.size());
   const bool tells = taxels.size() >= kLeastTaxelsForScatter;
@@ -328,6 +352,7 @@ SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatu
   }
   shared.network = problem.network(chosen.shape, chosen.free);
   shared.gain = problem.gain();
+  shared.heaviest_newtons = heaviest_share(problem, shared.network);
   shared.tested = tested_loads(loads, problem, chosen, mean_square);
   shared.tested_unpressed = tested_as_unpressed(loads, problem, shared.network);
   shared.leave_one_out_error = kRelativeErrorOfResidual * std::sqrt(mean_square);

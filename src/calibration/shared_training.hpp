@@ -16,6 +16,7 @@ struct SharedNetwork {
   ForceNetwork network;
   std::vector<double> gain;  ///< [taxels]; all 1 where gains did not help.
   bool has_gains = false;
+  double heaviest_newtons = 0.0;     ///< The most that one taxel carried, by this network.
   double leave_one_out_error = 0.0;  ///< Root mean square relative error of a load that is held out.
   std::vector<TestedLoad> tested;
   std::vector<TestedLoad> tested_unpressed;  ///< Of single taxels, with the errors of taxels that no load pressed.

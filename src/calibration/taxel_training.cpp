@@ -71,6 +71,7 @@ class TaxelProblem {
     for (std::size_t k = 0; k < points_.size(); ++k) {
       network.noise.push_back(fitted[k].as_noise() / points_[k].weight);
       network.new_errors.push_back(fitted[k].as_new_error() / points_[k].weight);
+      network.leverage.push_back(fitted[k].leverage);
       square += std::pow(std::expm1(network.log_newtons(points_[k].inputs, {}) - points_[k].log_newtons), 2);
     }
     network.rms_error = std::sqrt(square / static_cast<double>(points_.size()));

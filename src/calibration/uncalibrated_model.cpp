@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/calibration/uncalibrated_model.hpp"
 
+#include "calibration/circuit_fit/circuit_choice.hpp"
 #include "dermis/pipeline/direct_model.hpp"
 
 namespace dermis::calibration {
@@ -9,11 +10,7 @@ namespace dermis::calibration {
 pipeline::Model uncalibrated_model(const ArrayDescription& array) {
   pipeline::Model model = pipeline::direct_model(array);
   if (array.readout.quantity != Quantity::counts) return model;
-  if (array.has_unknown_circuit()) {
-    model.array.readout.circuit = Circuit::none;
-    model.array.readout.drive_ohm.clear();
-    model.array.readout.load_ohm.clear();
-  }
+  if (array.has_unknown_circuit()) model.array = without_circuit(model.array);
   model.networks.dead.assign(array.taxel_count(), 1);
   return model;
 }

@@ -27,6 +27,8 @@ constexpr std::size_t kLoadsPerTask = 100;
 constexpr double kLeastRelativeSigma = 1e-3;
 constexpr double kStartRelativeSigma = 0.1;
 constexpr std::size_t kLoadsPerKnot = 50;
+constexpr double kUnlearnedExponent = 0.2;     // of force over conductance, relative: rubbers have 0.8 to 2
+constexpr double kUnlearnedRepetition = 0.05;  // relative, where no load was repeated
 
 /// Squares of the relative error at the knots of fusion::ForceNetworks::relative_sigma.
 using Profile = std::array<double, fusion::kSigmaKnots>;
@@ -247,8 +249,10 @@ std::set<std::size_t> unpressed_taxels(const ForceTraining& training) {
   const std::set<std::size_t> own = taxels_of(training.tested_own);
   const std::set<std::size_t> shared = taxels_of(training.tested_shared);
   std::set<std::size_t> unpressed;
+  const std::vector<std::size_t>& tables = training.report.table_taxels;
   for (std::size_t taxel = 0; taxel < training.networks.taxel_count(); ++taxel) {
-    if (!own.contains(taxel) && !shared.contains(taxel)) unpressed.insert(taxel);
+    const bool has_table = std::binary_search(tables.begin(), tables.end(), taxel);
+    if (!own.contains(taxel) && !shared.contains(taxel) && !has_table) unpressed.insert(taxel);
   }
   return unpressed;
 }
@@ -267,6 +271,16 @@ void add_uncertainty_of_networks(const std::vector<JudgedLoad>& loads, Profile& 
   }
 }
 
+/// What a straight line through one load does not know of the law: ln(load / newtons) times that of its exponent.
+void add_uncertainty_of_line(const fusion::ForceNetworks& networks, Profile& profile) {
+  const double log_range =
+      std::log(static_cast<double>(networks.sigma_knots_newtons[1] / networks.sigma_knots_newtons[0]));
+  for (std::size_t k = 0; k < profile.size(); ++k) {
+    const double share_of_range = 1.0 - static_cast<double>(k) / static_cast<double>(profile.size() - 1);
+    profile[k] += std::pow(kUnlearnedExponent * log_range * share_of_range, 2);
+  }
+}
+
 /// The profile of these taxels, in the networks and for the report.
 RelativeSigma set_relative_sigma(const std::set<std::size_t>& taxels, const Profile& profile,
                                  fusion::ForceNetworks& networks) {
@@ -279,10 +293,10 @@ RelativeSigma set_relative_sigma(const std::set<std::size_t>& taxels, const Prof
   return sigma;
 }
 
-/// Knots over the loads; far below a load that many taxels share.
+/// Knots over what single taxels carry; far below a load that many taxels share.
 void place_knots(const ForceTraining& training, fusion::ForceNetworks& networks) {
   constexpr double kWidestRange = 1000.0;
-  const double heaviest = training.report.heaviest_newtons;
+  const double heaviest = training.report.heaviest_taxel_newtons;
   double lightest = std::max(training.report.lightest_newtons, heaviest / kWidestRange);
   if (!training.tested_shared.empty() || lightest > 0.5 * heaviest) lightest = heaviest / kWidestRange;
   networks.sigma_knots_newtons = {static_cast<float>(lightest), static_cast<float>(heaviest)};
@@ -308,6 +322,7 @@ std::string describe(const UncertaintyReport& report, const ArrayDescription& ar
   if (report.relative_sigma_of_shared) {
     text += ", forces of the shared network " + range_text(*report.relative_sigma_of_shared);
   }
+  if (report.relative_sigma_of_tables) text += ", forces of tables " + range_text(*report.relative_sigma_of_tables);
   if (report.relative_sigma_of_unpressed) {
     text += ", of taxels that were not pressed " + range_text(*report.relative_sigma_of_unpressed);
   }
@@ -329,22 +344,35 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   if (!shared) return shared.error();
   const Result<std::vector<JudgedLoad>> judged_unpressed = judge_loads(database, training.tested_unpressed, model);
   if (!judged_unpressed) return judged_unpressed.error();
+  const Result<std::vector<JudgedLoad>> of_tables = judge_loads(database, training.tested_tables, model);
+  if (!of_tables) return of_tables.error();
   report.supply_noise = likeliest_supply_noise(*own, *shared);
   model.array.readout.supply_noise = report.supply_noise;
+  const bool is_line = training.report.is_one_load;
+  const auto set = [&](const std::set<std::size_t>& taxels, Profile profile) {
+    if (is_line) add_uncertainty_of_line(model.networks, profile);
+    return set_relative_sigma(taxels, profile, model.networks);
+  };
   if (!shared->empty()) {
     Profile profile = likeliest_profile(*shared, report.supply_noise);
     add_uncertainty_of_networks(*shared, profile);
-    report.relative_sigma_of_shared = set_relative_sigma(taxels_of(training.tested_shared), profile, model.networks);
+    report.relative_sigma_of_shared = set(taxels_of(training.tested_shared), profile);
   }
   if (!own->empty()) {
     Profile profile = likeliest_profile(*own, report.supply_noise);
     add_uncertainty_of_networks(*own, profile);
-    report.relative_sigma = set_relative_sigma(taxels_of(training.tested_own), profile, model.networks);
+    report.relative_sigma = set(taxels_of(training.tested_own), profile);
   }
   const std::set<std::size_t> unpressed = unpressed_taxels(training);
   if (!judged_unpressed->empty() && !unpressed.empty()) {
-    report.relative_sigma_of_unpressed =
-        set_relative_sigma(unpressed, likeliest_profile(*judged_unpressed, report.supply_noise), model.networks);
+    report.relative_sigma_of_unpressed = set(unpressed, likeliest_profile(*judged_unpressed, report.supply_noise));
+  }
+  const std::vector<std::size_t>& tables = training.report.table_taxels;
+  if (!tables.empty()) {
+    Profile profile{};
+    profile.fill(kUnlearnedRepetition * kUnlearnedRepetition);
+    if (!of_tables->empty()) profile = likeliest_profile(*of_tables, report.supply_noise);
+    report.relative_sigma_of_tables = set({tables.begin(), tables.end()}, profile);
   }
   return report;
 }

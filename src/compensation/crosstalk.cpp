@@ -44,10 +44,11 @@ bool are_few_saturated(const ConditionedFrame& conditioned) {
   return saturated > 0 && 2 * static_cast<std::size_t>(saturated) <= conditioned.taxels.size();
 }
 
-Inversion newton(const ArrayDescription& array, double tolerance) {
+Inversion newton(const ArrayDescription& array, double tolerance, bool samples_noise) {
   auto model = CircuitModel::create(array);
   if (!model) return model.error();
-  return std::unique_ptr<CrosstalkInversion>(std::make_unique<NewtonInversion>(array, std::move(*model), tolerance));
+  return std::unique_ptr<CrosstalkInversion>(
+      std::make_unique<NewtonInversion>(array, std::move(*model), tolerance, samples_noise));
 }
 
 }  // namespace
@@ -59,12 +60,12 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   }
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
-  if (has_resistive_lines(readout)) return newton(array, tolerance);
+  if (has_resistive_lines(readout)) return newton(array, tolerance, options.samples_noise);
   if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance);
   if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
     return inversion<VirtualGround>(array);
   }
-  if (readout.idle_rows == IdleRows::floating) return newton(array, tolerance);
+  if (readout.idle_rows == IdleRows::floating) return newton(array, tolerance, options.samples_noise);
   return inversion<GroundedRows>(array, tolerance);
 }
 

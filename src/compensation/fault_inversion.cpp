@@ -116,11 +116,14 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circu
 }
 
 bool FaultInversion::concerns(std::span<const TaxelStatus> taxels) noexcept {
+  const std::uint8_t* const absent = absent_.data();
+  const std::uint8_t* const hidden = hidden_.data();
+  std::uint8_t* const unknown = unknown_.data();
   std::uint8_t any_missing = 0;
   for (std::size_t taxel = 0; taxel < taxels.size(); ++taxel) {
     const auto is_invalid = static_cast<std::uint8_t>(taxels[taxel] == TaxelStatus::invalid);
-    const auto is_missing = static_cast<std::uint8_t>(is_invalid & ~absent_[taxel]);
-    unknown_[taxel] = hidden_[taxel] | is_missing;
+    const auto is_missing = static_cast<std::uint8_t>(is_invalid & ~absent[taxel]);
+    unknown[taxel] = hidden[taxel] | is_missing;
     any_missing |= is_missing;
   }
   return any_ || any_missing != 0;

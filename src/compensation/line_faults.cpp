@@ -6,6 +6,7 @@
 
 #include "compensation/faults/dead_taxel_detector.hpp"
 #include "compensation/faults/drifting_driver_detector.hpp"
+#include "compensation/faults/equal_presses.hpp"
 #include "compensation/faults/grounded_line_detector.hpp"
 #include "compensation/faults/shorted_line_detector.hpp"
 #include "compensation/faults/silent_line_detector.hpp"
@@ -52,6 +53,7 @@ class LineFaultMonitor::Implementation {
   LineSums sums_;
   FaultList faults_;
   UnloadedWitnesses witnesses_;
+  EqualPresses equal_presses_;
   // In the order in which they judge a frame; each sees what those before it have found.
   std::tuple<SilentLineDetector, SuppliedColumnDetector, StuckTaxelDetector, DeadTaxelDetector, ShortedLineDetector,
              SuppliedRowDetector, GroundedLineDetector, DriftingDriverDetector>
@@ -59,8 +61,8 @@ class LineFaultMonitor::Implementation {
                  SuppliedColumnDetector(array_),
                  StuckTaxelDetector(array_),
                  DeadTaxelDetector(array_),
-                 ShortedLineDetector(array_),
-                 SuppliedRowDetector(array_),
+                 ShortedLineDetector(array_, equal_presses_),
+                 SuppliedRowDetector(array_, equal_presses_),
                  GroundedLineDetector(array_),
                  DriftingDriverDetector(array_)};
   std::size_t frame_ = 0;

@@ -30,7 +30,10 @@ constexpr double kAccuracy = 0.1;
 constexpr double kBestAccuracy = 1e-6;
 constexpr double kLeastAccuracy = 1e-2;
 constexpr double kMostSiemens = 1e3;
-constexpr double kLeastOwnShare = 1e-3;  // of a taxel in its reading that the scaling of the equations counts on
+constexpr double kShareOfTolerance = 0.1;  // to which floating rows are solved without Newton's method
+constexpr double kFineEnough = 1e-9;       // and where it goes on in any case
+constexpr double kNear = 1e-2;             // a last pass that its own steps need not start anew after
+constexpr double kLeastOwnShare = 1e-3;    // of a taxel in its reading that the scaling of the equations counts on
 
 constexpr std::size_t kMostInvertedTaxels = 400;
 constexpr int kNoiseSamples = 12;
@@ -44,7 +47,11 @@ double NewtonInversion::Reading::apparent_siemens(double ratio) const noexcept {
 }
 
 double NewtonInversion::Reading::scaled(double ratio) const noexcept {
-  return std::asinh(apparent_siemens(ratio) / (2.0 * scale));
+  return scaled_siemens(apparent_siemens(ratio));
+}
+
+double NewtonInversion::Reading::scaled_siemens(double siemens) const noexcept {
+  return std::asinh(siemens / (2.0 * scale));
 }
 
 double NewtonInversion::Reading::slope(double ratio) const noexcept {
@@ -64,7 +71,8 @@ double NewtonInversion::Reading::siemens_slope(double x) const noexcept {
   return 2.0 * scale * std::cosh(x);
 }
 
-NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio)
+NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio,
+                                 bool samples_noise)
     : model_(std::move(model)), solver_(array.taxel_count()), tolerance_(tolerance_ratio) {
   const Readout& readout = array.readout;
   const double noise_ratio = readout.adc_noise_counts / readout.full_scale_counts();
@@ -81,7 +89,8 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
     values->resize(array.taxel_count());
   }
   held_.resize(array.taxel_count());
-  if (x_.size() <= kMostInvertedTaxels) inverse_ = std::make_unique<DenseInverse>(x_.size());
+  if (!samples_noise && x_.size() <= kMostInvertedTaxels) inverse_ = std::make_unique<DenseInverse>(x_.size());
+  if (FloatingRows::inverts(readout)) floating_rows_ = std::make_unique<FloatingRows>(array);
 }
 
 double NewtonInversion::siemens_per_ratio() const noexcept {
@@ -100,16 +109,7 @@ InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span
     readings_[k].scale = std::max(readings_[k].noise, -readings_[k].apparent_siemens(ratio[k]));
     measured_[k] = readings_[k].scaled(ratio[k]);
   }
-  bool solved = false;
-  if (has_last_frame_) {
-    start(true);
-    solved = iterate(0);
-  }
-  for (const int bold_steps : {0, kBoldSteps}) {
-    if (solved) break;
-    start(false);
-    solved = iterate(bold_steps);
-  }
+  const bool solved = solve();
   std::copy(siemens_.begin(), siemens_.end(), siemens.begin());
   if (solved) {
     for (std::size_t k = 0; k < ratio.size(); ++k) last_shift_[k] = x_[k] - measured_[k];
@@ -118,11 +118,45 @@ InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span
   return {solved, residual_ratio()};
 }
 
+bool NewtonInversion::solve() noexcept {
+  if (floating_rows_) {
+    if (!floating_rows_->allows(ratio_)) {
+      start(false);
+      return false;
+    }
+    const double moved = floating_rows_->solve(ratio_, std::max(kShareOfTolerance * tolerance_, kFineEnough), siemens_);
+    if (moved <= kNear) {
+      start_at_siemens();
+      if (iterate(0)) return true;
+    }
+  }
+  if (has_last_frame_) {
+    start(true);
+    if (iterate(0)) return true;
+  }
+  for (const int bold_steps : {0, kBoldSteps}) {
+    start(false);
+    if (iterate(bold_steps)) return true;
+  }
+  return false;
+}
+
+void NewtonInversion::forget() noexcept {
+  has_last_frame_ = false;
+  if (floating_rows_) floating_rows_->forget();
+}
+
 // A taxel that is pressed between two frames changes its reading: its correction of the last frame is kept, not itself.
 void NewtonInversion::start(bool from_last_frame) noexcept {
   for (std::size_t k = 0; k < x_.size(); ++k) {
     x_[k] = std::max(measured_[k] + (from_last_frame ? last_shift_[k] : 0.0), 0.0);
   }
+  solve_at(x_);
+  damping_ = 0.0;
+}
+
+void NewtonInversion::start_at_siemens() noexcept {
+  for (std::size_t k = 0; k < x_.size(); ++k) x_[k] = readings_[k].scaled_siemens(siemens_[k]);
   solve_at(x_);
   damping_ = 0.0;
 }
@@ -218,7 +252,7 @@ void NewtonInversion::solve_equations(double accuracy) noexcept {
 void NewtonInversion::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
   scale_equations();
   std::fill(sigma_siemens.begin(), sigma_siemens.end(), 0.0);
-  if (x_.size() <= kMostInvertedTaxels) {
+  if (inverse_) {
     add_exact_variance(sigma_siemens);
   } else {
     add_sampled_variance(sigma_siemens);

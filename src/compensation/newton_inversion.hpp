@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "compensation/dense_inverse.hpp"
+#include "compensation/floating_rows.hpp"
 #include "compensation/krylov_solver.hpp"
 #include "dermis/compensation/circuit_model.hpp"
 #include "dermis/compensation/crosstalk.hpp"
@@ -35,15 +36,18 @@ namespace dermis::compensation {
 /// random arrays of 16x16 do, with taxels from 200 ohm, drivers to 200 ohm and loads to 10 kohm. The start from the
 /// textbook estimate then gives the array on the idle one's side of the fold, det(J) > 0.
 ///
+/// Floating rows of lines without resistance are solved by FloatingRows; Newton's method starts from there where that
+/// is not to the tolerance, and anew where it does not settle.
+///
 /// Floating lines read every taxel through all others. What noise becomes there is in the nature of the circuit: at
 /// 16x16 the relative noise of a reading grows by 25 to 104 (rms, two terminals), of a single one by thousands.
 class NewtonInversion final : public CrosstalkInversion {
  public:
   /// `model` is of `array`.
-  NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio);
+  NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio, bool samples_noise);
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
-  void forget() noexcept override { has_last_frame_ = false; }
+  void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
 
@@ -56,13 +60,16 @@ class NewtonInversion final : public CrosstalkInversion {
     double scale = 0.0;   // g_n, and the size of a reading below 0, which an amplifier's offset may cause [S]
     [[nodiscard]] double apparent_siemens(double ratio) const noexcept;  // y
     [[nodiscard]] double scaled(double ratio) const noexcept;
+    [[nodiscard]] double scaled_siemens(double siemens) const noexcept;
     [[nodiscard]] double slope(double ratio) const noexcept;       // d scaled / d ratio
     [[nodiscard]] double open_slope(double ratio) const noexcept;  // d ratio / d siemens without crosstalk
     [[nodiscard]] double siemens(double x) const noexcept;
     [[nodiscard]] double siemens_slope(double x) const noexcept;
   };
 
+  [[nodiscard]] bool solve() noexcept;
   void start(bool from_last_frame) noexcept;
+  void start_at_siemens() noexcept;
   [[nodiscard]] bool iterate(int bold_steps) noexcept;
   [[nodiscard]] bool step(double allowed_rise) noexcept;
   void scale_equations() noexcept;
@@ -77,7 +84,8 @@ class NewtonInversion final : public CrosstalkInversion {
   std::vector<Reading> readings_;
   CircuitModel model_;
   KrylovSolver solver_;
-  std::unique_ptr<DenseInverse> inverse_;  // of small arrays
+  std::unique_ptr<DenseInverse> inverse_;        // of small arrays, where noise is not sampled
+  std::unique_ptr<FloatingRows> floating_rows_;  // of arrays that it inverts: the start, mostly the solution
   double tolerance_;
   std::span<const double> ratio_;
   std::vector<double> measured_;  // x of the readings

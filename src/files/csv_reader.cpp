@@ -14,17 +14,6 @@ namespace {
 
 constexpr std::size_t kFirstBufferBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 25U;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-bool is_blank(char c) noexcept {
-  return c == ' ' || c == '\t' || c == '\r';
-}
-
-std::string_view trimmed(std::string_view text) noexcept {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 /// What programs save as CSV, and is none here.
 const char* foreign_text(std::string_view line) noexcept {

@@ -23,6 +23,8 @@
 namespace dermis::files {
 namespace {
 
+constexpr std::size_t kMaxTableColumns = std::size_t{1} << 20U;
+
 template <typename T>
 T item_at(const char* bytes, bool is_big_endian) {
   std::array<char, sizeof(T)> item{};
@@ -159,6 +161,39 @@ Result<bool> NpyReader::next(RawFrame& frame) {
 
 std::optional<FrameShape> NpyReader::shape() const {
   return state_->shape;
+}
+
+Result<NpyTable> read_npy_table(const std::string& path) {
+  Result<std::unique_ptr<std::istream>> in = open_input(path);
+  if (!in) return in.error();
+  return read_npy_table(*std::move(in), path);
+}
+
+Result<NpyTable> read_npy_table(std::unique_ptr<std::istream> in, const std::string& name) {
+  const std::istream::pos_type start = in->tellg();
+  const Result<NpyHeader> header = read_npy_header(*in);
+  if (in->bad()) return read_failure(name);
+  if (!header) return bad_input(name + ": " + header.error().message);
+  std::optional<FrameShape> shape;  // of three dimensions, that in the file
+  if (header->shape.size() == 2) {
+    if (header->shape[1] == 0 || header->shape[1] > kMaxTableColumns) {
+      return bad_input(name + ": has " + std::to_string(header->shape[1]) + " columns; 1 to 1048576 can be read");
+    }
+    shape = {1, static_cast<std::size_t>(header->shape[1])};
+  }
+  in->clear();
+  in->seekg(start);
+  Result<std::unique_ptr<NpyReader>> reader = NpyReader::open(std::move(in), name, {.rate_hz = 1.0, .shape = shape});
+  if (!reader) return reader.error();
+  NpyTable table{0, (*reader)->shape()->taxel_count(), {}};
+  RawFrame frame;
+  while (true) {
+    const Result<bool> more = (*reader)->next(frame);
+    if (!more) return more.error();
+    if (!*more) return table;
+    table.values.insert(table.values.end(), frame.counts.begin(), frame.counts.end());
+    ++table.rows;
+  }
 }
 
 struct NpyWriter::State {

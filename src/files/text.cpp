@@ -71,6 +71,12 @@ std::string in_quotes(std::string_view text) {
   return "'" + std::string(text.substr(0, kMaxShown)) + (text.size() > kMaxShown ? "...'" : "'");
 }
 
+std::string_view trimmed(std::string_view text) noexcept {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
 bool parse_number(std::string_view text, float& value) {
   return parse_short_integer(text, value) || parse_all(text, value);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -18,6 +19,12 @@ constexpr float kNoForce = std::numeric_limits<float>::quiet_NaN();
 constexpr float kNoUpperBound = std::numeric_limits<float>::infinity();
 constexpr double kUnlearnedPerCelsius = 0.005;  // 1/C, standard deviation of the temperature coefficient of rubber
 constexpr float kCommonSigmas = 2.0F;           // of an error that all taxels share
+
+// Beyond the heaviest calibrated load the exponent stays what it is there: uncertain by the first, and changing by the
+// second for every factor e of the force. docs/derivations.md, "Beyond the calibrated loads".
+constexpr float kExponentSigma = 0.2F;
+constexpr float kExponentChange = 0.3F;
+constexpr float kMostStretch = 8.0F;  // times the heaviest load: beyond, only that it is more is known
 
 template <typename Values, typename Predicate>
 bool all(const Values& values, std::size_t size, Predicate predicate) {
@@ -59,7 +66,8 @@ bool ForceNetworks::is_consistent() const noexcept {
          temperature_sigma_celsius >= 0.0 && all(offset_sigma_siemens, taxels, is_not_negative) &&
          all(relative_sigma, kSigmaKnots * taxels, is_positive) &&
          std::all_of(sigma_knots_newtons.begin(), sigma_knots_newtons.end(), is_positive) &&
-         sigma_knots_newtons[0] < sigma_knots_newtons[1] && rises_with_conductance(shape, parameters, taxels);
+         sigma_knots_newtons[0] < sigma_knots_newtons[1] && tables.is_consistent(taxels) &&
+         rises_with_conductance(shape, parameters, taxels);
 }
 
 float ForceNetworks::sigma_place(float log_newtons) const noexcept {
@@ -103,9 +111,10 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
   const Temperature temperature = this->temperature(conductance, force);
   prepare_inputs(conductance, temperature.offset);
   bank_.evaluate(inputs_, outputs_, gradient_);
+  look_up(temperature.offset);
   compute_forces(temperature, force);
   compute_signals(temperature.sigma, force);
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) apply_status(taxel, force);
+  apply_status(force);
 }
 
 ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conductance,
@@ -140,6 +149,24 @@ void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, double tem
   std::fill(inputs_.begin() + static_cast<std::ptrdiff_t>(2 * taxels), inputs_.end(), t);
 }
 
+/// In the place of the networks, where there are tables.
+void ForceFusion::look_up(double temperature_offset) noexcept {
+  const std::size_t taxels = networks_.taxel_count();
+  const ForceTables& tables = networks_.tables;
+  for (std::size_t table = 0; table < tables.taxels.size(); ++table) {
+    const std::size_t taxel = tables.taxels[table];
+    const float asked = networks_.reference_siemens[taxel] * std::exp(inputs_[taxel]);
+    const ForceTables::Value value = tables.at(table, asked, static_cast<float>(temperature_offset));
+    outputs_[taxel] = value.log_newtons - log_gain_[taxel];
+    const bool is_beyond = excess_siemens_[taxel] > networks_.heaviest_siemens[taxel];
+    gradient_[taxel] = is_beyond ? tables.end_exponent(table) : value.exponent;
+    gradient_[taxels + taxel] = 0.0F;
+    if (!uses_temperature()) continue;
+    const double half_span = networks_.unloaded.temperature.half_span_celsius;
+    gradient_[2 * taxels + taxel] = value.per_celsius * static_cast<float>(half_span);
+  }
+}
+
 void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& force) const noexcept {
   const float first = std::log(networks_.sigma_knots_newtons[0]);
   const float last = std::log(networks_.sigma_knots_newtons[1]);
@@ -170,6 +197,37 @@ void ForceFusion::compute_signals(double temperature_sigma, ForceFrame& force) c
   }
 }
 
+/// Most taxels have nothing to say but newtons: those that have are looked for in blocks.
+void ForceFusion::apply_status(ForceFrame& force) const noexcept {
+  constexpr std::size_t kBlock = 64;
+  const std::size_t taxels = networks_.taxel_count();
+  for (std::size_t from = 0; from < taxels; from += kBlock) {
+    const std::size_t to = std::min(from + kBlock, taxels);
+    if (are_plain(from, to, force)) continue;
+    for (std::size_t taxel = from; taxel < to; ++taxel) apply_status(taxel, force);
+  }
+}
+
+bool ForceFusion::are_plain(std::size_t from, std::size_t to, const ForceFrame& force) const noexcept {
+  const float* const excess = excess_siemens_.data();
+  const float* const most_siemens = networks_.heaviest_siemens.data();
+  const float* const most_newtons = networks_.heaviest_newtons.data();
+  const float* const newtons = force.newtons.data();
+  const std::uint8_t* const dead = networks_.dead.data();
+  const TaxelStatus* const status = force.taxels.data();
+  int beyond = 0;
+  std::uint8_t marked = 0;
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
+    beyond |= excess[taxel] <= most_siemens[taxel] ? 0 : 1;  // nor where there is no excess
+    beyond |= newtons[taxel] > most_newtons[taxel] ? 1 : 0;
+  }
+  for (std::size_t taxel = from; taxel < to; ++taxel) {
+    marked = static_cast<std::uint8_t>(marked | dead[taxel] | static_cast<std::uint8_t>(status[taxel]));
+  }
+  static_assert(TaxelStatus::ok == TaxelStatus{});
+  return beyond == 0 && marked == 0;
+}
+
 void ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexcept {
   TaxelStatus& status = force.taxels[taxel];
   float& newtons = force.newtons[taxel];
@@ -186,15 +244,43 @@ void ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexc
     force.signal_to_noise[taxel] = kNoForce;
     return;
   }
-  if (excess_siemens_[taxel] > networks_.heaviest_siemens[taxel] || newtons > networks_.heaviest_newtons[taxel]) {
-    newtons = std::min(newtons, networks_.heaviest_newtons[taxel]);
-    if (status == TaxelStatus::ok) status = TaxelStatus::above_range;
-    force.status |= FrameStatus::above_range;
-  }
-  if (status == TaxelStatus::above_range || status == TaxelStatus::saturated) {
+  const bool is_saturated = status == TaxelStatus::saturated;
+  if (is_saturated) {
     sigma = kNoUpperBound;
     force.signal_to_noise[taxel] = kNoUpperBound;
   }
+  if (excess_siemens_[taxel] <= networks_.heaviest_siemens[taxel] && newtons <= networks_.heaviest_newtons[taxel]) {
+    return;
+  }
+  force.status |= FrameStatus::above_range;
+  if (is_saturated) {
+    newtons = std::min(newtons, networks_.heaviest_newtons[taxel]);  // the force is at least the one given
+    return;
+  }
+  if (status == TaxelStatus::ok) status = TaxelStatus::above_range;
+  extrapolate(taxel, newtons, sigma);
+}
+
+/// From the force and standard deviation at the end of what was calibrated, along the law that holds there.
+void ForceFusion::extrapolate(std::size_t taxel, float& newtons, float& sigma) const noexcept {
+  const float heaviest_siemens = networks_.heaviest_siemens[taxel];
+  const float of_share = gradient_[networks_.taxel_count() + taxel] / networks_.reference_siemens[taxel];
+  const float exponent = gradient_[taxel] + of_share * std::min(excess_siemens_[taxel], heaviest_siemens);
+  const float at_end = newtons;
+  const float known = std::min(at_end, networks_.heaviest_newtons[taxel]);
+  newtons *= std::pow(std::max(excess_siemens_[taxel] / heaviest_siemens, 1.0F), exponent);
+  if (!(newtons < kMostStretch * known)) {
+    newtons = kMostStretch * known;
+    sigma = kNoUpperBound;
+    return;
+  }
+  // Calibrations cover what is used: a little more than the heaviest load is believed as far as it stands out of the
+  // noise.
+  const float excess = std::log(newtons / known);
+  const float noise = sigma / at_end;
+  const float stretch = excess * excess * excess / (excess * excess + noise * noise);
+  newtons = known * std::exp(stretch);
+  sigma = newtons * std::hypot(noise, stretch * std::hypot(kExponentSigma, kExponentChange * stretch));
 }
 
 }  // namespace dermis::fusion

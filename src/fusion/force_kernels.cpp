@@ -43,6 +43,9 @@ void compute_inputs(const ExcessConductance& excess, float* inputs) {
   });
 }
 
+// Of the exponent below the lightest calibrated load, relative: docs/derivations.md, "Beyond the calibrated loads".
+constexpr float kExponentSigmaBelow = 0.1F;
+
 /// Square of the relative error at a force between its knots.
 template <class D>
 hn::Vec<D> material_variance(D d, const ForceSources& sources, hn::Vec<D> log_newtons, std::size_t first) {
@@ -89,7 +92,10 @@ void compute_forces(const ForceSources& sources, float* newtons, float* sigma_ne
     }
     const auto drift = hn::Mul(per_celsius, hn::Set(d, sources.temperature_sigma));
     auto variance = material_variance(d, sources, log_reached, first);
+    const auto below = hn::Max(hn::Sub(hn::Set(d, sources.log_first_knot), log_reached), hn::Zero(d));
+    const auto law_below = hn::Mul(hn::Set(d, kExponentSigmaBelow), below);
     variance = hn::Add(variance, hn::Set(d, sources.unlearned_variance));
+    variance = hn::MulAdd(law_below, law_below, variance);
     variance = hn::MulAdd(noise, noise, variance);
     variance = hn::MulAdd(drift, drift, variance);
     const auto at_reached = hn::Exp(d, hn::Min(log_reached, hn::Set(d, kLargestLog)));

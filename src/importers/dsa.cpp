@@ -118,6 +118,7 @@ class Dsa final : public FrameSource {
     } while (event.kind != DsaEvent::Kind::frame);
     const std::optional<Nanos> time = parse_milliseconds(event.time_ms);
     if (!time) return events_.error("the frame has the time_stamp " + files::in_quotes(event.time_ms));
+    tell_time_backwards(*time);
     begin_frame(frame, *time);
     frame.temperature_celsius = temperature_at(*time);
     frame.counts.resize(shape_.taxel_count());
@@ -132,6 +133,14 @@ class Dsa final : public FrameSource {
   [[nodiscard]] std::string place() const override { return events_.place(); }
 
  private:
+  /// Once.
+  void tell_time_backwards(Nanos time) {
+    if (time < last_time_ && !std::exchange(has_told_time_, true) && options_.notice) {
+      options_.notice(events_.place() + ": the time_stamp of the frame is before that of the last one");
+    }
+    last_time_ = time;
+  }
+
   Status choose(const std::vector<FrameShape>& matrices) {
     const std::size_t count = matrices.size();
     if (count == 0) return events_.error("has no matrix");
@@ -181,6 +190,8 @@ class Dsa final : public FrameSource {
   FrameShape shape_;
   std::vector<Temperature> temperatures_;
   std::size_t frames_ = 0;
+  Nanos last_time_{};
+  bool has_told_time_ = false;
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
   while (!line.empty() && cells.size() <= kMaxLines + 2) {
     const std::size_t end = std::min(has_tabs ? line.find('\t') : kCellWidth, line.size());
-    cells.push_back(trimmed(line.substr(0, end)));
+    cells.push_back(files::trimmed(line.substr(0, end)));
     line.remove_prefix(std::min(end + (has_tabs ? 1 : 0), line.size()));
   }
   while (!cells.empty() && cells.back().empty()) cells.pop_back();

@@ -17,11 +17,6 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 25U;
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-bool is_blank(char c) noexcept {
-  return c == ' ' || c == '\t' || c == '\r' || c == '\f';
-}
 
 struct Unit {
   std::string_view name;  ///< Lower case, without blanks, "2" for "²".
@@ -43,19 +38,13 @@ std::string plain(std::string_view unit) {
     text.replace(at, kSquared.size(), "2");
   }
   std::replace(text.begin(), text.end(), '\xB2', '2');  // Latin-1
-  std::erase_if(text, [](char c) { return is_blank(c) || c == '^' || c == '-'; });
+  std::erase_if(text, [](char c) { return files::is_blank(c) || c == '^' || c == '-'; });
   std::transform(text.begin(), text.end(), text.begin(),
                  [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
   return text;
 }
 
 }  // namespace
-
-std::string_view trimmed(std::string_view text) noexcept {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
 
 TextLines::TextLines(std::unique_ptr<std::istream> in, std::string name)
     : in_(std::move(in)), name_(std::move(name)), piece_(kPieceBytes) {}
@@ -87,7 +76,7 @@ Result<bool> TextLines::next(std::string_view& line) {
   if (number_ == 1 && (line_.starts_with("\xFF\xFE") || line_.starts_with("\xFE\xFF"))) {
     return error("is UTF-16 text; save it as UTF-8");
   }
-  if (number_ == 1 && line_.starts_with(kByteOrderMark)) line_.erase(0, kByteOrderMark.size());
+  if (number_ == 1 && line_.starts_with(files::kByteOrderMark)) line_.erase(0, files::kByteOrderMark.size());
   if (line_.ends_with('\r')) line_.pop_back();
   line = line_;
   return true;
@@ -113,7 +102,7 @@ Error TextLines::error(const std::string& message) const {
 
 Cells::Cells(std::string_view line, Separator separator) noexcept
     : rest_(line), separator_(','), blanks_separate_(separator == Separator::any), at_end_(false) {
-  const auto has = [text = trimmed(line)](char c) { return text.find(c) != std::string_view::npos; };
+  const auto has = [text = files::trimmed(line)](char c) { return text.find(c) != std::string_view::npos; };
   if (blanks_separate_ && has('\t')) separator_ = '\t';
   if (blanks_separate_ && has(';')) separator_ = ';';
   skip_blanks();
@@ -121,12 +110,12 @@ Cells::Cells(std::string_view line, Separator separator) noexcept
 }
 
 bool Cells::ends_cell(char c) const noexcept {
-  return c == separator_ || (blanks_separate_ && is_blank(c));
+  return c == separator_ || (blanks_separate_ && files::is_blank(c));
 }
 
 /// At both ends of the rest.
 void Cells::skip_blanks() noexcept {
-  const auto is_skipped = [this](char c) { return is_blank(c) && c != separator_; };
+  const auto is_skipped = [this](char c) { return files::is_blank(c) && c != separator_; };
   while (!rest_.empty() && is_skipped(rest_.front())) rest_.remove_prefix(1);
   while (!rest_.empty() && is_skipped(rest_.back())) rest_.remove_suffix(1);
 }
@@ -137,8 +126,9 @@ bool Cells::next(std::string_view& cell) noexcept {
   for (bool is_quoted = false; end < rest_.size() && (is_quoted || !ends_cell(rest_[end])); ++end) {
     if (rest_[end] == '"') is_quoted = !is_quoted;
   }
-  cell = trimmed(rest_.substr(0, end));
-  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = trimmed(cell.substr(1, cell.size() - 2));
+  cell = files::trimmed(rest_.substr(0, end));
+  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
+    cell = files::trimmed(cell.substr(1, cell.size() - 2));
   at_end_ = end == rest_.size();
   rest_.remove_prefix(end);
   skip_blanks();

@@ -49,8 +49,6 @@ class TextLines {
   bool was_cut_ = false;
 };
 
-[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
-
 /// Takes the cells of one line from the left. Blanks around a cell are dropped, and so are quotes; what is between
 /// quotes holds together.
 class Cells {

@@ -10,6 +10,7 @@
 
 #include "dermis/core/array_description.hpp"
 #include "dermis/files/taxel_text.hpp"
+#include "dermis/files/text.hpp"
 #include "importers/imported_frame.hpp"
 #include "importers/text_lines.hpp"
 
@@ -30,7 +31,7 @@ bool is_row(std::string_view line) {
   Cells cells(line, Cells::Separator::any);
   std::string_view cell;
   float value = 0.0F;
-  return cells.next_filled(cell) ? parse_reading(cell, value) : !trimmed(line).empty();
+  return cells.next_filled(cell) ? parse_reading(cell, value) : !files::trimmed(line).empty();
 }
 
 /// Values of a row; a separator at its end ends the last one.

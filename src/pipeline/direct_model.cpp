@@ -2,12 +2,14 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/pipeline/direct_model.hpp"
 
+#include <array>
 #include <limits>
 
 namespace dermis::pipeline {
 namespace {
 
 constexpr double kPascalsPerKilopascal = 1000.0;
+constexpr std::array<float, 2> kAnyForce{1e-12F, 1e12F};
 constexpr float kNextToNothing = 1e-6F;  // as a relative error must be more than 0
 
 double newtons_per_reading(const ArrayDescription& array) {
@@ -36,6 +38,7 @@ Model direct_model(const ArrayDescription& array) {
   networks.dead.assign(taxels, 0);
   networks.offset_sigma_siemens.assign(taxels, 0.0F);
   networks.relative_sigma.assign(fusion::kSigmaKnots * taxels, kNextToNothing);
+  networks.sigma_knots_newtons = kAnyForce;  // no law ends
   return model;
 }
 

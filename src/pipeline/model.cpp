@@ -5,8 +5,10 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/safetensors.hpp"
@@ -77,6 +79,34 @@ std::size_t metadata_count(const SafetensorsFile& file, const std::string& key) 
   return error == std::errc{} && end == text.data() + text.size() ? value : 0;
 }
 
+/// Only where there are tables: files without one stay as they always were.
+void put_tables(SafetensorsFile& file, const fusion::ForceTables& tables) {
+  const std::size_t count = tables.taxels.size();
+  if (count == 0) return;
+  file.metadata["tables"] = std::to_string(count);
+  file.metadata["tables.knots"] = std::to_string(tables.knots);
+  put<std::int64_t>(file, "tables.taxels", {count}, {tables.taxels.begin(), tables.taxels.end()});
+  put(file, "tables.siemens", {count, tables.knots}, tables.siemens);
+  put(file, "tables.newtons", {count, tables.knots}, tables.newtons);
+  put(file, "tables.per_celsius", {count}, tables.per_celsius);
+}
+
+fusion::ForceTables get_tables(const SafetensorsFile& file, TensorReader& reader) {
+  fusion::ForceTables tables;
+  const std::size_t count = metadata_count(file, "tables");
+  tables.knots = metadata_count(file, "tables.knots");
+  std::vector<std::int64_t> taxels;
+  reader.get("tables.taxels", {count}, taxels);
+  for (const std::int64_t taxel : taxels) {
+    constexpr auto kNoTaxel = std::numeric_limits<std::uint32_t>::max();
+    tables.taxels.push_back(std::in_range<std::uint32_t>(taxel) ? static_cast<std::uint32_t>(taxel) : kNoTaxel);
+  }
+  reader.get("tables.siemens", {count, tables.knots}, tables.siemens);
+  reader.get("tables.newtons", {count, tables.knots}, tables.newtons);
+  reader.get("tables.per_celsius", {count}, tables.per_celsius);
+  return tables;
+}
+
 void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
   const std::size_t taxels = networks.taxel_count();
   file.metadata["networks.inputs"] = std::to_string(networks.shape.inputs);
@@ -92,6 +122,7 @@ void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
   put<float>(file, "networks.sigma_knots_newtons", {2},
              {networks.sigma_knots_newtons.begin(), networks.sigma_knots_newtons.end()});
   put(file, "networks.parameters", {networks.shape.parameter_count(), taxels}, networks.parameters);
+  put_tables(file, networks.tables);
 }
 
 ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, TensorReader& reader) {
@@ -112,6 +143,7 @@ ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, Tens
   reader.get("networks.sigma_knots_newtons", {2}, knots);
   if (knots.size() == 2) networks.sigma_knots_newtons = {knots[0], knots[1]};
   reader.get("networks.parameters", {networks.shape.parameter_count(), taxels}, networks.parameters);
+  if (file.metadata.contains("tables")) networks.tables = get_tables(file, reader);
   return networks;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -62,8 +63,11 @@ Conditioner::Conditioner(ArrayDescription array)
 
 /// Taxels of the sheet without a reading.
 std::size_t Conditioner::count_missing(const RawFrame& raw) const noexcept {
-  std::size_t missing = 0;
-  for (const float count : raw.counts) missing += is_reading(count) ? 0 : 1;
+  const float least = least_counts_;
+  const float most = full_scale_counts_;
+  std::uint32_t readings = 0;
+  for (const float count : raw.counts) readings += (count >= least ? 1U : 0U) & (count <= most ? 1U : 0U);
+  std::size_t missing = raw.counts.size() - readings;
   for (const std::size_t taxel : array_.absent) missing -= is_reading(raw.counts[taxel]) ? 0 : 1;
   return missing;
 }
@@ -108,14 +112,26 @@ void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) co
   const double scale = (readout.pressure_raises_reading ? reference : -reference) / readout.full_scale_counts();
   conditioned.sigma_ratio = std::abs(scale) * readout.adc_noise_counts;
   const double zero = readout.pressure_raises_reading ? 0.0 : 1.0;
-  bool any_saturated = false;
-  for (std::size_t taxel = 0; taxel < raw.counts.size(); ++taxel) {
-    conditioned.ratio[taxel] = zero + scale * static_cast<double>(raw.counts[taxel]);
-    const bool saturated = raw.counts[taxel] > highest_counts_ || raw.counts[taxel] < lowest_counts_;
-    conditioned.taxels[taxel] = saturated ? TaxelStatus::saturated : TaxelStatus::ok;
-    any_saturated = any_saturated || saturated;
+  const std::size_t taxels = raw.counts.size();
+  const float* const counts = raw.counts.data();
+  double* const ratio = conditioned.ratio.data();
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) ratio[taxel] = zero + scale * static_cast<double>(counts[taxel]);
+  const float highest = highest_counts_;
+  const float lowest = lowest_counts_;
+  std::uint32_t saturated = 0;
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    saturated |= (counts[taxel] > highest ? 1U : 0U) | (counts[taxel] < lowest ? 1U : 0U);
   }
-  if (any_saturated) conditioned.status |= FrameStatus::saturated;
+  std::fill(conditioned.taxels.begin(), conditioned.taxels.end(), TaxelStatus::ok);
+  if (saturated != 0) mark_saturated(raw, conditioned);
+}
+
+void Conditioner::mark_saturated(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept {
+  conditioned.status |= FrameStatus::saturated;
+  for (std::size_t taxel = 0; taxel < raw.counts.size(); ++taxel) {
+    const float count = raw.counts[taxel];
+    if (count > highest_counts_ || count < lowest_counts_) conditioned.taxels[taxel] = TaxelStatus::saturated;
+  }
 }
 
 void Conditioner::mark_missing(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept {

@@ -9,6 +9,8 @@
 #include <memory>
 #include <system_error>
 
+#include "dermis/files/taxel_text.hpp"
+
 namespace dermis::recordings {
 namespace {
 
@@ -48,10 +50,11 @@ void add(const RawFrame& frame, FrameFileInfo& info) {
   range = {std::min(range->first, celsius), std::max(range->second, celsius)};
 }
 
-Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format) {
+Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format,
+                                     const std::optional<FrameShape>& shape) {
   const bool is_timed = has_times(format);
   const Result<std::unique_ptr<FrameSource>> source =
-      open_frames(path, {.rate_hz = is_timed ? std::nullopt : std::optional(1e3)});
+      open_frames(path, {.shape = shape, .rate_hz = is_timed ? std::nullopt : std::optional(1e3)});
   if (!source) return source.error();
   Result<FrameNotes> notes = read_frame_notes(path);
   if (!notes) return notes.error();
@@ -80,11 +83,15 @@ std::optional<double> FrameFileInfo::rate_hz() const {
   return static_cast<double>(frames - 1) / *duration_s;
 }
 
-Result<FrameFileInfo> frame_file_info(const std::string& path) {
+Result<FrameFileInfo> frame_file_info(const std::string& path, const std::optional<FrameShape>& shape) {
   const Result<FrameFormat> format = recognise_frames(path);
   if (!format) return format.error();
-  Result<FrameFileInfo> info = *format == FrameFormat::mcap ? info_of_recording(path) : info_of_frames(path, *format);
+  Result<FrameFileInfo> info =
+      *format == FrameFormat::mcap ? info_of_recording(path) : info_of_frames(path, *format, shape);
   if (!info) return info;
+  if (shape && info->shape && *info->shape != *shape) {
+    return bad_input(path + ": has frames of " + files::size_text(*info->shape) + " taxels");
+  }
   info->format = *format;
   std::error_code is_no_file;
   const std::uintmax_t bytes = std::filesystem::file_size(recording_place(path).path, is_no_file);

@@ -120,17 +120,21 @@ Result<std::unique_ptr<FrameSink>> create_frames(const std::string& path, FrameS
   }
 }
 
-Result<std::vector<RawFrame>> read_frames(const std::string& path, const FrameFileInput& input) {
-  const Result<std::unique_ptr<FrameSource>> source = open_frames(path, input);
-  if (!source) return source.error();
+Result<std::vector<RawFrame>> read_frames(FrameSource& source) {
   std::vector<RawFrame> frames;
   RawFrame frame;
   while (true) {
-    const Result<bool> got_frame = (*source)->next(frame);
+    const Result<bool> got_frame = source.next(frame);
     if (!got_frame) return got_frame.error();
     if (!*got_frame) return frames;
     frames.push_back(frame);
   }
+}
+
+Result<std::vector<RawFrame>> read_frames(const std::string& path, const FrameFileInput& input) {
+  const Result<std::unique_ptr<FrameSource>> source = open_frames(path, input);
+  if (!source) return source.error();
+  return read_frames(**source);
 }
 
 }  // namespace dermis::recordings

@@ -64,8 +64,7 @@ std::string first_word(const std::string& path) {
   std::string text(kLooked, '\0');
   (*in)->read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>((*in)->gcount()));
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+  if (text.starts_with(files::kByteOrderMark)) text.erase(0, files::kByteOrderMark.size());
   const std::size_t begin = std::min(text.find_first_not_of(kBetween), text.size());
   return text.substr(begin, std::min(text.find_first_of(kBetween, begin), text.size()) - begin);
 }

@@ -57,8 +57,7 @@ Figure coverage_figure(const Evaluation& evaluation) {
   figure.caption = fmt::format(
       "The true force of {} taxels is within the 68 % interval of dermis in {:.1f} % and within the 95 % interval in "
       "{:.1f} %. Below the straight line dermis is too sure, above it too modest. Taxels of which only a lower bound "
-      "is "
-      "known (saturated, above the calibrated range) are not counted.",
+      "is known (saturated, or beyond eight times the heaviest calibrated load) are not counted.",
       grouped(evaluation.coverage.count), 100.0 * *evaluation.coverage.share_68, 100.0 * *evaluation.coverage.share_95);
   if (evaluation.bound.frames == 0) return figure;
   figure.caption += fmt::format(

@@ -8,6 +8,8 @@
 #include <limits>
 
 #include "calibration/simulated.hpp"
+#include "dermis/calibration/calibrate.hpp"
+#include "dermis/pipeline/direct_model.hpp"
 #include "support/hand_made_model.hpp"
 
 namespace dermis::calibration {
@@ -89,6 +91,56 @@ TEST(Evaluation, judges_from_a_fiftieth_of_the_heaviest_calibrated_load) {
   EXPECT_NEAR(evaluation->judged_from_n, 0.04, 1e-6);
   ASSERT_EQ(evaluation->taxels.size(), 1U);
   EXPECT_EQ(evaluation->taxels.front().frame, 1U);
+}
+
+TEST(Evaluation, after_totals_judges_from_what_single_taxels_carried_of_them) {
+  const ArrayDescription array = reference_array(4, 4);
+  Recording recording = record(array, "uniform", 5);
+  for (Load& load : recording.loads) {
+    load.kind = LoadKind::force;
+    load.value *= 16.0 * *array.taxel_area_m2;  // from a pressure on each of 16 taxels
+  }
+  const auto calibration = calibrate(array, recording.frames, recording.loads);
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  const TrainingReport& report = calibration->report.training;
+  EXPECT_NEAR(report.heaviest_taxel_newtons, report.heaviest_newtons / 16.0, 0.6 * report.heaviest_newtons / 16.0);
+  const auto evaluation = evaluate(calibration->model, recording.frames, recording.loads);
+  ASSERT_TRUE(evaluation);
+  EXPECT_NEAR(evaluation->judged_from_n, report.heaviest_taxel_newtons / 50.0, 1e-5);
+}
+
+TEST(Evaluation, of_readings_that_are_forces_judges_from_what_the_loads_say) {
+  ArrayDescription array;
+  array.rows = 1;
+  array.cols = 2;
+  array.readout.circuit = Circuit::none;
+  array.readout.quantity = Quantity::force;
+  const pipeline::Model model = pipeline::direct_model(array);
+  RawFrame frame;
+  frame.counts = {0.25F, 0.004F};
+  const auto evaluation =
+      evaluate(model, std::vector<RawFrame>{frame},
+               std::vector<Load>{{0, LoadKind::force, {0, 0, 0, 0}, 0.25}, {0, LoadKind::force, {0, 1, 0, 1}, 0.004}});
+  ASSERT_TRUE(evaluation) << evaluation.error().message;
+  EXPECT_NEAR(evaluation->judged_from_n, 0.005, 1e-9);
+  EXPECT_EQ(evaluation->taxels.size(), 1U);
+}
+
+TEST(Evaluation, of_readings_that_are_forces_judges_from_what_single_taxels_carry_of_totals) {
+  ArrayDescription array;
+  array.rows = 1;
+  array.cols = 2;
+  array.readout.circuit = Circuit::none;
+  array.readout.quantity = Quantity::force;
+  const pipeline::Model model = pipeline::direct_model(array);
+  RawFrame frame;
+  frame.counts = {3.0F, 5.0F};
+  const auto judged_from = [&](double total) {
+    const std::vector<Load> loads = {{0, LoadKind::force, {0, 0, 0, 1}, total}};
+    return evaluate(model, std::vector<RawFrame>{frame}, loads).value().judged_from_n;
+  };
+  EXPECT_NEAR(judged_from(8.0), 0.08, 1e-9);
+  EXPECT_GT(judged_from(0.0), 0.0);
 }
 
 TEST(Evaluation, counts_separate_stressed_areas) {

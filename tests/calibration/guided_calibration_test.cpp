@@ -347,34 +347,99 @@ TEST(GuidedCalibration, finds_the_loads_of_an_array_whose_circuit_is_unknown) {
   EXPECT_FALSE(guide->calibration()->model.array.has_unknown_circuit());
 }
 
-TEST(GuidedCalibration, asks_for_pairs_of_presses_that_tell_circuits_apart_and_takes_them) {
+/// An array whose circuit is not told by single presses.
+struct UntoldArray {
   ArrayDescription array = reference_array(4, 8);
-  array.readout.circuit = Circuit::transimpedance;
-  array.readout.drive_ohm.assign(4, 10.0);
-  array.readout.load_ohm.assign(8, 150.0);
-  array.readout.adc_bits = 10;
-  ArrayDescription unknown = array;
-  unknown.readout = {};
-  unknown.readout.circuit = Circuit::automatic;
-  unknown.readout.adc_bits = 10;
+  ArrayDescription unknown;
   CalibrationPlan plan;
-  plan.taxels = {0, 3, 6, 16, 19, 22};
-  plan.weights_n = {2.0, 6.0, 20.0};
-  const auto guide = begin(unknown, plan);
-  Session session = session_of(array);
+
+  UntoldArray() {
+    array.readout.circuit = Circuit::transimpedance;
+    array.readout.drive_ohm.assign(4, 10.0);
+    array.readout.load_ohm.assign(8, 150.0);
+    array.readout.adc_bits = 10;
+    unknown = array;
+    unknown.readout = {};
+    unknown.readout.circuit = Circuit::automatic;
+    unknown.readout.adc_bits = 10;
+    plan.taxels = {0, 3, 6, 16, 19, 22};
+    plan.weights_n = {2.0, 6.0, 20.0};
+  }
+};
+
+TEST(GuidedCalibration, asks_for_pairs_of_presses_that_tell_circuits_apart_and_takes_them) {
+  const UntoldArray untold;
+  const auto guide = begin(untold.unknown, untold.plan);
+  Session session = session_of(untold.array);
   session.walk(*guide);
   GuideState state = guide->state();
   ASSERT_EQ(state.stage, GuideStage::pressing) << state.message;
   ASSERT_TRUE(state.together_with);
   EXPECT_NE(state.message.find("as much on"), std::string::npos) << state.message;
-  EXPECT_EQ(state.presses_done, plan.press_count());
+  EXPECT_EQ(state.presses_done, untold.plan.press_count());
   const std::size_t pairs = state.presses_total - state.presses_done;
   session.walk(*guide);
   state = guide->state();
   ASSERT_EQ(state.stage, GuideStage::done) << state.message;
-  EXPECT_EQ(state.presses_done, plan.press_count() + pairs);
+  EXPECT_EQ(state.presses_done, untold.plan.press_count() + pairs);
   EXPECT_EQ(guide->calibration()->model.array.readout.circuit, Circuit::transimpedance);
   EXPECT_TRUE(guide->calibration()->report.telling_presses.empty());
+}
+
+TEST(GuidedCalibration, finishes_without_the_pairs_that_it_asks_for) {
+  const UntoldArray untold;
+  const auto guide = begin(untold.unknown, untold.plan);
+  session_of(untold.array).walk(*guide);
+  ASSERT_TRUE(guide->state().together_with) << guide->state().message;
+  ASSERT_TRUE(guide->finish());
+  wait_for_fit(*guide);
+  const GuideState state = guide->state();
+  ASSERT_EQ(state.stage, GuideStage::done) << state.message;
+  EXPECT_EQ(state.presses_done, untold.plan.press_count());
+  EXPECT_EQ(state.presses_total, untold.plan.press_count());
+  EXPECT_FALSE(guide->calibration()->report.telling_presses.empty());
+}
+
+TEST(GuidedCalibration, knows_both_taxels_of_a_pair) {
+  const UntoldArray untold;
+  const auto guide = begin(untold.unknown, untold.plan);
+  Session session = session_of(untold.array);
+  session.walk(*guide);
+  GuideState state = guide->state();
+  ASSERT_TRUE(state.together_with) << state.message;
+  const std::size_t first = state.taxel;
+  const std::size_t second = *state.together_with;
+  const double newtons = state.weight_n;
+  std::size_t foreign = 0;
+  while (foreign / 8 == first / 8 || foreign / 8 == second / 8 || foreign % 8 == first % 8 ||
+         foreign % 8 == second % 8) {
+    ++foreign;
+  }
+  std::vector<double> force_n(untold.array.taxel_count());
+  const auto wait = [&](double seconds) {
+    const double end = session.handled.seconds() + seconds;
+    while (session.handled.seconds() < end) guide->feed(session.handled.frame(force_n));
+  };
+  wait(0.5);
+  force_n[second] = newtons;
+  wait(0.5);
+  EXPECT_EQ(guide->state().hint, GuideHint::press) << "waits for the first";
+  force_n[foreign] = 0.7 * newtons;
+  wait(0.5);
+  state = guide->state();
+  EXPECT_EQ(state.hint, GuideHint::several);
+  EXPECT_EQ(state.pressed_taxel, foreign);
+
+  force_n[foreign] = 0.0;
+  force_n[first] = newtons;
+  while (guide->state().hint != GuideHint::release && session.handled.seconds() < 1000.0) wait(0.1);
+  ASSERT_EQ(guide->state().hint, GuideHint::release);
+  const std::size_t presses = guide->state().presses_done;
+  force_n[first] = 0.0;
+  force_n[second] = 0.07 * newtons;  // what a material remembers
+  wait(0.5);
+  EXPECT_EQ(guide->state().presses_done, presses);
+  EXPECT_EQ(guide->state().hint, GuideHint::press);
 }
 
 TEST(GuidedCalibration, says_why_a_fit_failed_and_goes_on) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/flicker.hpp"
 #include "calibration/simulated.hpp"
 #include "dermis/core/random.hpp"
 
@@ -350,13 +351,82 @@ TEST(SampleDatabase, where_memory_ends_keeps_some_of_many_frames_of_a_place_and_
 TEST(SampleDatabase, asks_whether_grams_are_newtons) {
   auto [frames, loads] = labelled_presses(0);
   for (Load& load : loads) load.value *= 1000.0 / 9.80665;
-  ArrayDescription array = bare_array();
-  array.taxel_area_m2 = 2e-5;
-  const auto database = build_sample_database(array, frames, loads);
+  const auto database = build_sample_database(bare_array(), frames, loads);
   ASSERT_TRUE(database) << database.error().message;
   ASSERT_EQ(database->remarks.size(), 1U);
   EXPECT_EQ(database->remarks[0],
-            "the load of frame 700 presses all with 17 MPa: is it in newtons (or kPa), not in grams (or Pa)?");
+            "the load of frame 700 presses all with 2.04e+03 N, 3.4 MPa over the 6 taxels that feel it: is it in "
+            "newtons? It may be in grams (33.3 kPa then) or millinewtons (3.4 kPa then)");
+}
+
+/// The area is that of the taxels that feel the load, however many the label names.
+TEST(SampleDatabase, asks_whether_kilopascals_are_newtons) {
+  auto [frames, loads] = labelled_presses(0);
+  for (Load& load : loads) load.value *= 20.0;
+  for (RawFrame& frame : frames) std::fill(frame.counts.begin() + 1, frame.counts.end(), 20.0F);
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  ASSERT_EQ(database->remarks.size(), 1U);
+  EXPECT_EQ(
+      database->remarks[0],
+      "the load of frame 700 presses all with 400 N, 4 MPa over the 1 taxel that feels it: is it in newtons? It may "
+      "be in grams (39.2 kPa then) or millinewtons (4 kPa then) or kPa (400 kPa then)");
+}
+
+TEST(SampleDatabase, asks_whether_kilopascals_are_pascals) {
+  auto [frames, loads] = labelled_presses(0);
+  for (Load& load : loads) load = {load.frame, LoadKind::pressure, load.where, 5e5 * load.value};
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  ASSERT_EQ(database->remarks.size(), 1U);
+  EXPECT_EQ(
+      database->remarks[0],
+      "the load of frame 700 presses all with 6e+03 N, 10 MPa over the 6 taxels that feel it: is it in kPa? It may "
+      "be in Pa (10 kPa then)");
+}
+
+TEST(SampleDatabase, leaves_out_a_taxel_that_flickers) {
+  auto [frames, loads] = labelled_presses(0);
+  Random random(11);
+  for (RawFrame& frame : frames) frame.counts[4] = random.below(2) == 0 ? 3.0F : 900.0F;
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  EXPECT_EQ(database->samples.size(), frames.size());
+  EXPECT_EQ(database->array.absent, (std::vector<std::size_t>{4}));
+  ASSERT_EQ(database->remarks.size(), 1U);
+  EXPECT_EQ(database->remarks[0], "r1c1 flickers while nothing presses: left out as if absent; check the contact");
+}
+
+TEST(SampleDatabase, never_leaves_out_the_only_taxel) {
+  std::vector<RawFrame> frames(40);
+  Random random(12);
+  for (RawFrame& frame : frames) frame.counts = {random.below(2) == 0 ? 3.0F : 900.0F, 0.0F};
+  std::vector<Load> loads;
+  for (std::size_t k = 0; k < frames.size(); ++k) loads.push_back({k, LoadKind::force, {0, 0, 0, 0}, 0.0});
+  ArrayDescription array = bare_array();
+  array.rows = 1;
+  array.cols = 2;
+  EXPECT_EQ(find_flickering_taxels(array, frames, loads), (std::vector<std::size_t>{0}));
+  array.absent = {1};
+  EXPECT_TRUE(find_flickering_taxels(array, frames, loads).empty());
+  array.absent.clear();
+  array.cols = 1;
+  for (RawFrame& frame : frames) frame.counts.resize(1);
+  EXPECT_TRUE(find_flickering_taxels(array, frames, loads).empty());
+}
+
+/// A touch comes and goes while frames are called unloaded, on some taxels or on one.
+TEST(SampleDatabase, taxels_that_are_touched_do_not_flicker) {
+  for (const std::size_t touched : {1U, 3U}) {
+    auto [frames, loads] = labelled_presses(0);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      const bool is_touched = k % 20 > 14;
+      for (std::size_t taxel = 0; taxel < touched && is_touched; ++taxel) frames[k].counts[taxel] += 150.0F;
+    }
+    const auto database = build_sample_database(bare_array(), frames, loads);
+    ASSERT_TRUE(database) << database.error().message;
+    EXPECT_TRUE(database->array.absent.empty());
+  }
 }
 
 TEST(SampleDatabase, finds_where_the_readout_saturates_before_its_adc) {

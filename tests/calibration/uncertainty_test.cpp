@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 #include <vector>
 
+#include "calibration/press_bench.hpp"
 #include "calibration/simulated.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/evaluation.hpp"
@@ -187,6 +189,64 @@ TEST(Uncertainty, keeps_what_the_noise_of_the_samples_has_left_in_the_networks) 
                                    [](const auto& estimator) { return estimator.name == "crosstalk_lookup"; });
   ASSERT_NE(lookup, estimators.end());
   EXPECT_LE(*estimators.front().relative_error.median, *lookup->relative_error.median);
+}
+
+constexpr double kLightest = 0.5;
+constexpr double kHeaviest = 10.0;
+
+/// A rubber that is not the estimator's: with a resistance in series, logarithmic, stiffening, or a power law. Its
+/// excess conductance is about 1 mS at the heaviest load.
+std::function<double(double newtons)> draw_law(Random& random) {
+  const double exponent = random.uniform(0.6, 1.3);
+  const double in_series = random.uniform(0.0, 0.4);  // of the resistance at the heaviest load
+  const double bend = random.uniform(2.0, 30.0);      // heaviest load over the force where the logarithm bends
+  const double stiffening = random.uniform(-0.05, 0.05);
+  switch (random.below(4)) {
+    case 0:
+      return [=](double n) { return 1e-3 / (in_series + (1.0 - in_series) * std::pow(n / kHeaviest, -exponent)); };
+    case 1: return [=](double n) { return 1e-3 * std::log1p(bend * n / kHeaviest) / std::log1p(bend); };
+    case 2:
+      return [=](double n) {
+        const double x = std::log(n / kHeaviest);
+        return 1e-3 * std::exp(exponent * x + stiffening * x * x);
+      };
+    default: return [=](double n) { return 1e-3 * std::pow(n / kHeaviest, exponent); };
+  }
+}
+
+/// Share of the forces of rubbers of unknown laws that the 95 % intervals hold, a share of them at each of `forces`.
+std::vector<double> shares_held(const std::vector<double>& forces) {
+  constexpr std::size_t kRubbers = 150;
+  constexpr std::size_t kTaxels = 4;
+  std::vector<double> held(forces.size());
+  for (std::size_t seed = 1; seed <= kRubbers; ++seed) {
+    Random random(seed);
+    std::vector<std::function<double(double)>> laws;
+    for (std::size_t taxel = 0; taxel < kTaxels; ++taxel) laws.push_back(draw_law(random));
+    PressBench bench{kTaxels, [&](std::size_t taxel, double newtons) { return laws[taxel](newtons); }, 0.01,
+                     Random(seed)};
+    const auto calibration = calibrate(bench.presses(forces_between(kLightest, kHeaviest, 12), 3));
+    EXPECT_TRUE(calibration);
+    BenchForces estimates(calibration->model.networks, bench);
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+      for (std::size_t taxel = 0; taxel < kTaxels; ++taxel) {
+        const ForceFrame& force = estimates.press(taxel, forces[k]);
+        const double error = std::abs(static_cast<double>(force.newtons[taxel]) - forces[k]);
+        EXPECT_TRUE(std::isfinite(force.sigma_newtons[taxel])) << "seed " << seed << ", " << forces[k] << " N";
+        if (error <= 1.96 * force.sigma_newtons[taxel]) held[k] += 1.0 / static_cast<double>(kTaxels * kRubbers);
+      }
+    }
+  }
+  return held;
+}
+
+TEST(Uncertainty, intervals_hold_beyond_the_heaviest_and_below_the_lightest_load_whatever_the_law) {
+  const std::vector<double> forces = {0.25 * kLightest, 0.5 * kLightest, 2.0 * kHeaviest, 4.0 * kHeaviest};
+  const std::vector<double> held = shares_held(forces);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    EXPECT_GE(held[k], 0.90) << forces[k] << " N";
+    EXPECT_LE(held[k], 0.99) << forces[k] << " N";
+  }
 }
 
 }  // namespace

@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Files of other systems, made here as their programs write them, and arrays whose readings are forces."""
-import bz2
 import csv
 import json
-import struct
 import unittest
-import zlib
 
 import numpy
 
 import support
+from foreign_files import ALL, COLS, FRAMES, RATE, ROWS, TIMED, UNTIMED, counts
 
-ROWS, COLS, FRAMES, RATE = 4, 5, 60, 50.0
 PRESSURES = """[array]
 name = "mat"
 rows = 4
@@ -25,84 +22,13 @@ adc_noise_counts = 0.1
 """
 
 
-def counts():
-    """A weight of 3x3 taxels, whole numbers of kilopascals, that comes after a third of the frames."""
-    frames = numpy.zeros((FRAMES, ROWS, COLS))
-    frames[FRAMES // 3:, 0:3, 1:4] = [[20, 30, 20], [30, 50, 30], [20, 30, 20]]
-    return frames
-
-
-def lines(frame, separator=","):
-    return "".join(separator.join(f"{value:g}" for value in row) + "\n" for row in frame)
-
-
-def text_matrix(path):
-    path.write_text("\n".join(lines(frame, "\t") for frame in counts()))
-
-
-def tekscan(path):
-    head = f"DATA_TYPE MOVIE\nROWS {ROWS}\nCOLS {COLS}\nSECONDS_PER_FRAME {1 / RATE}\nUNITS kPa\nASCII_DATA @@\n\n"
-    path.write_text(head + "\n".join(f"Frame {k}\n{lines(frame)}" for k, frame in enumerate(counts())) + "@@\n")
-
-
-def xsensor(path):
-    text = '"File:","C:\\\\a,b.XSN"\n"Units:","kPa"\n\n'
-    for k, frame in enumerate(counts()):
-        text += f'"FRAME","{k}"\n"Time","{k / RATE}"\n"SENSOR","mat"\n"Rows","{ROWS}"\n"Columns","{COLS}"\n"SENSELS"\n'
-        text += lines(frame) + "\n"
-    path.write_text(text)
-
-
-def novel(path):
-    text = f"Time per picture:  {1000 / RATE:.2f} [ms]\n"
-    for k, frame in enumerate(counts()):
-        text += f"Page {k}\nPict-No.: {k}\n\n\t" + "\t".join(str(c + 1) for c in range(COLS)) + "\tForce\n"
-        text += "".join(f"{r + 1}\t" + "\t".join(f"{v:.1f}" for v in row) + "\t0\n" for r, row in enumerate(frame))
-        text += "Force\t0\n\n\x0c\n"
-    path.write_text(text)
-
-
-def dsa(path):
-    def number(value):
-        return struct.pack(">f", value).hex().upper()
-
-    text = f"<root><sensor><matrix><cells_x>{COLS}</cells_x><cells_y>{ROWS}</cells_y></matrix></sensor><data>"
-    for k, frame in enumerate(counts()):
-        code = "".join(number(value) if value else number(-1) for value in frame.flat)
-        text += f"<frame><time_stamp>{round(1000 * k / RATE)}</time_stamp><frame_data>{code}</frame_data></frame>"
-    path.write_bytes(bz2.compress((text + "</data></root>").encode()))
-
-
-def png(path):
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    path.mkdir()
-    for k, frame in enumerate(counts()):
-        raw = b"".join(b"\0" + bytes(int(value) for value in row) for row in frame)
-        header = struct.pack(">IIBBBBB", COLS, ROWS, 8, 0, 0, 0, 0)
-        (path / f"{k}.png").write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) +
-                                        chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
-
-
-def packed10(path):
-    bits = "".join(f"{int(value):010b}" for frame in counts() for value in frame.flat)  # 20 readings: 25 bytes
-    path.write_bytes(int(bits, 2).to_bytes(len(bits) // 8, "big"))
-
-
-TIMED = {"a.asf": tekscan, "tekscan.csv": tekscan, "xsensor.csv": xsensor, "a.lst": novel, "a.dsa": dsa}
-UNTIMED = {"a.txt": text_matrix, "matrix.csv": text_matrix, "pictures": png, "a.packed10": packed10,
-           "a.npz": lambda path: numpy.savez_compressed(path, counts()),
-           "b.npz": lambda path: numpy.savez(path, counts().astype(numpy.uint8))}
-
-
 class Imports(support.SmallArray):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.mat = cls.root / "mat.toml"
         cls.mat.write_text(PRESSURES)
-        for name, write in (TIMED | UNTIMED).items():
+        for name, write in ALL.items():
             write(cls.root / name)
 
     def source(self, name):
@@ -115,7 +41,7 @@ class Imports(support.SmallArray):
         return header, rows
 
     def test_every_file_becomes_the_same_frames(self):
-        for name in TIMED | UNTIMED:
+        for name in ALL:
             with self.subTest(name):
                 out = self.work / "out.csv"
                 untimed = ("--rate", RATE, "--rows", ROWS, "--cols", COLS) if name in UNTIMED else ()
@@ -128,7 +54,7 @@ class Imports(support.SmallArray):
                 numpy.testing.assert_allclose(values[:, 0] - values[0, 0], numpy.arange(FRAMES) / RATE, atol=1e-9)
 
     def test_every_command_takes_every_file(self):
-        for name in TIMED | UNTIMED:
+        for name in ALL:
             with self.subTest(name):
                 out, contacts = self.work / "forces.csv", self.work / "contacts.csv"
                 source = self.source(name)
@@ -185,6 +111,16 @@ class Imports(support.SmallArray):
                 self.assertEqual(info["format"], expected)
                 self.assertEqual((info["frames"], info["rows"], info["cols"]), (FRAMES, ROWS, COLS))
                 self.assertEqual(info["duration_s"] is None, name in UNTIMED)
+
+    def test_info_takes_a_shape_that_the_file_does_not_tell(self):
+        for name in ("a.packed10", "a.txt", "a.asf"):
+            info = json.loads(self.succeed("info", self.root / name, "--rows", ROWS, "--cols", COLS, "--json"))
+            self.assertEqual((info["frames"], info["rows"], info["cols"]), (FRAMES, ROWS, COLS))
+        self.refuse(("info", self.root / "a.packed10"), ["a.packed10", "rows and cols"])
+        self.refuse(("info", self.root / "a.asf", "--rows", 2, "--cols", 2), ["a.asf", "4x5"])
+        recording = self.work / "a.mcap"
+        self.succeed("convert", self.root / "a.asf", recording)
+        self.refuse(("info", recording, "--rows", 2, "--cols", 2), ["a.mcap", "4x5"])
 
     def test_a_frame_that_is_cut_costs_itself(self):
         whole = (self.contacts / "frames.csv").read_text().splitlines(True)

@@ -55,9 +55,14 @@ class Rig {
     monitor_ = std::make_unique<LineFaultMonitor>(array, unloaded);
   }
 
-  bool next() {
+  bool read() {
     if (!*simulator_->next(raw_)) return false;
     condition();
+    return true;
+  }
+
+  bool next() {
+    if (!read()) return false;
     process();
     return true;
   }
@@ -203,6 +208,27 @@ TEST(LineFaultMonitor, finds_silent_lines_that_nothing_touches) {
   }
 }
 
+TEST(LineFaultMonitor, finds_a_supplied_row_beside_a_first_row_that_is_silent) {
+  constexpr std::size_t kSuppliedFrom = 60;
+  for (const std::size_t silent : {0U, 6U}) {
+    SCOPED_TRACE(testing::Message() << "silent row " << silent);
+    const ArrayDescription array = reference_circuit(8, 8);
+    LineFaults faults;
+    faults.supplied_rows = {3};
+    faults.from_frame = kSuppliedFrom;
+    Rig rig(array, "multitouch", 108, 240, faults);
+    while (rig.read()) {
+      for (std::size_t col = 0; col < array.cols; ++col) rig.conditioned().ratio[array.index(silent, col)] = 0.0;
+      rig.process();
+    }
+    const auto found = rig.monitor().faults();
+    const auto is_supplied = [](const LineFault& fault) { return fault.kind == LineFaultKind::supplied_row; };
+    const auto supplied = std::find_if(found.begin(), found.end(), is_supplied);
+    ASSERT_NE(supplied, found.end()) << describe(found, array);
+    EXPECT_EQ(supplied->place, 3U);
+  }
+}
+
 TEST(LineFaultMonitor, no_false_alarm_on_healthy_arrays) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance, Circuit::flexitac, Circuit::none}) {
     for (const char* scene : {"multitouch", "idle"}) {
@@ -296,6 +322,21 @@ TEST(LineFaultMonitor, tells_an_open_row_from_one_shorted_to_ground) {
     ASSERT_EQ(rig.monitor().faults().size(), 1U);
     EXPECT_EQ(rig.monitor().faults()[0].grounded, grounded);
     EXPECT_GT(std::abs(rig.monitor().faults()[0].ground_evidence), 5.0);
+  }
+}
+
+/// A taxel whose reading is 0 whatever presses it, and which conducts or does not.
+TEST(LineFaultMonitor, tells_a_taxel_stuck_at_0_from_a_dead_one) {
+  for (const bool conducts : {false, true}) {
+    LineFaults faults;
+    faults.stuck_ratio = 0.0;
+    (conducts ? faults.stuck_taxels : faults.dead_taxels) = {"r5c6"};
+    Rig rig(reference_circuit(16, 16), "multitouch", 9, 4000, faults);
+    while (rig.next()) continue;
+    const auto found = rig.monitor().faults();
+    ASSERT_EQ(found.size(), 1U) << describe(found, reference_circuit(16, 16));
+    EXPECT_EQ(found[0].kind, conducts ? LineFaultKind::stuck_taxel : LineFaultKind::dead_taxel);
+    EXPECT_EQ(found[0].place, reference_circuit(16, 16).index(5, 6));
   }
 }
 

@@ -255,5 +255,30 @@ TEST(Npy, needs_a_regular_file) {
   EXPECT_EQ(writer.error().message, "cannot write '/dev/full': this format needs a regular file");
 }
 
+Result<NpyTable> table_of(const std::string& bytes) {
+  return read_npy_table(std::make_unique<std::istringstream>(bytes), "f.npy");
+}
+
+TEST(NpyTable, has_the_columns_of_the_file) {
+  const std::string data = bytes_of<float>({1, 2, 3, 4, 5, 6});
+  const Result<NpyTable> flat = table_of(npy(dictionary("<f4", "(2, 3)"), data));
+  ASSERT_TRUE(flat) << flat.error().message;
+  EXPECT_EQ(flat->rows, 2U);
+  EXPECT_EQ(flat->cols, 3U);
+  EXPECT_EQ(flat->values, (std::vector<float>{1, 2, 3, 4, 5, 6}));
+  const Result<NpyTable> deep = table_of(npy(dictionary("<f4", "(1, 2, 3)"), data));
+  ASSERT_TRUE(deep) << deep.error().message;
+  EXPECT_EQ(deep->rows, 1U);
+  EXPECT_EQ(deep->cols, 6U);
+}
+
+TEST(NpyTable, refuses_columns_without_end) {
+  EXPECT_EQ(table_of(npy(dictionary("<f4", "(2, 0)"), "")).error().message,
+            "f.npy: has 0 columns; 1 to 1048576 can be read");
+  EXPECT_EQ(table_of(npy(dictionary("<f4", "(2, 1048577)"), "")).error().message,
+            "f.npy: has 1048577 columns; 1 to 1048576 can be read");
+  EXPECT_NE(table_of(npy(dictionary("<f4", "(2, 3)"), "")).error().message.find("cut short"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace dermis::files

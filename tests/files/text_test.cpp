@@ -19,6 +19,13 @@ TEST(Text, quotes_are_put_around_and_long_text_is_cut) {
   EXPECT_EQ(in_quotes(std::string(10'000, 'x')), "'" + std::string(200, 'x') + "...'");
 }
 
+TEST(Text, blanks_at_both_ends_are_trimmed) {
+  EXPECT_EQ(trimmed(" \t a b\f\r"), "a b");
+  EXPECT_EQ(trimmed("a"), "a");
+  EXPECT_EQ(trimmed("\r \f"), "");
+  EXPECT_FALSE(is_blank('\n'));
+}
+
 TEST(Text, a_number_is_the_whole_text) {
   double value = 7.0;
   EXPECT_TRUE(parse_number("-1.5e3", value));

@@ -95,6 +95,7 @@ TEST(ForceFusion, force_is_the_documented_formula) {
         }
         const auto force = fuse(networks, make_frame(siemens, 25.0 + offset));
         for (std::size_t k = 0; k < 37; ++k) {
+          if (force.taxels[k] == TaxelStatus::above_range) continue;  // has tests of its own
           const double expected = support::reference_newtons(networks, k, siemens[k], offset);
           EXPECT_NEAR(force.newtons[k] / expected, 1.0, 3e-5) << "taxel " << k;
         }
@@ -169,29 +170,71 @@ TEST(ForceFusion, gain_scales_the_force) {
   EXPECT_NEAR(fuse(networks, make_frame({1e-3 + 1e-5}, 20.0)).newtons[0], 25.0, 2.5e-4);
 }
 
-TEST(ForceFusion, above_the_heaviest_load_the_force_stands_still_and_is_flagged) {
+/// What is believed of x = ln(force / heaviest) where the end has a relative error of 1 %.
+double believed(double x) {
+  return x * x * x / (x * x + 0.01 * 0.01);
+}
+
+/// What sigma has beside that of the end, x = ln(force / heaviest).
+double unlearned(double x) {
+  return x * std::hypot(0.2, 0.3 * x);
+}
+
+TEST(ForceFusion, above_the_heaviest_load_the_law_goes_on_and_is_flagged_and_less_sure) {
   const double at_end = 10.0 * std::pow(4.0, 0.9);
-  for (const double excess : {4.001e-3, 1e-2, 1.0}) {
+  for (const double excess : {4.001e-3, 8e-3, 2e-2}) {
     const auto force = fuse(power_law(), make_frame({1e-5 + excess}, 20.0));
-    EXPECT_NEAR(force.newtons[0], at_end, 1e-5 * at_end);
+    const double expected = at_end * std::exp(believed(0.9 * std::log(excess / 4e-3)));
+    EXPECT_NEAR(force.newtons[0] / expected, 1.0, 1e-4);
     EXPECT_EQ(force.taxels[0], TaxelStatus::above_range);
     EXPECT_EQ(force.status, FrameStatus::above_range);
+    EXPECT_NEAR(force.sigma_newtons[0] / expected, std::hypot(0.01, unlearned(std::log(expected / at_end))), 3e-4);
+    EXPECT_TRUE(std::isfinite(force.signal_to_noise[0]));
   }
   EXPECT_EQ(fuse(power_law(), make_frame({1e-5 + 3.999e-3}, 20.0)).status, FrameStatus::ok);
 }
 
-TEST(ForceFusion, force_is_clamped_to_the_heaviest_calibrated_load) {
+TEST(ForceFusion, neither_force_nor_sigma_jumps_at_the_heaviest_load) {
+  const auto below = fuse(power_law(), make_frame({1e-5 + 3.99999e-3}, 20.0));
+  const auto above = fuse(power_law(), make_frame({1e-5 + 4.00001e-3}, 20.0));
+  EXPECT_NEAR(above.newtons[0] / below.newtons[0], 1.0, 1e-4);
+  EXPECT_NEAR(above.sigma_newtons[0] / below.sigma_newtons[0], 1.0, 1e-3);
+}
+
+TEST(ForceFusion, far_above_the_heaviest_load_only_that_it_is_more_is_known) {
+  const double at_end = 10.0 * std::pow(4.0, 0.9);
+  for (const double excess : {0.1, 1.0, 1e6}) {
+    const auto force = fuse(power_law(), make_frame({1e-5 + excess}, 20.0));
+    EXPECT_NEAR(force.newtons[0] / (8.0 * at_end), 1.0, 1e-5);
+    EXPECT_EQ(force.sigma_newtons[0], std::numeric_limits<float>::infinity());
+    EXPECT_EQ(force.taxels[0], TaxelStatus::above_range);
+  }
+}
+
+TEST(ForceFusion, beyond_is_what_is_more_than_the_heaviest_calibrated_load) {
   auto networks = power_law();
   networks.heaviest_newtons = {20.0F};
   const auto inside = fuse(networks, make_frame({1e-3 + 1e-5}, 20.0));
   EXPECT_NEAR(inside.newtons[0], 10.0, 1e-4);
   EXPECT_EQ(inside.taxels[0], TaxelStatus::ok);
-  for (const double excess : {3e-3, 5e-3}) {  // 26.9 N before the heaviest conductance, 34.8 N beyond it
+  for (const double excess : {3e-3, 5e-3}) {  // before the heaviest conductance, and beyond it
     const auto above = fuse(networks, make_frame({1e-5 + excess}, 20.0));
-    EXPECT_EQ(above.newtons[0], 20.0F);
+    const double expected = 20.0 * std::exp(believed(std::log(0.5 * std::pow(excess / 1e-3, 0.9))));
+    EXPECT_NEAR(above.newtons[0] / expected, 1.0, 1e-4);
+    EXPECT_NEAR(above.sigma_newtons[0] / expected, std::hypot(0.01, unlearned(std::log(expected / 20.0))), 3e-4);
     EXPECT_EQ(above.taxels[0], TaxelStatus::above_range);
     EXPECT_EQ(above.status, FrameStatus::above_range);
   }
+}
+
+TEST(ForceFusion, beyond_a_table_is_what_its_heavier_half_says_and_not_its_last_two_knots) {
+  auto networks = power_law();
+  networks.tables = {{0}, 4, {1e-3F, 2e-3F, 3.9e-3F, 4.01e-3F}, {10.0F, 20.0F, 39.0F, 41.2F}, {0.0F}};
+  const double at_end = 41.0;
+  const double exponent = std::log(41.2 / 20.0) / std::log(4.01 / 2.0);
+  const auto force = fuse(networks, make_frame({1e-5 + 6e-3}, 20.0));
+  EXPECT_NEAR(force.newtons[0] / (at_end * std::exp(believed(exponent * std::log(6.0 / 4.0)))), 1.0, 1e-3);
+  EXPECT_EQ(force.taxels[0], TaxelStatus::above_range);
 }
 
 TEST(ForceFusion, saturated_taxel_stays_saturated_and_keeps_a_force) {
@@ -202,6 +245,53 @@ TEST(ForceFusion, saturated_taxel_stays_saturated_and_keeps_a_force) {
   EXPECT_EQ(force.taxels[0], TaxelStatus::saturated);
   EXPECT_EQ(force.status, FrameStatus::saturated | FrameStatus::above_range);
   EXPECT_GT(force.newtons[0], 30.0F);
+}
+
+TEST(ForceFusion, saturated_taxel_has_at_least_the_force_given) {
+  auto networks = power_law();
+  networks.heaviest_newtons = {20.0F};
+  auto frame = make_frame({1e-5 + 1e-2}, 20.0);
+  frame.taxels[0] = TaxelStatus::saturated;
+  const auto force = fuse(networks, frame);
+  EXPECT_EQ(force.newtons[0], 20.0F);
+  EXPECT_EQ(force.sigma_newtons[0], std::numeric_limits<float>::infinity());
+  EXPECT_EQ(force.signal_to_noise[0], std::numeric_limits<float>::infinity());
+}
+
+TEST(ForceFusion, table_takes_the_place_of_the_network_and_of_its_gain) {
+  auto networks = support::random_networks(5, 3, 2, 11);  // 5 ... 45 C
+  networks.gain[3] = 2.0F;
+  networks.unloaded.per_celsius.assign(5, 0.0);
+  networks.temperature_sigma_celsius = 0.0;
+  networks.relative_sigma.assign(kSigmaKnots * 5, 0.01F);
+  networks.offset_sigma_siemens.assign(5, 0.0F);
+  networks.heaviest_siemens[3] = 1.0F;
+  networks.heaviest_newtons[3] = 1000.0F;
+  const auto without = networks;
+  networks.tables = {{3}, 2, {1e-4F, 4e-4F}, {2.0F, 5.0F}, {0.01F}};
+  ASSERT_TRUE(networks.is_consistent());
+  std::vector<double> siemens = networks.unloaded.offset_siemens;
+  for (double& value : siemens) value += 2e-4;
+  const auto force = fuse(networks, make_frame(siemens, 25.0));
+  const auto reference = fuse(without, make_frame(siemens, 25.0));
+  for (const std::size_t k : {0U, 1U, 2U, 4U}) EXPECT_EQ(force.newtons[k], reference.newtons[k]);
+  EXPECT_NEAR(force.newtons[3], 3.0, 1e-4);
+  const double exponent = 1e4 * 2e-4 / 3.0;  // slope 3 N / 0.3 mS
+  EXPECT_NEAR(force.sigma_newtons[3], 3.0 * std::hypot(0.01, exponent * 1e-6 / 2e-4), 1e-4);
+  EXPECT_NEAR(fuse(networks, make_frame(siemens, 35.0)).newtons[3], 3.2, 1e-4);  // s = 1.1 e
+
+  networks.temperature_sigma_celsius = 2.0;
+  const double per_celsius = exponent * 0.01;
+  EXPECT_NEAR(fuse(networks, make_frame(siemens, 25.0)).sigma_newtons[3],
+              3.0 * std::hypot(std::hypot(0.01, exponent * 1e-6 / 2e-4), per_celsius * 2.0), 3e-4);
+  siemens[3] = networks.unloaded.offset_siemens[3];
+  EXPECT_EQ(fuse(networks, make_frame(siemens, 25.0)).newtons[3], 0.0F);
+}
+
+TEST(ForceFusion, tables_of_other_taxels_than_the_networks_are_not_consistent) {
+  auto networks = support::random_networks(5, 2, 1, 12);
+  networks.tables = {{5}, 1, {1e-4F}, {2.0F}, {0.0F}};
+  EXPECT_FALSE(networks.is_consistent());
 }
 
 TEST(ForceFusion, temperature_is_clamped_to_the_calibrated_range_and_flagged_beyond_the_sensor_noise) {
@@ -307,6 +397,7 @@ double reference_sigma(const ForceNetworks& networks, std::size_t taxel, double 
   }
   const double conductance = per_siemens * std::hypot(sigma_siemens, networks.offset_sigma_siemens[taxel]);
   const double temperature = per_celsius * networks.temperature_sigma_celsius;
+  material += std::pow(0.1 * std::fmax(std::log(networks.sigma_knots_newtons[0] / newtons), 0.0), 2);
   return newtons * std::sqrt(conductance * conductance + temperature * temperature + material);
 }
 
@@ -365,8 +456,7 @@ TEST(ForceFusion, a_drift_that_all_taxels_share_counts_twice_against_a_signal) {
   EXPECT_NEAR(fuse(power_law(), frame).signal_to_noise[0], 2e-4 / (4e-6 + 2.0 * 1e-6 * 10.0 / std::sqrt(3.0)), 1e-2);
 }
 
-TEST(ForceFusion, a_signal_is_infinite_or_missing_where_the_force_is) {
-  EXPECT_TRUE(std::isinf(fuse(power_law(), make_frame({1e-2}, 20.0)).signal_to_noise[0]));  // above range
+TEST(ForceFusion, a_signal_is_missing_where_the_force_is) {
   EXPECT_TRUE(std::isnan(fuse(power_law(), make_frame({kNan}, 20.0)).signal_to_noise[0]));
   auto frame = make_frame({1e-3}, 20.0);
   frame.status = FrameStatus::rejected;
@@ -374,7 +464,7 @@ TEST(ForceFusion, a_signal_is_infinite_or_missing_where_the_force_is) {
 }
 
 TEST(ForceFusion, sigma_is_infinite_where_only_a_lower_bound_is_known) {
-  EXPECT_TRUE(std::isinf(fuse(power_law(), make_frame({1e-2}, 20.0)).sigma_newtons[0]));  // above range
+  EXPECT_TRUE(std::isinf(fuse(power_law(), make_frame({1.0}, 20.0)).sigma_newtons[0]));  // far above range
   auto frame = make_frame({1e-3}, 20.0);
   frame.taxels[0] = TaxelStatus::saturated;
   EXPECT_TRUE(std::isinf(fuse(power_law(), frame).sigma_newtons[0]));

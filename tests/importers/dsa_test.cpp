@@ -92,6 +92,15 @@ TEST(Dsa, loses_only_the_frame_that_is_cut) {
   }
 }
 
+TEST(Dsa, tells_once_that_times_run_backwards) {
+  Importer importer(open_dsa, {.array = "1"});
+  const std::string text =
+      recording(frame(0, 20, kFirst) + frame(1, 10, kSecond) + frame(2, 30, kSecond) + frame(3, 5, kSecond));
+  EXPECT_EQ(importer.seconds(text), (std::vector<double>{0.02, 0.01, 0.03, 0.005}));
+  ASSERT_EQ(importer.notices().size(), 1U);
+  EXPECT_TRUE(importer.notices()[0].ends_with(": the time_stamp of the frame is before that of the last one"));
+}
+
 TEST(Dsa, reads_what_is_whole_of_a_compressed_file_that_is_cut) {
   std::string frames;
   for (int i = 0; i < 30000; ++i) frames += frame(i, i, {static_cast<float>(i % 997), -7});

@@ -63,6 +63,7 @@ Model make_model() {
   model.networks.sigma_knots_newtons = {0.3F, 77.0F};
   model.networks.heaviest_newtons[2] = std::numeric_limits<float>::infinity();
   model.networks.dead[5] = 1;
+  model.networks.tables = {{1, 4}, 2, {1e-4F, 3e-4F, 2e-4F, 1e-3F}, {1.0F, 7.0F, 0.5F, 9.0F}, {0.01F, -0.002F}};
   model.baselines = {make_baseline(6, "raw look-up", fusion::LookUpSignal::reading),
                      make_baseline(6, "look-up", fusion::LookUpSignal::conductance)};
   model.provenance = {{"frames", "120"}, {"note", "two\nlines, \"quotes\" and \xC2\xB5"}, {"empty", ""}};
@@ -105,6 +106,11 @@ void expect_equal(const Model& a, const Model& b) {
   EXPECT_EQ(a.networks.offset_sigma_siemens, b.networks.offset_sigma_siemens);
   EXPECT_EQ(a.networks.relative_sigma, b.networks.relative_sigma);
   EXPECT_EQ(a.networks.sigma_knots_newtons, b.networks.sigma_knots_newtons);
+  EXPECT_EQ(a.networks.tables.taxels, b.networks.tables.taxels);
+  EXPECT_EQ(a.networks.tables.knots, b.networks.tables.knots);
+  EXPECT_EQ(a.networks.tables.siemens, b.networks.tables.siemens);
+  EXPECT_EQ(a.networks.tables.newtons, b.networks.tables.newtons);
+  EXPECT_EQ(a.networks.tables.per_celsius, b.networks.tables.per_celsius);
 
   ASSERT_EQ(a.baselines.size(), b.baselines.size());
   for (std::size_t k = 0; k < a.baselines.size(); ++k) {
@@ -161,6 +167,15 @@ TEST(Model, what_is_written_is_read) {
   const auto read = read_model(folder.file("m.safetensors"));
   ASSERT_TRUE(read) << read.error().message;
   expect_equal(*read, model);
+}
+
+TEST(Model, without_a_table_says_nothing_of_tables) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_model(folder.file("m.safetensors"), support::hand_made_model(2, 2)));
+  for (const std::string& name : tensor_names(folder.file("m.safetensors"))) {
+    EXPECT_FALSE(name.starts_with("tables")) << name;
+  }
+  EXPECT_EQ(bytes_of(folder.file("m.safetensors")).find("tables"), std::string::npos);
 }
 
 TEST(Model, every_circuit_survives_the_file) {
@@ -256,7 +271,7 @@ TEST(Model, every_tensor_must_be_there) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_model(folder.file("m"), make_model()));
   const auto names = tensor_names(folder.file("m"));
-  EXPECT_EQ(names.size(), 12U + 2U * 4U);
+  EXPECT_EQ(names.size(), 16U + 2U * 4U);
   for (const std::string& name : names) {
     SCOPED_TRACE(name);
     write_damaged(folder.file("m"), [&](auto& file) { file.tensors.erase(name); });
@@ -280,9 +295,22 @@ TEST(Model, every_tensor_must_have_its_shape_and_type) {
     write_damaged(folder.file("m"), [&](auto& file) {
       files::Tensor& tensor = file.tensors[name];
       const std::size_t size = std::visit([](auto& values) { return values.size(); }, tensor.values);
+      const bool are_int64 = std::holds_alternative<std::vector<std::int64_t>>(tensor.values);
       tensor.values = std::vector<std::int64_t>(size, 1);
+      if (are_int64) tensor.values = std::vector<float>(size, 1.0F);
     });
     expect_refused(folder.file("m"), name);
+  }
+}
+
+TEST(Model, tables_of_taxels_that_are_none_are_refused) {
+  const TemporaryFolder folder;
+  using Taxels = std::vector<std::int64_t>;
+  constexpr std::int64_t kTwoTo32 = std::int64_t{1} << 32;
+  for (const Taxels& taxels : {Taxels{-1, 4}, Taxels{1, 6}, Taxels{1, kTwoTo32 + 4}, Taxels{-kTwoTo32 + 1, 4}}) {
+    SCOPED_TRACE(testing::Message() << taxels.front() << " and " << taxels.back());
+    write_damaged(folder.file("m"), [&](auto& file) { file.tensors["tables.taxels"].values = taxels; });
+    expect_refused(folder.file("m"), "out of range");
   }
 }
 

@@ -415,6 +415,7 @@ TEST(Pipeline, allocates_nothing_after_the_first_frame) {
   for (const Circuit circuit : {Circuit::divider, Circuit::transimpedance, Circuit::none}) {
     Model model = hand_made_model(8, 9);
     model.array.readout.circuit = circuit;
+    model.networks.tables = {{5, 50}, 1, {1e-3F, 1e-3F}, {9.0F, 11.0F}, {0.01F, 0.0F}};
     const auto frames = frames_of_every_kind(model);
     for (std::size_t first = 0; first < frames.size(); ++first) {
       SCOPED_TRACE(testing::Message() << to_string(circuit) << ", first frame " << first);

@@ -45,8 +45,8 @@ inline fusion::ForceNetworks random_networks(std::size_t taxels, std::size_t inp
   return networks;
 }
 
-/// The force of one taxel by the formula of the header, in double precision; `siemens` within the calibrated range or
-/// above it, `temperature_offset` in degrees from the centre and within the half span.
+/// The force of one taxel by the formula of the header, in double precision; `siemens` within the calibrated range,
+/// `temperature_offset` in degrees from the centre and within the half span.
 inline double reference_newtons(const fusion::ForceNetworks& networks, std::size_t taxel, double siemens,
                                 double temperature_offset) {
   const std::size_t taxels = networks.taxel_count();

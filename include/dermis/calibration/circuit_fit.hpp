@@ -18,8 +18,8 @@ namespace dermis::calibration {
 struct CircuitCandidate {
   std::string name;  ///< "divider, idle rows floating"
   /// Root mean square of what the circuit leaves unexplained, over the noise of readings and rubber that the best one
-  /// leaves; infinity: a circuit that cannot give these readings. All circuits are judged with one resistance for all
-  /// drivers and one for all loads.
+  /// leaves; infinity: a circuit that cannot give these readings, or is not resolved. With one resistance for all
+  /// drivers and one for all loads; circuits that leave nearly the same, with resistances of each line's own.
   double misfit = 0.0;
   bool chosen = false;
   bool indistinguishable = false;  ///< Less than a thousand to one worse than the chosen one.

@@ -26,10 +26,15 @@ struct TrainingReport {
   double highest_celsius = 0.0;
   double lightest_newtons = 0.0;  ///< Lightest and heaviest calibrated load.
   double heaviest_newtons = 0.0;
-  double median_fit_error = 0.0;  ///< Median over taxels of the root mean square relative error on own samples.
-  double worst_fit_error = 0.0;   ///< The worst taxel.
+  double heaviest_taxel_newtons = 0.0;  ///< The most that one taxel carried, known or by the shared network.
+  double median_fit_error = 0.0;        ///< Median over taxels of the root mean square relative error on own samples.
+  double worst_fit_error = 0.0;         ///< The worst taxel.
   std::size_t worst_taxel = 0;
-  std::string choice;  ///< One sentence: which networks were trained and what decided it.
+  std::size_t groups = 0;                 ///< Of neighbouring taxels on which tables were held against the networks.
+  std::size_t groups_on_tables = 0;       ///< Of those, where tables were clearly better.
+  std::vector<std::size_t> table_taxels;  ///< That have a look-up table in the place of their network.
+  bool is_one_load = false;               ///< All loads are about the same: straight lines, no law could be learned.
+  std::string choice;                     ///< One sentence: which networks were trained and what decided it.
 };
 
 /// "median 0.74 %, worst taxel r2c7 1.44 %" of the networks of their own, and what a left-out load of the shared
@@ -43,6 +48,7 @@ struct TestedLoad {
   double newtons = 0.0;             ///< The load, > 0.
   double noise_n = 0.0;             ///< As large as the noise of the load [N].
   double error_n = 0.0;             ///< As large as the error on a new load in the same place [N].
+  double leverage = 0.0;            ///< Of the load on its own estimate: network::FittedResidual.
 };
 
 struct ForceTraining {
@@ -50,13 +56,15 @@ struct ForceTraining {
   TrainingReport report;
   std::vector<TestedLoad> tested_own;     ///< Of taxels with a network of their own, one taxel each.
   std::vector<TestedLoad> tested_shared;  ///< Of the shared network.
+  std::vector<TestedLoad> tested_tables;  ///< Of taxels with a look-up table, each left out of it.
   /// Of the shared network on single taxels, with the errors of taxels that no load pressed.
   std::vector<TestedLoad> tested_unpressed;
 };
 
 /// Trains what the samples support: a network per taxel where its own force is known often enough, one shared network
-/// with gains, trained through the sum of the taxels, for the others. `progress` gets the share done, from any thread.
-/// Errors: no load above zero; no taxel answers to the loads.
+/// with gains, trained through the sum of the taxels, for the others; and look-up tables where they are clearly better
+/// on presses that are left out, or where there is but one load to draw a line through. `progress` gets the share done,
+/// from any thread. Errors: no load above zero; no taxel answers to the loads.
 [[nodiscard]] Result<ForceTraining> train_force_networks(const SampleDatabase& database,
                                                          const std::function<void(double)>& progress = {});
 

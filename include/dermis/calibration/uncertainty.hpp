@@ -34,6 +34,7 @@ struct UncertaintyReport {
   double supply_noise = 0.0;                                 ///< Relative.
   std::optional<RelativeSigma> relative_sigma;               ///< Of taxels with a network of their own.
   std::optional<RelativeSigma> relative_sigma_of_shared;     ///< Of taxels on the shared network.
+  std::optional<RelativeSigma> relative_sigma_of_tables;     ///< Of taxels with a look-up table.
   std::optional<RelativeSigma> relative_sigma_of_unpressed;  ///< Of those of them that no load pressed.
 };
 
@@ -44,7 +45,8 @@ struct UncertaintyReport {
 /// of the ADC and the temperature sensor is measured; the error of the supply and the relative error of the networks
 /// (misfit, hysteresis, creep, noise of the material) are those which together make the errors on tested loads
 /// likeliest, the latter scaled so that of them 68.3 % are within one standard deviation and 95.4 % within two; where
-/// longer tails allow no such scale, too many are within one by the same factor as too few are within two.
+/// longer tails allow no such scale, too many are within one by the same factor as too few are within two. Straight
+/// lines through one load are uncertain by 20 % of ln(load / force) beside that, and by 5 % where it was not repeated.
 /// `model` holds the array and the networks of `training`. Errors: those of Compensator::create().
 [[nodiscard]] Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const ForceTraining& training,
                                                         pipeline::Model& model);

@@ -17,6 +17,9 @@ struct InversionOptions {
   /// A frame is solved once its certificate is this good (InversionResult::residual_ratio), >= 0; 0: to rounding.
   /// Empty: a hundredth of a count of the ADC, far below its noise.
   std::optional<double> tolerance_ratio;
+  /// Floating lines and lines with resistance: the noise of each taxel to a fifth, by twelve samples, instead of
+  /// exactly (up to 400 taxels), which takes rows^3 cols^3 multiplications a frame.
+  bool samples_noise = false;
 };
 
 /// How the inversion of a frame ended.

@@ -19,7 +19,7 @@ using Nanos = std::chrono::nanoseconds;
 enum class TaxelStatus : std::uint8_t {
   ok,
   saturated,    ///< The ADC stands at the end of its range: the force is at least the one given.
-  above_range,  ///< Beyond the heaviest calibrated load: clamped to it.
+  above_range,  ///< Beyond the heaviest calibrated load: extrapolated, at most to eight times that load.
   dead,         ///< Did not answer to its calibration loads: no force is given (NaN).
   line_fault,   ///< On an open or shorted line, or stuck: no force is given (NaN).
   invalid,      ///< The reading is missing or not a number, or the crosstalk has no solution: no force (NaN).
@@ -30,7 +30,7 @@ enum class FrameStatus : std::uint8_t {
   ok = 0,
   rejected = 1U << 0U,             ///< Wrong shape, not a number, out of ADC range or time going backwards.
   saturated = 1U << 1U,            ///< At least one taxel is saturated.
-  above_range = 1U << 2U,          ///< At least one taxel is clamped to its calibrated end.
+  above_range = 1U << 2U,          ///< At least one taxel is beyond its heaviest calibrated load.
   dead_taxels = 1U << 3U,          ///< The array has dead taxels.
   temperature_unknown = 1U << 4U,  ///< The frame carries no temperature: the calibration's mean is taken.
   temperature_clamped = 1U << 5U,  ///< More than 1 C outside the calibrated temperatures: clamped to the nearest.
@@ -102,12 +102,13 @@ struct ForceFrame {
   FrameStatus status = FrameStatus::ok;
   std::vector<float> newtons;  ///< Normal force per taxel [N], >= 0; NaN where `taxels` says there is no force.
   /// Standard deviation of each [N], > 0. Of an unloaded taxel, its detection limit: the force that would just stand
-  /// out of the noise. Infinite where only a lower bound is known (saturated, above_range). NaN where `newtons` is.
+  /// out of the noise. Infinite where only a lower bound is known (saturated, more than eight times the heaviest
+  /// calibrated load). NaN where `newtons` is.
   std::vector<float> sigma_newtons;
   std::vector<TaxelStatus> taxels;
   /// What each taxel shows beyond an unloaded one, over the standard deviation of the additive noise: of the readings
   /// and of the zero. What is uncertain in proportion to the force (material, temperature) is not in it: that makes a
-  /// force uncertain, not the touch. Around 0 where nothing presses, infinite where `sigma_newtons` is, NaN where
+  /// force uncertain, not the touch. Around 0 where nothing presses, infinite where a reading is saturated, NaN where
   /// `newtons` is.
   std::vector<float> signal_to_noise{};
 };

@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstddef>
 #include <istream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dermis/core/frame_sink.hpp"
 #include "dermis/core/frame_source.hpp"
@@ -39,6 +41,18 @@ class NpyReader final : public FrameSource {
   explicit NpyReader(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };
+
+/// Numbers of a file of two or three dimensions; of three, the last two are taken as one.
+struct NpyTable {
+  std::size_t rows = 0;
+  std::size_t cols = 0;
+  std::vector<float> values;  ///< [rows, cols]
+};
+
+/// Reads what NpyReader reads, of any number of columns from 1 to 1048576.
+[[nodiscard]] Result<NpyTable> read_npy_table(const std::string& path);
+/// The same from a stream; `name` stands for the path in messages.
+[[nodiscard]] Result<NpyTable> read_npy_table(std::unique_ptr<std::istream> in, const std::string& name);
 
 /// Writes the counts of frames as (frames, rows, cols): as u16, or as f32 where one of them needs it (then the frames
 /// before are rewritten). Nothing else of a frame is kept. Without commit(), nothing is left behind. Not thread-safe.

@@ -10,8 +10,19 @@
 
 namespace dermis::files {
 
+/// What some programs begin UTF-8 with.
+inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
 /// 'text' in quotes for a message; long text is cut.
 [[nodiscard]] std::string in_quotes(std::string_view text);
+
+/// Space, tab, carriage return or form feed.
+[[nodiscard]] constexpr bool is_blank(char c) noexcept {
+  return c == ' ' || c == '\t' || c == '\r' || c == '\f';
+}
+
+/// Without the blanks at both ends.
+[[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
 
 /// Parses the whole text; nan and inf are numbers.
 [[nodiscard]] bool parse_number(std::string_view text, float& value);

@@ -8,6 +8,7 @@
 
 #include "dermis/core/frames.hpp"
 #include "dermis/core/unloaded_law.hpp"
+#include "dermis/fusion/force_tables.hpp"
 #include "dermis/network/perceptron_bank.hpp"
 
 namespace dermis::fusion {
@@ -26,8 +27,8 @@ inline constexpr std::size_t kSigmaKnots = 6;
 ///
 /// The network's direct connection from ln(e) is the power law of conductive rubber, F ~ e^p, which also carries the
 /// force to zero below the lightest calibrated load; what bends it (contact resistance, percolation, temperature) is
-/// learned by the hidden units. Above the heaviest load, and outside the calibrated temperatures, the inputs and the
-/// force are clamped. The force rises with conductance throughout.
+/// learned by the hidden units. Above the heaviest load the power law at its end goes on, to eight times that load;
+/// outside the calibrated temperatures the temperature is clamped. The force rises with conductance throughout.
 ///
 /// We deviate from the paper, whose networks see every taxel and the supply (Fig. 7): the circuit and the supply are
 /// known relationships and are solved before; what is left to learn is the material of one taxel.
@@ -40,6 +41,7 @@ struct ForceNetworks {
   std::vector<float> gain;                  ///< > 0; 1 where the taxel has its own network.
   std::vector<std::uint8_t> dead;           ///< 1: did not answer to its loads.
   std::vector<float> parameters;            ///< [shape.parameter_count(), taxels]
+  ForceTables tables;  ///< Take the place of the network, and of its gain, on the taxels that have one.
 
   // What calibration found of its own uncertainty; see ForceFusion.
   double temperature_sigma_celsius = 0.0;   ///< Noise of the temperature sensor [C], >= 0.
@@ -67,6 +69,9 @@ struct ForceNetworks {
 ///
 /// and, where temperature is not an input, the square of 0.5 %/C times what lies outside the calibrated temperatures:
 /// pressure-sensitive rubber drifts by 0.2 to 1 %/C (FlexiForce: 0.36), and nobody measured this one's.
+///
+/// Beyond the heaviest load F_h the square of x sqrt(0.2^2 + (0.3 x)^2), x = ln(newtons / F_h), and below the first of
+/// sigma_knots_newtons that of 0.1 ln(first / newtons); from 8 F_h on the force stands still, with an infinite sigma.
 ///
 /// sigma_T is the noise of the temperature sensor, and what the temperature was clamped by; half_span / sqrt(3) where
 /// the frame has none. Below e = sigma_siemens (+) offset_sigma the right side times newtons is that of this
@@ -97,9 +102,13 @@ class ForceFusion {
   [[nodiscard]] bool uses_temperature() const noexcept { return networks_.shape.inputs == kInputsWithTemperature; }
   [[nodiscard]] Temperature temperature(const ConductanceFrame& conductance, ForceFrame& force) const noexcept;
   void prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept;
+  void look_up(double temperature_offset) noexcept;
   void compute_forces(const Temperature& temperature, ForceFrame& force) const noexcept;
   void compute_signals(double temperature_sigma, ForceFrame& force) const noexcept;
+  void apply_status(ForceFrame& force) const noexcept;
+  [[nodiscard]] bool are_plain(std::size_t from, std::size_t to, const ForceFrame& force) const noexcept;
   void apply_status(std::size_t taxel, ForceFrame& force) const noexcept;
+  void extrapolate(std::size_t taxel, float& newtons, float& sigma) const noexcept;
 
   ForceNetworks networks_;
   network::PerceptronBank bank_;

@@ -56,6 +56,7 @@ class Conditioner {
   [[nodiscard]] std::size_t count_missing(const RawFrame& raw) const noexcept;
   [[nodiscard]] Rejection inspect(const RawFrame& raw) const noexcept;
   void convert(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
+  void mark_saturated(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
   void mark_missing(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
 
   ArrayDescription array_;

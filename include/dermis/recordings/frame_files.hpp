@@ -69,6 +69,9 @@ struct FrameFileInput {
 [[nodiscard]] Result<std::unique_ptr<FrameSink>> create_frames(const std::string& path, FrameShape shape,
                                                                const FrameNotes& notes = {});
 
+/// All frames that are left of a source that ends.
+[[nodiscard]] Result<std::vector<RawFrame>> read_frames(FrameSource& source);
+
 /// All frames of a file.
 [[nodiscard]] Result<std::vector<RawFrame>> read_frames(const std::string& path, const FrameFileInput& input = {});
 

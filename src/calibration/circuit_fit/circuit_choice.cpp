@@ -157,22 +157,36 @@ bool has_less(const Trial& a, const Trial& b) {
   return a.misfit.square < b.misfit.square;
 }
 
-/// Lines that taxels share have crosstalk, however small: no circuit only where none of them is anywhere near, or where
-/// the true one may be among those that are not resolved.
-const Trial& choose(const std::vector<Trial>& trials) {
+bool is_surely_less(const Trial& better, const Trial& worse) {
+  return better.misfit.square + sure_square(better.misfit) < worse.misfit.square;
+}
+
+/// Under loads on the whole array alone, what a circuit does and a law of the rubber look alike.
+bool presses_parts(const CircuitFrames& frames) {
+  return std::any_of(frames.frames.begin(), frames.frames.end(), [](const CircuitFrame& frame) {
+    const auto is_pressed = [](float newtons) { return newtons > 0.0F; };
+    const auto is_idle = [](float newtons) { return newtons == 0.0F; };
+    return std::any_of(frame.newtons.begin(), frame.newtons.end(), is_pressed) &&
+           std::any_of(frame.newtons.begin(), frame.newtons.end(), is_idle);
+  });
+}
+
+/// Lines that taxels share have crosstalk, however small: no circuit only where none of them is anywhere near. Where
+/// the true one may be among those that are not resolved, one of the others must be better than none, and not by a law.
+const Trial& choose(const std::vector<Trial>& trials, const CircuitFrames& frames) {
   const auto none = std::find_if(trials.begin(), trials.end(),
                                  [](const Trial& trial) { return trial.kind->circuit == Circuit::none; });
   const auto best = std::min_element(trials.begin(), none, has_less);
   if (none == trials.end()) return *best;
-  if (std::any_of(trials.begin(), trials.end(), is_unresolved)) return *none;
-  const bool is_refuted = none->misfit.square + sure_square(none->misfit) < best->misfit.square;
-  return is_refuted ? *none : *best;
+  if (std::any_of(trials.begin(), trials.end(), is_unresolved)) {
+    return is_surely_less(*best, *none) && presses_parts(frames) ? *best : *none;
+  }
+  return is_surely_less(*none, *best) ? *none : *best;
 }
 
 /// "none" is no rival of a circuit, see choose().
 bool is_told(const Trial& trial, const Trial& chosen) {
-  return trial.kind->circuit == Circuit::none ||
-         trial.misfit.square >= chosen.misfit.square + sure_square(chosen.misfit);
+  return trial.kind->circuit == Circuit::none || is_surely_less(chosen, trial);
 }
 
 std::vector<PressPair> presses_to_tell(const std::vector<Trial>& trials, const Trial& chosen,
@@ -186,8 +200,8 @@ std::vector<PressPair> presses_to_tell(const std::vector<Trial>& trials, const T
 }
 
 /// The chosen one, and what is not told from it.
-std::vector<Trial> rivals(const std::vector<Trial>& trials) {
-  const Trial& chosen = choose(trials);
+std::vector<Trial> rivals(const std::vector<Trial>& trials, const CircuitFrames& frames) {
+  const Trial& chosen = choose(trials, frames);
   std::vector<Trial> rivals;
   std::copy_if(trials.begin(), trials.end(), std::back_inserter(rivals), [&](const Trial& trial) {
     return trial.kind == chosen.kind || is_unresolved(trial) || !is_told(trial, chosen);
@@ -223,12 +237,13 @@ ArrayDescription without_circuit(const ArrayDescription& array) {
 Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames) {
   std::vector<Trial> trials = all_kinds();
   try_kinds(array, frames, kFewFrames, trials);
-  std::vector<Trial> left = rivals(trials);
-  const bool is_slow = std::any_of(left.begin(), left.end(),
-                                   [](const Trial& trial) { return trial.kind->idle_rows == IdleRows::floating; });
+  std::vector<Trial> left = rivals(trials, frames);
+  const bool is_slow = std::any_of(left.begin(), left.end(), [](const Trial& trial) {
+    return trial.fit && trial.kind->idle_rows == IdleRows::floating;
+  });
   const std::size_t most = affordable_frames_of_choice(array.taxel_count(), is_slow);
   if (left.size() > 1 && most > kFewFrames && frames.frames.size() > kFewFrames) try_kinds(array, frames, most, left);
-  const Trial& chosen = choose(left);
+  const Trial& chosen = choose(left, frames);
   if (!chosen.fit) return bad_input("readout: no circuit explains the calibration frames");
   std::vector<CircuitCandidate> candidates = candidates_of(left, chosen);
   std::erase_if(trials, [&](const Trial& trial) { return has_kind(left, trial.kind); });

@@ -18,8 +18,9 @@ struct CircuitChoice {
   std::vector<PressPair> telling_presses;    ///< Where some of them are indistinguishable.
 };
 
-/// Fits every kind with one resistance for all drivers and one for all loads, and compares what they leave. All have
-/// the same laws for the taxels, so that none is better by having more to fit. Errors: no kind explains the frames.
+/// Fits every kind that the ADC resolves with one resistance for all drivers and one for all loads, and compares what
+/// they leave; those that leave nearly the same once more, with resistances of each line's own. All have the same laws
+/// for the taxels. Errors: no kind explains the frames.
 [[nodiscard]] Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames);
 
 /// `array` with readings that are taken as proportional to conductance.

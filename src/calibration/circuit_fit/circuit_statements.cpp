@@ -18,16 +18,18 @@ namespace {
 constexpr double kWellKnown = 0.02;  // relative standard error below which a resistance counts as found
 constexpr double kUnknown = 0.5;     // and above which nothing can be said
 
+std::string describe_misfit(const CircuitCandidate& candidate) {
+  if (candidate.noise_share > 0.0) return "not resolved";
+  return std::isfinite(candidate.misfit) ? fmt::format("{:.3g}", candidate.misfit) : "not possible";
+}
+
 std::string describe_candidates(const std::vector<CircuitCandidate>& candidates) {
   std::string text =
-      fmt::format("circuit: {} (leaves {:.3g} times the noise;", candidates.front().name, candidates.front().misfit);
+      fmt::format("circuit: {} (leaves {:.3g} times the noise", candidates.front().name, candidates.front().misfit);
   for (std::size_t k = 1; k < candidates.size(); ++k) {
-    text += std::isfinite(candidates[k].misfit)
-                ? fmt::format(" {} {:.3g}{}", candidates[k].name, candidates[k].misfit,
-                              k + 1 < candidates.size() ? ";" : ")")
-                : fmt::format(" {} not possible{}", candidates[k].name, k + 1 < candidates.size() ? ";" : ")");
+    text += fmt::format("; {} {}", candidates[k].name, describe_misfit(candidates[k]));
   }
-  return text;
+  return text + ")";
 }
 
 std::optional<std::string> describe_doubt(const ArrayDescription& array,
@@ -110,10 +112,12 @@ std::vector<std::string> describe_choice(const ArrayDescription& array, const st
                                          const std::vector<PressPair>& telling_presses) {
   std::vector<std::string> statements{describe_candidates(candidates)};
   if (const auto doubt = describe_doubt(array, candidates, telling_presses)) statements.push_back(*doubt);
+  const bool is_none = candidates.front().name == "none";
   for (const CircuitCandidate& candidate : candidates) {
     if (candidate.noise_share == 0.0) continue;
     statements.push_back(describe_unresolved('"' + candidate.name + '"', candidate.noise_share) +
-                         ": readings are taken as they are; single presses would tell of it");
+                         (is_none ? ": readings are taken as they are" : ": it was not compared") +
+                         "; single presses would tell of it");
   }
   return statements;
 }

@@ -11,6 +11,7 @@
 
 #include "calibration/circuit_fit/gauss_newton.hpp"
 #include "calibration/circuit_fit/judge_frames.hpp"
+#include "calibration/even_choice.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -20,11 +21,9 @@ constexpr int kRefinements = 8;
 constexpr double kFineEnough = 0.01;     // of the logarithm of the ratio
 constexpr std::size_t kFirstFrames = 8;  // to see whether the circuit can give them
 
-/// At most `most` of them, evenly.
-std::vector<const CircuitFrame*> spread(const std::vector<const CircuitFrame*>& frames, std::size_t most) {
-  const std::size_t count = std::min(most, frames.size());
+std::vector<const CircuitFrame*> some_of(const std::vector<const CircuitFrame*>& frames, std::size_t most) {
   std::vector<const CircuitFrame*> some;
-  for (std::size_t k = 0; k < count; ++k) some.push_back(frames[k * frames.size() / count]);
+  for (const std::size_t k : even_choice(frames.size(), most)) some.push_back(frames[k]);
   return some;
 }
 
@@ -42,7 +41,7 @@ Result<std::optional<CommonRatio>> try_ratio(const LineParameters& lines,
   trial.ratio = ratio;
   trial.array = lines.array_at(lines.start(ratio));
   for (const std::size_t most : {kFirstFrames, frames.size()}) {
-    Result<InvertedFrames> inverted = invert_frames(trial.array, spread(frames, most));
+    Result<InvertedFrames> inverted = invert_frames(trial.array, some_of(frames, most));
     if (!inverted) return inverted.error();
     if (is_impossible(*inverted)) return std::optional<CommonRatio>();
     trial.inverted = *std::move(inverted);

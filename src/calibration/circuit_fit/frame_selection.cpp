@@ -11,7 +11,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kMostWork = 2e8;          // frames x taxels x inversions of one pass
-constexpr double kNewtonSlowness = 20.0;   // of an inversion by Newton's method, against the fixed point
+constexpr double kSlowness = 20.0;         // of the inversion of floating rows, against that of grounded ones
 constexpr double kMostWorkOfChoice = 3e5;  // frames x taxels
 constexpr double kMostWorkOfSlowChoice = 3e4;
 constexpr std::uint64_t kSelectionSeed = 1;
@@ -28,8 +28,8 @@ double share(std::size_t places, std::size_t frames) {
 
 std::size_t affordable_frames(const LineParameters& lines) {
   const auto cost = static_cast<double>(lines.array().taxel_count() * static_cast<std::size_t>(lines.count() + 4));
-  const bool is_slow = is_inverted_by_newton(lines.array());
-  return static_cast<std::size_t>(kMostWork / cost / (is_slow ? kNewtonSlowness : 1.0));
+  const bool is_slow = is_inverted_slowly(lines.array());
+  return static_cast<std::size_t>(kMostWork / cost / (is_slow ? kSlowness : 1.0));
 }
 
 std::size_t affordable_frames_of_choice(std::size_t taxels, bool is_slow) {

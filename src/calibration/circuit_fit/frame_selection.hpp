@@ -13,7 +13,7 @@ namespace dermis::calibration {
 /// As many frames as the time allows: an inversion for each parameter and frame.
 [[nodiscard]] std::size_t affordable_frames(const LineParameters& lines);
 
-/// The same where kinds of circuits are compared. `is_slow`: one of them is inverted by Newton's method.
+/// The same where kinds of circuits are compared. `is_slow`: one of them is inverted slowly.
 [[nodiscard]] std::size_t affordable_frames_of_choice(std::size_t taxels, bool is_slow);
 
 /// About `most` frames of all, spread at random: neighbours in time may press the same taxels. At least half of the

@@ -111,7 +111,7 @@ Iteration follow(const LineParameters& lines, const Linearisation& here, const M
                  with_pressed_laws(here.unloaded, here.pressed, step), before.scatter};
   if (here.sheet) after.scatter.sheet = here.sheet->scatter;
   after.scatter = learn_scatter(lines, after, step, here.idle, here.pressed, measurements.pressed);
-  return {std::move(after), here.step.covariance, here.step.largest(), here.idle.readings > 0.0, measurements.unsolved};
+  return {std::move(after), here.step.covariance, here.step.largest(), here.idle.readings > 0.0};
 }
 
 }  // namespace

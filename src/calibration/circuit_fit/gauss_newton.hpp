@@ -20,7 +20,6 @@ struct Iteration {
   Eigen::MatrixXd covariance;      ///< Of the parameters, then of what the pressed laws have in common.
   double step = 0.0;               ///< The largest of a parameter, in its standard errors.
   bool has_idle_readings = false;  ///< That are large enough to tell something.
-  std::size_t unsolved = 0;        ///< Frames that the circuit cannot give.
 };
 
 /// Gauss-Newton with the taxels' laws eliminated (variable projection), until a step is smaller than `enough` standard

@@ -39,7 +39,7 @@ std::vector<Index> parameters_of_lines(std::size_t count, const std::vector<std:
 
 }  // namespace
 
-bool is_inverted_by_newton(const ArrayDescription& array) {
+bool is_inverted_slowly(const ArrayDescription& array) {
   return array.readout.circuit == Circuit::divider && array.readout.idle_rows == IdleRows::floating;
 }
 

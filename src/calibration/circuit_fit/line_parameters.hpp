@@ -20,8 +20,8 @@ struct LineGroup {
   double unit = 1.0;                     ///< What a relative spread of 1 means.
 };
 
-/// Rows that float have no faster inverse.
-[[nodiscard]] bool is_inverted_by_newton(const ArrayDescription& array);
+/// The inversion of idle rows that float takes longer than that of others.
+[[nodiscard]] bool is_inverted_slowly(const ArrayDescription& array);
 
 /// The unknown resistances of an array as parameters of a fit: drivers as a multiple of a reference resistance, so that
 /// 0 ohm is a value like any other; loads as logarithms. Drivers come first.

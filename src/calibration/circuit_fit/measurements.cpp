@@ -59,15 +59,12 @@ void add_pressed(const CircuitFrame& frame, const InvertedFrame& inverted, const
 }
 
 Measurements no_measurements(const Rubber& rubber, Index parameters) {
-  return {NormalEquations(rubber.laws.size(), rubber.unloaded_terms, parameters + 1), {}, 0};
+  return {NormalEquations(rubber.laws.size(), rubber.unloaded_terms, parameters + 1), {}};
 }
 
 void add(const CircuitFrame& frame, const std::optional<InvertedFrame>& inverted, const Estimate& estimate,
          Measurements& measurements) {
-  if (!inverted) {
-    ++measurements.unsolved;
-    return;
-  }
+  if (!inverted) return;
   add_idle(frame, *inverted, estimate, measurements.idle);
   add_pressed(frame, *inverted, estimate.rubber.force_scale, measurements.pressed);
 }
@@ -76,7 +73,6 @@ Measurements merge(std::vector<Measurements> parts) {
   Measurements all = std::move(parts.front());
   for (std::size_t k = 1; k < parts.size(); ++k) {
     all.idle += parts[k].idle;
-    all.unsolved += parts[k].unsolved;
     std::move(parts[k].pressed.begin(), parts[k].pressed.end(), std::back_inserter(all.pressed));
   }
   return all;
@@ -89,11 +85,12 @@ Result<Measurements> measure(const LineParameters& lines, const std::vector<cons
   if (auto trial = SlopedInversion::create(lines, estimate.parameters, Slopes::none); !trial) return trial.error();
   const Rubber& rubber = estimate.rubber;
   const Measurements nothing = no_measurements(rubber, lines.count());
-  const std::size_t tasks = std::max<std::size_t>(1, (frames.size() + kFramesPerTask - 1) / kFramesPerTask);
+  const std::size_t per_task = frames_per_task(lines.array());
+  const std::size_t tasks = std::max<std::size_t>(1, (frames.size() + per_task - 1) / per_task);
   std::vector<Measurements> parts(tasks, nothing);
   parallel_for(tasks, [&](std::size_t task) {
     auto inversion = SlopedInversion::create(lines, estimate.parameters, Slopes::all);
-    for (std::size_t k = task * kFramesPerTask; k < std::min(frames.size(), (task + 1) * kFramesPerTask); ++k) {
+    for (std::size_t k = task * per_task; k < std::min(frames.size(), (task + 1) * per_task); ++k) {
       add(*frames[k], invert_frame(*inversion, *frames[k], rubber), estimate, parts[task]);
     }
   });

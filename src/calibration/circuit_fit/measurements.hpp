@@ -19,7 +19,6 @@ namespace dermis::calibration {
 struct Measurements {
   NormalEquations idle;  ///< Columns: parameters, conductance over the reference; by the noise that is said of them.
   std::vector<PressedReading> pressed;
-  std::size_t unsolved = 0;  ///< Frames that the circuit cannot give.
 };
 
 /// Inverts the frames on all cores. Errors: a circuit that cannot be inverted.

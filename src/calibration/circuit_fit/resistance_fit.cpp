@@ -53,7 +53,7 @@ Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const Circu
   const std::size_t most = affordable_frames(lines);
   const auto first = select_frames(frames, std::min(kFirstFrames, most));
   const Rubber unknown = unknown_rubber(frames, array.taxel_count(), 1.0 / lines.reference_ohm());
-  const std::size_t quick = affordable_frames_of_choice(array.taxel_count(), false);
+  const std::size_t quick = affordable_frames_of_choice(array.taxel_count(), is_inverted_slowly(array));
   const auto few = select_frames(frames, std::min({kStartFrames, most, std::max(kLeastStartFrames, quick)}));
   const Result<CommonRatio> common = fit_common_ratio(lines, few, unknown);
   if (!common) return common.error();

@@ -50,8 +50,11 @@ std::vector<double> apparent_siemens(const CircuitFrame& frame, double load_ohm)
   return siemens;
 }
 
-}  // namespace
-
+/// The noise of a reading as a share of a taxel's conductance, where most taxels are pressed in all frames with a load:
+/// idle lines that float tie all others to one potential then, and a reading hardly depends on its own taxel. In the
+/// frame where that is least. Changes of conductance that leave the sums of all lines as they are stand for all. 0:
+/// there are frames with fewer pressed taxels, which any circuit resolves. Unknown drivers are taken to be ideal,
+/// unknown loads to be alike.
 double noise_share(const ArrayDescription& array, const CircuitFrames& frames) {
   std::vector<const CircuitFrame*> pressed;
   for (const CircuitFrame& frame : frames.frames) {
@@ -79,6 +82,8 @@ double noise_share(const ArrayDescription& array, const CircuitFrames& frames) {
   }
   return std::isfinite(least) ? least : 0.0;
 }
+
+}  // namespace
 
 double unresolved_share(const ArrayDescription& array, const CircuitFrames& frames) {
   if (array.readout.circuit == Circuit::none) return 0.0;

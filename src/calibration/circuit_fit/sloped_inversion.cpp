@@ -15,18 +15,25 @@ constexpr double kTolerance = 1e-12;  // of the inversions, in readings over the
 
 }  // namespace
 
+std::size_t frames_per_task(const ArrayDescription& array) {
+  constexpr std::size_t kMany = 256;
+  constexpr std::size_t kFew = 16;  // so that no core is idle
+  return is_inverted_slowly(array) ? kFew : kMany;
+}
+
 Result<SlopedInversion> SlopedInversion::create(const LineParameters& lines, const VectorXd& parameters,
                                                 Slopes slopes) {
   SlopedInversion result;
   const Index count = slopes == Slopes::all ? parameters.size() : 0;
   result.slope_count_ = count;
-  const bool is_slow = is_inverted_by_newton(lines.array());
+  const bool is_slow = is_inverted_slowly(lines.array());
   if (is_slow && count > 0) {
     Result<SolvedSlopes> solved = SolvedSlopes::create(lines, parameters);
     if (!solved) return solved.error();
     result.solved_slopes_.emplace(*std::move(solved));
   }
   compensation::InversionOptions options;  // far below the noise; differences need more
+  options.samples_noise = true;
   if (count > 0 && !is_slow) options.tolerance_ratio = kTolerance;
   for (Index p = -1; p < (is_slow ? 0 : count); ++p) {
     VectorXd shifted = parameters;

@@ -16,7 +16,7 @@
 namespace dermis::calibration {
 
 /// Frames in a row that one inversion takes, each from the last one's solution, whatever the number of threads.
-inline constexpr std::size_t kFramesPerTask = 256;
+[[nodiscard]] std::size_t frames_per_task(const ArrayDescription& array);
 
 /// Whether derivatives by the parameters are wanted.
 enum class Slopes { none, all };

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "dermis/compensation/circuit_model.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
 
 namespace dermis::calibration {
@@ -102,6 +103,17 @@ std::vector<PressPair> possible_pairs(const ArrayDescription& array, const std::
   return pairs;
 }
 
+/// Presses that are asked for are kept like those that are there; unloaded frames are means of more.
+double noise_of_presses(const CircuitFrames& frames) {
+  std::vector<double> sigmas;
+  for (const CircuitFrame& frame : frames.frames) {
+    const bool is_pressed =
+        std::any_of(frame.newtons.begin(), frame.newtons.end(), [](float newtons) { return newtons > 0.0F; });
+    if (is_pressed) sigmas.push_back(frame.sigma_ratio);
+  }
+  return upper_median(std::move(sigmas));
+}
+
 struct Distance {
   PressPair pair = {};
   double square = 0.0;  // in variances of a reading
@@ -113,7 +125,7 @@ std::vector<PressPair> telling_presses(const std::vector<const CommonRatio*>& ci
                                        double sure_square) {
   std::vector<Prediction> predictions;
   for (const CommonRatio* const circuit : circuits) predictions.emplace_back(*circuit);
-  const double variance = std::pow(frames.frames.back().sigma_ratio, 2) * circuits.front()->scatter.noise_variance;
+  const double variance = std::pow(noise_of_presses(frames), 2) * circuits.front()->scatter.noise_variance;
   std::vector<Distance> distances;
   for (const PressPair& pair : possible_pairs(circuits.front()->array, heaviest_loads(circuits, frames))) {
     const std::vector<double> first = predictions.front().readings(pair);

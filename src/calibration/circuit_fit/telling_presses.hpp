@@ -12,8 +12,9 @@
 namespace dermis::calibration {
 
 /// The five pairs of taxels whose readings, when both are pressed with the heaviest load they have had, differ most
-/// between the circuits: of each pair the least distance from the first circuit to another counts. Fewer, or none,
-/// where all together would not tell. `circuits`: at least two, all with the laws of their taxels.
+/// between the circuits: of each pair the least distance from the first circuit to another counts, in the noise of a
+/// typical pressed frame. Fewer where there are no more pairs; none where all together would not tell. `circuits`: at
+/// least two.
 [[nodiscard]] std::vector<PressPair> telling_presses(const std::vector<const CommonRatio*>& circuits,
                                                      const CircuitFrames& frames, double sure_square);
 

@@ -3,6 +3,7 @@
 #include "compensation/faults/grounded_line_detector.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "compensation/faults/page_test.hpp"
@@ -20,6 +21,14 @@ bool is_silent(const LineFault& fault) {
   return traits_of(fault.kind).effect == LineFaultEffect::silent;
 }
 
+bool is_dead(const LineFault& fault) {
+  return fault.kind == LineFaultKind::dead_taxel;
+}
+
+bool is_judged(const LineFault& fault) {
+  return is_silent(fault) || is_dead(fault);
+}
+
 }  // namespace
 
 GroundedLineDetector::GroundedLineDetector(const ArrayDescription& array)
@@ -28,14 +37,23 @@ GroundedLineDetector::GroundedLineDetector(const ArrayDescription& array)
 void GroundedLineDetector::judge(const Observation& seen, FaultList& faults) noexcept {
   if (!seen.solved || !knows_what_currents_take(array_.readout)) return;
   const std::span<LineFault> all = faults.all();
-  if (std::none_of(all.begin(), all.end(), is_silent)) return;
+  if (std::none_of(all.begin(), all.end(), is_judged)) return;
   find_untouched(seen, faults);
   for (LineFault& fault : all) {
+    if (is_dead(fault)) judge_taxel(seen, fault);
     if (!is_silent(fault)) continue;
     const bool was_grounded = fault.grounded;
     judge_line(seen, fault);
     if (fault.grounded != was_grounded) faults.count_change();
   }
+  const auto stuck = std::find_if(all.begin(), all.end(), [](const LineFault& fault) {
+    return is_dead(fault) && fault.ground_evidence > kGroundEvidence;
+  });
+  if (stuck == all.end()) return;
+  const LineFault found{
+      .kind = LineFaultKind::stuck_taxel, .place = stuck->place, .frame = stuck->frame, .time = stuck->time};
+  faults.remove(LineFaultKind::dead_taxel, found.place);
+  faults.add(found);
 }
 
 /// Taxels that nothing touches, for comparison: none nearby reads more than an unloaded one.
@@ -73,6 +91,28 @@ void GroundedLineDetector::judge_line(const Observation& seen, LineFault& fault)
   fault.grounded = fault.ground_evidence > (fault.grounded ? -kGroundEvidence : kGroundEvidence);
 }
 
+/// In the scan of its own line.
+void GroundedLineDetector::judge_taxel(const Observation& seen, LineFault& fault) const noexcept {
+  const Axis driven = driven_axis(array_);
+  const std::size_t place = driven == Axis::row ? fault.place % array_.cols : fault.place / array_.cols;
+  fault.ground_evidence += evidence_of_current(seen, driven, place, siemens_between(seen, fault.place), false);
+  fault.ground_evidence = std::max(fault.ground_evidence, -kEvidence);
+}
+
+/// As the taxels on both its sides conduct; 0 where they are not pressed.
+double GroundedLineDetector::siemens_between(const Observation& seen, std::size_t taxel) const noexcept {
+  const std::size_t row = taxel / array_.cols;
+  const std::size_t col = taxel % array_.cols;
+  const auto between = [&](std::size_t before, std::size_t after) {
+    if (!seen.is_pressed(before) || !seen.is_pressed(after)) return 0.0;
+    return std::sqrt(seen.conductance.siemens[before] * seen.conductance.siemens[after]);
+  };
+  const bool has_sides = col > 0 && col + 1 < array_.cols;
+  const bool has_ends = row > 0 && row + 1 < array_.rows;
+  return std::max(has_sides ? between(taxel - 1, taxel + 1) : 0.0,
+                  has_ends ? between(taxel - array_.cols, taxel + array_.cols) : 0.0);
+}
+
 /// Of the line that crosses the silent one there: what its untouched taxels miss, against what a short would take.
 double GroundedLineDetector::evidence_at(const Observation& seen, const LineFault& fault,
                                          std::size_t place) const noexcept {
@@ -81,12 +121,17 @@ double GroundedLineDetector::evidence_at(const Observation& seen, const LineFaul
   const double unloaded_siemens = seen.unloaded.siemens()[taxel];
   const double pressed_siemens = seen.conductance.siemens[taxel] - common_share_ * unloaded_siemens;
   if (pressed_siemens < kTouchedShare * unloaded_siemens) return 0.0;
+  return evidence_of_current(seen, axis, place, pressed_siemens, fault.grounded);
+}
+
+double GroundedLineDetector::evidence_of_current(const Observation& seen, Axis axis, std::size_t place, double siemens,
+                                                 bool is_solved) const noexcept {
   const Sums untouched = sums_on(seen, crossing(axis), place);
-  const double difference = taken_share(seen, axis, place, pressed_siemens) * untouched.expected;
+  const double difference = taken_share(seen, axis, place, siemens) * untouched.expected;
   const double doubt = kDoubtOfEstimate * difference;
   const double variance = untouched.variance + doubt * doubt;
   if (!(variance > 0.0)) return 0.0;
-  const double missing = untouched.expected - untouched.siemens + (fault.grounded ? difference : 0.0);
+  const double missing = untouched.expected - untouched.siemens + (is_solved ? difference : 0.0);
   return std::clamp(difference * (missing - 0.5 * difference) / variance, -kMostEvidence, kMostEvidence);
 }
 

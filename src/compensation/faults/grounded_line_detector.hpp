@@ -13,7 +13,8 @@
 namespace dermis::compensation {
 
 /// Tells silent lines that are shorted to 0 V from open ones: shorted, a line takes current from the lines that cross
-/// it where it is pressed (as its neighbours are), and untouched taxels on those read less.
+/// it where it is pressed (as its neighbours are), and untouched taxels on those read less. Taxels that seem to be dead
+/// are told from ones whose reading is stuck at 0, and which conduct, in the same way.
 class GroundedLineDetector {
  public:
   explicit GroundedLineDetector(const ArrayDescription& array);
@@ -31,7 +32,12 @@ class GroundedLineDetector {
   void find_untouched(const Observation& seen, const FaultList& faults) noexcept;
   void touch_around_presses(const Observation& seen) noexcept;
   void judge_line(const Observation& seen, LineFault& fault) const noexcept;
+  void judge_taxel(const Observation& seen, LineFault& fault) const noexcept;
+  [[nodiscard]] double siemens_between(const Observation& seen, std::size_t taxel) const noexcept;
   [[nodiscard]] double evidence_at(const Observation& seen, const LineFault& fault, std::size_t place) const noexcept;
+  /// That a line of `axis` takes the current of a conductance at `place`; `is_solved`: with it.
+  [[nodiscard]] double evidence_of_current(const Observation& seen, Axis axis, std::size_t place, double siemens,
+                                           bool is_solved) const noexcept;
   [[nodiscard]] double taken_share(const Observation& seen, Axis axis, std::size_t place,
                                    double pressed_siemens) const noexcept;
   [[nodiscard]] Sums sums_on(const Observation& seen, Axis axis, std::size_t line) const noexcept;

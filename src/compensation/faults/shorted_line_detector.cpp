@@ -12,8 +12,10 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr int kEqualPresses = 6;
-constexpr double kAlikeSums = 0.05;  // difference of the readings of two lines that may be shorted
+constexpr double kEvidenceOfPress = 3.0;    // of one place; 6 presses decide
+constexpr double kMostOfOtherPlaces = 6.0;  // 2 presses, at least
+constexpr double kCompressed = 0.7;         // of full scale: what is pressed hard reads the same
+constexpr double kAlikeSums = 0.05;         // difference of the readings of two lines that may be shorted
 constexpr std::size_t kLeastLines = 3;
 
 constexpr PerAxis<LineFaultKind> kShorted{.row = LineFaultKind::shorted_rows, .column = LineFaultKind::shorted_columns};
@@ -29,10 +31,14 @@ double most_by_noise(double count) {
 
 }  // namespace
 
-ShortedLineDetector::ShortedLineDetector(const ArrayDescription& array) : array_(array) {
+ShortedLineDetector::ShortedLineDetector(const ArrayDescription& array, EqualPresses& equal_presses)
+    : array_(array), equal_presses_(equal_presses) {
   if (array.readout.circuit == Circuit::none) return;
   for (const Axis axis : kAxes) {
-    if (line_count(array, axis) >= kLeastLines) counts_[axis].resize(line_count(array, axis) - 1);
+    if (line_count(array, axis) < kLeastLines) continue;
+    for (std::size_t line = 0; line + 1 < line_count(array, axis); ++line) {
+      pairs_[axis].push_back({.ratio = ratio_of_shorted_lines(array, axis, line)});
+    }
   }
 }
 
@@ -42,9 +48,9 @@ void ShortedLineDetector::judge(const Observation& seen, FaultList& faults) noex
 
 void ShortedLineDetector::suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const {
   for (const Axis axis : kAxes) {
-    for (std::size_t line = 0; line < counts_[axis].size(); ++line) {
-      const PressCount& count = counts_[axis][line];
-      if (2 * count.presses < kEqualPresses || faults.contains(kShorted[axis], line)) continue;
+    for (std::size_t line = 0; line < pairs_[axis].size(); ++line) {
+      const PressCount& count = pairs_[axis][line].count;
+      if (!count.is_suspicious() || faults.contains(kShorted[axis], line)) continue;
       suspicions.push_back(
           {.kind = kShorted[axis], .place = line, .frame = count.first_frame, .time = count.first_time});
     }
@@ -55,23 +61,33 @@ void ShortedLineDetector::judge_lines(const Observation& seen, Axis axis, FaultL
   // A line at the supply makes the readings of others alike.
   if (faults.contains(LineFaultKind::supplied_row) || faults.contains(LineFaultKind::supplied_column)) return;
   const bool any_known = faults.contains(kShorted[axis]);
-  const std::span<const PressCount> counts = counts_[axis];
-  for (std::size_t line = 0; line < counts.size(); ++line) {
-    const bool is_suspect = counts[line].presses > 0 || (any_known && faults.contains(kShorted[axis], line));
-    if (is_suspect || sums_are_alike(seen, axis, line)) judge_pair(seen, axis, line, faults);
+  const std::span<const Pair> pairs = pairs_[axis];
+  for (std::size_t line = 0; line < pairs.size(); ++line) {
+    const bool is_suspect = pairs[line].count.evidence > 0.0 || (any_known && faults.contains(kShorted[axis], line));
+    const bool is_seen = is_suspect || (sums_are_alike(seen, axis, line) && is_pressed(seen, axis, line));
+    if (is_seen) judge_pair(seen, axis, line, faults);
   }
 }
 
 bool ShortedLineDetector::sums_are_alike(const Observation& seen, Axis axis, std::size_t line) const noexcept {
   const std::span<const double> sums = seen.sums.ratio(axis);
-  const double second = ratio_of_shorted_lines(array_, axis, line) * sums[line + 1];
+  const double second = pairs_[axis][line].ratio * sums[line + 1];
   const double difference = std::abs(sums[line] - second);
   if (difference > kAlikeSums * sums[line]) return false;
   return sums[line] > kComparedSigmas * seen.conditioned.sigma_ratio;
 }
 
+/// At any place: elsewhere nothing can be found to be equal.
+bool ShortedLineDetector::is_pressed(const Observation& seen, Axis axis, std::size_t line) const noexcept {
+  for (std::size_t place = 0; place < line_length(array_, axis); ++place) {
+    if (seen.is_pressed(taxel_on_line(array_, axis, line, place))) return true;
+  }
+  return false;
+}
+
 void ShortedLineDetector::judge_pair(const Observation& seen, Axis axis, std::size_t line, FaultList& faults) noexcept {
-  PressCount& count = counts_[axis][line];
+  Pair& pair = pairs_[axis][line];
+  PressCount& count = pair.count;
   count.follow(line_length(array_, axis), [&](std::size_t place) {
     return seen.is_pressed(taxel_on_line(array_, axis, line, place)) ||
            seen.is_pressed(taxel_on_line(array_, axis, line + 1, place));
@@ -82,46 +98,94 @@ void ShortedLineDetector::judge_pair(const Observation& seen, Axis axis, std::si
     if (!different || ++count.against < kLineFrames) return;
     faults.remove(kShorted[axis], line);
     count = PressCount();
-  } else if (different) {
+    return;
+  }
+  PressComparison beside;
+  if (equal_place) beside = compare_beside(seen, axis, line, *equal_place, faults);
+  if (different) {
     count = PressCount();
   } else if (equal_place) {
-    count.add(*equal_place, seen.frame, seen.conditioned.time);
-    if (!count.decides(kEqualPresses)) return;
-    faults.add({.kind = kShorted[axis], .place = line, .frame = count.first_frame, .time = count.first_time});
+    const double others = equal_presses_.without(pair.learned).evidence(beside.equal);
+    count.add(*equal_place, kEvidenceOfPress + std::min(others, kMostOfOtherPlaces), seen.frame, seen.conditioned.time);
+    if (count.decides()) {
+      faults.add({.kind = kShorted[axis], .place = line, .frame = count.first_frame, .time = count.first_time});
+    }
   }
+  if (equal_place) learn(pair, *equal_place, beside);
+}
+
+/// A press that lasts is learned from once.
+void ShortedLineDetector::learn(Pair& pair, std::size_t place, const PressComparison& press) noexcept {
+  const std::size_t last = pair.learned_place.value_or(place);
+  const std::size_t step = std::max(place, last) - std::min(place, last);
+  if (pair.learned_place && step <= kSlide) return;
+  pair.learned_place = place;
+  pair.learned.add(press);
+  equal_presses_.add(press);
+}
+
+ShortedLineDetector::PlaceComparison ShortedLineDetector::compare_at(const Observation& seen, Axis axis,
+                                                                     std::size_t line, std::size_t place,
+                                                                     const FaultList& faults) const noexcept {
+  const std::size_t first = taxel_on_line(array_, axis, line, place);
+  const std::size_t second = taxel_on_line(array_, axis, line + 1, place);
+  const int spoilt = kLineCause[axis] | kStuckCause | kDeadCause;
+  const std::span<const TaxelStatus> status = seen.conditioned.taxels;
+  if (((faults.causes(first) | faults.causes(second)) & spoilt) != 0) return {};
+  if (status[first] != TaxelStatus::ok || status[second] != TaxelStatus::ok) return {};
+  const std::span<const double> ratio = seen.conditioned.ratio;
+  const double sigma = seen.conditioned.sigma_ratio;
+  const double pair = pairs_[axis][line].ratio;
+  const double largest = std::max(ratio[first], ratio[second]);
+  const double deviation = std::sqrt((1.0 + pair * pair) * sigma * sigma + square(kEqualShare * largest));
+  return {.is_judged = true,
+          .largest = largest,
+          .deviation = deviation,
+          .difference = (ratio[first] - pair * ratio[second]) / deviation};
 }
 
 ShortedLineDetector::Comparison ShortedLineDetector::compare_with_next(const Observation& seen, Axis axis,
                                                                        std::size_t line,
                                                                        const FaultList& faults) const noexcept {
-  const std::span<const double> ratio = seen.conditioned.ratio;
-  const std::span<const TaxelStatus> status = seen.conditioned.taxels;
-  const double sigma = seen.conditioned.sigma_ratio;
-  const double pair = ratio_of_shorted_lines(array_, axis, line);
-  const int spoilt = kLineCause[axis] | kStuckCause | kDeadCause;
-  const double most_squares = most_by_noise(static_cast<double>(line_length(array_, axis)));
   Comparison found;
   double squares = 0.0;
   double taxels = 0.0;
-  double hardest = kComparedSigmas * sigma;
+  double hardest = kComparedSigmas * seen.conditioned.sigma_ratio;
   for (std::size_t place = 0; place < line_length(array_, axis); ++place) {
-    const std::size_t first = taxel_on_line(array_, axis, line, place);
-    const std::size_t second = taxel_on_line(array_, axis, line + 1, place);
-    if (((faults.causes(first) | faults.causes(second)) & spoilt) != 0) continue;
-    if (status[first] != TaxelStatus::ok || status[second] != TaxelStatus::ok) continue;
-    const double largest = std::max(ratio[first], ratio[second]);
-    const double variance = (1.0 + pair * pair) * sigma * sigma + square(kEqualShare * largest);
-    const double deviation_square = square(ratio[first] - pair * ratio[second]) / variance;
-    squares += deviation_square;
+    const PlaceComparison at = compare_at(seen, axis, line, place, faults);
+    if (!at.is_judged) continue;
+    squares += square(at.difference);
     taxels += 1.0;
-    if (squares > most_squares) return {.different = true, .equal_place = std::nullopt};
-    if (deviation_square > square(kEqualSigmas) || largest < hardest || !seen.is_pressed(first)) continue;
-    if (!stands_out(seen, axis, line, place, std::sqrt(variance))) continue;
-    hardest = largest;
+    if (std::abs(at.difference) > kEqualSigmas || at.largest < hardest) continue;
+    if (!seen.is_pressed(taxel_on_line(array_, axis, line, place))) continue;
+    if (!stands_out(seen, axis, line, place, at.deviation)) continue;
+    hardest = at.largest;
     found.equal_place = place;
   }
   found.different = squares > most_by_noise(taxels);
   return found;
+}
+
+/// The other places where the lines are pressed. Those that read the same as this one say nothing: a readout may end
+/// there.
+PressComparison ShortedLineDetector::compare_beside(const Observation& seen, Axis axis, std::size_t line,
+                                                    std::size_t place, const FaultList& faults) const noexcept {
+  const PlaceComparison hardest = compare_at(seen, axis, line, place, faults);
+  PressComparison press;
+  for (std::size_t other = 0; other < line_length(array_, axis); ++other) {
+    const PlaceComparison at = compare_at(seen, axis, line, other, faults);
+    if (!at.is_judged || at.largest < kComparedSigmas * seen.conditioned.sigma_ratio || at.largest > kCompressed) {
+      continue;
+    }
+    if (std::abs(at.largest - hardest.largest) <= kDifferentSigmas * at.deviation) continue;
+    if (!seen.is_pressed(taxel_on_line(array_, axis, line, other))) continue;
+    if (std::abs(at.difference) <= kEqualSigmas) {
+      ++press.equal;
+    } else {
+      ++(at.difference > 0.0 ? press.more : press.less);
+    }
+  }
+  return press;
 }
 
 /// The pair reads something else there than the lines beside it, and much more than one of them: presses end there.

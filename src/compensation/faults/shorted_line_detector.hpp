@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "compensation/faults/equal_presses.hpp"
 #include "compensation/faults/fault_list.hpp"
 #include "compensation/faults/observation.hpp"
 #include "compensation/faults/press_count.hpp"
@@ -15,19 +16,37 @@ namespace dermis::compensation {
 
 /// Two lines next to each other are shorted when they read the same wherever they are pressed and wherever they are
 /// not, within the noise, and the lines beside them do not. One press that shows both that they are equal and that the
-/// others are not is a chance of its shape; many of them, each released before the next, are a short. Pairs under
-/// suspicion are compared in every frame, as are those whose sums are alike. With `circuit = "none"` equal readings may
-/// have any reason, and lines without others beside them have nothing to differ from.
+/// others are not is a chance of its shape; many of them, each released before the next, are a short. The more places a
+/// press covers, the more it says, where other lines show that taxels scatter. Pairs under suspicion are compared in
+/// every frame, as are those whose sums are alike. With `circuit = "none"` equal readings may have any reason, and
+/// lines without others beside them have nothing to differ from.
 class ShortedLineDetector {
  public:
-  explicit ShortedLineDetector(const ArrayDescription& array);
+  /// `equal_presses`: told of every press that is equal on two lines.
+  ShortedLineDetector(const ArrayDescription& array, EqualPresses& equal_presses);
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
-  /// Pairs that half as many presses as it takes speak for; allocates.
+  /// Pairs that half as much as it takes speaks for; allocates.
   void suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const;
 
  private:
+  /// What is known of a line and the next one.
+  struct Pair {
+    double ratio = 1.0;  // of their readings where they are shorted
+    PressCount count{};
+    EqualPresses learned{};                      // of them, until they are found to be shorted
+    std::optional<std::size_t> learned_place{};  // of the last press that was
+  };
+
+  /// Two taxels at one place of a line and the next one.
+  struct PlaceComparison {
+    bool is_judged = false;
+    double largest = 0.0;     // of the two readings
+    double deviation = 0.0;   // that noise makes of their difference
+    double difference = 0.0;  // [deviations]
+  };
+
   /// A line and the next one, in one frame.
   struct Comparison {
     bool different = false;                  // beyond the noise
@@ -37,13 +56,20 @@ class ShortedLineDetector {
   void judge_lines(const Observation& seen, Axis axis, FaultList& faults) noexcept;
   void judge_pair(const Observation& seen, Axis axis, std::size_t line, FaultList& faults) noexcept;
   [[nodiscard]] bool sums_are_alike(const Observation& seen, Axis axis, std::size_t line) const noexcept;
+  [[nodiscard]] bool is_pressed(const Observation& seen, Axis axis, std::size_t line) const noexcept;
   [[nodiscard]] Comparison compare_with_next(const Observation& seen, Axis axis, std::size_t line,
                                              const FaultList& faults) const noexcept;
+  [[nodiscard]] PlaceComparison compare_at(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
+                                           const FaultList& faults) const noexcept;
+  [[nodiscard]] PressComparison compare_beside(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
+                                               const FaultList& faults) const noexcept;
+  void learn(Pair& pair, std::size_t place, const PressComparison& press) noexcept;
   [[nodiscard]] bool stands_out(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
                                 double deviation) const noexcept;
 
   const ArrayDescription& array_;
-  PerAxis<std::vector<PressCount>> counts_;  // [pairs], by their first lines
+  EqualPresses& equal_presses_;
+  PerAxis<std::vector<Pair>> pairs_;  // by their first lines
 };
 
 }  // namespace dermis::compensation

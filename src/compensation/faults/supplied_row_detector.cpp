@@ -12,13 +12,18 @@ namespace dermis::compensation {
 namespace {
 
 constexpr LineFaultKind kKind = LineFaultKind::supplied_row;
-constexpr int kShowingPresses = 3;
-constexpr std::size_t kAlikeReadings = 12;  // few rows may be alike by chance: they need more presses
-constexpr double kMostTolerance = 0.2;      // of a reading: beyond, equality means nothing
+constexpr double kEvidenceOfReading = 1.5;       // that is alike: few rows may be by chance, and need more presses
+constexpr double kMostOfPress = 6.0;             // where taxels may all be the same: 3 presses decide
+constexpr double kMostWhereTaxelsScatter = 9.0;  // 2 presses decide
+constexpr int kDecisiveFrames = 2;               // one bad frame is none
+constexpr double kBelow = 1.3;                   // times the readings of the row are those of all others
+constexpr double kMostTolerance = 0.2;           // of a reading: beyond, equality means nothing
+constexpr double kCloseTolerance = 0.12;  // as equal as the places of a press are taken to be; full scale makes equal
 
 }  // namespace
 
-SuppliedRowDetector::SuppliedRowDetector(const ArrayDescription& array) : array_(array) {}
+SuppliedRowDetector::SuppliedRowDetector(const ArrayDescription& array, const EqualPresses& equal_presses)
+    : array_(array), equal_presses_(equal_presses) {}
 
 void SuppliedRowDetector::judge(const Observation& seen, FaultList& faults) noexcept {
   const Circuit circuit = array_.readout.circuit;
@@ -32,48 +37,79 @@ void SuppliedRowDetector::judge(const Observation& seen, FaultList& faults) noex
 }
 
 void SuppliedRowDetector::suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const {
-  if (2 * alike_ < kAlikeReadings || faults.contains(kKind)) return;
+  if (!count_.is_suspicious() || faults.contains(kKind)) return;
   suspicions.push_back({.kind = kKind, .place = candidate_, .frame = count_.first_frame, .time = count_.first_time});
 }
 
 /// The row that reads the least, once another one stands out of it.
 void SuppliedRowDetector::choose_candidate(const Observation& seen, const FaultList& faults) noexcept {
   const std::span<const double> sum = seen.sums.ratio(Axis::row);
-  std::size_t least = 0;
+  const auto is_silent = [&](std::size_t row) { return faults.contains(LineFaultKind::silent_row, row); };
+  std::optional<std::size_t> least;
   for (std::size_t row = 0; row < array_.rows; ++row) {
-    if (!faults.contains(LineFaultKind::silent_row, row) && sum[row] < sum[least]) least = row;
+    if (!is_silent(row) && (!least || sum[row] < sum[*least])) least = row;
   }
+  if (!least) return;
   const double noise = seen.conditioned.sigma_ratio * std::sqrt(static_cast<double>(array_.cols));
-  if (sum[candidate_] > sum[least] + kDifferentSigmas * noise) {
-    candidate_ = least;
+  if (is_silent(candidate_) || sum[candidate_] > sum[*least] + kDifferentSigmas * noise) {
+    candidate_ = *least;
+    frames_below_ = 0;
     forget_presses();
   }
+  follow_rows_below(seen, faults, noise);
+}
+
+/// Where the candidate is not pressed: all other rows hold its reading beside their own.
+void SuppliedRowDetector::follow_rows_below(const Observation& seen, const FaultList& faults, double noise) noexcept {
+  for (std::size_t col = 0; col < array_.cols; ++col) {
+    if (seen.is_pressed(array_.index(candidate_, col))) return;
+  }
+  const std::span<const double> sum = seen.sums.ratio(Axis::row);
+  bool is_below = true;
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    if (row == candidate_ || faults.contains(LineFaultKind::silent_row, row)) continue;
+    is_below = is_below && sum[row] > kBelow * sum[candidate_] + kEqualSigmas * noise;
+  }
+  frames_below_ = is_below ? frames_below_ + 1 : 0;
 }
 
 void SuppliedRowDetector::judge_row(const Observation& seen, std::size_t row, bool is_known,
                                     FaultList& faults) noexcept {
-  const auto [place, alike, fails] = compare_row(seen, row, faults);
+  const Comparison compared = compare_row(seen, row, faults);
   if (is_known) {
-    if (place && fails == 0) count_.against = 0;
-    if (fails == 0 || ++count_.against < kLineFrames) return;
+    if (compared.place && compared.fails == 0) count_.against = 0;
+    if (compared.fails == 0 || ++count_.against < kLineFrames) return;
     faults.remove(kKind, row);
     forget_presses();
-  } else if (fails > 0) {
+  } else if (compared.fails > 0) {
     forget_presses();
   } else {
     count_.follow(array_.cols, [&](std::size_t col) { return seen.is_pressed(array_.index(row, col)); });
-    if (!place || !another_row_is_pressed(seen, row, faults)) return;
-    const int presses = count_.presses;
-    count_.add(*place, seen.frame, seen.conditioned.time);
-    if (count_.presses > presses) alike_ += alike;
-    if (alike_ < kAlikeReadings || !count_.decides(kShowingPresses)) return;
+    if (!compared.place || !another_row_is_pressed(seen, row, faults)) return;
+    count_.add(*compared.place, evidence_of_press(compared), seen.frame, seen.conditioned.time);
+    if (is_decisive(seen, compared)) ++decisive_frames_;
+    const bool is_decided = decisive_frames_ >= (frames_below_ >= kLineFrames ? 1 : kDecisiveFrames);
+    if (!is_decided && !count_.decides()) return;
     faults.add({.kind = kKind, .place = row, .frame = count_.first_frame, .time = count_.first_time});
   }
 }
 
 void SuppliedRowDetector::forget_presses() noexcept {
   count_ = PressCount();
-  alike_ = 0;
+  decisive_frames_ = 0;
+}
+
+/// Taxels that scatter are equal at several places, which read differently: it is not the end of the readout.
+bool SuppliedRowDetector::is_decisive(const Observation& seen, const Comparison& compared) const noexcept {
+  const double deviation = std::hypot(seen.conditioned.sigma_ratio, kEqualShare * compared.most);
+  return compared.most - compared.least > kDifferentSigmas * deviation &&
+         equal_presses_.evidence(static_cast<int>(compared.all_alike)) >= kEvidence;
+}
+
+double SuppliedRowDetector::evidence_of_press(const Comparison& compared) const noexcept {
+  const double least = std::min(kEvidenceOfReading * static_cast<double>(compared.alike), kMostOfPress);
+  const double more = equal_presses_.evidence(static_cast<int>(compared.closely_alike));
+  return std::min(least + more, kMostWhereTaxelsScatter);
 }
 
 SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observation& seen, std::size_t row,
@@ -89,7 +125,13 @@ SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observati
     ++pressed;
     const ColumnComparison press = compare_in_column(seen, row, col, faults);
     found.fails += press.fails;
-    if (!press.shows || press.alike < found.alike) continue;
+    if (!press.shows) continue;
+    const double reading = seen.conditioned.ratio[own];
+    found.least = found.place ? std::min(found.least, reading) : reading;
+    found.most = std::max(found.most, reading);
+    found.all_alike += press.closely_alike;
+    if (press.alike < found.alike) continue;
+    found.closely_alike = press.closely_alike;
     found.place = col;
     found.alike = press.alike;
   }
@@ -114,6 +156,7 @@ SuppliedRowDetector::ColumnComparison SuppliedRowDetector::compare_in_column(con
     const double tolerance = kEqualSigmas * deviation + seen.unloaded.ratio()[taxel];
     ++others;
     if (more < tolerance && tolerance < kMostTolerance * own) ++found.alike;
+    if (more < tolerance && tolerance < kCloseTolerance * own * (1.0 - own)) ++found.closely_alike;
     if (more < -kEqualSigmas * deviation) is_least = false;
     if (more < -kDifferentSigmas * deviation) ++found.fails;
   }

@@ -33,7 +33,7 @@ export class SetupForm {
       ...this.#field("Hold [s]", this.#hold),
       ...this.#field("Quiet at the beginning [s]", this.#quiet),
       this.#work,
-      element("p", { class: "dim" }, "Three weights or more give a pressed taxel a law of its own. Forces above the heaviest are not extrapolated. Taxels that are not pressed share what the others taught."),
+      element("p", { class: "dim" }, "Three weights or more give a pressed taxel a law of its own. Forces above the heaviest are less and less sure. Taxels that are not pressed share what the others taught."),
       this.#start,
     );
     this.element.addEventListener("input", () => {

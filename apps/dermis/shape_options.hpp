@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+
+#include "command_line.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::app {
+
+/// --rows and --cols of the frames of a file, which some formats do not tell.
+struct ShapeOptions {
+  std::optional<std::size_t> rows;
+  std::optional<std::size_t> cols;
+
+  /// Declares them; `this` must live as long as the action.
+  void add(Command& command);
+
+  /// Empty where they are not given.
+  [[nodiscard]] Result<std::optional<FrameShape>> shape() const;
+};
+
+}  // namespace dermis::app

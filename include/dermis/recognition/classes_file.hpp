@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "dermis/core/result.hpp"
+#include "dermis/recognition/classes.hpp"
+
+/// Classes as safetensors: docs/recognition.md names its tensors. The same classes give the same bytes.
+namespace dermis::recognition {
+
+[[nodiscard]] Status write_classes(const std::string& path, const Classes& classes);
+
+/// Reads back what write_classes() wrote. Whatever else a file holds gives one line that names it.
+[[nodiscard]] Result<Classes> read_classes(const std::string& path);
+/// The same from memory; `name` stands for the path in messages.
+[[nodiscard]] Result<Classes> classes_from_bytes(std::string_view bytes, const std::string& name);
+
+}  // namespace dermis::recognition

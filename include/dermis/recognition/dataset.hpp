@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/recognition/examples.hpp"
+
+/// Labelled frames in plain files; docs/recognition.md describes them.
+namespace dermis::recognition {
+
+struct DatasetFiles {
+  std::string frames;           ///< frames.npy: [frames, readings]
+  std::string arrays;           ///< arrays.csv: array,rows,cols,first_column
+  std::string extras;           ///< extra.npy: [frames, extras]; empty where there is none.
+  std::string labels;           ///< labels.csv: id,first,last,class
+  std::string label = "class";  ///< The column of labels.csv that names the class.
+  double rate_hz = 0.0;         ///< Frames a second; 0 where it is not known.
+};
+
+/// Reads and validates. Errors name the file.
+[[nodiscard]] Result<LabelledFrames> read_dataset(const DatasetFiles& files);
+
+/// Labels by their place: those to learn from, and those to answer for.
+struct Split {
+  std::string name;
+  std::vector<std::size_t> taught;
+  std::vector<std::size_t> asked;
+};
+
+/// `split,id`: the ids to answer for; each split learns from all others. In the order of the file.
+[[nodiscard]] Result<std::vector<Split>> read_splits(const std::string& path, const std::vector<Label>& labels);
+
+/// `split,role,id`: role `train` is learned from, `known` and `unknown` are answered for; no
+/// id stands twice in a split.
+[[nodiscard]] Result<std::vector<Split>> read_open_splits(const std::string& path, const std::vector<Label>& labels);
+
+}  // namespace dermis::recognition

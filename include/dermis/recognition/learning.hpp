@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/recognition/classes.hpp"
+#include "dermis/recognition/examples.hpp"
+#include "dermis/recognition/touch_finder.hpp"
+
+namespace dermis::recognition {
+
+/// What the classes know of examples that they had not learned from: of each fold by what the others taught.
+struct LearningReport {
+  bool by_group = false;  ///< Whole subjects or sessions were held out; else runs in order of time.
+  std::size_t folds = 0;
+  std::size_t groups = 0;              ///< Subjects or sessions that the labels name; 0 where some name none.
+  std::vector<std::size_t> confusion;  ///< [classes, classes]: right class, answered class; of examples.
+  std::size_t judged = 0;              ///< Examples in `confusion`: not those whose class was in no other fold.
+  double accuracy = 0.0;               ///< Share of those that were right, 0 ... 1.
+  double calibration_error = 0.0;      ///< Expected calibration error over 10 bins, 0 ... 1.
+};
+
+struct Learned {
+  Classes classes;
+  LearningReport report;
+};
+
+/// Labelled segments and their features, of which classes are learned. Thread-safe once made.
+class LearningSet {
+ public:
+  /// Computes the features of all labels. `progress` is told the share that is done. Fails on what
+  /// LabelledFrames::validate() refuses.
+  [[nodiscard]] static Result<LearningSet> create(const LabelledFrames& data,
+                                                  const std::function<void(double)>& progress = {});
+  LearningSet(LearningSet&&) noexcept;
+  LearningSet& operator=(LearningSet&&) noexcept;
+  ~LearningSet();
+
+  /// Learns from some of the labels, by their place. Fails on a single class, on more than 1000, on a class with one
+  /// example, and where no class differs from another in anything.
+  [[nodiscard]] Result<Learned> learn(std::span<const std::size_t> chosen) const;
+
+ private:
+  struct State;
+  explicit LearningSet(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Where touches begin and end, as all labels have it. Empty where there is nothing to learn it from: where examples
+/// are single frames, or the labels leave fewer than a tenth of the frames.
+[[nodiscard]] std::optional<TouchLimits> learn_touches(const LabelledFrames& data);
+
+/// How well these limits find the labels again.
+[[nodiscard]] FindingReport judge_touches(const LabelledFrames& data, const TouchLimits& limits);
+
+/// What a person should know of the examples, a line each: which classes need more of them, which two are confused, and
+/// what the accuracy does not show.
+[[nodiscard]] std::vector<std::string> advice(const Learned& learned);
+
+}  // namespace dermis::recognition

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/recognition/recogniser.hpp"
+#include "dermis/recognition/touch_finder.hpp"
+
+namespace dermis::recognition {
+
+/// What was recognised in a stream, and in which of its frames, counted from 0.
+struct Recognition {
+  Touch frames{};
+  Answer answer{};
+};
+
+/// Names what happens in a stream frame by frame: a gesture once it is over, from onset to release; a pose with every
+/// frame, from the last half second. Allocates only when made. Not thread-safe.
+class StreamRecogniser {
+ public:
+  /// `source`: as for Recogniser::create(). Fails on classes of gestures whose onset and release were not learned, and
+  /// on frames so large that twice the frames looked at together were more than 2^26 readings.
+  [[nodiscard]] static Result<StreamRecogniser> create(Classes classes, const Layout& source);
+
+  /// `readings`: of one frame, tared; `extras`: beside it. The answer is valid until the next call.
+  [[nodiscard]] std::optional<Recognition> next(std::span<const float> readings, std::span<const float> extras = {});
+  /// The gesture that has not yet ended when the stream does.
+  [[nodiscard]] std::optional<Recognition> finish();
+
+  [[nodiscard]] const Classes& classes() const noexcept { return recogniser_.classes(); }
+
+ private:
+  StreamRecogniser(Recogniser recogniser, const Layout& source, std::size_t window);
+
+  void keep(std::span<const float> readings, std::span<const float> extras);
+  [[nodiscard]] Recognition recognise(const Touch& touch);
+
+  Recogniser recogniser_;
+  Layout source_;
+  std::optional<TouchFinder> finder_;  ///< Of gestures.
+  std::size_t window_;                 ///< Most frames that are looked at together.
+  std::size_t frame_ = 0;              ///< How many came.
+  std::size_t kept_ = 0;               ///< How many of the last ones are in the buffers.
+  std::vector<float> readings_;        ///< [2 window, readings]: so that the last ones are always in one piece.
+  std::vector<float> extras_;
+};
+
+/// Sum of the readings of a frame that are a load.
+[[nodiscard]] double force_of(const Layout& layout, std::span<const float> readings);
+
+}  // namespace dermis::recognition

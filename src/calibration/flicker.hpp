@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+
+namespace dermis::calibration {
+
+/// Single taxels, rising, whose readings jump to and fro from frame to frame while nothing is on the array, as those of
+/// a loose contact do. Frames that are called unloaded and are not rise and fall once. Empty where it cannot be told,
+/// or where many taxels do: then it is no taxel that is broken. Some taxel of the array never does.
+[[nodiscard]] std::vector<std::size_t> find_flickering_taxels(const ArrayDescription& array,
+                                                              std::span<const RawFrame> frames,
+                                                              std::span<const Load> loads);
+
+}  // namespace dermis::calibration

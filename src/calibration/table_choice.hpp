@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "calibration/taxel_training.hpp"
+#include "dermis/calibration/force_training.hpp"
+#include "dermis/calibration/sample_temperatures.hpp"
+
+namespace dermis::calibration {
+
+/// Holds a table of every taxel, as the baseline "crosstalk_lookup" has it, against the networks, group of neighbouring
+/// taxels by group, on presses that neither has seen: a tenth of the presses of a taxel is left out of its table at a
+/// time, and the error of the network on a press is that of a fit without it, by the leverage of its samples. Presses
+/// heavier than all that are left are not judged. A group gets its tables where they are clearly better: by a fifth in
+/// the mean, and by four standard errors of the paired differences over at least twelve presses (those of one moment on
+/// several taxels are one). All others keep their networks. `points`: known forces of each taxel [taxels].
+void prefer_tables(std::span<const std::vector<TaxelPoint>> points, const SampleTemperatures& temperatures,
+                   ForceTraining& training);
+
+/// Where all loads are about the same, no law can be learned from them: straight lines through the points.
+void take_lines(std::span<const std::vector<TaxelPoint>> points, const SampleTemperatures& temperatures,
+                ForceTraining& training);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+namespace dermis::compensation {
+
+/// A press that reads the same on two lines at one place: how the lines compare at the other places that it presses.
+struct PressComparison {
+  int equal = 0;  // places
+  int more = 0;   // on the first line, beyond the noise
+  int less = 0;
+
+  [[nodiscard]] int places() const { return equal + more + less; }
+};
+
+/// How improbable it is that healthy lines read the same, as those of this array show it. Two lines may be pressed
+/// alike at one place by chance; taxels that scatter then differ at the others, one way and the other. Where all taxels
+/// are the same, or the shape of the presses alone makes them differ, lines that are equal once are equal everywhere.
+class EqualPresses {
+ public:
+  void add(const PressComparison& press);
+
+  [[nodiscard]] EqualPresses without(const EqualPresses& others) const;
+
+  /// Minus logarithm of the chance that so many more places are equal; 0 until taxels have been seen to scatter.
+  [[nodiscard]] double evidence(int places) const;
+
+ private:
+  [[nodiscard]] double chance_of_place() const;
+
+  double presses_ = 0.0;    // with two other places at least
+  double all_equal_ = 0.0;  // of these,
+  double expected_ = 0.0;   // and how many would be, were places independent
+  double scattered_ = 0.0;  // of these: with places both ways
+  double places_ = 0.0;     // of all presses
+  double equal_places_ = 0.0;
+};
+
+}  // namespace dermis::compensation

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "dermis/recognition/segment.hpp"
+
+namespace dermis::recognition {
+
+enum class Block { hog, pose, polar, form, time, changed_form, share, extra };
+
+/// Where a block of features stands among all.
+struct BlockColumns {
+  Block block = Block::hog;
+  std::size_t begin = 0;
+  std::size_t size = 0;
+};
+
+/// All features of a segment, in their order.
+struct FeatureColumns {
+  std::vector<BlockColumns> blocks;  ///< Of the first array, of the second ..., then those of all arrays.
+  std::size_t count = 0;
+};
+
+/// Cells of the histograms along one axis of an array of so many lines.
+[[nodiscard]] std::size_t hog_cells(std::size_t lines);
+
+/// `moving`: whether time counts.
+[[nodiscard]] FeatureColumns feature_columns(const Layout& layout, bool moving);
+
+/// What one expert looks at.
+struct ExpertColumns {
+  std::string name;
+  std::vector<std::size_t> columns;  ///< Rising.
+};
+
+/// The experts: place, form, motion (where time counts), all, and state (where there are further readings).
+[[nodiscard]] std::vector<ExpertColumns> expert_columns(const Layout& layout, bool moving);
+
+}  // namespace dermis::recognition

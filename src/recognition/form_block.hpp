@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "recognition/connected_areas.hpp"
+#include "recognition/image_analysis.hpp"
+
+namespace dermis::recognition {
+
+/// Size and form of the contact, wherever it is and whichever way it is turned. Not thread-safe.
+class FormBlock {
+ public:
+  static constexpr std::size_t kSize = 46;
+
+  /// `least_reading`: where logarithms begin.
+  FormBlock(const Lattice& lattice, double least_reading);
+
+  void write(const ImageAnalysis& analysis, std::span<double> out);
+
+ private:
+  static constexpr std::size_t kDirections = 16;
+
+  void put_areas(const ImageAnalysis& analysis, std::span<double> out);
+  void put_quantiles(std::span<const double> root, std::span<double> out);
+  void put_directions(const ImageAnalysis& analysis, std::span<double> out) const;
+  void put_textures(const ImageAnalysis& analysis, std::span<double> out);
+
+  double least_reading_;
+  ConnectedAreas areas_;
+  GaussianBlur medium_;
+  GaussianBlur coarse_;
+  std::array<double, kDirections> cosine_{};
+  std::array<double, kDirections> sine_{};
+  std::vector<double> sorted_;
+  std::vector<double> blurred_;
+  std::vector<double> blurred_more_;
+};
+
+}  // namespace dermis::recognition

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/recognition/learning.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <utility>
+
+#include "dermis/recognition/stream_recogniser.hpp"
+#include "recognition/discriminant.hpp"
+#include "recognition/expert_choice.hpp"
+#include "recognition/expert_fusion.hpp"
+#include "recognition/feature_columns.hpp"
+#include "recognition/folds.hpp"
+#include "recognition/learning_judgement.hpp"
+#include "recognition/names.hpp"
+#include "recognition/segment_features.hpp"
+#include "recognition/unknown_learning.hpp"
+
+namespace dermis::recognition {
+namespace {
+
+/// [labels, features]
+Matrix compute_features(const LabelledFrames& data, bool moving, const std::function<void(double)>& progress) {
+  SegmentFeatures features(data.layout, data.layout, moving, data.longest());
+  Matrix table(static_cast<Eigen::Index>(data.labels.size()),
+               static_cast<Eigen::Index>(feature_columns(data.layout, moving).count));
+  for (std::size_t row = 0; row < data.labels.size(); ++row) {
+    const std::span<const double> values = features.compute(data.segment(data.labels[row]));
+    std::copy(values.begin(), values.end(), table.row(static_cast<Eigen::Index>(row)).begin());
+    if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(data.labels.size()));
+  }
+  return table;
+}
+
+std::vector<Touch> touches_of(const std::vector<Label>& labels) {
+  std::vector<Touch> touches;
+  for (const Label& label : labels) touches.push_back({label.first, label.last});
+  return touches;
+}
+
+/// Of each frame.
+std::vector<double> forces_of(const LabelledFrames& data) {
+  std::vector<double> forces;
+  const std::span<const float> frames = data.frames;
+  for (std::size_t frame = 0; frame < data.frame_count(); ++frame) {
+    forces.push_back(force_of(data.layout, frames.subspan(frame * data.layout.readings, data.layout.readings)));
+  }
+  return forces;
+}
+
+/// Names, sorted, and how many examples each has.
+std::map<std::string, std::int64_t> count_names(const std::vector<Label>& labels) {
+  std::map<std::string, std::int64_t> counts;
+  for (const Label& label : labels) ++counts[label.name];
+  return counts;
+}
+
+Status check_counts(const std::map<std::string, std::int64_t>& counts) {
+  if (counts.empty()) return bad_input("there is no example to learn from");
+  if (counts.size() == 1) {
+    return bad_input("all examples are of class '" + counts.begin()->first + "'; two classes or more are needed");
+  }
+  if (counts.size() > kMostClasses) {
+    return bad_input("there are " + std::to_string(counts.size()) + " classes; at most " +
+                     std::to_string(kMostClasses) + " can be learned");
+  }
+  for (const auto& [name, count] : counts) {
+    if (Status checked = check_class_name(name); !checked) return checked;
+    if (count == 1) return bad_input("class '" + name + "' has one example; give it two or more, or leave it out");
+  }
+  return Done{};
+}
+
+Judged judged_by(const Folds& folds, const std::vector<std::size_t>& classes, std::size_t class_count) {
+  Judged judged{classes, folds.fold_of, {}};
+  judged.is_known.assign(folds.count, std::vector<std::uint8_t>(class_count, 0));
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    for (std::size_t fold = 0; fold < folds.count; ++fold) {
+      if (folds.fold_of[i] != fold) judged.is_known[fold][classes[i]] = 1;
+    }
+  }
+  return judged;
+}
+
+template <typename To, typename From>
+std::vector<To> converted(const From& values) {
+  std::vector<To> result;
+  result.reserve(static_cast<std::size_t>(values.size()));
+  for (const auto value : values) result.push_back(static_cast<To>(value));
+  return result;
+}
+
+Expert train_expert(const TrainingTable& table, const ExpertColumns& columns, double shrinkage) {
+  const Standardisation standardisation = standardisation_of(table.features, table.rows, columns.columns);
+  Expert expert{.name = columns.name,
+                .columns = converted<std::int64_t>(standardisation.columns),
+                .mean = converted<float>(standardisation.mean),
+                .scale = converted<float>(standardisation.scale)};
+  const Discriminant discriminant = train_discriminant(standardised(table.features, table.rows, standardisation),
+                                                       table.classes, table.class_count, shrinkage);
+  expert.rank = static_cast<std::size_t>(discriminant.axes.rows());
+  expert.axes = converted<float>(discriminant.axes.reshaped<Eigen::RowMajor>());
+  expert.class_means = converted<float>(discriminant.means.reshaped<Eigen::RowMajor>());
+  return expert;
+}
+
+/// The experts that tell anything apart, each with what it says of examples that it had not learned from.
+struct Panel {
+  std::vector<ExpertColumns> columns;
+  std::vector<ExpertChoice> choices;
+};
+
+Panel choose_panel(const TrainingTable& table, const std::vector<ExpertColumns>& experts, const Folds& folds,
+                   const Judged& judged) {
+  Panel panel;
+  for (const ExpertColumns& expert : experts) {
+    if (standardisation_of(table.features, table.rows, expert.columns).columns.empty()) continue;
+    panel.columns.push_back(expert);
+    panel.choices.push_back(choose_expert(table, expert, folds, judged));
+  }
+  return panel;
+}
+
+std::vector<Matrix> scores_of(const Panel& panel) {
+  std::vector<Matrix> scores;
+  for (const ExpertChoice& choice : panel.choices) scores.push_back(choice.scores);
+  return scores;
+}
+
+std::vector<Matrix> distances_of(const TrainingTable& table, const Panel& panel, const Folds& folds) {
+  std::vector<Matrix> distances;
+  for (std::size_t i = 0; i < panel.choices.size(); ++i) {
+    distances.push_back(distances_out_of_fold(table, panel.columns[i], folds, panel.choices[i].shrinkage));
+  }
+  return distances;
+}
+
+/// Answers for runs of time that were not seen, where the folds do not hold out whole groups already.
+LearningReport report_of(const TrainingTable& table, const std::vector<ExpertColumns>& experts, const Folds& folds,
+                         const std::vector<Label>& labels, const std::vector<Matrix>& scores) {
+  if (folds.kind == Folds::Kind::by_group) {
+    return judge(judged_by(folds, table.classes, table.class_count), folds, labels, scores);
+  }
+  const Folds runs = make_folds(labels, table.classes, Deal::in_runs);
+  const Judged judged = judged_by(runs, table.classes, table.class_count);
+  return judge(judged, runs, labels, scores_of(choose_panel(table, experts, runs, judged)));
+}
+
+}  // namespace
+
+struct LearningSet::State {
+  Layout layout;
+  bool moving = false;
+  std::vector<Label> labels;
+  Matrix features;
+};
+
+Result<LearningSet> LearningSet::create(const LabelledFrames& data, const std::function<void(double)>& progress) {
+  if (Status checked = data.validate(); !checked) return checked.error();
+  const bool moving =
+      std::any_of(data.labels.begin(), data.labels.end(), [](const Label& label) { return label.last > label.first; });
+  return LearningSet(
+      std::make_unique<State>(State{data.layout, moving, data.labels, compute_features(data, moving, progress)}));
+}
+
+LearningSet::LearningSet(std::unique_ptr<State> state) : state_(std::move(state)) {}
+LearningSet::LearningSet(LearningSet&&) noexcept = default;
+LearningSet& LearningSet::operator=(LearningSet&&) noexcept = default;
+LearningSet::~LearningSet() = default;
+
+Result<Learned> LearningSet::learn(std::span<const std::size_t> chosen) const {
+  std::vector<Label> labels;
+  for (const std::size_t label : chosen) labels.push_back(state_->labels[label]);
+  const std::map<std::string, std::int64_t> counts = count_names(labels);
+  if (Status checked = check_counts(counts); !checked) return checked.error();
+
+  Learned learned;
+  Classes& classes = learned.classes;
+  classes.layout = state_->layout;
+  classes.moving = state_->moving;
+  for (const auto& [name, count] : counts) {
+    classes.names.push_back(name);
+    classes.examples.push_back(count);
+  }
+  TrainingTable table{state_->features, {chosen.begin(), chosen.end()}, {}, counts.size()};
+  for (const Label& label : labels) {
+    table.classes.push_back(static_cast<std::size_t>(std::distance(counts.begin(), counts.find(label.name))));
+  }
+  const Folds folds = make_folds(labels, table.classes, Deal::in_turns);
+  const Judged judged = judged_by(folds, table.classes, table.class_count);
+  const std::vector<ExpertColumns> experts = expert_columns(classes.layout, classes.moving);
+  const Panel panel = choose_panel(table, experts, folds, judged);
+  if (panel.choices.empty()) return bad_input("all examples are the same; are the frames the right ones?");
+
+  const std::vector<Matrix> scores = scores_of(panel);
+  const std::vector<double> weights = fuse(judged, scores);
+  for (std::size_t i = 0; i < panel.choices.size(); ++i) {
+    classes.experts.push_back(train_expert(table, panel.columns[i], panel.choices[i].shrinkage));
+    classes.experts.back().weight = weights[i] * panel.choices[i].sharpness;
+  }
+  learn_unknown(classes, judged, fused_scores(scores, weights), distances_of(table, panel, folds));
+  learned.report = report_of(table, experts, folds, labels, scores);
+  return learned;
+}
+
+std::optional<TouchLimits> learn_touches(const LabelledFrames& data) {
+  constexpr std::size_t kLeastIdle = 10;  // one of so many frames
+  const std::vector<Touch> labelled = touches_of(data.labels);
+  std::size_t held = 0;
+  bool moving = false;
+  for (const Touch& touch : labelled) {
+    held += touch.last - touch.first + 1;
+    moving = moving || touch.last > touch.first;
+  }
+  if (!moving || kLeastIdle * (data.frame_count() - held) < data.frame_count()) return std::nullopt;
+  return learn_touch_limits(forces_of(data), labelled);
+}
+
+FindingReport judge_touches(const LabelledFrames& data, const TouchLimits& limits) {
+  return judge_finding(touches_of(data.labels), find_touches(limits, forces_of(data)));
+}
+
+}  // namespace dermis::recognition

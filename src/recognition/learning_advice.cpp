@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <algorithm>
+#include <numeric>
+
+#include "dermis/recognition/learning.hpp"
+
+namespace dermis::recognition {
+namespace {
+
+constexpr std::int64_t kFewExamples = 5;
+constexpr double kPoorRecall = 0.7;
+constexpr double kPoorCalibration = 0.15;
+
+std::size_t examples_of(const LearningReport& report, std::size_t label, std::size_t class_count) {
+  const auto row = report.confusion.begin() + static_cast<std::ptrdiff_t>(label * class_count);
+  return std::accumulate(row, row + static_cast<std::ptrdiff_t>(class_count), std::size_t{0});
+}
+
+/// Empty where the class has enough of them.
+std::string need_of(const Learned& learned, std::size_t label) {
+  const std::size_t class_count = learned.classes.names.size();
+  const std::string& name = learned.classes.names[label];
+  const std::int64_t examples = learned.classes.examples[label];
+  const std::size_t judged = examples_of(learned.report, label, class_count);
+  const std::size_t right = learned.report.confusion[label * class_count + label];
+  if (examples < kFewExamples) {
+    return name + " needs more examples: it has " + std::to_string(examples) + ", fewer than " +
+           std::to_string(kFewExamples);
+  }
+  if (judged == 0) return name + " needs examples of another subject or session: all are of one";
+  if (static_cast<double>(right) >= kPoorRecall * static_cast<double>(judged)) return {};
+  return name + " needs more examples: " + std::to_string(right) + " of " + std::to_string(judged) + " were right";
+}
+
+/// The two classes that are most often taken for each other.
+std::string confused_pair(const Learned& learned) {
+  const std::size_t count = learned.classes.names.size();
+  const auto& confusion = learned.report.confusion;
+  std::size_t most = 0;
+  std::size_t first = 0;
+  std::size_t second = 0;
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = a + 1; b < count; ++b) {
+      const std::size_t mistakes = confusion[a * count + b] + confusion[b * count + a];
+      if (mistakes <= most) continue;
+      most = mistakes;
+      first = a;
+      second = b;
+    }
+  }
+  if (most == 0) return {};
+  const std::size_t judged = examples_of(learned.report, first, count) + examples_of(learned.report, second, count);
+  return learned.classes.names[first] + " and " + learned.classes.names[second] +
+         " are confused most: " + std::to_string(most) + " of " + std::to_string(judged) + " examples";
+}
+
+}  // namespace
+
+std::vector<std::string> advice(const Learned& learned) {
+  std::vector<std::string> lines;
+  const auto say = [&](std::string line) {
+    if (!line.empty()) lines.push_back(std::move(line));
+  };
+  for (std::size_t label = 0; label < learned.classes.names.size(); ++label) say(need_of(learned, label));
+  say(confused_pair(learned));
+  if (learned.report.groups == 1)
+    say("all examples are of one subject or session: what another one gives is not known");
+  if (learned.report.calibration_error > kPoorCalibration) {
+    say("the probabilities are not to be trusted: they are off by " +
+        std::to_string(static_cast<int>(100.0 * learned.report.calibration_error)) + " % on average");
+  }
+  return lines;
+}
+
+}  // namespace dermis::recognition

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "recognition/learning_judgement.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace dermis::recognition {
+namespace {
+
+/// |confidence - accuracy| over ten bins of confidence, weighted by how many answers are in each.
+class CalibrationError {
+ public:
+  void add(double confidence, bool is_right) {
+    const auto bin = std::min(static_cast<std::size_t>(confidence * kBins), kBins - 1);
+    excess_[bin] += confidence - (is_right ? 1.0 : 0.0);
+    count_ += 1.0;
+  }
+  [[nodiscard]] double value() const {
+    double sum = 0.0;
+    for (const double excess : excess_) sum += std::abs(excess);
+    return count_ > 0.0 ? sum / count_ : 0.0;
+  }
+
+ private:
+  static constexpr std::size_t kBins = 10;
+  std::array<double, kBins> excess_{};
+  double count_ = 0.0;
+};
+
+/// Probabilities of the examples of each fold, by the weights that suit the other folds.
+Matrix probabilities_of(const Judged& judged, const Folds& folds, const std::vector<Matrix>& scores) {
+  Matrix probabilities(scores.front().rows(), scores.front().cols());
+  for (std::size_t fold = 0; fold < folds.count; ++fold) {
+    Judged others = judged;
+    for (std::size_t i = 0; i < folds.fold_of.size(); ++i) {
+      if (folds.fold_of[i] == fold) others.is_known[fold][others.classes[i]] = 0;  // counts no more
+    }
+    const Matrix fused = fused_scores(scores, fuse(others, scores));
+    for (std::size_t i = 0; i < folds.fold_of.size(); ++i) {
+      if (folds.fold_of[i] != fold) continue;
+      probabilities.row(static_cast<Eigen::Index>(i)) = fused.row(static_cast<Eigen::Index>(i));
+    }
+  }
+  softmax(judged, probabilities);
+  return probabilities;
+}
+
+std::size_t group_count(const std::vector<Label>& labels) {
+  std::set<std::string> groups;
+  for (const Label& label : labels) groups.insert(label.group);
+  return groups.contains("") ? 0 : groups.size();
+}
+
+}  // namespace
+
+LearningReport judge(const Judged& judged, const Folds& folds, const std::vector<Label>& labels,
+                     const std::vector<Matrix>& scores) {
+  const auto class_count = static_cast<std::size_t>(scores.front().cols());
+  LearningReport report;
+  report.by_group = folds.kind == Folds::Kind::by_group;
+  report.folds = folds.count;
+  report.groups = group_count(labels);
+  report.confusion.assign(class_count * class_count, 0);
+  const Matrix probabilities = probabilities_of(judged, folds, scores);
+  CalibrationError calibration;
+  std::size_t right = 0;
+  for (std::size_t i = 0; i < judged.classes.size(); ++i) {
+    if (!judged.counts(i)) continue;
+    Eigen::Index answer = 0;
+    const double confidence = probabilities.row(static_cast<Eigen::Index>(i)).maxCoeff(&answer);
+    const bool is_right = static_cast<std::size_t>(answer) == judged.classes[i];
+    ++report.confusion[judged.classes[i] * class_count + static_cast<std::size_t>(answer)];
+    ++report.judged;
+    right += is_right ? 1 : 0;
+    calibration.add(confidence, is_right);
+  }
+  report.accuracy = static_cast<double>(right) / static_cast<double>(std::max<std::size_t>(report.judged, 1));
+  report.calibration_error = calibration.value();
+  return report;
+}
+
+}  // namespace dermis::recognition

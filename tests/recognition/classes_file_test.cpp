@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/recognition/classes_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dermis/files/safetensors.hpp"
+#include "small_classes.hpp"
+#include "support/mutations.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace dermis::recognition {
+namespace {
+
+using dermis::support::TemporaryFolder;
+
+std::string error_of(const std::string& path) {
+  const Result<Classes> classes = read_classes(path);
+  if (classes) return "no error";
+  EXPECT_EQ(classes.error().kind, ErrorKind::bad_input);
+  return classes.error().message;
+}
+
+TEST(ClassesFile, reads_back_what_was_written) {
+  const TemporaryFolder folder;
+  Classes classes = support::small_classes();
+  classes.layout.arrays[0].name = "two words, \"quoted\" \xC3\xA4";
+  ASSERT_TRUE(write_classes(folder.file("c"), classes));
+  const Result<Classes> read = read_classes(folder.file("c"));
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(*read, classes);
+}
+
+TEST(ClassesFile, gives_the_same_bytes_for_the_same_classes) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_classes(folder.file("a"), support::small_classes()));
+  ASSERT_TRUE(write_classes(folder.file("b"), support::small_classes()));
+  EXPECT_EQ(dermis::support::read_bytes(folder.file("a")), dermis::support::read_bytes(folder.file("b")));
+}
+
+TEST(ClassesFile, writes_no_classes_that_are_not_valid) {
+  const TemporaryFolder folder;
+  Classes classes = support::small_classes();
+  classes.names.clear();
+  EXPECT_FALSE(write_classes(folder.file("c"), classes));
+  EXPECT_EQ(folder.file_count(), 0U);
+}
+
+TEST(ClassesFile, names_a_file_that_holds_something_else) {
+  const TemporaryFolder folder;
+  EXPECT_NE(error_of(folder.file("absent")).find("absent"), std::string::npos);
+  ASSERT_TRUE(files::write_safetensors(folder.file("m"), {{{"format", "dermis model 2"}}, {}}));
+  EXPECT_EQ(error_of(folder.file("m")), folder.file("m") + ": holds no classes; write them with 'dermis learn'");
+}
+
+TEST(ClassesFile, names_a_description_that_is_damaged) {
+  const TemporaryFolder folder;
+  for (const char* const text : {"", "[]", "{", "{}", R"({"layout":[],"names":{},"experts":3})", "null",
+                                 R"({"names":["a","b"],"experts":[{"columns":18446744073709551615}]})"}) {
+    ASSERT_TRUE(files::write_safetensors(folder.file("m"), {{{"format", "dermis classes 1"}, {"classes", text}}, {}}));
+    EXPECT_EQ(error_of(folder.file("m")),
+              folder.file("m") + ": its description of the classes is damaged; learn them again")
+        << text;
+  }
+}
+
+TEST(ClassesFile, names_a_table_that_is_missing) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_classes(folder.file("c"), support::small_classes()));
+  Result<files::SafetensorsFile> file = files::read_safetensors(folder.file("c"));
+  ASSERT_TRUE(file);
+  file->tensors.erase("expert.1.axes");
+  ASSERT_TRUE(files::write_safetensors(folder.file("c"), *file));
+  EXPECT_EQ(error_of(folder.file("c")), folder.file("c") + ": tensor 'expert.1.axes' is missing");
+}
+
+TEST(ClassesFile, that_was_damaged_anywhere_gives_classes_or_one_line) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_classes(folder.file("c"), support::small_classes()));
+  dermis::support::expect_value_or_one_line_error(
+      dermis::support::read_bytes(folder.file("c")), 200,
+      [](const std::string& bytes) { return classes_from_bytes(bytes, "mutated"); });
+}
+
+}  // namespace
+}  // namespace dermis::recognition
