@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "confusion_table.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/text.hpp"
 #include "dermis/recognition/classes_file.hpp"
@@ -28,8 +29,6 @@ using recognition::Learned;
 using recognition::LearningSet;
 using recognition::Split;
 using Clock = std::chrono::steady_clock;
-
-constexpr std::size_t kWidestMatrix = 16;  // classes that a confusion matrix is printed for
 
 struct LearnOptions {
   ExampleOptions examples;
@@ -92,21 +91,6 @@ Status write_predictions(const std::string& path, const LabelledFrames& data, co
   return file->commit();
 }
 
-void print_confusion(const Learned& learned) {
-  const std::vector<std::string>& names = learned.classes.names;
-  if (names.size() > kWidestMatrix) return;
-  std::size_t widest = 5;
-  for (const std::string& name : names) widest = std::max(widest, name.size());
-  fmt::print("\n{:<{}}  answered (columns in the same order)\n", "class", widest);
-  for (std::size_t row = 0; row < names.size(); ++row) {
-    fmt::print("{:<{}} ", names[row], widest);
-    for (std::size_t col = 0; col < names.size(); ++col) {
-      fmt::print("{:>5}", learned.report.confusion[row * names.size() + col]);
-    }
-    fmt::print("\n");
-  }
-}
-
 void print_report(const Learned& learned, double seconds) {
   const recognition::LearningReport& report = learned.report;
   const std::int64_t examples =
@@ -118,7 +102,7 @@ void print_report(const Learned& learned, double seconds) {
              100.0 * report.accuracy, report.judged, report.folds,
              report.by_group ? "of whole recordings, subjects or sessions" : "in order of time",
              100.0 * report.calibration_error);
-  print_confusion(learned);
+  print_confusion(learned.classes.names, report.confusion);
   const std::vector<std::string> lines = recognition::advice(learned);
   if (!lines.empty()) fmt::print("\n");
   for (const std::string& line : lines) fmt::print("{}\n", line);

@@ -20,6 +20,18 @@ constexpr double kMillimetresPerMetre = 1000.0;
 
 }  // namespace
 
+Status check_loads(const recognition::Layout& examples, const std::string& classes, const std::string& model) {
+  if (examples.has_forces() && model.empty()) {
+    return bad_input(classes + ": its classes were learned from forces; name the --model of the array");
+  }
+  if (!examples.has_forces() && !model.empty()) {
+    return bad_input(classes +
+                     ": its classes were learned from readings, not from forces; leave --model out, or learn " +
+                     "them with --model");
+  }
+  return Done{};
+}
+
 bool UnloadedReadings::add(const RawFrame& frame) {
   if (is_done_) return false;
   if (frames_ == 0) {

@@ -26,6 +26,11 @@ struct LoadInput {
   const std::atomic<bool>* stop = nullptr;  ///< As for sources::open_source().
 };
 
+/// Whether loads by `model` (empty: readings) are what the classes of a file were learned from, whose layout is
+/// `examples`.
+[[nodiscard]] Status check_loads(const recognition::Layout& examples, const std::string& classes,
+                                 const std::string& model);
+
 /// Mean of each reading over the first second, and at least 10 frames, but at most 10 s.
 class UnloadedReadings {
  public:

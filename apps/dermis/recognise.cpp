@@ -111,14 +111,7 @@ Status check_classes(const Classes& classes, const RecogniseOptions& options) {
                      ": its classes need further readings beside each frame, which a stream of frames has not; learn "
                      "them without --extra");
   }
-  if (classes.layout.has_forces() && options.in.model.empty()) {
-    return bad_input(options.classes + ": its classes were learned from forces; name the --model of the array");
-  }
-  if (!classes.layout.has_forces() && !options.in.model.empty()) {
-    return bad_input(options.classes +
-                     ": its classes were learned from readings, not from forces; leave --model out, or learn them with "
-                     "--model");
-  }
+  if (Status checked = check_loads(classes.layout, options.classes, options.in.model); !checked) return checked;
   if (classes.layout.rate_hz == 0.0 && options.rate_hz > 0.0) {
     return bad_input("--rate: " + options.classes +
                      " does not know the rate of its examples; learn its classes with --rate");

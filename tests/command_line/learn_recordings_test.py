@@ -4,6 +4,7 @@
 names in other recordings."""
 import csv
 import io
+import json
 import random
 import unittest
 
@@ -72,6 +73,49 @@ class Forces(SmallArray):
         for frame, line in recorded.items():
             self.assertEqual((line["likeliest"], line["probability"]),
                              (from_text[frame]["likeliest"], from_text[frame]["probability"]))
+
+    def evaluate(self, seed, *arguments):
+        return ["evaluate", "--classes", self.work / "c.safetensors", "--in", self.root / f"rec{seed}.mcap", "--model",
+                self.model, "--labels", self.labels(seed), *arguments]
+
+    def test_classes_are_judged_by_a_recording_that_they_have_not_seen(self):
+        self.succeed(*self.learn(3, 4))
+        text = self.succeed(*self.evaluate(5))
+        self.assertIn("accuracy", text)
+        self.assertIn("calibration error", text)
+        self.assertIn("answered", text)
+        judged = json.loads(self.succeed(*self.evaluate(5, "--json")))
+        self.assertEqual(judged["judged"], len(self.kinds[5]))
+        self.assertEqual(judged["classes"], ["few", "many"])
+        self.assertEqual(sum(judged["confusion"]), judged["judged"])
+        self.assertAlmostEqual(judged["accuracy"], self.right_share(5))
+        self.assertLessEqual(judged["calibration_error"], 0.1)
+
+    def test_classes_are_judged_by_plain_files_and_by_new_classes(self):
+        frames = ["--frames", self.work / "frames.npy", "--arrays",
+                  self.written("arrays.csv", "array,rows,cols,first_column\nskin,4,5,0\n")]
+        self.assertEqual(dermis("convert", self.root / "rec3.mcap", self.work / "frames.npy").returncode, 0)
+        labels = self.labels(3)
+        self.succeed("learn", *frames, "--labels", labels, "--out", self.work / "c.safetensors")
+        text = self.succeed("evaluate", "--classes", self.work / "c.safetensors", *frames, "--labels", labels)
+        self.assertIn(f"of {len(self.kinds[3])}, calibration error", text)
+        first, *others = labels.read_text().splitlines()
+        labels.write_text("\n".join([first, *others[:10], *(line.replace("few", "new") for line in others[10:])]) + "\n")
+        text = self.succeed("evaluate", "--classes", self.work / "c.safetensors", *frames, "--labels", labels)
+        self.assertRegex(text, r"of \d+ examples of classes that were not learned, \d+ are called unknown")
+
+    def test_what_cannot_be_judged(self):
+        self.succeed(*self.learn(3))
+        classes = self.work / "c.safetensors"
+        self.refuse(self.evaluate(4)[:-2], ["--labels"])
+        self.refuse(self.evaluate(4, "--report", self.work / "page"), ["--classes", "--report"])
+        self.refuse(["evaluate", "--classes", classes, "--in", self.root / "rec4.mcap", "--labels", self.labels(4)],
+                    [classes, "--model"])
+        self.refuse([*self.evaluate_arguments(), "--labels", self.labels(4)], ["--labels", "--classes"])
+        never = self.written("never.csv", "id,first,last,class\na,0,0,never\n")
+        self.refuse([*self.evaluate(4), "--label", "subject"], ["subject"])
+        self.refuse(["evaluate", "--classes", classes, "--model", self.model, "--in", self.root / "rec4.mcap",
+                     "--labels", never], [classes, "no label"])
 
     def test_one_recording_needs_no_column_that_names_it(self):
         lines = [f"f{frame},{frame},{frame},{kind}" for frame, kind in self.kinds[3].items()]
