@@ -79,7 +79,6 @@ class Session::Implementation {
   [[nodiscard]] Status set_parameter(const stream::Parameter& parameter);
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
   void report_failed_recording(const Notice& notice, const std::string& why);
-  void report_error(const Notice& notice, const std::string& line);
 
   ServedSuit suit_;
   ModelsInUse models_;
@@ -163,8 +162,10 @@ Status Session::Implementation::make_publishers(const Notice& notice) {
   Result<RecognitionPublisher> recognition = RecognitionPublisher::create(suit_, *server_, recorder_);
   if (!recognition) return recognition.error();
   recognition_.emplace(*std::move(recognition));
-  Result<std::unique_ptr<ThreatPublisher>> threats = ThreatPublisher::create(
-      suit_, *server_, recorder_, [this, notice](const std::string& line) { report_error(notice, line); });
+  Result<std::unique_ptr<ThreatPublisher>> threats =
+      ThreatPublisher::create(suit_, *server_, recorder_, [notice](const std::string& line) {
+        if (notice) notice(line);
+      });
   if (!threats) return threats.error();
   threats_ = *std::move(threats);
   return Done{};
@@ -195,13 +196,10 @@ Status Session::Implementation::use_model(std::size_t array, const std::shared_p
 }
 
 void Session::Implementation::report_failed_recording(const Notice& notice, const std::string& why) {
-  report_error(notice, "the recording has ended: " + why);
-  server_->parameters_changed();
-}
-
-void Session::Implementation::report_error(const Notice& notice, const std::string& line) {
+  const std::string line = "the recording has ended: " + why;
   if (notice) notice(line);
   server_->status(kErrorLevel, line);
+  server_->parameters_changed();
 }
 
 Status Session::Implementation::run(const std::atomic<bool>& stop) {
