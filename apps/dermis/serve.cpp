@@ -27,6 +27,7 @@ Status check(const ServeOptions& options) {
     return bad_input("serve: give --from and --model, or --suit");
   }
   if (!place.suit.empty() && !place.model.empty()) return bad_input("--model: suit.toml names the models");
+  if (!place.suit.empty() && !place.classes.empty()) return bad_input("--classes: suit.toml names the classes");
   const std::string& record = options.session.record;
   if (!record.empty() && !record.ends_with(".mcap")) return bad_input("--record: end it in .mcap");
   return options.session.server.validate();
@@ -62,6 +63,8 @@ void add_serve(Command& command) {
   command.option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
   command.option("--model", options->place.model, "Its model, or the array.toml of an array to be calibrated");
   command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
+  command.option("--classes", options->place.classes, "Classes of 'dermis learn', from newtons: names what touches it");
+  command.option("--threats", options->place.threats, "threats.toml: forces that must not be exceeded");
   command.option("--record", options->session.record, "Record from the beginning, .mcap");
   command.option("--host", options->session.server.host, "Address to serve at; all but loopback need a token")
       .shows_default();

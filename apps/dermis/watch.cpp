@@ -40,7 +40,6 @@ using Json = nlohmann::ordered_json;
 constexpr int kExitThreat = 3;
 constexpr std::chrono::seconds kMostSilence{1};
 constexpr std::chrono::milliseconds kLook{20};
-constexpr double kMillimetresPerMetre = 1000.0;
 
 struct WatchOptions {
   std::string threats;
@@ -66,16 +65,9 @@ struct LogEntry {
 std::string line_of(const LogEntry& entry) {
   const double seconds = std::chrono::duration<double>(entry.time - entry.first_time).count();
   if (!entry.begins()) return fmt::format("{:10.3f} s  {} ends", seconds, entry.limit.name);
-  const threats::ThreatValue& value = entry.state.now;
   const double crossed = std::chrono::duration<double>(entry.state.crossed - entry.first_time).count();
-  const std::string unit = threats::unit_of(entry.limit.quantity);
-  const bool is_pressure = unit == "Pa";
-  const double scale = is_pressure ? 1e-3 : 1.0;
-  return fmt::format(
-      "{:10.3f} s  {} begins: {} {:.1f} +- {:.1f} {}{}, limit {:g}, at x {:.1f} mm, y {:.1f} mm, crossed at {:.3f} s",
-      seconds, entry.limit.name, entry.quantity(), scale * value.value, scale * value.sigma, is_pressure ? "k" : "",
-      unit, scale * entry.limit.limit, kMillimetresPerMetre * value.position.x, kMillimetresPerMetre * value.position.y,
-      crossed);
+  return fmt::format("{:10.3f} s  {} begins: {}, crossed at {:.3f} s", seconds, entry.limit.name,
+                     threats::describe(entry.limit, entry.state.now), crossed);
 }
 
 std::string json_of(const LogEntry& entry) {

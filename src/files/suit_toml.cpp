@@ -97,9 +97,11 @@ class SuitReader {
     file_.text(key + ".name", array.name);
     file_.text(key + ".from", array.from);
     file_.text(key + ".model", array.model);
+    file_.text(key + ".classes", array.classes);
     file_.boolean(key + ".mirrored", array.mirrored);
     if (!is_uri(array.from)) array.from = path_beside(name_, array.from);
     array.model = path_beside(name_, array.model);
+    array.classes = path_beside(name_, array.classes);
     read_pose(file_, key + ".base_from_array", array.base_from_array);
     read_shape(key, array.shape);
   }

@@ -19,6 +19,8 @@ FUNCTIONS = {
     "calibration_state_type": "dermis_msgs/CalibrationState",
     "diagnostics_type": "diagnostic_msgs/DiagnosticArray",
     "transforms_type": "tf2_msgs/TFMessage",
+    "classification_type": "vision_msgs/Classification",
+    "threat_type": "dermis_msgs/Threat",
 }
 
 # Whose constants are the enumerators, in lower case.
@@ -28,6 +30,7 @@ ENUMERATIONS = {
     "dermis_msgs/Contact": "ContactPhase",
     "dermis_msgs/FrameStatus": "FrameStatus",
     "dermis_msgs/TaxelStatus": "TaxelStatus",
+    "dermis_msgs/Threat": "Threat::State",
     "diagnostic_msgs/DiagnosticStatus": "Diagnosis::Level",
     "foxglove_msgs/PackedElementField": "PackedElementType",
     "sensor_msgs/PointField": "PointFieldType",

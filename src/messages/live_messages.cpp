@@ -188,4 +188,28 @@ void encode_transforms(std::span<const Transform> transforms, Nanos time, std::v
   }
 }
 
+void encode_classification(std::span<const Hypothesis> results, Nanos time, std::string_view frame_id,
+                           std::vector<std::uint8_t>& message) {
+  CdrWriter writer(message);
+  write_header(writer, time, frame_id);
+  write_count(writer, results.size());
+  for (const Hypothesis& result : results) {
+    writer.write_text(result.class_id);
+    writer.write(result.score);
+  }
+}
+
+void encode_threat(const Threat& threat, std::vector<std::uint8_t>& message) {
+  CdrWriter writer(message);
+  write_header(writer, threat.time, threat.array);
+  for (const std::string_view text : {threat.name, threat.array, threat.zone, threat.quantity}) writer.write_text(text);
+  writer.write(static_cast<std::uint8_t>(threat.state));
+  write_bool(writer, threat.changed);
+  write_stamp(writer, threat.crossed);
+  for (const double value : {threat.value, threat.sigma, threat.worst, threat.limit}) writer.write(value);
+  writer.write_text(threat.unit);
+  writer.write(threat.x);
+  writer.write(threat.y);
+}
+
 }  // namespace dermis::messages

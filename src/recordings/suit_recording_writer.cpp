@@ -5,6 +5,8 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -53,13 +55,19 @@ struct WrittenArray {
   std::uint64_t log_time = 0;
 };
 
+/// A topic of messages that belong to no frame.
+struct EventTopic {
+  std::uint16_t channel = 0;
+  std::uint32_t messages = 0;
+};
+
 /// Not of the arrival by UTC, which leaps when that clock is set.
-std::uint64_t log_time_of(const RawFrame& frame) {
-  return static_cast<std::uint64_t>(std::max<std::int64_t>(frame.time.count(), 0));
+std::uint64_t log_time_of(Nanos time) {
+  return static_cast<std::uint64_t>(std::max<std::int64_t>(time.count(), 0));
 }
 
 void encode(WrittenArray& array, const RawFrame& frame, const ForceFrame* force_frame) {
-  array.log_time = std::max(array.log_time, log_time_of(frame));
+  array.log_time = std::max(array.log_time, log_time_of(frame.time));
   array.lost += frame.acquisition.lost_before;
   array.temperature.is_in_frame = frame.temperature_celsius.has_value();
   if (frame.temperature_celsius) {
@@ -96,11 +104,15 @@ class SuitRecordingWriter::Implementation {
   ~Implementation();
 
   [[nodiscard]] Status write(std::size_t array, const RawFrame& frame, const ForceFrame* force_frame);
+  [[nodiscard]] Status write(const RecordedEvent& event);
   [[nodiscard]] Status commit();
 
  private:
   void describe(const WrittenArray& array);
   void add(WrittenArray& array);
+  void add(const RecordedEvent& event);
+  template <typename Written>
+  [[nodiscard]] Status add_to_chunk(Written& written);
   void seal_chunk();
   void write_chunks(const std::stop_token& stop);
   [[nodiscard]] Status write_sealed();
@@ -109,6 +121,7 @@ class SuitRecordingWriter::Implementation {
 
   std::unique_ptr<McapWriter> mcap_;
   std::vector<WrittenArray> arrays_;  ///< Each of the thread that writes its frames.
+  std::map<std::string, EventTopic, std::less<>> event_topics_;
   bool live_;
   std::size_t chunk_bytes_;
 
@@ -173,6 +186,17 @@ void SuitRecordingWriter::Implementation::add(WrittenArray& array) {
   ++array.frames;
 }
 
+void SuitRecordingWriter::Implementation::add(const RecordedEvent& event) {
+  auto topic = event_topics_.find(event.topic);
+  if (topic == event_topics_.end()) {
+    const std::string name(event.topic);
+    const std::uint16_t channel = mcap_->add_channel({name, "cdr", event.type.name, "ros2msg", event.type.definition});
+    topic = event_topics_.emplace(name, EventTopic{channel}).first;
+  }
+  const std::uint64_t log_time = log_time_of(event.time);
+  mcap_->add_message({topic->second.channel, topic->second.messages++, log_time, log_time, event.message});
+}
+
 void SuitRecordingWriter::Implementation::seal_chunk() {
   chunk_due_ = Clock::time_point::max();
   mcap_->seal_chunk();
@@ -227,12 +251,21 @@ Status SuitRecordingWriter::Implementation::write(std::size_t index, const RawFr
   WrittenArray& array = arrays_[index];
   assert(frame.counts.size() == array.description.shape.taxel_count());
   encode(array, frame, force_frame);
+  return add_to_chunk(array);
+}
+
+Status SuitRecordingWriter::Implementation::write(const RecordedEvent& event) {
+  return add_to_chunk(event);
+}
+
+template <typename Written>
+Status SuitRecordingWriter::Implementation::add_to_chunk(Written& written) {
   bool has_work = false;
   {
     std::unique_lock lock(mutex_);
     room_.wait(lock, [this] { return !status_ || waiting_chunks_ < kMostWaitingBytes / chunk_bytes_; });
     if (!status_) return status_;
-    add(array);
+    add(written);
     has_work = chunk_due_ == Clock::time_point::max();
     if (has_work) chunk_due_ = Clock::now() + kChunkTime;
     if (mcap_->chunk_bytes() >= chunk_bytes_) {
@@ -281,6 +314,10 @@ Status SuitRecordingWriter::write(std::size_t array, const RawFrame& frame) {
 
 Status SuitRecordingWriter::write(std::size_t array, const RawFrame& frame, const ForceFrame& force) {
   return implementation_->write(array, frame, &force);
+}
+
+Status SuitRecordingWriter::write(const RecordedEvent& event) {
+  return implementation_->write(event);
 }
 
 Status SuitRecordingWriter::commit() {

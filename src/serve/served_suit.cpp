@@ -6,14 +6,18 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "dermis/acquisition/source_uri.hpp"
 #include "dermis/files/suit_toml.hpp"
+#include "dermis/recognition/classes_file.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/sources/open_source.hpp"
+#include "dermis/threats/threat_monitor.hpp"
+#include "serve/array_recognition.hpp"
 #include "serve/model_or_array.hpp"
 
 namespace dermis::serve {
@@ -57,9 +61,44 @@ Result<SuitDescription> describe(const SuitPlace& place) {
   SuitArray array;
   array.from = place.from;
   array.model = place.model;
+  array.classes = place.classes;
   SuitDescription suit;
   suit.arrays.push_back(std::move(array));
   return suit;
+}
+
+Status read_classes(const std::string& path, ServedArray& array) {
+  if (path.empty()) return Done{};
+  Result<recognition::Classes> classes = recognition::read_classes(path);
+  if (!classes) return classes.error();
+  const Result<ArrayRecognition> fits = ArrayRecognition::create(*classes, array.name, array.model->array);
+  if (!fits) return bad_input(fmt::format("{}: {}", path, fits.error().message));
+  array.classes = *std::move(classes);
+  return Done{};
+}
+
+/// Zones of arrays that are not there may be misspelt.
+Status read_threats(const std::string& path, const std::function<void(const std::string&)>& notice, ServedSuit& suit) {
+  if (path.empty()) return Done{};
+  Result<threats::ThreatLimits> limits = threats::read_threat_limits(path);
+  if (!limits) return limits.error();
+  for (threats::Zone& zone : limits->zones) {
+    zone.array = topic_name(zone.array);
+    const bool is_there = std::any_of(suit.arrays.begin(), suit.arrays.end(),
+                                      [&](const ServedArray& array) { return array.name == zone.array; });
+    if (!is_there && notice) {
+      notice(fmt::format("{}: zone '{}' is of '{}', which is not served", path, zone.name, zone.array));
+    }
+  }
+  bool any = false;
+  for (const ServedArray& array : suit.arrays) {
+    const auto monitor = threats::ThreatMonitor::create(*limits, array.name, array.model->array);
+    if (!monitor) return bad_input(fmt::format("{}: {}", path, monitor.error().message));
+    any = any || !monitor->states().empty();
+  }
+  if (!any) return bad_input(fmt::format("{}: no threat is for what is served; its zones are of other arrays", path));
+  suit.threats = *std::move(limits);
+  return Done{};
 }
 
 Result<ServedArray> open_array(const SuitArray& described, Models& models) {
@@ -70,13 +109,15 @@ Result<ServedArray> open_array(const SuitArray& described, Models& models) {
   Result<ArraySurface> surface =
       ArraySurface::create(array, described.shape, described.base_from_array, described.mirrored);
   if (!surface) return bad_input(fmt::format("array '{}': {}", name, surface.error().message));
-  return ServedArray{std::move(name),
+  ServedArray served{std::move(name),
                      nullptr,
                      std::move(known->model),
                      *std::move(surface),
                      described.base_from_array,
                      std::move(known->description),
                      described.model};
+  if (Status read = read_classes(described.classes, served); !read) return read.error();
+  return served;
 }
 
 bool is_recording(const std::string& from) {
@@ -170,6 +211,7 @@ Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions opti
     if (!array) return array.error();
     suit.arrays.push_back(*std::move(array));
   }
+  if (Status read = read_threats(place.threats, options.notice, suit); !read) return read.error();
   options.guide = suit.guide;
   if (Status opened = open_sources(place, *described, options, suit); !opened) return opened.error();
   return suit;

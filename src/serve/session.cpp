@@ -16,9 +16,11 @@
 #include "serve/calibration_services.hpp"
 #include "serve/live_parameters.hpp"
 #include "serve/models_in_use.hpp"
+#include "serve/recognition_publisher.hpp"
 #include "serve/status_publisher.hpp"
 #include "serve/suit_json.hpp"
 #include "serve/suit_recorder.hpp"
+#include "serve/threat_publisher.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -72,6 +74,7 @@ class Session::Implementation {
  private:
   [[nodiscard]] Status make_suit(const Notice& notice);
   [[nodiscard]] Status make_server(const SessionOptions& options);
+  [[nodiscard]] Status make_publishers(const Notice& notice);
   void on_result(const live::ArrayResult& result);
   [[nodiscard]] Status set_parameter(const stream::Parameter& parameter);
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
@@ -84,6 +87,8 @@ class Session::Implementation {
   std::unique_ptr<live::LiveSuit> live_;
   std::unique_ptr<stream::Server> server_;
   std::optional<Broadcaster> broadcaster_;
+  std::optional<RecognitionPublisher> recognition_;
+  std::unique_ptr<ThreatPublisher> threats_;  // null: nothing is limited
   std::optional<LiveParameters> parameters_;
   std::optional<StatusPublisher> status_;
 };
@@ -111,7 +116,7 @@ Session::Implementation::~Implementation() {
 Status Session::Implementation::start(const SessionOptions& options) {
   if (Status made = make_suit(options.server.notice); !made) return made;
   if (Status made = make_server(options); !made) return made;
-  broadcaster_.emplace(suit_, *server_);
+  if (Status made = make_publishers(options.server.notice); !made) return made;
   parameters_.emplace(suit_, *live_, *broadcaster_, recorder_);
   status_.emplace(SuitAtWork{suit_, models_, *live_, recorder_, calibration_}, *server_);
   server_->start();
@@ -141,6 +146,9 @@ Status Session::Implementation::make_server(const SessionOptions& options) {
   for (const std::string& name : CalibrationServices::names()) {
     services.push_back({name, [this, name](std::string_view request) { return calibration_.call(name, request); }});
   }
+  if (suit_.threats) {
+    services.push_back({"/threats/reset", [this](std::string_view request) { return threats_->reset(request); }});
+  }
   Result<std::unique_ptr<stream::Server>> server = stream::Server::create(
       options.server, options.page, std::move(handlers), std::move(services), playback_service(suit_.playback.get()));
   if (!server) return server.error();
@@ -149,10 +157,26 @@ Status Session::Implementation::make_server(const SessionOptions& options) {
   return Done{};
 }
 
+Status Session::Implementation::make_publishers(const Notice& notice) {
+  broadcaster_.emplace(suit_, *server_);
+  Result<RecognitionPublisher> recognition = RecognitionPublisher::create(suit_, *server_, recorder_);
+  if (!recognition) return recognition.error();
+  recognition_.emplace(*std::move(recognition));
+  Result<std::unique_ptr<ThreatPublisher>> threats =
+      ThreatPublisher::create(suit_, *server_, recorder_, [notice](const std::string& line) {
+        if (notice) notice(line);
+      });
+  if (!threats) return threats.error();
+  threats_ = *std::move(threats);
+  return Done{};
+}
+
 void Session::Implementation::on_result(const live::ArrayResult& result) {
   recorder_.write(result.array, result.raw);
   calibration_.feed(result.array, result.raw);
   broadcaster_->publish(result);
+  recognition_->publish(result);
+  if (threats_) threats_->publish(result);
 }
 
 Status Session::Implementation::set_parameter(const stream::Parameter& parameter) {

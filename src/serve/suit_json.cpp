@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace dermis::serve {
 namespace {
@@ -24,6 +25,25 @@ nlohmann::ordered_json json_of(const Vector3& vector) {
   return {vector.x, vector.y, vector.z};
 }
 
+/// The limits that hold for the array; `zone` null: everywhere.
+nlohmann::ordered_json limits_of(const ServedArray& array, const threats::ThreatLimits& limits) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const threats::ThreatLimit& limit : limits.limits) {
+    const threats::Zone* const zone = limit.zone.empty() ? nullptr : limits.zone(limit.zone);
+    if (zone != nullptr && zone->array != array.name) continue;
+    nlohmann::ordered_json& one = json.emplace_back();
+    one["name"] = limit.name;
+    one["quantity"] = threats::threat_quantity_names()[static_cast<std::size_t>(limit.quantity)];
+    one["limit"] = limit.limit;
+    one["unit"] = threats::unit_of(limit.quantity);
+    one["zone"] = nullptr;
+    if (zone == nullptr) continue;
+    one["zone"] = {
+        {"name", zone->name}, {"rows", {zone->first_row, zone->last_row}}, {"cols", {zone->first_col, zone->last_col}}};
+  }
+  return json;
+}
+
 nlohmann::ordered_json json_of(const ServedArray& array, const pipeline::Model& model) {
   const ArrayDescription& description = model.array;
   nlohmann::ordered_json json;
@@ -35,6 +55,7 @@ nlohmann::ordered_json json_of(const ServedArray& array, const pipeline::Model& 
   if (description.taxel_area_m2) json["taxel_area_m2"] = *description.taxel_area_m2;
   json["full_scale_counts"] = description.readout.full_scale_counts();
   json["full_scale_n"] = full_scale_newtons(model.networks);
+  if (array.classes) json["classes"] = array.classes->names;
   for (const SurfacePoint& taxel : array.surface.taxels()) {
     json["positions"].push_back(json_of(taxel.position));
     json["normals"].push_back(json_of(taxel.normal));
@@ -49,9 +70,11 @@ std::string suit_json(const ServedSuit& suit, const ModelsInUse& models) {
   json["name"] = suit.name;
   json["arrays"] = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
-    json["arrays"].push_back(json_of(suit.arrays[k], *models.of(k)));
+    nlohmann::ordered_json array = json_of(suit.arrays[k], *models.of(k));
+    if (suit.threats) array["limits"] = limits_of(suit.arrays[k], *suit.threats);
+    json["arrays"].push_back(std::move(array));
   }
-  return json.dump();
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace dermis::serve

@@ -74,16 +74,23 @@ void SuitRecorder::await_closing() {
 }
 
 void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
-  if (!recording_) return;
+  if (write_with([&](recordings::SuitRecordingWriter& writer) { return writer.write(array, raw); })) ++frames_;
+}
+
+void SuitRecorder::write(const recordings::RecordedEvent& event) {
+  write_with([&](recordings::SuitRecordingWriter& writer) { return writer.write(event); });
+}
+
+template <typename Write>
+bool SuitRecorder::write_with(const Write& write) {
+  if (!recording_) return false;
   {
     const std::shared_lock lock(writer_mutex_);
-    if (!writer_) return;
-    if (writer_->write(array, raw)) {
-      ++frames_;
-      return;
-    }
+    if (!writer_) return false;
+    if (write(*writer_)) return true;
   }
   stop();
+  return false;
 }
 
 std::string SuitRecorder::path() const {

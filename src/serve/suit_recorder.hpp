@@ -50,6 +50,7 @@ class SuitRecorder {
 
   /// Takes part in the recording that goes on, if there is one. Each array is written by one thread.
   void write(std::size_t array, const RawFrame& raw);
+  void write(const recordings::RecordedEvent& event);
 
   [[nodiscard]] bool recording() const noexcept { return recording_.load(); }
   /// Of the present or the last recording.
@@ -57,6 +58,9 @@ class SuitRecorder {
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_.load(); }
 
  private:
+  /// Whether it was written; ends a recording that cannot be.
+  template <typename Write>
+  bool write_with(const Write& write);
   void close(recordings::SuitRecordingWriter& writer);
   void await_closing();
 

@@ -17,6 +17,9 @@
 namespace dermis::threats {
 namespace {
 
+constexpr double kMillimetresPerMetre = 1000.0;
+constexpr double kKilo = 1e-3;
+
 bool is_pressure(ThreatQuantity quantity) {
   return std::string_view(unit_of(quantity)) == "Pa";
 }
@@ -150,6 +153,15 @@ class ThreatMonitor::Implementation {
   std::vector<ThreatState> states_;  // of each
   Nanos last_ = Nanos::min();
 };
+
+std::string describe(const ThreatLimit& limit, const ThreatValue& value) {
+  const double scale = is_pressure(limit.quantity) ? kKilo : 1.0;
+  return fmt::format("{} {:.1f} +- {:.1f} {}{}, limit {:g}, at x {:.1f} mm, y {:.1f} mm",
+                     threat_quantity_names()[static_cast<std::size_t>(limit.quantity)], scale * value.value,
+                     scale * value.sigma, is_pressure(limit.quantity) ? "k" : "", unit_of(limit.quantity),
+                     scale * limit.limit, kMillimetresPerMetre * value.position.x,
+                     kMillimetresPerMetre * value.position.y);
+}
 
 Result<ThreatMonitor> ThreatMonitor::create(const ThreatLimits& limits, std::string_view name,
                                             const ArrayDescription& array) {

@@ -13,10 +13,23 @@ import urllib.error
 import urllib.request
 
 import support
+from learn_test import npy
 from support import SmallArray, dermis
 
 PATIENCE = 120  # [s]
 LIVE = "sim:contacts?rows=4&cols=5&rate=100"
+LIMITS = """[[zone]]
+name = "edge"
+array = "{array}"
+rows = [0, {last_row}]
+cols = [0, 4]
+
+[[threat]]
+name = "edge"
+quantity = "taxel_force"
+limit_n = 0.5
+zone = "edge"
+"""
 
 
 class Serve(SmallArray):
@@ -79,6 +92,42 @@ class Serve(SmallArray):
         refused.exception.close()
         self.assertIn("arrays", json.loads(self.get(address + "suit.json?token=secret-1")))
         self.end(process)
+
+    def learned(self, rows, cols):
+        """Classes of presses on the upper and on the lower half of an array of that size."""
+        folder = self.work / f"{rows}x{cols}"
+        folder.mkdir()
+        places = [(k % rows, k % cols) for k in range(24)]
+        npy(folder / "frames.npy", [[5.0 + k / 10 if (i // cols, i % cols) == place else 0.0 for i in range(rows * cols)]
+                                    for k, place in enumerate(places)])
+        (folder / "arrays.csv").write_text(f"array,rows,cols,first_column\nskin,{rows},{cols},0\n")
+        halves = ("upper" if row < rows / 2 else "lower" for row, _ in places)
+        (folder / "labels.csv").write_text("id,first,last,class\n" + "".join(
+            f"t{k},{k},{k},{half}\n" for k, half in enumerate(halves)))
+        result = dermis("learn", "--frames", folder / "frames.npy", "--arrays", folder / "arrays.csv", "--labels",
+                        folder / "labels.csv", "--out", folder / "classes.safetensors")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return folder / "classes.safetensors"
+
+    def test_names_touches_and_watches_limits(self):
+        threats = self.written("threats.toml", LIMITS.format(array="small", last_row=1))
+        process, address = self.serve("--from", LIVE, "--model", self.model, "--classes", self.learned(4, 5),
+                                      "--threats", threats)
+        [array] = json.loads(self.get(address + "suit.json"))["arrays"]
+        self.assertEqual(array["classes"], ["lower", "upper"])
+        self.assertEqual([(limit["name"], limit["zone"]["rows"]) for limit in array["limits"]], [("edge", [0, 1])])
+        self.assertIn("threat 'edge' on 'small': taxel_force", process.stderr.readline())
+        self.end(process)
+
+    def test_classes_and_limits_that_do_not_fit(self):
+        serve = ["serve", "--port", "0", "--from", LIVE, "--model", self.model]
+        classes = self.learned(6, 5)
+        self.refuse([*serve, "--classes", classes], ["classes.safetensors", "4x5", "6x5"])
+        self.refuse([*serve, "--classes", self.work / "none.safetensors"], ["none.safetensors"])
+        self.refuse(["serve", "--suit", "suit.toml", "--classes", classes], ["--classes", "suit.toml"])
+        self.refuse([*serve, "--threats", self.work / "none.toml"], ["none.toml"])
+        outside = self.written("threats.toml", LIMITS.format(array="small", last_row=9))
+        self.refuse([*serve, "--threats", outside], ["threats.toml", "edge", "4 x 5"])
 
     def test_records_all_arrays_of_a_suit(self):
         suit = self.written("suit.toml", "\n".join(

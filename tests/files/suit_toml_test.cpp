@@ -21,6 +21,7 @@ name = "body"
 name = "chest"
 from = "sim:multitouch?rate=200&seed=1"
 model = "chest.safetensors"
+classes = "touches.safetensors"
 base_from_array = {translation_mm = [-75, 100.5, 1e2], rotation_deg = [90, 0, 0]}
 
 [[array]]
@@ -73,6 +74,8 @@ TEST(SuitToml, reads_every_key) {
   EXPECT_EQ(suit->name, "body");
   ASSERT_EQ(suit->arrays.size(), 4U);
   const SuitArray& chest = suit->arrays[0];
+  EXPECT_EQ(chest.classes, "touches.safetensors");
+  EXPECT_EQ(suit->arrays[1].classes, "");
   EXPECT_EQ(chest.name, "chest");
   EXPECT_EQ(chest.from, "sim:multitouch?rate=200&seed=1");
   EXPECT_EQ(chest.model, "chest.safetensors");

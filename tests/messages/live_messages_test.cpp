@@ -43,7 +43,7 @@ json point_field(const char* name, int offset, int datatype) {
 
 TEST(LiveMessages, types_name_all_that_they_use) {
   for (const MessageType* type : {&point_cloud_type(), &contacts_type(), &statistics_type(), &calibration_state_type(),
-                                  &diagnostics_type(), &transforms_type()}) {
+                                  &diagnostics_type(), &transforms_type(), &classification_type(), &threat_type()}) {
     EXPECT_NE(type->definition.find("MSG: std_msgs/Header"), std::string::npos) << type->name;
     EXPECT_NE(type->definition.find("MSG: builtin_interfaces/Time"), std::string::npos) << type->name;
   }
@@ -231,6 +231,38 @@ TEST(LiveMessages, diagnoses_and_transforms_read_back) {
                           {"child_frame_id", "chest"},
                           {"transform", {{"translation", vector(1.0, 2.0, 3.0)}, {"rotation", rotation}}}};
   EXPECT_EQ(read_by_definition(transforms_type(), message), json({{"transforms", json::array({transform})}}));
+}
+
+TEST(LiveMessages, a_classification_has_its_results_in_their_order) {
+  const std::vector<Hypothesis> results = {{"unknown", 1.0}, {"between classes", 0.0}, {"tap", 0.625}};
+  std::vector<std::uint8_t> message;
+  encode_classification(results, kTime, "suit", message);
+  json expected = json::array();
+  for (const Hypothesis& result : results) expected.push_back({{"class_id", result.class_id}, {"score", result.score}});
+  EXPECT_EQ(read_by_definition(classification_type(), message), json({{"header", header()}, {"results", expected}}));
+}
+
+TEST(LiveMessages, a_threat_has_all_of_its_fields) {
+  const Threat threat{
+      kTime, "throat", "suit", "neck", "contact_force", Threat::State::latched, true, kTime, 25.5, 0.25, 30.5,
+      20.0,  "N",      0.01,   0.02};
+  std::vector<std::uint8_t> message;
+  encode_threat(threat, message);
+  EXPECT_EQ(read_by_definition(threat_type(), message), json({{"header", header()},
+                                                              {"name", "throat"},
+                                                              {"array", "suit"},
+                                                              {"zone", "neck"},
+                                                              {"quantity", "contact_force"},
+                                                              {"state", 3},
+                                                              {"changed", true},
+                                                              {"crossed", stamp()},
+                                                              {"value", 25.5},
+                                                              {"sigma", 0.25},
+                                                              {"worst", 30.5},
+                                                              {"limit", 20.0},
+                                                              {"unit", "N"},
+                                                              {"x", 0.01},
+                                                              {"y", 0.02}}));
 }
 
 TEST(LiveMessages, conductance_is_a_grid_like_force) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <thread>
 
+#include "dermis/messages/live_messages.hpp"
 #include "dermis/recordings/recording.hpp"
 #include "support/mutations.hpp"
 #include "support/random_frames.hpp"
@@ -159,6 +160,34 @@ TEST(SuitRecording, an_array_that_comes_late_or_pauses_keeps_the_order_of_all) {
   }
   record(folder.file("rec.mcap"), arrays, all, {.compression = McapCompression::none});
   expect_same(read_suit(folder.file("rec.mcap")), all);
+}
+
+TEST(SuitRecording, messages_of_no_frame_stand_beside_the_frames) {
+  const support::TemporaryFolder folder;
+  const std::vector<RecordedArray> arrays = three_arrays();
+  const std::vector<Written> all = interleaved(arrays, 50, 9);
+  const std::vector<std::uint8_t> event = {0, 1, 0, 0, 7};
+  const auto writer = SuitRecordingWriter::create(folder.file("suit.mcap"), arrays);
+  ASSERT_TRUE(writer);
+  for (const Written& written : all) {
+    ASSERT_TRUE((*writer)->write({"/chest/recognition", messages::classification_type(), written.frame.time, event}));
+    ASSERT_TRUE((*writer)->write(written.array, written.frame));
+  }
+  ASSERT_TRUE((*writer)->commit());
+  const auto suit = SuitRecordingReader::open(folder.file("suit.mcap"));
+  ASSERT_TRUE(suit) << suit.error().message;
+  EXPECT_EQ((*suit)->arrays().size(), arrays.size());
+  EXPECT_EQ(read_suit(**suit).size(), all.size());
+  const auto mcap = McapReader::open(folder.file("suit.mcap"));
+  ASSERT_TRUE(mcap);
+  std::uint32_t events = 0;
+  McapMessage message;
+  for (auto more = (*mcap)->next(message); more && *more; more = (*mcap)->next(message)) {
+    if ((*mcap)->channels().at(message.channel).topic != "/chest/recognition") continue;
+    EXPECT_EQ(std::vector<std::uint8_t>(message.data.begin(), message.data.end()), event);
+    EXPECT_EQ(message.sequence, events++);
+  }
+  EXPECT_EQ(events, all.size());
 }
 
 TEST(SuitRecording, log_times_of_each_array_rise) {

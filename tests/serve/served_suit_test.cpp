@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "dermis/files/array_toml.hpp"
+#include "dermis/recognition/classes_file.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 #include "serve/models_in_use.hpp"
+#include "serve/named_touches.hpp"
 #include "serve/small_suit.hpp"
 #include "serve/suit_json.hpp"
 #include "support/temporary_folder.hpp"
@@ -128,6 +130,51 @@ TEST(ServedSuit, refuses_what_cannot_be_served) {
             "'sim:contacts?seed=2': say how many frames a second it sends, such as sim:contacts?seed=2&rate=100");
   EXPECT_NE(refusal({.from = "sim:contacts?rate=100&bogus=1", .model = folder.model()}).find("bogus"),
             std::string::npos);
+}
+
+TEST(ServedSuit, opens_classes_and_limits_and_says_which_file_does_not_fit) {
+  const ModelFolder folder;
+  const std::string classes = folder.file("classes.safetensors");
+  const std::string limits = folder.file("threats.toml");
+  ASSERT_TRUE(recognition::write_classes(classes, left_and_right()));
+  write_bytes(limits,
+              "[[zone]]\nname = \"tip\"\narray = \"hand made\"\nrows = [0, 1]\ncols = [0, 1]\n"
+              "[[threat]]\nname = \"tip\"\nquantity = \"taxel_force\"\nlimit_n = 5\nzone = \"tip\"\n");
+  SuitPlace place{
+      .from = "sim:contacts?rate=100", .model = folder.model(), .suit = "", .classes = classes, .threats = limits};
+  const Result<ServedSuit> suit = open_suit(place);
+  ASSERT_TRUE(suit) << suit.error().message;
+  EXPECT_EQ(suit->arrays[0].classes->names, (std::vector<std::string>{"left", "right"}));
+  EXPECT_EQ(suit->threats->zones[0].array, suit->arrays[0].name) << "as topics have it";
+
+  recognition::Classes unlike = left_and_right();
+  unlike.layout.arrays[0].row_pitch_mm = unlike.layout.arrays[0].col_pitch_mm = 0.0;
+  ASSERT_TRUE(recognition::write_classes(classes, unlike));
+  EXPECT_TRUE(refusal(place).starts_with(classes + ": array 'hand_made' has 3x4 taxels")) << refusal(place);
+  place.classes.clear();
+  write_bytes(limits,
+              "[[zone]]\nname = \"tip\"\narray = \"chset\"\nrows = [0, 1]\ncols = [0, 1]\n"
+              "[[threat]]\nname = \"tip\"\nquantity = \"taxel_force\"\nlimit_n = 5\nzone = \"tip\"\n");
+  EXPECT_EQ(refusal(place), limits + ": no threat is for what is served; its zones are of other arrays");
+}
+
+TEST(SuitJson, tells_the_classes_of_an_array_and_the_limits_that_hold_there) {
+  ServedSuit suit = small_suit({"left", "right"}, kNever);
+  suit.arrays[0].classes = left_and_right();
+  suit.threats = threats::ThreatLimits{
+      {{"palm", "right", 0, 1, 2, 3}},
+      {{.name = "pushed", .quantity = threats::ThreatQuantity::total_force, .limit = 50.0},
+       {.name = "palm", .quantity = threats::ThreatQuantity::taxel_pressure, .limit = 2e5, .zone = "palm"}}};
+  const nlohmann::json arrays = nlohmann::json::parse(suit_json(suit, ModelsInUse(suit)))["arrays"];
+  EXPECT_EQ(arrays[0]["classes"], (nlohmann::json{"left", "right"}));
+  EXPECT_FALSE(arrays[1].contains("classes"));
+  const nlohmann::json pushed = {
+      {"name", "pushed"}, {"quantity", "total_force"}, {"limit", 50.0}, {"unit", "N"}, {"zone", nullptr}};
+  const nlohmann::json zone = {{"name", "palm"}, {"rows", {0, 1}}, {"cols", {2, 3}}};
+  const nlohmann::json palm = {
+      {"name", "palm"}, {"quantity", "taxel_pressure"}, {"limit", 2e5}, {"unit", "Pa"}, {"zone", zone}};
+  EXPECT_EQ(arrays[0]["limits"], nlohmann::json::array({pushed}));
+  EXPECT_EQ(arrays[1]["limits"], nlohmann::json::array({pushed, palm}));
 }
 
 TEST(SuitJson, tells_clients_what_the_arrays_are) {

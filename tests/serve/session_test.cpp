@@ -14,7 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/recordings/mcap.hpp"
 #include "dermis/recordings/suit_recording.hpp"
+#include "serve/named_touches.hpp"
 #include "serve/small_suit.hpp"
 #include "serve/stream_client.hpp"
 #include "support/temporary_folder.hpp"
@@ -202,6 +204,45 @@ TEST(Session, plays_a_recording_on_its_own_clock) {
     EXPECT_LE(client.next_message(topic).time, std::chrono::seconds(3)) << topic;
   }
   EXPECT_TRUE(work.end());
+}
+
+TEST(Session, names_touches_and_watches_limits_for_its_clients_and_in_its_recording) {
+  const TemporaryFolder folder;
+  const std::atomic<bool> never = false;
+  ServedSuit suit = small_suit({"left", "right"}, never);
+  recognition::Classes classes = left_and_right();
+  suit.arrays[0].classes = std::move(classes);
+  suit.threats =
+      threats::ThreatLimits{{}, {{.name = "pushed", .quantity = threats::ThreatQuantity::total_force, .limit = 100.0}}};
+  Work work(session_of(std::move(suit), options_with(folder.file("rec.mcap"))));
+  StreamClient client(work.port());
+  client.subscribe({"/left/recognition", "/threat"});
+  EXPECT_FALSE(client.next_message("/left/recognition").bytes.empty());
+  EXPECT_FALSE(client.next_message("/threat").bytes.empty());
+  EXPECT_EQ(client.call("/threats/reset", "{}"), "{}");
+  ASSERT_TRUE(work.end());
+  EXPECT_GT(recorded_frames(folder.file("rec.mcap"))[0], 0U);
+  const auto info = recordings::McapReader::open(folder.file("rec.mcap"));
+  ASSERT_TRUE(info);
+  bool is_recorded = false;
+  for (const auto& [id, channel] : (*info)->channels()) is_recorded |= channel.topic == "/left/recognition";
+  EXPECT_TRUE(is_recorded);
+}
+
+TEST(Session, refuses_classes_and_limits_that_do_not_fit_an_array) {
+  const std::atomic<bool> never = false;
+  ServedSuit named = small_suit({"chest"}, never);
+  named.arrays[0].classes = left_and_right();
+  named.arrays[0].classes->layout.arrays[0].row_pitch_mm = 0.0;
+  const auto unlike = Session::create(std::move(named), options_with());
+  ASSERT_FALSE(unlike);
+  EXPECT_TRUE(unlike.error().message.starts_with("array 'chest': ")) << unlike.error().message;
+  ServedSuit limited = small_suit({"chest"}, never);
+  limited.threats =
+      threats::ThreatLimits{{{"neck", "chest", 0, 9, 0, 1}}, {{.name = "n", .limit = 1.0, .zone = "neck"}}};
+  const auto outside = Session::create(std::move(limited), options_with());
+  ASSERT_FALSE(outside);
+  EXPECT_TRUE(outside.error().message.starts_with("array 'chest': zone 'neck'")) << outside.error().message;
 }
 
 TEST(Session, refuses_a_port_that_is_taken_and_an_address_that_needs_a_token) {

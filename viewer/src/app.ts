@@ -9,6 +9,7 @@ import { Suit } from "./suit";
 import { Theme } from "./theme";
 import { Bar } from "./ui/bar";
 import { makeHelp } from "./ui/help";
+import { makeThreatBanner } from "./ui/threat_banner";
 import { makeThresholds } from "./ui/thresholds";
 import { makeTokenForm } from "./ui/token_form";
 import { Transport } from "./ui/transport";
@@ -49,7 +50,7 @@ export class App implements ViewContext {
   }
 
   begin(): void {
-    document.body.append(this.#bar.element, makeTokenForm(this.stream), this.#notice, this.#room, this.#transport.element, this.#help, this.#thresholds);
+    document.body.append(this.#bar.element, makeTokenForm(this.stream), this.#notice, makeThreatBanner(this.live.threats, this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds);
     window.addEventListener("hashchange", () => this.#route());
     window.addEventListener("keydown", (event) => this.#key(event));
     this.suit.selected.follow((array) => array !== undefined && this.#shown !== undefined && this.open(this.#shown.name));

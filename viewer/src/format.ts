@@ -42,6 +42,16 @@ export function count(value: number): string {
   return value.toLocaleString("en").replaceAll(",", "\u202f");
 }
 
+/** A force, pressure or rate of force, with what it is measured in: kPa for Pa. */
+export function withUnit(value: number, unit: string): string {
+  return unit === "Pa" ? `${fixed(1e-3 * value, 1)} kPa` : `${fixed(value, 1)} ${unit}`;
+}
+
+/** Seconds since 1970, or since a recording began, as hh:mm:ss.mmm of the day (UTC). */
+export function timeOfDay(seconds: number): string {
+  return new Date(1000 * seconds).toISOString().slice(11, 23);
+}
+
 export const STATUS_WORDS = ["ok", "saturated", "above range", "dead", "line fault", "invalid"] as const;
 
 export function statusWord(status: number): string {

@@ -2,6 +2,22 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { Signal } from "./signal";
 
+/** A rectangle of taxels: first and last of its rows and columns. */
+export interface Zone {
+  name: string;
+  rows: [number, number];
+  cols: [number, number];
+}
+
+/** What must not be exceeded, in a zone or (null) anywhere on the array. */
+export interface Limit {
+  name: string;
+  quantity: string;
+  limit: number;
+  unit: string;
+  zone: Zone | null;
+}
+
 /** One array, as /suit.json describes it. */
 export interface ArrayDescription {
   name: string;
@@ -13,6 +29,10 @@ export interface ArrayDescription {
   full_scale_n: number;
   positions: [number, number, number][];
   normals: [number, number, number][];
+  /** What its touches are named; missing where they are not. */
+  classes?: string[];
+  /** Missing where nothing is limited. */
+  limits?: Limit[];
 }
 
 export interface SuitDescription {

@@ -12,9 +12,10 @@ namespace dermis {
 
 /// One array of a suit: where its frames come from, what turns them into newtons, where it sits.
 struct SuitArray {
-  std::string name;   ///< Unique in the suit; a letter, then letters, digits and '_': topics are /<name>/raw, ...
-  std::string from;   ///< URI of a device or of the simulator.
-  std::string model;  ///< Path of its model file.
+  std::string name;       ///< Unique in the suit; a letter, then letters, digits and '_': topics are /<name>/raw, ...
+  std::string from;       ///< URI of a device or of the simulator.
+  std::string model;      ///< Path of its model file.
+  std::string classes{};  ///< Path of the classes of what touches it; empty: none.
   Pose base_from_array{};
   bool mirrored = false;
   ArrayShape shape{};

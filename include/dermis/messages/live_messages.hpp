@@ -26,6 +26,8 @@ namespace dermis::messages {
 [[nodiscard]] const MessageType& calibration_state_type();
 [[nodiscard]] const MessageType& diagnostics_type();
 [[nodiscard]] const MessageType& transforms_type();
+[[nodiscard]] const MessageType& classification_type();
+[[nodiscard]] const MessageType& threat_type();
 
 /// foxglove_msgs/msg/Grid with the fields siemens and sigma_siemens (float32) and status (uint8, TaxelStatus) of each
 /// taxel, placed as encode_grid() places forces.
@@ -123,5 +125,34 @@ struct Transform {
   Pose parent_from_child;
 };
 void encode_transforms(std::span<const Transform> transforms, Nanos time, std::vector<std::uint8_t>& message);
+
+/// vision_msgs/msg/Classification: what touches an array, the answer first.
+struct Hypothesis {
+  std::string_view class_id;
+  double score = 0.0;
+};
+void encode_classification(std::span<const Hypothesis> results, Nanos time, std::string_view frame_id,
+                           std::vector<std::uint8_t>& message);
+
+/// dermis_msgs/msg/Threat: how one limit stands in one array.
+struct Threat {
+  enum class State : std::uint8_t { clear, crossed, active, latched };
+  Nanos time{};
+  std::string_view name;
+  std::string_view array;
+  std::string_view zone;
+  std::string_view quantity;
+  State state = State::clear;
+  bool changed = false;
+  Nanos crossed{};
+  double value = 0.0;
+  double sigma = 0.0;
+  double worst = 0.0;
+  double limit = 0.0;
+  std::string_view unit;
+  double x = 0.0;
+  double y = 0.0;
+};
+void encode_threat(const Threat& threat, std::vector<std::uint8_t>& message);
 
 }  // namespace dermis::messages

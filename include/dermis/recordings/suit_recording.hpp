@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <istream>
 #include <memory>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dermis/core/frame_source.hpp"
@@ -24,6 +27,14 @@ struct RecordedArray {
   std::string array_toml{};  ///< Description of the array, as array.toml; empty: none.
   std::string model_hash{};  ///< content_hash() of the model that gave the forces; empty: none.
   messages::Pitch pitch{};   ///< For the forces.
+};
+
+/// A message that belongs to no frame: what was recognised, a threat.
+struct RecordedEvent {
+  std::string_view topic;  ///< "/chest/recognition"; of one type in a recording.
+  const messages::MessageType& type;
+  Nanos time{};
+  std::span<const std::uint8_t> message;
 };
 
 struct SuitRecordingOptions {
@@ -48,6 +59,7 @@ class SuitRecordingWriter {
   [[nodiscard]] Status write(std::size_t array, const RawFrame& frame);
   /// A frame with its forces.
   [[nodiscard]] Status write(std::size_t array, const RawFrame& frame, const ForceFrame& force);
+  [[nodiscard]] Status write(const RecordedEvent& event);
   /// To be called once, when no write() is under way or follows.
   [[nodiscard]] Status commit();
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,10 @@
 #include "dermis/core/surface.hpp"
 #include "dermis/live/playback.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/recognition/classes.hpp"
 #include "dermis/sources/guide_voice.hpp"
 #include "dermis/sources/open_source.hpp"
+#include "dermis/threats/threat_limits.hpp"
 
 /// An array or a suit served live: the stream of docs/stream.md with its parameters, services and recordings.
 namespace dermis::serve {
@@ -30,12 +33,14 @@ struct ServedArray {
   Pose suit_from_array{};
   ArrayDescription description;  ///< As calibration takes it: parts of the circuit may still be unknown.
   std::string model_path{};      ///< Of the model or its array.toml: a calibration saves into that folder.
+  std::optional<recognition::Classes> classes{};  ///< What touches it are named by; learned from newtons.
 };
 
 /// What is to be served.
 struct ServedSuit {
   std::string name = "suit";
-  std::vector<ServedArray> arrays;             ///< At least one.
+  std::vector<ServedArray> arrays;                         ///< At least one.
+  std::optional<dermis::threats::ThreatLimits> threats{};  ///< Zones name arrays as `arrays` does.
   std::unique_ptr<live::Playback> playback{};  ///< Of the recording from which all sources come; null: they are live.
   /// Heard by the simulated hands among the sources. Not null.
   std::shared_ptr<sources::GuideVoice> guide = std::make_shared<sources::GuideVoice>();
@@ -46,9 +51,11 @@ struct ServedSuit {
 
 /// What is to be opened: one source with its model, or a suit.
 struct SuitPlace {
-  std::string from{};   ///< URI or recording; of a suit: a recording of it, or empty for its own sources.
-  std::string model{};  ///< Model file, or the array.toml of an array to be calibrated, where `suit` is empty.
-  std::string suit{};   ///< suit.toml
+  std::string from{};     ///< URI or recording; of a suit: a recording of it, or empty for its own sources.
+  std::string model{};    ///< Model file, or the array.toml of an array to be calibrated, where `suit` is empty.
+  std::string suit{};     ///< suit.toml
+  std::string classes{};  ///< Of `dermis learn`, for one source; a suit.toml names its own. Empty: none.
+  std::string threats{};  ///< threats.toml; empty: none.
 };
 
 /// Opens all that the place names. Of the options, `array` and `guide` are not used. Fails where a file or a source

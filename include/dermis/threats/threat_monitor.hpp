@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "dermis/core/array_description.hpp"
@@ -35,6 +36,9 @@ struct ThreatValue {
 
   bool operator==(const ThreatValue&) const = default;
 };
+
+/// "contact_force 25.1 +- 0.3 N, limit 20, at x 12.0 mm, y 40.0 mm": for logs; pressures in kPa.
+[[nodiscard]] std::string describe(const ThreatLimit& limit, const ThreatValue& value);
 
 enum class ThreatPhase : std::uint8_t {
   clear,     ///< Below the limit.

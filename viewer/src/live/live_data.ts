@@ -5,8 +5,10 @@ import { type HealthStatus, type Statistics, readHealth, readStatistics } from "
 import { Signal } from "../signal";
 import type { Stream } from "../stream/stream";
 import type { Suit } from "../suit";
+import { readThreat } from "../messages/threat";
 import { ContactSlots } from "./contact_slots";
 import { ForceHistory } from "./force_history";
+import { ThreatBoard } from "./threat_board";
 
 /** What is known of one array, whatever is shown. */
 export class ArrayLive {
@@ -17,10 +19,11 @@ export class ArrayLive {
   readonly slots = new ContactSlots();
 }
 
-/** What is followed from the beginning, as every view needs it: contacts, statistics, health. */
+/** What is followed from the beginning, as every view needs it: contacts, threats, statistics, health. */
 export class LiveData {
   arrays: ArrayLive[] = [];
   readonly statistics = new Signal<Statistics | undefined>(undefined);
+  readonly threats = new ThreatBoard();
   readonly health = new Signal<readonly HealthStatus[]>([]);
   /** Time of the newest frame of any array. */
   latestS = 0;
@@ -30,6 +33,8 @@ export class LiveData {
   constructor(stream: Stream, suit: Suit) {
     suit.description.follow(({ arrays }) => this.#restart(arrays.map(({ name }) => name)));
     stream.subscribe("/contacts", (message) => this.#receive(message));
+    stream.subscribe("/threat", (message) => this.threats.add(readThreat(message)));
+    stream.serverInfo.follow(() => this.threats.restart());
     stream.subscribe("/statistics", (message) => (this.statistics.value = readStatistics(message)));
     stream.subscribe("/health", (message) => (this.health.value = readHealth(message)));
   }

@@ -4,9 +4,11 @@ import { describe, expect, it } from "vitest";
 import { ros2humble } from "@foxglove/rosmsg-msgs-common";
 import { CalibrationHint, CalibrationStage, readCalibrationState } from "./calibration_state";
 import { CdrReader } from "./cdr_reader";
+import { readClassification } from "./classification";
 import { ContactPhase, ContactsFrame, readContacts, readContactsArray } from "./contacts";
 import { emptyGrid, type PointsFrame, readCounts, readGrid, readPoints, TaxelStatus } from "./grids";
 import { DiagnosticLevel, readHealth, readStatistics } from "./statistics";
+import { readThreat, ThreatState } from "./threat";
 import { constants, type Definition, definitions, full, sample, simpleFields, written } from "./test_messages";
 
 const header = { stamp: { sec: 1234, nanosec: 500000000 }, frame_id: "suit" };
@@ -138,6 +140,30 @@ describe("points", () => {
   });
 });
 
+describe("what was recognised", () => {
+  const told = (...results: [string, number][]): DataView =>
+    written("vision_msgs/msg/Classification", { header, results: results.map(([class_id, score]) => ({ class_id, score })) });
+
+  it("is the likeliest class with the probabilities of all", () => {
+    const classes = [{ name: "tap", probability: 0.75 }, { name: "hug", probability: 0.25 }];
+    expect(readClassification(told(["tap", 0.75], ["hug", 0.25]))).toEqual({ stampS: 1234.5, answer: "tap", reason: "", classes });
+  });
+
+  it("or unknown, with the reason", () => {
+    const answer = readClassification(told(["unknown", 1], ["between classes", 0], ["tap", 0.5], ["hug", 0.5]));
+    expect(answer).toMatchObject({ answer: "unknown", reason: "between classes" });
+    expect(answer.classes.map(({ name }) => name)).toEqual(["tap", "hug"]);
+  });
+});
+
+describe("threats", () => {
+  it("read as they were written", () => {
+    const threat = sample("dermis_msgs/msg/Threat");
+    const { sec } = threat["crossed"] as { sec: number };
+    expect(readThreat(written("dermis_msgs/msg/Threat", { ...threat, header }))).toEqual({ ...simpleFields(threat), stampS: 1234.5, crossedS: sec + 0.25 });
+  });
+});
+
 describe("statistics, health and calibration", () => {
   it("read as they were written", () => {
     const statistics = sample("dermis_msgs/msg/Statistics");
@@ -175,6 +201,7 @@ describe("the .msg files", () => {
     expect(ContactPhase).toEqual(constants("dermis_msgs/msg/Contact"));
     expect(DiagnosticLevel).toEqual(constants("diagnostic_msgs/msg/DiagnosticStatus"));
     expect(TaxelStatus).toEqual(constants("dermis_msgs/msg/TaxelStatus"));
+    expect(ThreatState).toEqual(constants("dermis_msgs/msg/Threat"));
   });
 
   it("of ROS are those of ROS", () => {

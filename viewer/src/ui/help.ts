@@ -3,7 +3,7 @@
 import { element } from "../dom";
 
 const KEYS: readonly (readonly [string, string])[] = [
-  ["1 \u2026 5", "the views"],
+  ["1 \u2026 6", "the views"],
   ["[  ]", "previous, next array"],
   ["Space", "stop the picture, go on"],
   ["T", "tare: what the array shows now is zero"],

@@ -17,6 +17,7 @@ import { Overlay } from "./overlay";
 import { QUANTITIES } from "./quantities";
 import { Summary } from "./summary";
 import { MOST_PINS, TaxelTable } from "./taxel_table";
+import { drawZones } from "./zones";
 
 const TEXT_PERIOD_MS = 100;
 const FORCE = 2;
@@ -38,6 +39,7 @@ class ArrayView implements View {
   readonly #maps: HeatMaps;
   readonly #overlay = new Overlay(element("canvas", { class: "layer", "aria-hidden": "true" }));
   readonly #axes = element("canvas", { class: "layer", "aria-hidden": "true" });
+  readonly #zones = element("div", { class: "layer zones", "aria-hidden": "true" });
   readonly #room: HTMLElement;
   readonly #spoken = element("p", { class: "only-spoken", "aria-live": "polite" });
   readonly #taxels = new TaxelTable();
@@ -152,6 +154,7 @@ class ArrayView implements View {
       ...this.#panels.map((panel) => panel.element),
       this.#maps.canvas,
       this.#axes,
+      this.#zones,
       this.#overlay.canvas,
     );
     room.addEventListener("pointermove", (event) => this.#point(event));
@@ -230,6 +233,7 @@ class ArrayView implements View {
       return area;
     });
     drawAxes(this.#axes, this.#areas, array, pixelRatio);
+    drawZones(this.#zones, this.#areas[FORCE], array);
     this.#mapsDue = true;
     this.#overlayDue = true;
     this.#textDue = true;

@@ -6,6 +6,7 @@ import { type Contact, type ContactsFrame, ContactPhase } from "../../messages/c
 import type { PointsFrame } from "../../messages/grids";
 import type { SuitDescription } from "../../suit";
 import { cssColor, rgbColor } from "../../theme";
+import { limitedZones } from "../array/zones";
 import { ContactArrows, MOST_ARROWS } from "./contact_arrows";
 import { TaxelCloud } from "./taxel_cloud";
 
@@ -17,6 +18,19 @@ const FIT_SHARE = 0.8;
 /** Clicks this near to a taxel mean its array, as a share of the suit's size. */
 const CLICK_SHARE = 0.03;
 
+/** Of the lines round zones above their taxels, as a share of the suit's size. */
+const LIFT_SHARE = 0.01;
+
+/** The taxels at the border of a rectangle, in the order of a walk round it. */
+function outline([top, bottom]: [number, number], [left, right]: [number, number]): [number, number][] {
+  const path: [number, number][] = [];
+  for (let col = left; col <= right; ++col) path.push([top, col]);
+  for (let row = top + 1; row <= bottom; ++row) path.push([row, right]);
+  for (let col = right - 1; col >= left; --col) path.push([bottom, col]);
+  for (let row = bottom - 1; row > top; --row) path.push([row, left]);
+  return path;
+}
+
 /** What is drawn once in the suit's frame: three.js, loaded when the view is first shown. */
 export class SuitScene {
   readonly #renderer: three.WebGLRenderer;
@@ -24,6 +38,8 @@ export class SuitScene {
   readonly #camera = new three.PerspectiveCamera(35, 1, 0.001, 100);
   readonly #controls: OrbitControls;
   readonly #arrows = new ContactArrows();
+  readonly #zones = new three.Group();
+  readonly #zoneInk = new three.LineBasicMaterial();
   readonly #centre = new three.Vector3();
   readonly #projected = new three.Vector3();
   readonly #right = new three.Vector3();
@@ -49,7 +65,7 @@ export class SuitScene {
     this.#controls.enableDamping = false;
     this.#controls.addEventListener("change", () => (this.#isDue = true));
     this.#controls.addEventListener("start", () => (this.#isTurned = true));
-    this.#scene.add(this.#arrows.group);
+    this.#scene.add(this.#arrows.group, this.#zones);
   }
 
   setSuit(suit: SuitDescription): void {
@@ -65,8 +81,25 @@ export class SuitScene {
     for (const { positions } of suit.arrays) for (const position of positions) box.expandByPoint(point.fromArray(position));
     box.getCenter(this.#centre);
     this.#size = Math.max(0.02, box.getSize(point).length());
+    this.#drawZones(suit);
     this.home();
     this.readColors();
+  }
+
+  /** A line through the outer taxels of each zone that is limited, a little above them. */
+  #drawZones({ arrays }: SuitDescription): void {
+    for (const line of this.#zones.children) (line as three.LineLoop).geometry.dispose();
+    this.#zones.clear();
+    for (const array of arrays) {
+      for (const [{ rows, cols }] of limitedZones(array)) {
+        const points = outline(rows, cols).map(([row, col]) => {
+          const taxel = row * array.cols + col;
+          const normal = new three.Vector3().fromArray(array.normals[taxel]!);
+          return new three.Vector3().fromArray(array.positions[taxel]!).addScaledVector(normal, LIFT_SHARE * this.#size);
+        });
+        this.#zones.add(new three.LineLoop(new three.BufferGeometry().setFromPoints(points), this.#zoneInk));
+      }
+    }
   }
 
   /** Looks at the whole suit from before and a little above; lying flat, from above. */
@@ -123,6 +156,7 @@ export class SuitScene {
   readColors(): void {
     this.#scene.background = new three.Color(cssColor("--surface"));
     this.#arrows.setColor(cssColor("--accent"));
+    this.#zoneInk.color.set(cssColor("--bad"));
     this.#cloud?.setColors(rgbColor("--fault"), rgbColor("--fault-stripe"), rgbColor("--accent"), rgbColor("--rim"));
     this.#isDue = true;
   }

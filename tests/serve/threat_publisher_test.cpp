@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/threat_publisher.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "dermis/recordings/mcap.hpp"
+#include "messages/read_by_definition.hpp"
+#include "serve/named_touches.hpp"
+#include "serve/small_suit.hpp"
+#include "serve/stream_client.hpp"
+#include "support/temporary_folder.hpp"
+
+namespace dermis::serve {
+namespace {
+
+using nlohmann::json;
+
+constexpr Nanos kFrame{10'000'000};
+enum State { kClear, kCrossed, kActive, kLatched };
+
+threats::ThreatLimits limits(bool latched) {
+  threats::ThreatLimits limits;
+  limits.zones = {{"neck", "chest", 0, 1, 0, 1}};
+  limits.limits = {{.name = "pushed", .quantity = threats::ThreatQuantity::total_force, .limit = 10.0},
+                   {.name = "throat",
+                    .quantity = threats::ThreatQuantity::taxel_force,
+                    .limit = 5.0,
+                    .latched = latched,
+                    .zone = "neck"}};
+  return limits;
+}
+
+/// One array under limits, its recording and a client that listens to "/threat".
+class Watching : public testing::Test {
+ protected:
+  void watch(bool latched) {
+    suit_ = small_suit({"chest"}, stop_);
+    suit_.threats = limits(latched);
+    stream::ServerOptions options;
+    options.port = 0;
+    const auto none = [] { return std::vector<stream::Parameter>{}; };
+    Result<std::unique_ptr<stream::Server>> created =
+        stream::Server::create(options, {}, {none, [](const stream::Parameter&) { return Done{}; }});
+    ASSERT_TRUE(created) << created.error().message;
+    server_ = *std::move(created);
+    ASSERT_TRUE(recorder_.begin());
+    auto publisher = ThreatPublisher::create(suit_, *server_, recorder_,
+                                             [this](const std::string& line) { lines_.push_back(line); });
+    ASSERT_TRUE(publisher) << publisher.error().message;
+    publisher_ = *std::move(publisher);
+    end_ = server_->add_channel("/end", "none", "");
+    server_->start();
+    client_ = std::make_unique<StreamClient>(server_->port());
+    client_->subscribe({"/threat", "/end"});
+  }
+
+  void press(std::size_t taxel, float newtons) {
+    time_ += kFrame;
+    std::vector<float> forces(kRows * kCols);
+    forces[taxel] = newtons;
+    const ForceFrame force = force_frame(time_, forces);
+    publisher_->publish({0, {}, {}, force, {}, {}});
+  }
+
+  /// What was said since the last call.
+  std::vector<json> heard() {
+    server_->publish(end_, {}, std::vector<std::uint8_t>{1});
+    std::vector<json> all;
+    for (auto message = client_->next_message(); message.topic != "/end"; message = client_->next_message()) {
+      all.push_back(messages::read_by_definition(messages::threat_type(), message.bytes));
+    }
+    return all;
+  }
+
+  /// The states of a limit that began or ended.
+  std::vector<int> changes(const std::string& name) {
+    std::vector<int> states;
+    for (const json& threat : heard()) {
+      if (threat["name"] == name && threat["changed"] == true) states.push_back(threat["state"]);
+    }
+    return states;
+  }
+
+  const support::TemporaryFolder folder_;
+  const std::atomic<bool> stop_ = false;
+  ServedSuit suit_;
+  std::unique_ptr<stream::Server> server_;
+  SuitRecorder recorder_{folder_.file("rec.mcap"),
+                         [] {
+                           return std::vector<recordings::RecordedArray>{{.name = "chest", .shape = {kRows, kCols}}};
+                         },
+                         [](const std::string& why) { ADD_FAILURE() << why; }};
+  std::unique_ptr<ThreatPublisher> publisher_;
+  stream::ChannelId end_ = 0;
+  std::unique_ptr<StreamClient> client_;
+  std::vector<std::string> lines_;
+  Nanos time_{};
+};
+
+TEST_F(Watching, a_threat_is_told_with_the_time_of_its_first_crossing) {
+  watch(false);
+  press(0, 1.0F);
+  static_cast<void>(heard());
+  press(0, 6.0F);
+  const std::vector<json> all = heard();
+  ASSERT_EQ(all.size(), 1U) << "the other limit is not crossed";
+  const json& threat = all[0];
+  EXPECT_EQ(threat["name"], "throat");
+  EXPECT_EQ(threat["array"], "chest");
+  EXPECT_EQ(threat["zone"], "neck");
+  EXPECT_EQ(threat["quantity"], "taxel_force");
+  EXPECT_EQ(threat["state"], kActive);
+  EXPECT_EQ(threat["changed"], true);
+  EXPECT_EQ(threat["crossed"], json({{"sec", 0}, {"nanosec", 20'000'000}}));
+  EXPECT_EQ(threat["value"], 6.0);
+  EXPECT_EQ(threat["limit"], 5.0);
+  EXPECT_EQ(threat["unit"], "N");
+  ASSERT_EQ(lines_.size(), 1U);
+  EXPECT_TRUE(lines_[0].starts_with("threat 'throat' on 'chest': taxel_force 6.0 +- 0.0 N, limit 5, at x "))
+      << lines_[0];
+}
+
+TEST_F(Watching, its_end_is_told_too_and_outside_of_the_zone_nothing_begins) {
+  watch(false);
+  press(0, 6.0F);
+  press(0, 0.0F);
+  EXPECT_EQ(changes("throat"), (std::vector<int>{kActive, kClear}));
+  press(kRows * kCols - 1, 6.0F);
+  EXPECT_EQ(changes("throat"), std::vector<int>{});
+}
+
+TEST_F(Watching, a_latched_threat_stands_until_it_is_reset) {
+  watch(true);
+  press(0, 6.0F);
+  for (int frame = 0; frame < 60; ++frame) press(0, 0.0F);
+  const std::vector<json> all = heard();
+  EXPECT_EQ(all.back()["name"], "throat");
+  EXPECT_EQ(all.back()["state"], kLatched);
+  ASSERT_TRUE(publisher_->reset("{}"));
+  press(0, 0.0F);
+  EXPECT_EQ(changes("throat"), std::vector<int>{kClear});
+}
+
+TEST_F(Watching, all_limits_are_told_twice_a_second_and_a_line_is_logged_once_a_second) {
+  watch(false);
+  for (int frame = 0; frame < 300; ++frame) press(0, frame % 2 == 0 ? 6.0F : 0.0F);
+  std::size_t unchanged = 0;
+  for (const json& threat : heard()) unchanged += threat["name"] == "pushed" ? 1 : 0;
+  EXPECT_EQ(unchanged, 6U);
+  EXPECT_EQ(lines_.size(), 3U);
+}
+
+TEST_F(Watching, the_recording_holds_what_began_and_ended) {
+  watch(false);
+  for (int frame = 0; frame < 200; ++frame) press(0, frame == 50 ? 6.0F : 0.0F);
+  ASSERT_TRUE(recorder_.end());
+  const auto reader = recordings::McapReader::open(folder_.file("rec.mcap"));
+  ASSERT_TRUE(reader) << reader.error().message;
+  std::vector<int> states;
+  recordings::McapMessage message;
+  for (auto more = (*reader)->next(message); more && *more; more = (*reader)->next(message)) {
+    const recordings::McapChannel& channel = (*reader)->channels().at(message.channel);
+    EXPECT_EQ(channel.topic, "/threat");
+    EXPECT_EQ(channel.schema_name, "dermis_msgs/msg/Threat");
+    states.push_back(messages::read_by_definition(messages::threat_type(), message.data)["state"]);
+  }
+  EXPECT_EQ(states, (std::vector<int>{kActive, kClear}));
+}
+
+TEST(ThreatPublisher, a_limit_that_is_crossed_but_has_not_lasted_is_no_threat_yet) {
+  const threats::ThreatLimit limit{.name = "pushed", .limit = 10.0};
+  threats::ThreatState state;
+  state.now.value = 12.0;
+  EXPECT_EQ(state_of(limit, state), messages::Threat::State::clear);
+  state.phase = threats::ThreatPhase::crossed;
+  EXPECT_EQ(state_of(limit, state), messages::Threat::State::crossed);
+  state.phase = threats::ThreatPhase::standing;
+  EXPECT_EQ(state_of(limit, state), messages::Threat::State::active);
+}
+
+}  // namespace
+}  // namespace dermis::serve

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { stands, type Threat } from "../messages/threat";
+import { Signal } from "../signal";
+
+const MOST_ENTRIES = 200;
+
+/** How every limit stands, and what began and ended since the page was opened. */
+export class ThreatBoard {
+  /** Of each array and limit the newest message, in the order in which they came first. */
+  readonly limits = new Signal<readonly Threat[]>([]);
+  /** Beginnings and ends, the newest first. */
+  readonly log = new Signal<readonly Threat[]>([]);
+  readonly #byLimit = new Map<string, Threat>();
+
+  add(threat: Threat): void {
+    const key = `${threat.array}/${threat.name}`;
+    const before = this.#byLimit.get(key);
+    this.#byLimit.set(key, threat);
+    this.limits.value = [...this.#byLimit.values()];
+    const wasMissed = before !== undefined && stands(before) !== stands(threat);
+    if (threat.changed || wasMissed) this.log.value = [threat, ...this.log.value].slice(0, MOST_ENTRIES);
+  }
+
+  /** Another connection: what stood before may have ended. The log stays. */
+  restart(): void {
+    this.#byLimit.clear();
+    this.limits.value = [];
+  }
+
+  get standing(): Threat[] {
+    return this.limits.value.filter(stands);
+  }
+}

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element, setData, setHidden, setText } from "../../dom";
+import { fixed } from "../../format";
+import type { Classification } from "../../messages/classification";
+
+const UNKNOWN = "unknown";
+
+/** A class, and how probable it is. */
+class Bar {
+  readonly element: HTMLElement;
+  readonly #fill = element("span", { class: "class-fill" });
+  readonly #share = element("span", { class: "figure" });
+
+  constructor(name: string) {
+    const track = element("span", { class: "class-track" }, this.#fill);
+    this.element = element("li", { "data-class": name }, element("span", { class: "class-name", title: name }, name), track, this.#share);
+  }
+
+  show(probability: number, isAnswer: boolean): void {
+    const percent = fixed(100 * probability, 1);
+    this.#fill.style.width = Number.isFinite(probability) ? `${percent}%` : "0";
+    setText(this.#share, `${percent} %`);
+    setData(this.element, "answer", String(isAnswer));
+  }
+}
+
+/** What touches an array: the answer, and a bar for each class. */
+export class ClassBars {
+  readonly element: HTMLElement;
+  readonly #answer = element("span", { class: "large answer", "data-role": "answer" });
+  readonly #reason = element("span", { class: "dim", "data-role": "reason" });
+  readonly #age = element("span", { class: "dim figure", "data-role": "answer-age" });
+  readonly #list = element("ul", { class: "class-bars", "data-role": "class-bars" });
+  readonly #none = element("p", { class: "dim note" });
+  #bars = new Map<string, Bar>();
+
+  constructor() {
+    this.element = element(
+      "section",
+      { class: "panel", "aria-label": "What touches" },
+      element("header", { class: "panel-title" }, element("h2", {}, "What touches"), element("span", { class: "stretch" }), this.#age),
+      element("p", { class: "answer-line", "aria-live": "polite" }, this.#answer, this.#reason),
+      this.#list,
+      this.#none,
+    );
+  }
+
+  /** Nothing was recognised yet. */
+  begin(array: string, classes: readonly string[]): void {
+    this.#bars = new Map(classes.map((name) => [name, new Bar(name)]));
+    this.#list.replaceChildren(...[...this.#bars.values()].map((bar) => bar.element));
+    setHidden(this.#list, classes.length === 0);
+    setHidden(this.#none, classes.length > 0);
+    setText(this.#none, `No classes are served for ${array}: learn them (dermis learn) and serve them (dermis serve --classes).`);
+    setText(this.#answer, "");
+    setText(this.#reason, classes.length > 0 ? "nothing was recognised yet" : "");
+    setText(this.#age, "");
+    for (const bar of this.#bars.values()) bar.show(0, false);
+  }
+
+  show({ answer, reason, classes }: Classification): void {
+    setText(this.#answer, answer);
+    setData(this.#answer, "unknown", String(answer === UNKNOWN && reason !== ""));
+    const [first, second] = classes;
+    const between = first !== undefined && second !== undefined ? `: ${first.name} ${fixed(100 * first.probability, 0)} %, ${second.name} ${fixed(100 * second.probability, 0)} %` : "";
+    setText(this.#reason, reason === "" ? `${fixed(100 * (first?.probability ?? NaN), 1)} %` : `${reason}${reason.startsWith("between") ? between : ""}`);
+    for (const { name, probability } of classes) this.#bars.get(name)?.show(probability, name === answer && reason === "");
+  }
+
+  showAge(seconds: number): void {
+    setText(this.#age, seconds >= 0.5 ? `${fixed(seconds, 0)} s ago` : "now");
+  }
+}
