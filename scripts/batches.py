@@ -6,27 +6,36 @@
     scripts/batches.py SOURCE...    prints the number of each source's batch, in order, separated by semicolons (for CMake);
                                     for a source that is compiled alone it says "alone"
 
-Two sources of a batch have no name in common that their unnamed namespaces declare, so nobody needs to keep names apart."""
+Two sources of a batch have no name in common that their unnamed namespaces declare, but the same names for the same
+things of other namespaces, so nobody needs to keep names apart."""
 import re
 import sys
 from pathlib import Path
 
-MOST_TOGETHER = 8
+MOST_TOGETHER = 10
 # Sources that are included again for each instruction set, and the headers of the kernel, which contradict those of C.
 ALONE = re.compile(r"HWY_TARGET_INCLUDE|#include <asm/")
 NOISE = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|^\s*#[^\n]*', re.MULTILINE | re.DOTALL)
-TOKEN = re.compile(r"namespace\s*\{|[{}()]|\b(?:struct|class|enum class|enum|using)\s+\w+|\b[A-Za-z_]\w*(?=\s*[({=;\[])")
+ALIAS = r"\b(?:namespace|using)\s+\w+\s*=[^;]+;|\busing\s+(?:\w+::)+\w+;"
+TOKEN = re.compile(ALIAS + r"|namespace\s*\{|[{}()]|\b(?:struct|class|enum class|enum)\s+\w+"
+                   r"|(?<!::)(?<!public )\b(?!noexcept|static_assert)[A-Za-z_]\w*(?=\s*[({=;\[])")
 
 
 def stays_alone(text):
     return bool(ALONE.search(text))
 
 
+def alias_of(token):
+    """The name that an alias gives and what it stands for: who says the same twice says it once."""
+    name, _, meaning = token.rstrip(";").partition("=") if "=" in token else (token.rstrip(";").split("::")[-1], "", token)
+    return name.split()[-1], "".join(meaning.split())
+
+
 def own_names(text):
-    """What unnamed namespaces of a source declare, roughly, and its main()."""
-    names, unnamed, depth, brackets = {"main"} if "int main(" in text else set(), [], 0, 0
+    """What unnamed namespaces of a source declare, roughly, and its main(): names with what they are an alias of."""
+    names, unnamed, depth, brackets = {"main": ""} if "int main(" in text else {}, [], 0, 0
     for token in TOKEN.findall(NOISE.sub(" ", text)):
-        if token.startswith("namespace"):
+        if re.match(r"namespace\s*\{", token):
             depth += 1
             unnamed.append(depth)
         elif token == "{":
@@ -38,12 +47,17 @@ def own_names(text):
         elif token in "()":
             brackets += 1 if token == "(" else -1
         elif unnamed and unnamed[-1] == depth and brackets == 0 and not token.isupper():
-            names.add(token.split()[-1])
+            name, meaning = alias_of(token) if token.endswith(";") else (token.split()[-1], "")
+            names[name] = meaning
     return names
 
 
+def agree(some, others):
+    return all(some[name] and some[name] == others[name] for name in some.keys() & others.keys())
+
+
 def batches(sources, room, size_of):
-    """Lists of `sources` without a name in common, each of at most `room`, of which a source takes size_of(text)."""
+    """Lists of `sources` whose names agree, each of at most `room`, of which a source takes size_of(text)."""
     closed, still_open = [], []  # [sources, names, room that is left]
     for source in sources:
         text = Path(source).read_text()
@@ -52,7 +66,7 @@ def batches(sources, room, size_of):
             closed.append([source])
             continue
         for batch in still_open:
-            if not batch[1] & names and size <= batch[2]:
+            if agree(batch[1], names) and size <= batch[2]:
                 batch[0].append(source)
                 batch[1] |= names
                 batch[2] -= size

@@ -11,6 +11,8 @@
 #include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/report/evaluation_report.hpp"
+#include "evaluate_classes.hpp"
+#include "labelled_examples.hpp"
 #include "open_source.hpp"
 
 namespace dermis::app {
@@ -24,6 +26,8 @@ struct EvaluateOptions {
   std::string loads;
   std::string report;
   std::string bank;
+  std::string classes;
+  ExampleOptions examples;  // of the classes; --model and --frames are above
   bool json = false;
 };
 
@@ -62,7 +66,17 @@ void print_text(const Evaluation& evaluation) {
   }
 }
 
-Status evaluate(const EvaluateOptions& options) {
+/// Of the forces.
+Status check_needed(const EvaluateOptions& options) {
+  if (options.model.empty()) return bad_input("--model is required");
+  if (options.frames.empty()) return bad_input("--frames is required");
+  if (options.loads.empty()) return bad_input("--loads is required");
+  if (!options.examples.data.labels.empty()) return bad_input("--labels: needs --classes");
+  return Done{};
+}
+
+Status evaluate_forces(const EvaluateOptions& options) {
+  if (Status checked = check_needed(options); !checked) return checked;
   const Result<pipeline::Model> model = pipeline::read_model(options.model);
   if (!model) return model.error();
   const Result<std::vector<RawFrame>> frames = read_frames(options.frames, model->array);
@@ -84,18 +98,38 @@ Status evaluate(const EvaluateOptions& options) {
   return Done{};
 }
 
+Status evaluate(const EvaluateOptions& options) {
+  if (options.classes.empty()) return evaluate_forces(options);
+  if (!options.loads.empty() || !options.bank.empty() || !options.report.empty()) {
+    return bad_input("--classes: excludes --loads, --bank and --report, which are of forces");
+  }
+  ExampleOptions examples = options.examples;
+  examples.model = options.model;
+  examples.data.frames = options.frames;
+  return evaluate_classes(options.classes, examples, options.json);
+}
+
 }  // namespace
 
 void add_evaluate(Command& command) {
   auto options = std::make_shared<EvaluateOptions>();
-  command.option("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
-      .required();
-  command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
-      .required();
-  command.option("--loads", options->loads, "loads.csv: the truth").required();
+  command.option("--model", options->model,
+                 "Model file of 'dermis calibrate', or array.toml where readings are forces");
+  command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames");
+  command.option("--loads", options->loads, "loads.csv: the truth");
   command.option("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
   command.flag("--json", options->json, "Print the result as JSON");
   command.option("--report", options->report, "Folder for an HTML report with pictures");
+  command.option("--classes", options->classes, "Judge the classes of 'dermis learn', not forces");
+  recognition::DatasetFiles& data = options->examples.data;
+  command.option("--in", options->examples.in,
+                 "Recordings for --classes, with --model where the classes are of forces");
+  command.flag("--tare", options->examples.tare, "Nothing touches in the first second of each --in");
+  command.option("--labels", data.labels, "labels.csv for --classes: which frames are of which class");
+  command.option("--label", data.label, "Column of labels.csv that names the class").shows_default();
+  command.option("--arrays", data.arrays, "arrays.csv for --classes, where --frames are tared frames.npy");
+  command.option("--extra", data.extras, "extra.npy: further readings beside those --frames");
+  command.option("--rate", data.rate_hz, "Frames a second, where they differ from those of the examples [Hz]");
   command.action([options] { return evaluate(*options); });
 }
 

@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "commands.hpp"
+#include "confusion_table.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/text.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recognition/dataset.hpp"
 #include "dermis/recognition/learning.hpp"
 #include "dermis/recognition/recogniser.hpp"
+#include "labelled_examples.hpp"
 #include "status_line.hpp"
 #include "writable.hpp"
 
@@ -28,10 +30,8 @@ using recognition::LearningSet;
 using recognition::Split;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kWidestMatrix = 16;  // classes that a confusion matrix is printed for
-
 struct LearnOptions {
-  recognition::DatasetFiles data;
+  ExampleOptions examples;
   std::string out;
   std::string splits;
   std::string predictions;
@@ -40,7 +40,6 @@ struct LearnOptions {
 };
 
 Status check_options(const LearnOptions& options) {
-  if (!recognition::is_rate(options.data.rate_hz)) return bad_input("--rate: must be 0.001 to 1e6");
   if (options.splits.empty() != options.predictions.empty()) return bad_input("--splits and --predictions go together");
   if (options.open.empty() != options.open_predictions.empty()) {
     return bad_input("--open and --open-predictions go together");
@@ -92,30 +91,18 @@ Status write_predictions(const std::string& path, const LabelledFrames& data, co
   return file->commit();
 }
 
-void print_confusion(const Learned& learned) {
-  const std::vector<std::string>& names = learned.classes.names;
-  if (names.size() > kWidestMatrix) return;
-  std::size_t widest = 5;
-  for (const std::string& name : names) widest = std::max(widest, name.size());
-  fmt::print("\n{:<{}}  answered (columns in the same order)\n", "class", widest);
-  for (std::size_t row = 0; row < names.size(); ++row) {
-    fmt::print("{:<{}} ", names[row], widest);
-    for (std::size_t col = 0; col < names.size(); ++col) {
-      fmt::print("{:>5}", learned.report.confusion[row * names.size() + col]);
-    }
-    fmt::print("\n");
-  }
-}
-
 void print_report(const Learned& learned, double seconds) {
   const recognition::LearningReport& report = learned.report;
   const std::int64_t examples =
       std::accumulate(learned.classes.examples.begin(), learned.classes.examples.end(), std::int64_t{0});
-  fmt::print("{} classes, {} examples, learned in {:.2f} s\n", learned.classes.names.size(), examples, seconds);
+  const double rate_hz = learned.classes.layout.rate_hz;
+  fmt::print("{} classes, {} examples{}, learned in {:.2f} s\n", learned.classes.names.size(), examples,
+             rate_hz > 0.0 ? fmt::format(" at {:.4g} frames a second", rate_hz) : "", seconds);
   fmt::print("cross-validated accuracy {:.1f} % of {} ({} folds {}), calibration error {:.1f} %\n",
              100.0 * report.accuracy, report.judged, report.folds,
-             report.by_group ? "of whole subjects or sessions" : "in order of time", 100.0 * report.calibration_error);
-  print_confusion(learned);
+             report.by_group ? "of whole recordings, subjects or sessions" : "in order of time",
+             100.0 * report.calibration_error);
+  print_confusion(learned.classes.names, report.confusion);
   const std::vector<std::string> lines = recognition::advice(learned);
   if (!lines.empty()) fmt::print("\n");
   for (const std::string& line : lines) fmt::print("{}\n", line);
@@ -134,13 +121,17 @@ Status write_model(const std::string& path, const LabelledFrames& data, const Le
     const recognition::FindingReport finding = recognition::judge_touches(data, *touches);
     fmt::print("in the stream {} of {} touches are found, and {} where no label is\n", finding.found, finding.labelled,
                finding.others);
+  } else if (learned->classes.moving) {
+    fmt::print(
+        "where touches begin and end cannot be learned: 'dermis recognise' needs labels that leave a tenth of the "
+        "frames without a touch, or labels of one frame each\n");
   }
   return Done{};
 }
 
 Status learn(const LearnOptions& options) {
   if (Status checked = check_options(options); !checked) return checked;
-  const Result<LabelledFrames> data = recognition::read_dataset(options.data);
+  const Result<LabelledFrames> data = read_examples(options.examples);
   if (!data) return data.error();
   std::vector<Split> splits;
   std::vector<Split> open_splits;
@@ -175,14 +166,17 @@ Status learn(const LearnOptions& options) {
 
 void add_learn(Command& command) {
   auto options = std::make_shared<LearnOptions>();
-  recognition::DatasetFiles& data = options->data;
-  command.option("--frames", data.frames, "frames.npy: tared frames, the readings of all arrays side by side")
-      .required();
-  command.option("--arrays", data.arrays, "arrays.csv: where the readings of each array are").required();
-  command.option("--extra", data.extras, "extra.npy: further readings beside each frame, such as joint angles");
+  recognition::DatasetFiles& data = options->examples.data;
+  command.option("--in", options->examples.in, "Recordings, or other files of frames, whose frames the labels count");
+  command.option("--model", options->examples.model, "Learn from the forces [N] of --in by this model of its array");
+  command.flag("--tare", options->examples.tare, "Nothing touches in the first second of each --in: that is zero load");
+  command.option("--frames", data.frames, "frames.npy: tared frames, the readings of all arrays side by side");
+  command.option("--arrays", data.arrays, "arrays.csv: where the readings of each array of --frames are");
+  command.option("--extra", data.extras, "extra.npy: further readings beside each of --frames, such as joint angles");
   command.option("--labels", data.labels, "labels.csv: which frames are an example of which class").required();
   command.option("--label", data.label, "Column of labels.csv that names the class").shows_default();
-  command.option("--rate", data.rate_hz, "Frames a second, so that the classes know a source of another rate [Hz]");
+  command.option("--rate", data.rate_hz,
+                 "Frames a second [Hz]; of --in, by default, as the times of its frames have it");
   command.option("--out", options->out, "Classes to write (safetensors)");
   command.option("--splits", options->splits, "splits.csv: learn once for each split from all that it does not name");
   command.option("--predictions", options->predictions, "What is answered for the labels that --splits names");

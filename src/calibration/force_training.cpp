@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "calibration/even_choice.hpp"
+#include "calibration/force_levels.hpp"
 #include "calibration/shared_training.hpp"
 #include "calibration/table_choice.hpp"
 #include "calibration/taxel_training.hpp"
@@ -30,8 +31,6 @@ constexpr std::size_t kMostPoints =
     4000;  // more would lower the error of its two dozen numbers by less than 1 % of noise
 constexpr std::size_t kFirstNetworks = 16;  // trained from random starts, and the others from these
 constexpr std::size_t kLeastForceLevels = 3;
-constexpr double kLevelWidth = 1.05;      // labels weighed by a load cell scatter about their level
-constexpr double kLeastForceRange = 2.0;  // heaviest over lightest load
 constexpr double kLeastTemperatureShare = 0.5;
 constexpr float kUnknownRelativeSigma = 0.01F;  // until fit_uncertainty()
 constexpr double kDetectable = 3.0;             // in standard deviations of the unloaded reading
@@ -69,6 +68,7 @@ std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size
     points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.temperatures), noise,
                       normalised_temperature(sample, evidence.temperatures), newtons, k});
   }
+  number_presses(points);
   return points;
 }
 
@@ -110,17 +110,6 @@ Evidence gather_evidence(const SampleDatabase& database) {
   });
   evidence.dead.assign(dead.begin(), dead.end());
   return evidence;
-}
-
-std::size_t count_levels(const std::vector<double>& rising_newtons) {
-  std::size_t levels = 0;
-  double level = 0.0;
-  for (const double newtons : rising_newtons) {
-    if (levels > 0 && newtons <= kLevelWidth * level) continue;
-    level = newtons;
-    ++levels;
-  }
-  return levels;
 }
 
 bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_temperature) {
@@ -278,6 +267,43 @@ std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& di
   return networks;
 }
 
+struct Trained {
+  std::vector<ForceNetwork> own;
+  SharedNetwork shared;
+  [[nodiscard]] bool has_shared() const { return !shared.network.parameters.empty(); }
+};
+
+fusion::ForceNetworks assemble(const Evidence& evidence, const Division& division, const Trained& trained,
+                               const TrainingReport& report) {
+  const std::size_t hidden = std::max(report.hidden_units, report.shared_hidden_units);
+  fusion::ForceNetworks networks = make_networks(force_shape(evidence.temperatures.is_input, hidden), evidence);
+  for (std::size_t k = 0; k < trained.own.size(); ++k) put(networks, division.own[k], trained.own[k], 1.0);
+  for (const std::size_t taxel : division.shared) {
+    put(networks, taxel, trained.shared.network, trained.shared.gain[taxel]);
+  }
+  return networks;
+}
+
+void report_division(const Evidence& evidence, const Division& division, TrainingReport& report) {
+  report.uses_temperature = evidence.temperatures.is_input;
+  const TemperatureSpan& span = evidence.temperatures.span;
+  report.lowest_celsius = span.centre_celsius - span.half_span_celsius;
+  report.highest_celsius = span.centre_celsius + span.half_span_celsius;
+  report.own_networks = division.own.size();
+  report.shared_networks = division.shared.size();
+  report.dead_taxels = division.dead;
+}
+
+void report_networks(const Division& division, const Trained& trained, TrainingReport& report) {
+  if (trained.has_shared()) report.shared_hidden_units = trained.shared.network.shape.hidden;
+  for (const ForceNetwork& network : trained.own) {
+    report.hidden_units = std::max(report.hidden_units, network.shape.hidden);
+  }
+  report.shared_leave_one_out_error = trained.shared.leave_one_out_error;
+  report.heaviest_taxel_newtons = std::max(report.heaviest_taxel_newtons, trained.shared.heaviest_newtons);
+  report_fit(division.own, trained.own, report);
+}
+
 std::string describe(const TrainingReport& report, bool has_gains) {
   std::string text;
   if (report.own_networks > 0) {
@@ -328,41 +354,23 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   }
   const Evidence evidence = gather_evidence(database);
   const Division division = divide(evidence, database.array);
-  report.uses_temperature = evidence.temperatures.is_input;
-  const TemperatureSpan& span = evidence.temperatures.span;
-  report.lowest_celsius = span.centre_celsius - span.half_span_celsius;
-  report.highest_celsius = span.centre_celsius + span.half_span_celsius;
-  report.own_networks = division.own.size();
-  report.shared_networks = division.shared.size();
-  report.dead_taxels = division.dead;
-
-  std::vector<ForceNetwork> own;
-  SharedNetwork shared;
-  if (!division.own.empty()) own = train_own(evidence, division, progress);
-  if (!division.shared.empty())
-    shared = train_shared(database, evidence.temperatures, evidence.unloaded, evidence.dead);
-  const bool has_shared = !shared.network.parameters.empty();
-  if (own.empty() && !has_shared) {
+  report_division(evidence, division, report);
+  Trained trained;
+  if (!division.own.empty()) trained.own = train_own(evidence, division, progress);
+  if (!division.shared.empty()) {
+    trained.shared = train_shared(database, evidence.temperatures, evidence.unloaded, evidence.dead);
+  }
+  if (trained.own.empty() && !trained.has_shared()) {
     return bad_input("no taxel answers to its loads: check that frames and loads belong together, and the circuit");
   }
-  if (has_shared) report.shared_hidden_units = shared.network.shape.hidden;
-  for (const ForceNetwork& network : own) report.hidden_units = std::max(report.hidden_units, network.shape.hidden);
-  report.shared_leave_one_out_error = shared.leave_one_out_error;
-
-  training.networks = make_networks(
-      force_shape(evidence.temperatures.is_input, std::max(report.hidden_units, report.shared_hidden_units)), evidence);
-  for (std::size_t k = 0; k < own.size(); ++k) put(training.networks, division.own[k], own[k], 1.0);
-  for (const std::size_t taxel : division.shared) {
-    put(training.networks, taxel, shared.network, shared.gain[taxel]);
-  }
-  training.tested_own = tested_presses(division.own, own, evidence);
-  training.tested_shared = std::move(shared.tested);
-  training.tested_unpressed = std::move(shared.tested_unpressed);
-  report.heaviest_taxel_newtons = std::max(report.heaviest_taxel_newtons, shared.heaviest_newtons);
-  report_fit(division.own, own, report);
+  report_networks(division, trained, report);
+  training.networks = assemble(evidence, division, trained, report);
+  training.tested_own = tested_presses(division.own, trained.own, evidence);
+  training.tested_shared = std::move(trained.shared.tested);
+  training.tested_unpressed = std::move(trained.shared.tested_unpressed);
   const auto choose = report.is_one_load ? take_lines : prefer_tables;
   choose(evidence.points, evidence.temperatures, training);
-  report.choice = describe(report, shared.has_gains);
+  report.choice = describe(report, trained.shared.has_gains);
   return training;
 }
 

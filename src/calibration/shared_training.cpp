@@ -8,6 +8,7 @@
 #include <limits>
 #include <set>
 
+#include "calibration/force_levels.hpp"
 #include "calibration/shared_loads.hpp"
 #include "dermis/core/parallel.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
@@ -17,8 +18,6 @@ namespace {
 
 constexpr std::size_t kMostHiddenUnits = 3;
 constexpr std::size_t kLevelsPerHiddenUnit = 7;
-constexpr double kLevelWidth = 1.05;
-constexpr double kLeastForceRange = 2.0;  // heaviest over lightest load that tell of a power
 constexpr std::size_t kStarts = 6;
 constexpr int kMaxIterations = 120;
 constexpr std::size_t kMostSharesForStart = 15'000;  // taxels of all loads together, thinned out evenly beyond:
@@ -175,13 +174,7 @@ std::size_t most_hidden_units(const std::vector<MeasuredLoad>& loads) {
     if (load.excess.size() == 1) single.push_back(load.newtons);
   }
   std::sort(single.begin(), single.end());
-  std::size_t levels = loads.size() - single.size();
-  double level = 0.0;
-  for (const double newtons : single) {
-    if (newtons <= kLevelWidth * level) continue;
-    level = newtons;
-    ++levels;
-  }
+  const std::size_t levels = loads.size() - single.size() + count_levels(single);
   return std::min(kMostHiddenUnits, levels / kLevelsPerHiddenUnit);
 }
 

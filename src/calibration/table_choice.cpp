@@ -31,7 +31,7 @@ constexpr double kLeastOfKnot = 1e-30;  // N and S: floats hold it and its share
 
 /// A press that was left out, and what either method makes of it.
 struct JudgedPress {
-  std::size_t moment = 0;  // its first sample
+  std::size_t moment = 0;  // TaxelPoint::press
   double of_network = 0.0;
   double of_table = 0.0;  // mean relative errors, without sign
 };
@@ -65,16 +65,11 @@ std::vector<NetworkErrors> errors_by_taxel(const ForceTraining& training) {
   return errors;
 }
 
-/// Samples in a row with the same force.
 std::vector<Points> split_presses(Points points) {
   std::vector<Points> presses;
   for (std::size_t first = 0; first < points.size();) {
     std::size_t last = first + 1;
-    const auto goes_on = [&] {
-      const auto [least, most] = std::minmax(points[last].newtons, points[first].newtons);
-      return points[last].sample == points[last - 1].sample + 1 && most <= kSameForce * least;
-    };
-    while (last < points.size() && goes_on()) ++last;
+    while (last < points.size() && points[last].press == points[first].press) ++last;
     presses.push_back(points.subspan(first, last - first));
     first = last;
   }
@@ -185,7 +180,7 @@ class TaxelComparison {
   }
 
   void judge_press(Points press, const fusion::ForceTables& table, JudgedTaxel& judged) const {
-    JudgedPress result{press.front().sample, 0.0, 0.0};
+    JudgedPress result{press.front().press, 0.0, 0.0};
     const auto is_tested = [&](const TaxelPoint& point) { return tested(point.sample) != nullptr; };
     const auto samples = static_cast<std::size_t>(std::count_if(press.begin(), press.end(), is_tested));
     if (samples == 0) return;  // the shared network sees few of a taxel
@@ -303,7 +298,26 @@ std::vector<JudgedTaxel> judge_all(std::span<const std::vector<TaxelPoint>> poin
   return judged;
 }
 
+/// Tables may be worth nothing where all points of a taxel are taken together.
+bool has_table(const std::vector<std::size_t>& group, const std::vector<std::size_t>& table_taxels) {
+  return std::any_of(group.begin(), group.end(), [&](std::size_t taxel) {
+    return std::binary_search(table_taxels.begin(), table_taxels.end(), taxel);
+  });
+}
+
 }  // namespace
+
+void number_presses(std::vector<TaxelPoint>& points) {
+  const TaxelPoint* first = nullptr;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const auto goes_on = [&] {
+      const auto [least, most] = std::minmax(points[k].newtons, first->newtons);
+      return points[k].sample == points[k - 1].sample + 1 && most <= kSameForce * least;
+    };
+    if (first == nullptr || !goes_on()) first = &points[k];
+    points[k].press = first->sample;
+  }
+}
 
 void prefer_tables(std::span<const std::vector<TaxelPoint>> points, const SampleTemperatures& temperatures,
                    ForceTraining& training) {
@@ -311,22 +325,28 @@ void prefer_tables(std::span<const std::vector<TaxelPoint>> points, const Sample
   const std::vector<JudgedTaxel> judged = judge_all(points, maker, training);
   std::set<std::size_t> own;
   for (const TestedLoad& load : training.tested_own) own.insert(load.taxels.front());
+  std::vector<std::vector<std::size_t>> better;  // groups
   std::vector<std::size_t> chosen;
   for (const bool is_own : {true, false}) {
     std::vector<std::size_t> taxels;
     for (std::size_t taxel = 0; taxel < judged.size(); ++taxel) {
       if (!judged[taxel].presses.empty() && own.contains(taxel) == is_own) taxels.push_back(taxel);
     }
-    for (const std::vector<std::size_t>& group : make_groups(taxels, judged)) {
+    std::vector<std::vector<std::size_t>> groups = make_groups(taxels, judged);
+    for (std::vector<std::size_t>& group : groups) {
       ++training.report.groups;
       if (!is_table_clearly_better(by_moment(group, judged))) continue;
-      ++training.report.groups_on_tables;
       chosen.insert(chosen.end(), group.begin(), group.end());
+      better.push_back(std::move(group));
     }
   }
   if (chosen.empty()) return;
   std::sort(chosen.begin(), chosen.end());
   install(chosen, points, maker, judged, training);
+  const auto on_tables = std::count_if(better.begin(), better.end(), [&](const std::vector<std::size_t>& group) {
+    return has_table(group, training.report.table_taxels);
+  });
+  training.report.groups_on_tables = static_cast<std::size_t>(on_tables);
 }
 
 void take_lines(std::span<const std::vector<TaxelPoint>> points, const SampleTemperatures& temperatures,

@@ -11,12 +11,17 @@
 
 namespace dermis::calibration {
 
+/// Samples in a row under about the same force are one press: sets TaxelPoint::press of all points of a taxel, by
+/// rising sample, before any are left out.
+void number_presses(std::vector<TaxelPoint>& points);
+
 /// Holds a table of every taxel, as the baseline "crosstalk_lookup" has it, against the networks, group of neighbouring
 /// taxels by group, on presses that neither has seen: a tenth of the presses of a taxel is left out of its table at a
 /// time, and the error of the network on a press is that of a fit without it, by the leverage of its samples. Presses
 /// heavier than all that are left are not judged. A group gets its tables where they are clearly better: by a fifth in
 /// the mean, and by four standard errors of the paired differences over at least twelve presses (those of one moment on
-/// several taxels are one). All others keep their networks. `points`: known forces of each taxel [taxels].
+/// several taxels are one). All others keep their networks. `points`: known forces of each taxel [taxels], with the
+/// numbers of their presses.
 void prefer_tables(std::span<const std::vector<TaxelPoint>> points, const SampleTemperatures& temperatures,
                    ForceTraining& training);
 

@@ -17,6 +17,7 @@ struct TaxelPoint {
   double temperature = 0.0;     ///< About [-1, 1]; 0 where temperature is not an input.
   double newtons = 0.0;         ///< > 0
   std::size_t sample = 0;       ///< Where it comes from in the database.
+  std::size_t press = 0;        ///< Where its press begins there: number_presses().
 };
 
 /// Trains ln(newtons) of one taxel on its points by Levenberg-Marquardt, from several random starts. Every point counts

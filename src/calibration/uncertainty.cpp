@@ -10,7 +10,9 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <utility>
 
+#include "calibration/even_choice.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/parallel.hpp"
 #include "dermis/core/quantile.hpp"
@@ -59,7 +61,7 @@ class ErrorBudget {
     if (!compensator) return compensator.error();
     std::fill(model.networks.relative_sigma.begin(), model.networks.relative_sigma.end(), 1e-6F);
     std::fill(model.networks.heaviest_newtons.begin(), model.networks.heaviest_newtons.end(),
-              std::numeric_limits<float>::infinity());  // a clamped force has no standard deviation
+              std::numeric_limits<float>::infinity());  // noise beyond the heaviest load is no extrapolation
     return ErrorBudget(std::move(*compensator), std::move(model.networks));
   }
 
@@ -115,9 +117,8 @@ JudgedLoad judge(const TestedLoad& load, const fusion::ForceNetworks& networks, 
 
 /// Those of one sample in a row.
 std::vector<const TestedLoad*> some_of(const std::vector<TestedLoad>& loads) {
-  const std::size_t count = std::min(loads.size(), kMostLoads);
   std::vector<const TestedLoad*> chosen;
-  for (std::size_t k = 0; k < count; ++k) chosen.push_back(&loads[k * loads.size() / count]);
+  for (const std::size_t k : even_choice(loads.size(), kMostLoads)) chosen.push_back(&loads[k]);
   std::stable_sort(chosen.begin(), chosen.end(),
                    [](const TestedLoad* a, const TestedLoad* b) { return a->sample < b->sample; });
   return chosen;
@@ -199,15 +200,40 @@ double surprise(const std::vector<JudgedLoad>& loads, double supply_noise) {
   return sum;
 }
 
+/// What was tested, by what gives the forces.
+struct JudgedLoads {
+  std::vector<JudgedLoad> own;
+  std::vector<JudgedLoad> shared;
+  std::vector<JudgedLoad> unpressed;
+  std::vector<JudgedLoad> tables;
+};
+
+Result<JudgedLoads> judge_all(const SampleDatabase& database, const ForceTraining& training,
+                              const pipeline::Model& model) {
+  JudgedLoads judged;
+  for (const auto& [tested, result] :
+       {std::pair(&training.tested_own, &judged.own), std::pair(&training.tested_shared, &judged.shared),
+        std::pair(&training.tested_unpressed, &judged.unpressed), std::pair(&training.tested_tables, &judged.tables)}) {
+    Result<std::vector<JudgedLoad>> loads = judge_loads(database, *tested, model);
+    if (!loads) return loads.error();
+    *result = *std::move(loads);
+  }
+  return judged;
+}
+
 /// The supply error that makes the noise of all loads likeliest.
-double likeliest_supply_noise(const std::vector<JudgedLoad>& own, const std::vector<JudgedLoad>& shared) {
+double likeliest_supply_noise(const JudgedLoads& loads) {
   constexpr double kLowest = 1e-4;
   constexpr double kHighest = 0.05;
   constexpr double kStep = 1.1;
   double best = 0.0;
-  double least = surprise(own, best) + surprise(shared, best);
+  const auto of_all = [&](double supply_noise) {
+    return surprise(loads.own, supply_noise) + surprise(loads.shared, supply_noise) +
+           surprise(loads.tables, supply_noise);
+  };
+  double least = of_all(best);
   for (double supply_noise = kLowest; supply_noise < kHighest; supply_noise *= kStep) {
-    const double sum = surprise(own, supply_noise) + surprise(shared, supply_noise);
+    const double sum = of_all(supply_noise);
     if (sum >= least) continue;
     least = sum;
     best = supply_noise;
@@ -271,7 +297,7 @@ void add_uncertainty_of_networks(const std::vector<JudgedLoad>& loads, Profile& 
   }
 }
 
-/// What a straight line through one load does not know of the law: ln(load / newtons) times that of its exponent.
+/// What one load does not tell of the law: ln(load / newtons) times the uncertainty of its exponent.
 void add_uncertainty_of_line(const fusion::ForceNetworks& networks, Profile& profile) {
   const double log_range =
       std::log(static_cast<double>(networks.sigma_knots_newtons[1] / networks.sigma_knots_newtons[0]));
@@ -300,6 +326,30 @@ void place_knots(const ForceTraining& training, fusion::ForceNetworks& networks)
   double lightest = std::max(training.report.lightest_newtons, heaviest / kWidestRange);
   if (!training.tested_shared.empty() || lightest > 0.5 * heaviest) lightest = heaviest / kWidestRange;
   networks.sigma_knots_newtons = {static_cast<float>(lightest), static_cast<float>(heaviest)};
+}
+
+/// What is left of the errors when the instruments' are known, taxels by what gives their forces.
+void fit_material(const JudgedLoads& judged, const ForceTraining& training, fusion::ForceNetworks& networks,
+                  UncertaintyReport& report) {
+  const auto set_trained = [&](const std::vector<JudgedLoad>& loads, const std::vector<TestedLoad>& tested) {
+    Profile profile = likeliest_profile(loads, report.supply_noise);
+    add_uncertainty_of_networks(loads, profile);
+    return set_relative_sigma(taxels_of(tested), profile, networks);
+  };
+  if (!judged.shared.empty()) report.relative_sigma_of_shared = set_trained(judged.shared, training.tested_shared);
+  if (!judged.own.empty()) report.relative_sigma = set_trained(judged.own, training.tested_own);
+  const std::set<std::size_t> unpressed = unpressed_taxels(training);
+  if (!judged.unpressed.empty() && !unpressed.empty()) {
+    Profile profile = likeliest_profile(judged.unpressed, report.supply_noise);
+    if (training.report.is_one_load) add_uncertainty_of_line(networks, profile);
+    report.relative_sigma_of_unpressed = set_relative_sigma(unpressed, profile, networks);
+  }
+  const std::vector<std::size_t>& tables = training.report.table_taxels;
+  if (tables.empty()) return;
+  Profile profile{};
+  profile.fill(kUnlearnedRepetition * kUnlearnedRepetition);
+  if (!judged.tables.empty()) profile = likeliest_profile(judged.tables, report.supply_noise);
+  report.relative_sigma_of_tables = set_relative_sigma({tables.begin(), tables.end()}, profile, networks);
 }
 
 std::string range_text(const RelativeSigma& sigma) {
@@ -338,42 +388,11 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   model.networks.temperature_sigma_celsius = report.temperature_sigma_celsius;
 
   place_knots(training, model.networks);
-  const Result<std::vector<JudgedLoad>> own = judge_loads(database, training.tested_own, model);
-  if (!own) return own.error();
-  const Result<std::vector<JudgedLoad>> shared = judge_loads(database, training.tested_shared, model);
-  if (!shared) return shared.error();
-  const Result<std::vector<JudgedLoad>> judged_unpressed = judge_loads(database, training.tested_unpressed, model);
-  if (!judged_unpressed) return judged_unpressed.error();
-  const Result<std::vector<JudgedLoad>> of_tables = judge_loads(database, training.tested_tables, model);
-  if (!of_tables) return of_tables.error();
-  report.supply_noise = likeliest_supply_noise(*own, *shared);
+  const Result<JudgedLoads> judged = judge_all(database, training, model);
+  if (!judged) return judged.error();
+  report.supply_noise = likeliest_supply_noise(*judged);
   model.array.readout.supply_noise = report.supply_noise;
-  const bool is_line = training.report.is_one_load;
-  const auto set = [&](const std::set<std::size_t>& taxels, Profile profile) {
-    if (is_line) add_uncertainty_of_line(model.networks, profile);
-    return set_relative_sigma(taxels, profile, model.networks);
-  };
-  if (!shared->empty()) {
-    Profile profile = likeliest_profile(*shared, report.supply_noise);
-    add_uncertainty_of_networks(*shared, profile);
-    report.relative_sigma_of_shared = set(taxels_of(training.tested_shared), profile);
-  }
-  if (!own->empty()) {
-    Profile profile = likeliest_profile(*own, report.supply_noise);
-    add_uncertainty_of_networks(*own, profile);
-    report.relative_sigma = set(taxels_of(training.tested_own), profile);
-  }
-  const std::set<std::size_t> unpressed = unpressed_taxels(training);
-  if (!judged_unpressed->empty() && !unpressed.empty()) {
-    report.relative_sigma_of_unpressed = set(unpressed, likeliest_profile(*judged_unpressed, report.supply_noise));
-  }
-  const std::vector<std::size_t>& tables = training.report.table_taxels;
-  if (!tables.empty()) {
-    Profile profile{};
-    profile.fill(kUnlearnedRepetition * kUnlearnedRepetition);
-    if (!of_tables->empty()) profile = likeliest_profile(*of_tables, report.supply_noise);
-    report.relative_sigma_of_tables = set({tables.begin(), tables.end()}, profile);
-  }
+  fit_material(*judged, training, model.networks, report);
   return report;
 }
 

@@ -17,7 +17,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kMostPascal = 2e6;    // what rubber bears, and what is pressed on a robot's skin
-constexpr double kLeastPascal = 10.0;  // two sheets of paper
+constexpr double kLeastPascal = 10.0;  // a dozen sheets of paper
 constexpr double kMostNewtons = 5e3;   // half a car
 constexpr double kFeltShare = 0.1;     // of the taxel that rises most
 constexpr double kFeltSigmas = 20.0;

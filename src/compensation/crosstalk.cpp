@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "compensation/driver_error.hpp"
 #include "compensation/fault_inversion.hpp"
 #include "compensation/grounded_rows.hpp"
 #include "compensation/newton_inversion.hpp"
@@ -30,13 +29,14 @@ Inversion inversion(const Arguments&... arguments) {
 }
 
 /// One column driven, the others grounded, one row sensed: the divider with one load, rows and columns exchanged.
-Inversion flexitac(const ArrayDescription& array, double tolerance) {
+Inversion flexitac(const ArrayDescription& array, double tolerance, bool counts_driver_errors) {
   ArrayDescription exchanged = array;
   std::swap(exchanged.rows, exchanged.cols);
   exchanged.readout.circuit = Circuit::divider;
   exchanged.readout.idle_columns = IdleColumns::floating;
+  auto rows_driven = std::make_unique<GroundedRows>(exchanged, tolerance, counts_driver_errors);
   return std::unique_ptr<CrosstalkInversion>(
-      std::make_unique<Transposed>(std::make_unique<GroundedRows>(exchanged, tolerance), array.rows, array.cols));
+      std::make_unique<Transposed>(std::move(rows_driven), array.rows, array.cols));
 }
 
 bool are_few_saturated(const ConditionedFrame& conditioned) {
@@ -44,11 +44,11 @@ bool are_few_saturated(const ConditionedFrame& conditioned) {
   return saturated > 0 && 2 * static_cast<std::size_t>(saturated) <= conditioned.taxels.size();
 }
 
-Inversion newton(const ArrayDescription& array, double tolerance, bool samples_noise) {
+Inversion newton(const ArrayDescription& array, double tolerance, const InversionOptions& options) {
   auto model = CircuitModel::create(array);
   if (!model) return model.error();
   return std::unique_ptr<CrosstalkInversion>(
-      std::make_unique<NewtonInversion>(array, std::move(*model), tolerance, samples_noise));
+      std::make_unique<NewtonInversion>(array, std::move(*model), tolerance, options));
 }
 
 }  // namespace
@@ -60,17 +60,20 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   }
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
-  if (has_resistive_lines(readout)) return newton(array, tolerance, options.samples_noise);
-  if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance);
+  if (has_resistive_lines(readout)) return newton(array, tolerance, options);
+  const bool counts_errors = options.counts_driver_errors;
+  if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance, counts_errors);
   if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
-    return inversion<VirtualGround>(array);
+    return inversion<VirtualGround>(array, counts_errors);
   }
-  if (readout.idle_rows == IdleRows::floating) return newton(array, tolerance, options.samples_noise);
-  return inversion<GroundedRows>(array, tolerance);
+  if (readout.idle_rows == IdleRows::floating) return newton(array, tolerance, options);
+  return inversion<GroundedRows>(array, tolerance, counts_errors);
 }
 
 Result<Compensator> Compensator::create(const ArrayDescription& array, std::span<const double> typical_siemens) {
-  Inversion inversion = make_crosstalk_inversion(array);
+  InversionOptions options;
+  options.counts_driver_errors = true;
+  Inversion inversion = make_crosstalk_inversion(array, options);
   if (!inversion) return inversion.error();
   return Compensator(array, std::move(*inversion), typical_siemens);
 }
@@ -79,7 +82,6 @@ Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<Crosstal
                          std::span<const double> typical_siemens)
     : inversion_(std::move(inversion)),
       supply_error_(std::make_unique<SupplyError>(array)),
-      driver_error_(std::make_unique<DriverError>(array)),
       faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts(),
                                                typical_siemens)) {}
 Compensator::Compensator(Compensator&&) noexcept = default;
@@ -111,7 +113,6 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
   supply_error_->add(conductance.siemens, conductance.sigma_siemens);
-  driver_error_->add(conductance.siemens, conditioned.ratio, conductance.sigma_siemens);
   if (!result.solved) {
     conductance.status |= FrameStatus::not_converged;
     std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);

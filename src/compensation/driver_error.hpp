@@ -10,45 +10,51 @@
 
 namespace dermis::compensation {
 
-/// What drivers do that are known only to a standard deviation s [ohm]: a driven line is lower than it is taken to be
-/// by its current, and an idle one that is grounded higher by what flows into it. Differentiating formula (1) of
-/// docs/derivations.md for ideal drivers, with i a driven line, j a sensed one and r_ij its potential, what the error
-/// of driver k does is
+/// What drivers do that are known only to a standard deviation, where idle rows are grounded through them. A driver k
+/// that is wrong by s moves its row by s times its current, in all scans. With the symbols of GroundedRows, the
+/// readings fixed (docs/derivations.md, "Wrong drivers"),
 ///
-///   d G_ij / d s_k = G_ij [i = k] (S_k - G_ij) + Rl_j G_ij G_kj (S_k - T_k) - [i != k] G_kj L_ik
-///   S_k = sum_m G_km (1 - r_km),   L_ik = sum_m G_km r_im,   T_k = sum of L_lk over l != k
+///   d G_ij / d s_k = L_ik p_kj + G_ij (Rd_i L_ik sum_m p_km + c_kj) - [i = k] G_ij^2
+///   L = diag(G 1) - G diag(eta) G^T,   p_kj = y_kj / w_j
+///   all loaded:  c_kj = RL_j p_kj sum_i L_ik
+///   one loaded:  c_kj = G_kj y_kj / sum_i (1 + G_ij Rd_i) y_ij
 ///
-/// of which the first term leaves out what the taxel would have of it alone, which its calibration by presses has
-/// learned with its law. At virtual ground r and Rl are 0. Idle rows that float have no driver: i = k alone, without T.
-/// Of the errors' variance a share, drive_error_correlation, is common to all drivers. Lines with resistance, and
-/// sensed lines that float, are taken as if they were not.
+/// of which the last term takes away what the taxel would have of it alone, which its calibration by presses has
+/// learned with its law. Exact for ideal drivers and at virtual ground; otherwise without the term that couples a taxel
+/// to those of other rows and columns at once, as in GroundedRows::propagate_noise. Of the errors' variance a share,
+/// drive_error_correlation, is common to all drivers.
 class DriverError {
  public:
-  explicit DriverError(const ArrayDescription& array);
+  /// The circuit of GroundedRows, or that of VirtualGround with `column_ohm` 0. Rows are driven.
+  DriverError(const ArrayDescription& array, std::vector<double> column_ohm);
 
-  /// Adds it to the standard deviations of the taxels [rows, cols]; nothing where all drivers are exact. `ratio`: the
-  /// readings over the supply.
-  void add(std::span<const double> siemens, std::span<const double> ratio, std::span<double> sigma_siemens) noexcept;
+  /// Adds it to the standard deviations of the taxels [rows, cols]. The conductances and y [S], `stride` apart from
+  /// row to row. About 8 rows^2 cols multiplications; rows cols with ideal columns. Allocates nothing.
+  void add(const std::vector<double>& siemens, const std::vector<double>& current, std::size_t stride,
+           std::span<double> sigma_siemens) noexcept;
 
  private:
-  [[nodiscard]] std::size_t at(std::size_t driven, std::size_t sensed) const noexcept {
-    return driven * driven_stride_ + sensed * sensed_stride_;
-  }
-  void find_currents(std::span<const double> siemens, std::span<const double> ratio) noexcept;
-  void add_driver(std::size_t driven, std::size_t driver, std::span<const double> siemens) noexcept;
+  void find_columns(const double* siemens, const double* current, std::size_t stride) noexcept;
+  void find_lifts(const double* siemens, std::size_t stride) noexcept;
+  void add_driver(std::size_t row, std::size_t driver, const double* siemens) noexcept;
 
-  std::vector<double> drive_error_ohm_;  // [driven lines]; empty: exact
+  std::size_t rows_;
+  std::size_t cols_;
+  bool one_loaded_;
+  bool has_potential_;  // a column is not at 0 V
+  std::vector<double> drive_ohm_;
+  std::vector<double> drive_error_ohm_;
   double correlation_;
-  std::vector<double> load_ohm_;  // [sensed lines]; 0 at virtual ground
-  bool has_potential_;            // sensed lines are not at virtual ground
-  bool idle_lines_float_;
-  std::size_t driven_stride_;  // from a taxel to the next driven line's
-  std::size_t sensed_stride_;
-  std::vector<double> current_;  // S_k - T_k [driven lines]
-  std::vector<double> own_;      // S_k
-  std::vector<double> lifted_;   // L_ik [driven lines, driven lines]
-  std::vector<double> common_;   // of one driven line's taxels: sum of errors [sensed lines]
-  std::vector<double> square_;   // of their squares
+  std::vector<double> column_ohm_;    // RL [cols]
+  std::vector<double> shunt_;         // eta [cols]
+  std::vector<double> shunted_;       // -diag(eta) G^T [cols, rows]
+  std::vector<double> apparent_;      // p [rows, cols]
+  std::vector<double> apparent_sum_;  // p 1 [rows]
+  std::vector<double> column_share_;  // c over what follows [rows, cols]
+  std::vector<double> column_gain_;   // all loaded: 1 L; one loaded: 1 [rows]
+  std::vector<double> lift_;          // L [rows, rows]
+  std::vector<double> common_;        // of one row's taxels: sum of errors [cols]
+  std::vector<double> square_;        // of their squares
 };
 
 }  // namespace dermis::compensation

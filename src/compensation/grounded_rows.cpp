@@ -29,7 +29,7 @@ constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
 
 }  // namespace
 
-GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio)
+GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio, bool counts_driver_errors)
     : tolerance_(tolerance_ratio),
       state_(array.rows, array.cols, array.readout.idle_columns),
       reading_siemens_(state_.stride),
@@ -51,12 +51,16 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
   state_.drive_ohm = readout.drive_ohm;
   const double weakest_driver = *std::max_element(state_.drive_ohm.begin(), state_.drive_ohm.end());
   const bool one_loaded = readout.idle_columns == IdleColumns::floating;
+  const auto cols = static_cast<std::ptrdiff_t>(array.cols);
   for (std::size_t col = 0; col < array.cols; ++col) {
     const SensedLine sensed = sensed_line(readout, col);
     reading_siemens_[col] = 1.0 / sensed.gain;
     offset_siemens_[col] = -sensed.offset / sensed.gain;
     state_.column_ohm[col] = sensed.rho;
     state_.certificate_ratio[col] = (one_loaded ? 1.0 + weakest_driver / sensed.rho : 1.0) * sensed.gain;
+  }
+  if (counts_driver_errors && !is_absent(readout.drive_error_ohm)) {
+    driver_error_.emplace(array, std::vector<double>(state_.column_ohm.begin(), state_.column_ohm.begin() + cols));
   }
   if (is_absent(readout.amplifier_offset_v)) return;
   source_.resize(state_.stride);
@@ -261,6 +265,7 @@ void GroundedRows::propagate_noise(double sigma_ratio, std::span<double> sigma_s
   for (std::size_t row = 0; row < state_.rows; ++row) {
     std::copy_n(&sigma_[row * state_.stride], state_.cols, &sigma_siemens[row * state_.cols]);
   }
+  if (driver_error_) driver_error_->add(state_.siemens, state_.explained, state_.stride, sigma_siemens);
 }
 
 }  // namespace dermis::compensation

@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "compensation/anderson_mixing.hpp"
+#include "compensation/driver_error.hpp"
 #include "compensation/grounded_rows_kernels.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 
@@ -53,7 +55,7 @@ namespace dermis::compensation {
 class GroundedRows final : public CrosstalkInversion {
  public:
   /// `array` is a divider or transimpedance with grounded idle rows.
-  GroundedRows(const ArrayDescription& array, double tolerance_ratio);
+  GroundedRows(const ArrayDescription& array, double tolerance_ratio, bool counts_driver_errors);
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
@@ -89,6 +91,7 @@ class GroundedRows final : public CrosstalkInversion {
   std::vector<double> log_step_;
   std::vector<double> sigma_column_;  // of y [stride]
   std::vector<double> sigma_;         // of G [rows, stride]
+  std::optional<DriverError> driver_error_;
 };
 
 }  // namespace dermis::compensation

@@ -8,8 +8,9 @@
 #include <limits>
 #include <utility>
 
+#include "compensation/matrix_product.hpp"
+#include "compensation/readout_parts.hpp"
 #include "compensation/sensed_line.hpp"
-#include "dermis/core/random.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -38,6 +39,10 @@ constexpr double kLeastOwnShare = 1e-3;    // of a taxel in its reading that the
 constexpr std::size_t kMostInvertedTaxels = 400;
 constexpr int kNoiseSamples = 12;
 constexpr std::uint64_t kNoiseSeed = 1;
+
+double random_sign(Random& random) noexcept {
+  return random.below(2) == 0 ? 1.0 : -1.0;
+}
 
 }  // namespace
 
@@ -72,16 +77,20 @@ double NewtonInversion::Reading::siemens_slope(double x) const noexcept {
 }
 
 NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio,
-                                 bool samples_noise)
-    : model_(std::move(model)), solver_(array.taxel_count()), tolerance_(tolerance_ratio) {
+                                 const InversionOptions& options)
+    : model_(std::move(model)),
+      solver_(array.taxel_count()),
+      tolerance_(tolerance_ratio),
+      drive_error_correlation_(array.readout.drive_error_correlation) {
   const Readout& readout = array.readout;
   const double noise_ratio = readout.adc_noise_counts / readout.full_scale_counts();
   const bool columns_are_driven = readout.circuit == Circuit::flexitac;
   for (std::size_t row = 0; row < array.rows; ++row) {
     for (std::size_t col = 0; col < array.cols; ++col) {
       const SensedLine sensed = sensed_line(readout, columns_are_driven ? row : col);
-      const double drive = readout.drive_ohm[columns_are_driven ? col : row];
-      readings_.push_back({sensed.gain, sensed.offset, drive + sensed.rho, noise_ratio / sensed.gain, 0.0});
+      const std::size_t driver = columns_are_driven ? col : row;
+      const double series = readout.drive_ohm[driver] + sensed.rho;
+      readings_.push_back({sensed.gain, sensed.offset, series, noise_ratio / sensed.gain, driver});
     }
   }
   for (auto* values : {&measured_, &x_, &last_x_, &scaled_, &siemens_, &misfit_, &own_slope_, &row_scale_,
@@ -89,7 +98,13 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
     values->resize(array.taxel_count());
   }
   held_.resize(array.taxel_count());
-  if (!samples_noise && x_.size() <= kMostInvertedTaxels) inverse_ = std::make_unique<DenseInverse>(x_.size());
+  if (!options.samples_noise && x_.size() <= kMostInvertedTaxels) inverse_ = std::make_unique<DenseInverse>(x_.size());
+  if (options.counts_driver_errors && !is_absent(readout.drive_error_ohm)) {
+    drive_error_ohm_ = readout.drive_error_ohm;
+    drawn_ohm_.resize(drive_error_ohm_.size());
+    drive_slope_.resize(x_.size() * drive_error_ohm_.size());
+    if (inverse_) drive_change_.resize(drive_slope_.size());
+  }
   if (FloatingRows::inverts(readout)) floating_rows_ = std::make_unique<FloatingRows>(array);
 }
 
@@ -249,21 +264,31 @@ void NewtonInversion::solve_equations(double accuracy) noexcept {
 }
 
 // In units of x, with B = (d x / d ratio) J (d siemens / d x): the sums of squares of the rows of B^-1 (d x / d ratio).
+// A driver that is wrong by s moves all taxels by -B^-1 (d x / d ohm) s, with the readings fixed.
 void NewtonInversion::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
   scale_equations();
+  find_drive_slopes();
   std::fill(sigma_siemens.begin(), sigma_siemens.end(), 0.0);
   if (inverse_) {
-    add_exact_variance(sigma_siemens);
+    add_exact_variance(sigma_ratio, sigma_siemens);
+    if (!drive_error_ohm_.empty()) add_exact_driver_variance(sigma_siemens);
   } else {
-    add_sampled_variance(sigma_siemens);
+    add_sampled_variance(sigma_ratio, sigma_siemens);
   }
   for (std::size_t k = 0; k < x_.size(); ++k) {
-    const double sigma = sigma_ratio * column_scale_[k] * std::sqrt(sigma_siemens[k]);
+    const double sigma = column_scale_[k] * std::sqrt(sigma_siemens[k]);
     sigma_siemens[k] = sigma < kMostSiemens ? sigma : kMostSiemens;  // also where nothing is known: not a number
   }
 }
 
-void NewtonInversion::add_exact_variance(std::span<double> variance) noexcept {
+void NewtonInversion::find_drive_slopes() noexcept {
+  if (drive_error_ohm_.empty()) return;
+  model_.drive_jacobian(drive_slope_);
+  const std::size_t drivers = drive_error_ohm_.size();
+  for (std::size_t k = 0; k < drive_slope_.size(); ++k) drive_slope_[k] *= row_scale_[k / drivers];
+}
+
+void NewtonInversion::add_exact_variance(double sigma_ratio, std::span<double> variance) noexcept {
   const std::size_t taxels = x_.size();
   auto& matrix = inverse_->matrix();
   model_.taxel_jacobian({matrix.data(), taxels * taxels});
@@ -274,21 +299,59 @@ void NewtonInversion::add_exact_variance(std::span<double> variance) noexcept {
   }
   inverse_->invert();
   for (Eigen::Index k = 0; k < matrix.rows(); ++k) {
-    variance[static_cast<std::size_t>(k)] += matrix.row(k).cwiseProduct(row_scale.transpose()).squaredNorm();
+    const double square = matrix.row(k).cwiseProduct(row_scale.transpose()).squaredNorm();
+    variance[static_cast<std::size_t>(k)] += sigma_ratio * sigma_ratio * square;
   }
 }
 
-// The variance of a taxel over readings of random signs.
-void NewtonInversion::add_sampled_variance(std::span<double> variance) noexcept {
+void NewtonInversion::add_exact_driver_variance(std::span<double> variance) noexcept {
+  const std::size_t taxels = x_.size();
+  const std::size_t drivers = drive_error_ohm_.size();
+  multiply({inverse_->matrix().data(), taxels, 1}, drive_slope_.data(), taxels, taxels, drivers, drive_change_.data());
+  for (std::size_t k = 0; k < taxels; ++k) {
+    double common = 0.0;
+    double square = 0.0;
+    for (std::size_t driver = 0; driver < drivers; ++driver) {
+      const double own = driver == readings_[k].driver ? alone(k) : 0.0;
+      const double error = drive_error_ohm_[driver] * (-drive_change_[k * drivers + driver] - own);
+      common += error;
+      square += error * error;
+    }
+    variance[k] += drive_error_correlation_ * common * common + (1.0 - drive_error_correlation_) * square;
+  }
+}
+
+/// What an ohm of its driver does to a taxel that is pressed alone: its calibration has learned that with its law.
+double NewtonInversion::alone(std::size_t taxel) const noexcept {
+  return siemens_[taxel] * siemens_[taxel] / column_scale_[taxel];
+}
+
+// The variance of a taxel over readings and drivers of random signs.
+void NewtonInversion::add_sampled_variance(double sigma_ratio, std::span<double> variance) noexcept {
   Random random(kNoiseSeed);
   damping_ = 0.0;
   std::fill(held_.begin(), held_.end(), false);
+  const std::size_t drivers = drive_error_ohm_.size();
   for (int sample = 0; sample < kNoiseSamples; ++sample) {
-    for (std::size_t k = 0; k < x_.size(); ++k) {
-      right_[k] = random.below(2) == 0 ? row_scale_[k] : -row_scale_[k];
+    for (std::size_t k = 0; k < x_.size(); ++k) right_[k] = random_sign(random) * sigma_ratio * row_scale_[k];
+    draw_drivers(random);
+    for (std::size_t k = 0; k < drive_slope_.size(); ++k) {
+      right_[k / drivers] -= drive_slope_[k] * drawn_ohm_[k % drivers];
     }
     solve_equations(kLeastAccuracy);
-    for (std::size_t k = 0; k < x_.size(); ++k) variance[k] += solution_[k] * solution_[k] / kNoiseSamples;
+    for (std::size_t k = 0; k < x_.size(); ++k) {
+      const double own = drivers > 0 ? alone(k) * drawn_ohm_[readings_[k].driver] : 0.0;
+      variance[k] += (solution_[k] - own) * (solution_[k] - own) / kNoiseSamples;
+    }
+  }
+}
+
+void NewtonInversion::draw_drivers(Random& random) noexcept {
+  if (drawn_ohm_.empty()) return;
+  const double common = std::sqrt(drive_error_correlation_) * random_sign(random);
+  const double own = std::sqrt(1.0 - drive_error_correlation_);
+  for (std::size_t driver = 0; driver < drawn_ohm_.size(); ++driver) {
+    drawn_ohm_[driver] = drive_error_ohm_[driver] * (common + own * random_sign(random));
   }
 }
 

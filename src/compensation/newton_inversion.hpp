@@ -11,6 +11,7 @@
 #include "compensation/krylov_solver.hpp"
 #include "dermis/compensation/circuit_model.hpp"
 #include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/random.hpp"
 
 namespace dermis::compensation {
 
@@ -44,7 +45,8 @@ namespace dermis::compensation {
 class NewtonInversion final : public CrosstalkInversion {
  public:
   /// `model` is of `array`.
-  NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio, bool samples_noise);
+  NewtonInversion(const ArrayDescription& array, CircuitModel model, double tolerance_ratio,
+                  const InversionOptions& options);
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   void forget() noexcept override;
@@ -57,7 +59,8 @@ class NewtonInversion final : public CrosstalkInversion {
     double offset = 0.0;  // ratio at no current
     double series = 0.0;  // rho_d + rho_s [ohm]
     double noise = 0.0;   // g_n [S]
-    double scale = 0.0;   // g_n, and the size of a reading below 0, which an amplifier's offset may cause [S]
+    std::size_t driver = 0;
+    double scale = 0.0;  // g_n, and the size of a reading below 0, which an amplifier's offset may cause [S]
     [[nodiscard]] double apparent_siemens(double ratio) const noexcept;  // y
     [[nodiscard]] double scaled(double ratio) const noexcept;
     [[nodiscard]] double scaled_siemens(double siemens) const noexcept;
@@ -74,8 +77,12 @@ class NewtonInversion final : public CrosstalkInversion {
   [[nodiscard]] bool step(double allowed_rise) noexcept;
   void scale_equations() noexcept;
   void solve_equations(double accuracy) noexcept;
-  void add_exact_variance(std::span<double> variance) noexcept;
-  void add_sampled_variance(std::span<double> variance) noexcept;
+  void find_drive_slopes() noexcept;
+  void add_exact_variance(double sigma_ratio, std::span<double> variance) noexcept;
+  void add_exact_driver_variance(std::span<double> variance) noexcept;
+  void add_sampled_variance(double sigma_ratio, std::span<double> variance) noexcept;
+  void draw_drivers(Random& random) noexcept;
+  [[nodiscard]] double alone(std::size_t taxel) const noexcept;
   [[nodiscard]] double moved(std::size_t taxel, double x, double change) const noexcept;
   void solve_at(std::span<const double> x) noexcept;
   [[nodiscard]] double merit() const noexcept;
@@ -102,6 +109,11 @@ class NewtonInversion final : public CrosstalkInversion {
   std::vector<double> change_;
   std::vector<bool> held_;
   double damping_ = 0.0;
+  std::vector<double> drive_error_ohm_;  // [driven lines]; empty: exact, or not counted
+  double drive_error_correlation_;
+  std::vector<double> drive_slope_;   // d x of a reading / d ohm [taxels, driven lines]
+  std::vector<double> drive_change_;  // what it makes of the taxels, in units of a step's equations
+  std::vector<double> drawn_ohm_;     // errors of the drivers [driven lines]
   bool has_last_frame_ = false;
   std::vector<double> last_shift_;  // x - measured of the last solved frame
 };

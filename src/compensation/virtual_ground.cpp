@@ -5,11 +5,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "compensation/readout_parts.hpp"
+
 namespace dermis::compensation {
 
-VirtualGround::VirtualGround(const ArrayDescription& array)
-    : drive_ohm_(array.readout.drive_ohm), line_gain_(array.rows, 1.0), siemens_(array.taxel_count()) {
+VirtualGround::VirtualGround(const ArrayDescription& array, bool counts_driver_errors)
+    : drive_ohm_(array.readout.drive_ohm),
+      line_gain_(array.rows, 1.0),
+      siemens_(array.taxel_count()),
+      current_(array.taxel_count()) {
   for (const double ohm : array.readout.load_ohm) load_siemens_.push_back(1.0 / ohm);
+  if (counts_driver_errors && !is_absent(array.readout.drive_error_ohm)) {
+    driver_error_.emplace(array, std::vector<double>(array.cols, 0.0));
+  }
 }
 
 InversionResult VirtualGround::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
@@ -47,7 +55,9 @@ void VirtualGround::propagate_noise(double sigma_ratio, std::span<double> sigma_
     const double drop = drive_ohm_[row] * siemens_[taxel];
     const double variance = square * (1.0 + drop) * (1.0 + drop) + (all_columns - square) * drop * drop;
     sigma_siemens[taxel] = sigma_ratio * line_gain_[row] * std::sqrt(variance);
+    current_[taxel] = siemens_[taxel] / line_gain_[row];
   }
+  if (driver_error_) driver_error_->add(siemens_, current_, cols, sigma_siemens);
 }
 
 }  // namespace dermis::compensation

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
+#include "compensation/driver_error.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 
 namespace dermis::compensation {
@@ -16,7 +18,7 @@ namespace dermis::compensation {
 /// Idle rows carry no current, grounded or floating, as every column is at 0 V.
 class VirtualGround final : public CrosstalkInversion {
  public:
-  explicit VirtualGround(const ArrayDescription& array);
+  VirtualGround(const ArrayDescription& array, bool counts_driver_errors);
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override {
@@ -28,6 +30,8 @@ class VirtualGround final : public CrosstalkInversion {
   std::vector<double> load_siemens_;  // [cols]
   std::vector<double> line_gain_;     // a of the last frame [rows]
   std::vector<double> siemens_;       // of the last frame [rows, cols]
+  std::vector<double> current_;       // y [rows, cols]
+  std::optional<DriverError> driver_error_;
 };
 
 }  // namespace dermis::compensation

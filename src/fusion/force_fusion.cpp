@@ -24,7 +24,8 @@ constexpr float kCommonSigmas = 2.0F;           // of an error that all taxels s
 // second for every factor e of the force. docs/derivations.md, "Beyond the calibrated loads".
 constexpr float kExponentSigma = 0.2F;
 constexpr float kExponentChange = 0.3F;
-constexpr float kMostStretch = 8.0F;  // times the heaviest load: beyond, only that it is more is known
+constexpr float kLineExponentSigma = 0.3F;  // below the first load of a table: a line, where rubber has a power
+constexpr float kMostStretch = 8.0F;        // times the heaviest load: beyond, only that it is more is known
 
 template <typename Values, typename Predicate>
 bool all(const Values& values, std::size_t size, Predicate predicate) {
@@ -85,10 +86,14 @@ ForceFusion::ForceFusion(ForceNetworks networks)
       sigma_siemens_(networks_.taxel_count()),
       inputs_(networks_.shape.inputs * networks_.taxel_count()),
       outputs_(networks_.taxel_count()),
-      gradient_(inputs_.size()) {
+      gradient_(inputs_.size()),
+      table_variance_(networks_.taxel_count()) {
   assert(networks_.is_consistent());
   for (const float gain : networks_.gain) log_gain_.push_back(std::log(gain));
   for (const float sigma : networks_.relative_sigma) relative_variance_.push_back(sigma * sigma);
+  for (std::size_t table = 0; table < networks_.tables.taxels.size(); ++table) {
+    line_end_siemens_.push_back(networks_.tables.line_end_siemens(table));
+  }
 }
 
 void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force) noexcept {
@@ -161,6 +166,10 @@ void ForceFusion::look_up(double temperature_offset) noexcept {
     const bool is_beyond = excess_siemens_[taxel] > networks_.heaviest_siemens[taxel];
     gradient_[taxel] = is_beyond ? tables.end_exponent(table) : value.exponent;
     gradient_[taxels + taxel] = 0.0F;
+    // Where the standard deviation is taken: at one of the conductance at least.
+    const float reached = std::max(asked, sigma_siemens_[taxel]);
+    const float below = std::log(std::max(line_end_siemens_[table] / reached, 1.0F));
+    table_variance_[taxel] = kLineExponentSigma * kLineExponentSigma * below * below;
     if (!uses_temperature()) continue;
     const double half_span = networks_.unloaded.temperature.half_span_celsius;
     gradient_[2 * taxels + taxel] = value.per_celsius * static_cast<float>(half_span);
@@ -178,6 +187,7 @@ void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& for
   sources.gradient = gradient_;
   sources.offset_per_celsius = offset_per_celsius_;
   sources.relative_variance = relative_variance_;
+  sources.table_variance = table_variance_;
   sources.temperature_sigma = static_cast<float>(temperature.sigma);
   if (uses_temperature()) {
     sources.temperature_per_celsius = static_cast<float>(1.0 / networks_.unloaded.temperature.half_span_celsius);

@@ -95,6 +95,7 @@ void compute_forces(const ForceSources& sources, float* newtons, float* sigma_ne
     const auto below = hn::Max(hn::Sub(hn::Set(d, sources.log_first_knot), log_reached), hn::Zero(d));
     const auto law_below = hn::Mul(hn::Set(d, kExponentSigmaBelow), below);
     variance = hn::Add(variance, hn::Set(d, sources.unlearned_variance));
+    variance = hn::Add(variance, load(sources.table_variance));
     variance = hn::MulAdd(law_below, law_below, variance);
     variance = hn::MulAdd(noise, noise, variance);
     variance = hn::MulAdd(drift, drift, variance);

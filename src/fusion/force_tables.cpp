@@ -15,6 +15,7 @@ constexpr float kLeastTemperatureFactor = 0.01F;  // a linear term ends before i
 constexpr float kFarEnough = 0.5F;  // of the heaviest force: noise of two knots does not make the exponent
 constexpr float kLeastEndExponent = 0.3F;
 constexpr float kMostEndExponent = 3.0F;
+constexpr float kOnLine = 1e-5F;  // relative, in single precision
 
 bool is_strictly_rising(std::span<const float> values) {
   const auto is_not_less = [](float a, float b) { return !(a < b); };
@@ -52,6 +53,16 @@ float ForceTables::end_exponent(std::size_t table) const noexcept {
   auto from = static_cast<std::size_t>(std::lower_bound(y.begin(), y.end() - 1, half) - y.begin());
   if (from + 1 == knots || (from > 0 && half - y[from - 1] <= y[from] - half)) --from;
   return std::clamp(std::log(y.back() / y[from]) / std::log(x.back() / x[from]), kLeastEndExponent, kMostEndExponent);
+}
+
+float ForceTables::line_end_siemens(std::size_t table) const noexcept {
+  assert(table < taxels.size());
+  const std::span<const float> x = std::span(siemens).subspan(table * knots, knots);
+  const std::span<const float> y = std::span(newtons).subspan(table * knots, knots);
+  const float slope = y[0] / x[0];
+  std::size_t last = 0;
+  while (last + 1 < knots && std::abs(y[last + 1] - slope * x[last + 1]) <= kOnLine * y[last + 1]) ++last;
+  return x[last];
 }
 
 bool ForceTables::is_consistent(std::size_t taxel_count) const noexcept {

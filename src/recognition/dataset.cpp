@@ -71,33 +71,79 @@ Result<std::vector<SensedArray>> read_arrays(const std::string& path) {
   return arrays;
 }
 
-Result<std::vector<Label>> read_labels(const std::string& path, const std::string& label) {
-  const Result<CsvTable> table = CsvTable::read(path);
-  if (!table) return table.error();
-  Columns columns(*table);
+Result<std::vector<Label>> labels_of(const CsvTable& table, const std::string& label) {
+  Columns columns(table);
   const std::size_t id = columns.needed("id");
   const std::size_t first = columns.needed("first");
   const std::size_t last = columns.needed("last");
   const std::size_t name = columns.needed(label);
   if (columns.first_error()) return *columns.first_error();
-  const std::optional<std::size_t> subject = table->column("subject");
-  const std::optional<std::size_t> session = table->column("session");
-  const std::optional<std::size_t> order = table->column("order");
+  const std::optional<std::size_t> subject = table.column("subject");
+  const std::optional<std::size_t> session = table.column("session");
+  const std::optional<std::size_t> order = table.column("order");
   std::vector<Label> labels;
   std::optional<Error> error;
-  for (std::size_t row = 0; row < table->rows(); ++row) {
-    Label read{.id = table->at(row, id),
-               .first = value_or_none(table->count_at(row, first), error),
-               .last = value_or_none(table->count_at(row, last), error),
-               .name = table->at(row, name)};
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    Label read{.id = table.at(row, id),
+               .first = value_or_none(table.count_at(row, first), error),
+               .last = value_or_none(table.count_at(row, last), error),
+               .name = table.at(row, name)};
     const Status named = check_class_name(read.name);
-    if (!named && !error) error = table->error(row, named.error().message);
-    if (const auto group = subject ? subject : session) read.group = table->at(row, *group);
-    read.order = order ? value_or_none(table->number_at(row, *order), error) : static_cast<double>(read.first);
+    if (!named && !error) error = table.error(row, named.error().message);
+    if (const auto group = subject ? subject : session) read.group = table.at(row, *group);
+    read.order = order ? value_or_none(table.number_at(row, *order), error) : static_cast<double>(read.first);
     labels.push_back(std::move(read));
   }
   if (error) return *error;
   return labels;
+}
+
+Result<std::vector<Label>> read_labels(const std::string& path, const std::string& label) {
+  const Result<CsvTable> table = CsvTable::read(path);
+  if (!table) return table.error();
+  return labels_of(*table, label);
+}
+
+/// Which of the recordings each line of the labels is of.
+Result<std::vector<std::size_t>> recordings_of(const CsvTable& table, const std::vector<LoadRecording>& recordings) {
+  std::vector<std::size_t> places(table.rows(), 0);
+  if (recordings.size() == 1 && !table.column("recording")) return places;
+  const Result<std::size_t> column = table.needed_column("recording");
+  if (!column) return column.error();
+  std::string names;
+  for (const LoadRecording& recording : recordings) names += (names.empty() ? "" : ", ") + recording.name;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const std::string& name = table.at(row, *column);
+    const auto found = std::find_if(recordings.begin(), recordings.end(),
+                                    [&](const LoadRecording& recording) { return recording.name == name; });
+    if (found == recordings.end()) {
+      return table.error(row, "there is no recording " + files::in_quotes(name) + " among those given: " + names);
+    }
+    places[row] = static_cast<std::size_t>(found - recordings.begin());
+  }
+  return places;
+}
+
+/// What is wrong with the labels of one recording, or with its frames.
+Status check_recording(const LabelledFrames& data, const LoadRecording& recording) {
+  if (Status checked = data.check_labels(); !checked) return checked;
+  for (const Label& label : data.labels) {
+    if (label.first >= recording.tare_frames) continue;
+    return bad_input("label '" + label.id + "' begins at frame " + std::to_string(label.first) + "; the first " +
+                     std::to_string(recording.tare_frames) + " frames are the tare, during which nothing may touch");
+  }
+  return data.check_frames();
+}
+
+/// `part`, which stands behind `data`.
+void append(LabelledFrames& data, LabelledFrames part) {
+  const std::size_t before = data.frame_count();
+  data.frames.insert(data.frames.end(), part.frames.begin(), part.frames.end());
+  for (Label& label : part.labels) {
+    label.first += before;
+    label.last += before;
+    data.labels.push_back(std::move(label));
+  }
 }
 
 /// Lines of a table by the name of their split, in order.
@@ -180,6 +226,36 @@ Result<LabelledFrames> read_dataset(const DatasetFiles& files) {
   if (const Status checked = data.check_extras(); !checked) {
     return bad_input(files.extras + ": " + checked.error().message);
   }
+  return data;
+}
+
+Result<LabelledFrames> label_recordings(const Layout& layout, std::vector<LoadRecording> recordings,
+                                        const std::string& labels, const std::string& label) {
+  if (const Status checked = layout.validate(); !checked) return checked.error();
+  const Result<CsvTable> table = CsvTable::read(labels);
+  if (!table) return table.error();
+  const Result<std::vector<Label>> read = labels_of(*table, label);
+  if (!read) return read.error();
+  const Result<std::vector<std::size_t>> places = recordings_of(*table, recordings);
+  if (!places) return places.error();
+  const bool names_groups = table->column("subject") || table->column("session");
+  const bool names_order = table->column("order").has_value();
+  LabelledFrames data{layout, {}, {}, {}};
+  for (std::size_t place = 0; place < recordings.size(); ++place) {
+    LoadRecording& recording = recordings[place];
+    LabelledFrames part{layout, std::move(recording.frames), {}, {}};
+    for (std::size_t row = 0; row < read->size(); ++row) {
+      if ((*places)[row] != place) continue;
+      part.labels.push_back((*read)[row]);
+      if (!names_groups && recordings.size() > 1) part.labels.back().group = recording.name;
+      if (!names_order) part.labels.back().order += static_cast<double>(data.frame_count());
+    }
+    if (const Status checked = check_recording(part, recording); !checked) {
+      return bad_input(labels + ": " + recording.name + ": " + checked.error().message);
+    }
+    append(data, std::move(part));
+  }
+  if (const Status checked = data.validate(); !checked) return bad_input(labels + ": " + checked.error().message);
   return data;
 }
 

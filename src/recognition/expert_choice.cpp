@@ -55,6 +55,17 @@ Path score_out_of_fold(const TrainingTable& table, const ExpertColumns& expert, 
 
 }  // namespace
 
+Judged judged_by(const Folds& folds, const std::vector<std::size_t>& classes, std::size_t class_count) {
+  Judged judged{classes, folds.fold_of, {}};
+  judged.is_known.assign(folds.count, std::vector<std::uint8_t>(class_count, 0));
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    for (std::size_t fold = 0; fold < folds.count; ++fold) {
+      if (folds.fold_of[i] != fold) judged.is_known[fold][classes[i]] = 1;
+    }
+  }
+  return judged;
+}
+
 ExpertChoice choose_expert(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds,
                            const Judged& judged) {
   const Path path = score_out_of_fold(table, expert, folds);

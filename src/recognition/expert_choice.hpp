@@ -20,6 +20,9 @@ struct TrainingTable {
   std::size_t class_count = 0;
 };
 
+/// Which classes the others of each fold know.
+[[nodiscard]] Judged judged_by(const Folds& folds, const std::vector<std::size_t>& classes, std::size_t class_count);
+
 /// An expert's shrinkage, and what it says of each example by what the other folds taught.
 struct ExpertChoice {
   double shrinkage = 0.0;

@@ -16,6 +16,9 @@ namespace dermis::recognition {
 class FormBlock {
  public:
   static constexpr std::size_t kSize = 46;
+  /// Places of the features that tell of the force, and of the area of the contact; the others tell of its shape.
+  static constexpr std::array<std::size_t, 2> kForcePlaces{0, 1};
+  static constexpr std::array<std::size_t, 12> kAreaPlaces{3, 4, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
 
   /// `least_reading`: where logarithms begin.
   FormBlock(const Lattice& lattice, double least_reading);

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "dermis/recognition/stream_recogniser.hpp"
+#include "recognition/aspects.hpp"
+#include "recognition/confused_pair.hpp"
 #include "recognition/discriminant.hpp"
 #include "recognition/expert_choice.hpp"
 #include "recognition/expert_fusion.hpp"
@@ -74,17 +76,6 @@ Status check_counts(const std::map<std::string, std::int64_t>& counts) {
   return Done{};
 }
 
-Judged judged_by(const Folds& folds, const std::vector<std::size_t>& classes, std::size_t class_count) {
-  Judged judged{classes, folds.fold_of, {}};
-  judged.is_known.assign(folds.count, std::vector<std::uint8_t>(class_count, 0));
-  for (std::size_t i = 0; i < classes.size(); ++i) {
-    for (std::size_t fold = 0; fold < folds.count; ++fold) {
-      if (folds.fold_of[i] != fold) judged.is_known[fold][classes[i]] = 1;
-    }
-  }
-  return judged;
-}
-
 template <typename To, typename From>
 std::vector<To> converted(const From& values) {
   std::vector<To> result;
@@ -138,15 +129,18 @@ std::vector<Matrix> distances_of(const TrainingTable& table, const Panel& panel,
   return distances;
 }
 
-/// Answers for runs of time that were not seen, where the folds do not hold out whole groups already.
-LearningReport report_of(const TrainingTable& table, const std::vector<ExpertColumns>& experts, const Folds& folds,
+/// Answers for runs of time that were not seen, where the folds do not hold out whole groups already. `scores`: by the
+/// folds.
+LearningReport report_of(const Classes& classes, const TrainingTable& table, const Folds& folds,
                          const std::vector<Label>& labels, const std::vector<Matrix>& scores) {
-  if (folds.kind == Folds::Kind::by_group) {
-    return judge(judged_by(folds, table.classes, table.class_count), folds, labels, scores);
-  }
-  const Folds runs = make_folds(labels, table.classes, Deal::in_runs);
-  const Judged judged = judged_by(runs, table.classes, table.class_count);
-  return judge(judged, runs, labels, scores_of(choose_panel(table, experts, runs, judged)));
+  const bool by_group = folds.kind == Folds::Kind::by_group;
+  const Folds held_out = by_group ? folds : make_folds(labels, table.classes, Deal::in_runs);
+  const Judged judged = judged_by(held_out, table.classes, table.class_count);
+  const std::vector<ExpertColumns> experts = expert_columns(classes.layout, classes.moving);
+  LearningReport report =
+      judge(judged, held_out, labels, by_group ? scores : scores_of(choose_panel(table, experts, held_out, judged)));
+  report.confused = find_confused_pair(report, table, aspect_columns(classes.layout, classes.moving), held_out);
+  return report;
 }
 
 }  // namespace
@@ -202,7 +196,7 @@ Result<Learned> LearningSet::learn(std::span<const std::size_t> chosen) const {
     classes.experts.back().weight = weights[i] * panel.choices[i].sharpness;
   }
   learn_unknown(classes, judged, fused_scores(scores, weights), distances_of(table, panel, folds));
-  learned.report = report_of(table, experts, folds, labels, scores);
+  learned.report = report_of(classes, table, folds, labels, scores);
   return learned;
 }
 

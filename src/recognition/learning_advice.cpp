@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "dermis/recognition/learning.hpp"
 
@@ -33,26 +34,24 @@ std::string need_of(const Learned& learned, std::size_t label) {
   return name + " needs more examples: " + std::to_string(right) + " of " + std::to_string(judged) + " were right";
 }
 
-/// The two classes that are most often taken for each other.
+std::string percent(double share) {
+  return std::to_string(static_cast<int>(std::round(100.0 * share))) + " %";
+}
+
+/// The two classes that are most often taken for each other, and by what.
 std::string confused_pair(const Learned& learned) {
+  if (!learned.report.confused) return {};
+  const ConfusedPair& pair = *learned.report.confused;
   const std::size_t count = learned.classes.names.size();
-  const auto& confusion = learned.report.confusion;
-  std::size_t most = 0;
-  std::size_t first = 0;
-  std::size_t second = 0;
-  for (std::size_t a = 0; a < count; ++a) {
-    for (std::size_t b = a + 1; b < count; ++b) {
-      const std::size_t mistakes = confusion[a * count + b] + confusion[b * count + a];
-      if (mistakes <= most) continue;
-      most = mistakes;
-      first = a;
-      second = b;
-    }
-  }
-  if (most == 0) return {};
-  const std::size_t judged = examples_of(learned.report, first, count) + examples_of(learned.report, second, count);
-  return learned.classes.names[first] + " and " + learned.classes.names[second] +
-         " are confused most: " + std::to_string(most) + " of " + std::to_string(judged) + " examples";
+  const std::size_t judged =
+      examples_of(learned.report, pair.first, count) + examples_of(learned.report, pair.second, count);
+  std::string line = learned.classes.names[pair.first] + " and " + learned.classes.names[pair.second] +
+                     " are confused most: " + std::to_string(pair.mistakes) + " of " + std::to_string(judged) +
+                     " examples";
+  if (pair.aspects.empty()) return line;
+  line += "; guessing tells 50 % apart";
+  for (const Aspect& aspect : pair.aspects) line += ", " + aspect.name + " alone " + percent(aspect.told_apart);
+  return line;
 }
 
 }  // namespace

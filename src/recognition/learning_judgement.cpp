@@ -3,32 +3,12 @@
 #include "recognition/learning_judgement.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <set>
+
+#include "recognition/calibration_error.hpp"
 
 namespace dermis::recognition {
 namespace {
-
-/// |confidence - accuracy| over ten bins of confidence, weighted by how many answers are in each.
-class CalibrationError {
- public:
-  void add(double confidence, bool is_right) {
-    const auto bin = std::min(static_cast<std::size_t>(confidence * kBins), kBins - 1);
-    excess_[bin] += confidence - (is_right ? 1.0 : 0.0);
-    count_ += 1.0;
-  }
-  [[nodiscard]] double value() const {
-    double sum = 0.0;
-    for (const double excess : excess_) sum += std::abs(excess);
-    return count_ > 0.0 ? sum / count_ : 0.0;
-  }
-
- private:
-  static constexpr std::size_t kBins = 10;
-  std::array<double, kBins> excess_{};
-  double count_ = 0.0;
-};
 
 /// Probabilities of the examples of each fold, by the weights that suit the other folds.
 Matrix probabilities_of(const Judged& judged, const Folds& folds, const std::vector<Matrix>& scores) {

@@ -26,6 +26,9 @@ struct FrameSeries {
 class TimeBlock {
  public:
   static constexpr std::size_t kSize = 65;
+  /// Places of the features that tell of the force, and of the area of the contact; the others tell of its course.
+  static constexpr std::array<std::size_t, 2> kForcePlaces{1, 2};
+  static constexpr std::array<std::size_t, 2> kAreaPlaces{3, 4};
 
   /// `least_reading`: where logarithms begin. Allocates for segments of up to `most_frames`.
   TimeBlock(double least_reading, std::size_t most_frames);

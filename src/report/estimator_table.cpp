@@ -99,7 +99,7 @@ std::string describe(const pipeline::Model& model) {
       model.array.readout.circuit == Circuit::none ? "the readings" : "the exact inversion of the circuit";
   return fmt::format("after {}, BP networks of {}-{}-1 units per taxel: conductance{} to newtons", before,
                      model.networks.shape.inputs, model.networks.shape.hidden,
-                     model.networks.shape.inputs > 1 ? " and temperature" : "");
+                     model.networks.shape.inputs == fusion::kInputsWithTemperature ? " and temperature" : "");
 }
 
 std::string describe(const fusion::LookUpTables& tables) {

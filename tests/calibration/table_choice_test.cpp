@@ -90,6 +90,28 @@ TEST(TableChoice, tables_have_an_honest_sigma) {
   EXPECT_LT(within / count, 0.76);
 }
 
+/// As above, under rubbers whose exponents differ.
+TEST(TableChoice, tables_have_an_honest_sigma_below_their_lightest_load) {
+  constexpr std::size_t kTaxels = 32;
+  const auto law = [](std::size_t taxel, double n) {
+    return 1e-4 * std::pow(wavy(n) / 1e-4, 0.7 + 0.02 * static_cast<double>(taxel));
+  };
+  PressBench bench{kTaxels, law, 0.01};
+  const auto calibration = calibrate(bench.presses(forces_between(1.0, 50.0, 40), 3));
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  ASSERT_GT(calibration->report.training.table_taxels.size(), kTaxels / 2);
+  BenchForces estimates(calibration->model.networks, bench);
+  for (const double newtons : {0.25, 0.5}) {
+    double within = 0.0;
+    for (const std::size_t taxel : calibration->report.training.table_taxels) {
+      const ForceFrame& force = estimates.press(taxel, newtons);
+      const double error = std::abs(static_cast<double>(force.newtons[taxel]) - newtons);
+      within += error <= 1.96 * force.sigma_newtons[taxel] ? 1.0 : 0.0;
+    }
+    EXPECT_GE(within / static_cast<double>(calibration->report.training.table_taxels.size()), 0.9) << newtons << " N";
+  }
+}
+
 TEST(TableChoice, does_not_flip_on_noise) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     for (const double pink_noise : {1e-9, 1e-5}) {
@@ -180,6 +202,17 @@ TEST(TableChoice, many_frames_of_a_press_do_not_speak_against_the_network_that_s
   EXPECT_EQ(training->report.shared_networks, 12U);
   EXPECT_GT(training->report.groups, 0U);
   EXPECT_TRUE(training->report.table_taxels.empty()) << training->report.choice;
+}
+
+/// 15 presses of each taxel, of more samples than are kept: 60 presses are two groups.
+TEST(TableChoice, a_press_is_one_though_samples_of_it_are_left_out) {
+  PressBench bench{4, [](std::size_t, double n) { return smooth(n); }, 0.02};
+  std::vector<std::pair<double, int>> frames_under;
+  for (const double newtons : forces_between(1.0, 50.0, 15)) frames_under.emplace_back(newtons, 300);
+  const auto training = train_force_networks(held_presses(bench, frames_under));
+  ASSERT_TRUE(training) << training.error().message;
+  EXPECT_EQ(training->report.own_networks, 4U);
+  EXPECT_EQ(training->report.groups, 2U);
 }
 
 /// Their means, of equal numbers, differ by what adding them up rounds off.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <utility>
 #include <vector>
 
 #include "calibration/press_bench.hpp"
@@ -119,6 +120,27 @@ TEST(Uncertainty, intervals_cover_what_they_promise_with_a_divider) {
   EXPECT_NEAR(report.adc_noise_counts.value_or(0.0), std::sqrt(13.0 / 12.0), 0.06);
   EXPECT_NEAR(report.temperature_sigma_celsius, 0.3, 0.03);
   EXPECT_NEAR(report.supply_noise, 0.001, 0.0006);
+}
+
+TEST(Uncertainty, of_the_supply_is_found_where_all_taxels_are_on_tables) {
+  const ArrayDescription array = reference_array(8, 8);
+  const Recording recording = record(array, "calibration", 1);
+  const auto database = build_sample_database(array, recording.frames, recording.loads);
+  ASSERT_TRUE(database);
+  auto training = train_force_networks(*database);
+  ASSERT_TRUE(training);
+  const auto supply_noise = [&] {
+    pipeline::Model model;
+    model.array = array;
+    model.networks = training->networks;
+    const auto report = fit_uncertainty(*database, *training, model);
+    EXPECT_TRUE(report);
+    return report->supply_noise;
+  };
+  const double by_networks = supply_noise();
+  EXPECT_GT(by_networks, 0.0);
+  training->tested_tables = std::exchange(training->tested_own, {});
+  EXPECT_EQ(supply_noise(), by_networks);
 }
 
 TEST(Uncertainty, intervals_cover_what_they_promise_where_the_material_is_noisy) {

@@ -113,7 +113,7 @@ class Learn(unittest.TestCase):
         self.assertTrue(all((line["class"] == "unknown") == bool(line["reason"]) for line in lines))
 
     def test_it_ends_when_nobody_takes_what_is_recognised(self):
-        self.assertEqual(self.learn("--out", self.work / "c.safetensors").returncode, 0)
+        self.assertEqual(self.learn("--out", self.work / "c.safetensors", "--rate", 200).returncode, 0)
         frames = f"file:{self.work / 'frames.npy'}?rate=200&rows={ROWS}&cols={COLS}"
         device = [support.BINARY, "emulate", "--protocol", "dermis", "--in", frames, "--loop", "--to", "stdout:"]
         with subprocess.Popen(device, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as endless:

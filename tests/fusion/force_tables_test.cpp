@@ -30,6 +30,12 @@ TEST(ForceTables, go_straight_from_zero_through_the_knots_and_on_along_a_power) 
   EXPECT_NEAR(newtons(tables, 1, 4.0F), 5.0, 1e-5);
 }
 
+TEST(ForceTables, know_where_their_line_from_zero_ends) {
+  EXPECT_EQ(two_tables().line_end_siemens(0), 1.0F);
+  const ForceTables padded{{0}, 4, {0.1F, 0.2F, 0.3F, 0.5F}, {1.0F, 2.0F, 3.0F, 9.0F}, {0.0F}};
+  EXPECT_EQ(padded.line_end_siemens(0), 0.3F);
+}
+
 TEST(ForceTables, turn_the_conductance_to_the_reference_temperature) {
   const ForceTables tables = two_tables();
   EXPECT_NEAR(newtons(tables, 1, 4.0F, 12.5F), newtons(tables, 1, 5.0F), 1e-4);

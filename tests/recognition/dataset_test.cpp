@@ -169,5 +169,65 @@ TEST_F(Dataset, splits_name_the_line_that_is_wrong) {
             path + ":4: id 'a' stands twice in split 's0'; an example is learned from or answered for");
 }
 
+/// Two recordings of three and four frames of 1 x 2 taxels.
+class Recordings : public testing::Test {
+ protected:
+  void write_labels(const std::string& lines, const std::string& header = "id,first,last,class,recording") {
+    write_bytes(labels_, header + "\n" + lines);
+  }
+  [[nodiscard]] Result<LabelledFrames> labelled() const {
+    const Layout layout{.arrays = {{.name = "skin", .rows = 1, .cols = 2}}, .readings = 2};
+    return label_recordings(layout, {{"a.mcap", {1, 1, 2, 2, 3, 3}, 1}, {"b.mcap", {4, 4, 5, 5, 6, 6, 7, 7}, 0}},
+                            labels_, "class");
+  }
+  [[nodiscard]] std::string error() const {
+    const Result<LabelledFrames> data = labelled();
+    return data ? "no error" : data.error().message;
+  }
+
+  dermis::support::TemporaryFolder folder_;
+  std::string labels_ = folder_.file("labels.csv");
+};
+
+TEST_F(Recordings, stand_one_after_the_other_and_are_the_groups) {
+  write_labels("y,0,1,pen,b.mcap\nx,1,2,cup,a.mcap\nz,3,3,cup,b.mcap\n");
+  const Result<LabelledFrames> data = labelled();
+  ASSERT_TRUE(data) << data.error().message;
+  EXPECT_EQ(data->frames, (std::vector<float>{1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 7, 7}));
+  ASSERT_EQ(data->labels.size(), 3U);
+  EXPECT_EQ(data->labels[0].id, "x");
+  EXPECT_EQ(data->labels[0].first, 1U);
+  EXPECT_EQ(data->labels[0].group, "a.mcap");
+  EXPECT_EQ(data->labels[1].id, "y");
+  EXPECT_EQ(data->labels[1].first, 3U);
+  EXPECT_EQ(data->labels[1].last, 4U);
+  EXPECT_EQ(data->labels[1].order, 3.0);
+  EXPECT_EQ(data->labels[2].group, "b.mcap");
+}
+
+TEST_F(Recordings, are_no_groups_where_the_labels_name_some) {
+  write_labels("x,1,2,cup,a.mcap,7\ny,0,1,pen,b.mcap,7\n", "id,first,last,class,recording,subject");
+  const Result<LabelledFrames> data = labelled();
+  ASSERT_TRUE(data) << data.error().message;
+  EXPECT_EQ(data->labels[0].group, "7");
+  EXPECT_EQ(data->labels[1].group, "7");
+}
+
+TEST_F(Recordings, are_refused_with_labels_that_do_not_fit) {
+  write_labels("x,1,3,cup,a.mcap\n");
+  EXPECT_NE(error().find("a.mcap: label 'x' ends at frame 3; there are 3 frames"), std::string::npos) << error();
+  write_labels("x,0,1,cup,b.mcap\ny,1,2,cup,b.mcap\n");
+  EXPECT_NE(error().find("b.mcap: label 'y' overlaps label 'x' at frame 1"), std::string::npos) << error();
+  write_labels("x,0,1,cup,c.mcap\n");
+  EXPECT_NE(error().find(":2: there is no recording 'c.mcap' among those given: a.mcap, b.mcap"), std::string::npos)
+      << error();
+  write_labels("x,0,1,cup,a.mcap\n");
+  EXPECT_NE(error().find("label 'x' begins at frame 0; the first 1 frames are the tare"), std::string::npos) << error();
+  write_labels("x,1,1,cup,a.mcap\nx,1,1,cup,b.mcap\n");
+  EXPECT_NE(error().find("label 'x' stands twice"), std::string::npos) << error();
+  write_labels("x,1,1,cup\n", "id,first,last,class");
+  EXPECT_NE(error().find("recording"), std::string::npos) << error();
+}
+
 }  // namespace
 }  // namespace dermis::recognition

@@ -38,6 +38,24 @@ async function eventually(page, check, argument) {
   await page.waitForFunction(check, argument, { polling: 50, timeout: WAIT_MS });
 }
 
+/** In the page: whether the maps hold more than two colours. WebGL keeps a drawing only until it is shown, so an
+ * animation frame in which nothing was drawn sees an empty canvas: ask again. */
+function hasDrawnColours() {
+  const canvas = document.querySelector("[data-role=maps] canvas");
+  const copy = document.createElement("canvas");
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  return new Promise((resolve) =>
+    requestAnimationFrame(() => {
+      const pen = copy.getContext("2d");
+      pen.drawImage(canvas, 0, 0);
+      const bytes = pen.getImageData(0, 0, copy.width, copy.height).data;
+      const found = new Set();
+      for (let at = 0; at < bytes.length; at += 4) if (bytes[at + 3] > 0) found.add((bytes[at] << 16) | (bytes[at + 1] << 8) | bytes[at + 2]);
+      resolve(found.size > 2);
+    }),
+  );
+}
+
 const number = (text) => Number(text.replace("\u2212", "-").replace(/[^-\d.]/g, ""));
 
 describe("a recording", () => {
@@ -83,22 +101,7 @@ describe("each view", () => {
       await maps.press("ArrowDown");
       await maps.press("Enter");
       await page.locator("[data-role=pin-1][data-taxel]").waitFor();
-      const colours = await page.evaluate(() => {
-        const canvas = document.querySelector("[data-role=maps] canvas");
-        const copy = document.createElement("canvas");
-        [copy.width, copy.height] = [canvas.width, canvas.height];
-        return new Promise((resolve) =>
-          requestAnimationFrame(() => {
-            const pen = copy.getContext("2d");
-            pen.drawImage(canvas, 0, 0);
-            const bytes = pen.getImageData(0, 0, copy.width, copy.height).data;
-            const found = new Set();
-            for (let at = 0; at < bytes.length; at += 4) if (bytes[at + 3] > 0) found.add((bytes[at] << 16) | (bytes[at + 1] << 8) | bytes[at + 2]);
-            resolve(found.size);
-          }),
-        );
-      });
-      assert.ok(colours > 2, `${colours} colours`);
+      await eventually(page, hasDrawnColours);
       await page.keyboard.press("i");
       assert.ok(await page.locator("[data-role=interpolate]").isChecked());
       await page.selectOption("[data-role=scale-force]", "20");

@@ -30,8 +30,8 @@ struct TrainingReport {
   double median_fit_error = 0.0;        ///< Median over taxels of the root mean square relative error on own samples.
   double worst_fit_error = 0.0;         ///< The worst taxel.
   std::size_t worst_taxel = 0;
-  std::size_t groups = 0;                 ///< Of neighbouring taxels on which tables were held against the networks.
-  std::size_t groups_on_tables = 0;       ///< Of those, where tables were clearly better.
+  std::size_t groups = 0;            ///< Of taxels in reading order on which tables were held against the networks.
+  std::size_t groups_on_tables = 0;  ///< Of those, where tables were clearly better and are used.
   std::vector<std::size_t> table_taxels;  ///< That have a look-up table in the place of their network.
   bool is_one_load = false;               ///< All loads are about the same: straight lines, no law could be learned.
   std::string choice;                     ///< One sentence: which networks were trained and what decided it.

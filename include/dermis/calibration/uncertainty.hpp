@@ -45,8 +45,8 @@ struct UncertaintyReport {
 /// of the ADC and the temperature sensor is measured; the error of the supply and the relative error of the networks
 /// (misfit, hysteresis, creep, noise of the material) are those which together make the errors on tested loads
 /// likeliest, the latter scaled so that of them 68.3 % are within one standard deviation and 95.4 % within two; where
-/// longer tails allow no such scale, too many are within one by the same factor as too few are within two. Straight
-/// lines through one load are uncertain by 20 % of ln(load / force) beside that, and by 5 % where it was not repeated.
+/// longer tails allow no such scale, too many are within one by the same factor as too few are within two. Tables under
+/// loads that were not repeated are uncertain by 5 %; what they do not know below their lightest load is ForceFusion's.
 /// `model` holds the array and the networks of `training`. Errors: those of Compensator::create().
 [[nodiscard]] Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const ForceTraining& training,
                                                         pipeline::Model& model);

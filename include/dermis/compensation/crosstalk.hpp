@@ -20,6 +20,8 @@ struct InversionOptions {
   /// Floating lines and lines with resistance: the noise of each taxel to a fifth, by twelve samples, instead of
   /// exactly (up to 400 taxels), which takes rows^3 cols^3 multiplications a frame.
   bool samples_noise = false;
+  /// propagate_noise() adds what drivers do that are known only to readout.drive_error_ohm.
+  bool counts_driver_errors = false;
 };
 
 /// How the inversion of a frame ended.
@@ -61,7 +63,6 @@ class CrosstalkInversion {
 [[nodiscard]] Result<std::unique_ptr<CrosstalkInversion>> make_crosstalk_inversion(
     const ArrayDescription& array, const InversionOptions& options = {});
 
-class DriverError;
 class FaultInversion;
 class SupplyError;
 
@@ -98,7 +99,6 @@ class Compensator {
 
   std::unique_ptr<CrosstalkInversion> inversion_;
   std::unique_ptr<SupplyError> supply_error_;
-  std::unique_ptr<DriverError> driver_error_;
   std::unique_ptr<FaultInversion> faults_;
 };
 

@@ -48,8 +48,9 @@ struct LineFault {
   std::size_t frame = 0;   ///< First frame in which it showed, counted from 0.
   Nanos time{};            ///< Time of that frame.
   double drive_ohm = 0.0;  ///< drifting_driver: its resistance now [ohm].
-  /// Silent lines: log-likelihood ratio of a short to 0 V against an open line, -30 ... 30. Both read the same, but
-  /// take different currents from the other lines where they are pressed; 0 until they have been.
+  /// Silent lines and dead taxels: log-likelihood ratio of a short to 0 V, or of a taxel that conducts, against an open
+  /// one, from -30 on (lines: to 30). Both read the same, but take different currents from the other lines where they
+  /// are pressed; 0 until they have been.
   double ground_evidence = 0.0;
   bool grounded = false;  ///< Taken to be shorted to 0 V, not open: from evidence 10 until it has fallen to -10.
 };

@@ -21,13 +21,14 @@ namespace dermis::compensation {
 ///                             summed over the line and the frames (Page's test), 3 frames at least; a dead taxel 12;
 ///                             only while most unloaded taxels elsewhere do read
 /// stuck taxels                equal readings of a pressed taxel beside a noise that makes unpressed ones change, about
-///                             30 frames in a row; single taxels are judged 64 a frame, by turns
+///                             30 times in a row; single taxels are judged 64 a frame, by turns; a dead taxel whose
+///                             neighbours are pressed and that takes current from its line is stuck at 0
 /// shorted lines               equal readings of both lines and of no other line, in 6 presses, each released before
 ///                             the next, at several places, and no frame in which they differ; in 2 presses where
 ///                             other lines have shown that the places of a press scatter
 /// supplied lines              a column at full scale in all rows, 3 frames, or 20 different loads where loads can do
 ///                             that too; a row of which 3 presses, likewise, show in most rows, while others do not;
-///                             2 frames where taxels scatter
+///                             2 presses where taxels scatter, or 2 frames that show the row at many places then
 /// drifting drivers            unloaded taxels that fall from one frame to the next when the current of their line
 ///                             rises, and rise when it falls; reported, but neither masked nor corrected
 ///

@@ -27,8 +27,10 @@ inline constexpr std::size_t kSigmaKnots = 6;
 ///
 /// The network's direct connection from ln(e) is the power law of conductive rubber, F ~ e^p, which also carries the
 /// force to zero below the lightest calibrated load; what bends it (contact resistance, percolation, temperature) is
-/// learned by the hidden units. Above the heaviest load the power law at its end goes on, to eight times that load;
-/// outside the calibrated temperatures the temperature is clamped. The force rises with conductance throughout.
+/// learned by the hidden units. Above the heaviest load F_h the power law at its end goes on, to eight times that load,
+/// as far as it stands out of the noise: with x = ln(newtons / F_h) by that law and s the relative standard deviation
+/// at F_h, newtons = F_h exp(x^3 / (x^2 + s^2)). Outside the calibrated temperatures the temperature is clamped. The
+/// force rises with conductance throughout.
 ///
 /// We deviate from the paper, whose networks see every taxel and the supply (Fig. 7): the circuit and the supply are
 /// known relationships and are solved before; what is left to learn is the material of one taxel.
@@ -71,7 +73,8 @@ struct ForceNetworks {
 /// pressure-sensitive rubber drifts by 0.2 to 1 %/C (FlexiForce: 0.36), and nobody measured this one's.
 ///
 /// Beyond the heaviest load F_h the square of x sqrt(0.2^2 + (0.3 x)^2), x = ln(newtons / F_h), and below the first of
-/// sigma_knots_newtons that of 0.1 ln(first / newtons); from 8 F_h on the force stands still, with an infinite sigma.
+/// sigma_knots_newtons that of 0.1 ln(first / newtons), on the line below the first load of a table also that of
+/// 0.3 ln(e_1 / e), e_1 the conductance there; from 8 F_h on the force stands still, with an infinite sigma.
 ///
 /// sigma_T is the noise of the temperature sensor, and what the temperature was clamped by; half_span / sqrt(3) where
 /// the frame has none. Below e = sigma_siemens (+) offset_sigma the right side times newtons is that of this
@@ -120,6 +123,8 @@ class ForceFusion {
   std::vector<float> inputs_;              // [inputs, taxels]
   std::vector<float> outputs_;             // [taxels]
   std::vector<float> gradient_;            // of the outputs [inputs, taxels]
+  std::vector<float> line_end_siemens_;    // ForceTables::line_end_siemens() [tables]
+  std::vector<float> table_variance_;      // ForceSources::table_variance [taxels]
 };
 
 }  // namespace dermis::fusion

@@ -36,6 +36,10 @@ struct ForceTables {
   /// last: 0.3 ... 3; 1 where there is one knot.
   [[nodiscard]] float end_exponent(std::size_t table) const noexcept;
 
+  /// s where the straight line from (0 S, 0 N) through the first knot ends [S]: at that knot, or at later ones that lie
+  /// on it. Below, no load has told the law.
+  [[nodiscard]] float line_end_siemens(std::size_t table) const noexcept;
+
   /// Of an array of `taxel_count` taxels: all vectors have the right size and every number is in its range.
   [[nodiscard]] bool is_consistent(std::size_t taxel_count) const noexcept;
 };

@@ -17,15 +17,30 @@
 
 namespace dermis::recognition {
 
+/// What some of the features tell by themselves.
+struct Aspect {
+  std::string name;         ///< In plain words: "place", "force", "area", "shape", "time", "the further readings".
+  double told_apart = 0.0;  ///< Mean over two classes of the share of examples that is right by it alone, 0 ... 1.
+};
+
+/// Two classes that are taken for each other.
+struct ConfusedPair {
+  std::size_t first = 0;
+  std::size_t second = 0;
+  std::size_t mistakes = 0;     ///< Examples of one that were answered with the other.
+  std::vector<Aspect> aspects;  ///< In which they are most alike first.
+};
+
 /// What the classes know of examples that they had not learned from: of each fold by what the others taught.
 struct LearningReport {
   bool by_group = false;  ///< Whole subjects or sessions were held out; else runs in order of time.
   std::size_t folds = 0;
-  std::size_t groups = 0;              ///< Subjects or sessions that the labels name; 0 where some name none.
-  std::vector<std::size_t> confusion;  ///< [classes, classes]: right class, answered class; of examples.
-  std::size_t judged = 0;              ///< Examples in `confusion`: not those whose class was in no other fold.
-  double accuracy = 0.0;               ///< Share of those that were right, 0 ... 1.
-  double calibration_error = 0.0;      ///< Expected calibration error over 10 bins, 0 ... 1.
+  std::size_t groups = 0;                  ///< Subjects or sessions that the labels name; 0 where some name none.
+  std::vector<std::size_t> confusion;      ///< [classes, classes]: right class, answered class; of examples.
+  std::size_t judged = 0;                  ///< Examples in `confusion`: not those whose class was in no other fold.
+  double accuracy = 0.0;                   ///< Share of those that were right, 0 ... 1.
+  double calibration_error = 0.0;          ///< Expected calibration error over 10 bins, 0 ... 1.
+  std::optional<ConfusedPair> confused{};  ///< Most often; empty where no two are.
 };
 
 struct Learned {

@@ -31,6 +31,8 @@ struct SensedArray {
 /// Whether so many frames a second can be, or 0: not known.
 [[nodiscard]] bool is_rate(double rate_hz) noexcept;
 
+inline constexpr double kLeastNewtons = 0.01;  ///< Layout::least_reading of forces [N].
+
 /// How a frame is laid out, and what its numbers mean.
 struct Layout {
   std::vector<SensedArray> arrays;  ///< 1 ... 64, that do not overlap.
@@ -38,7 +40,10 @@ struct Layout {
   std::size_t extras = 0;           ///< Further readings beside a frame, such as joint angles.
   double rate_hz = 0.0;             ///< Frames a second, 0.001 ... 1e6; 0 where it is not known.
   double least_reading =
-      1.0;  ///< The least reading that means anything, > 0: 1 count, or 0.01 N. Logarithms begin here.
+      1.0;  ///< The least reading that means anything, > 0: 1 count, or kLeastNewtons. Logarithms begin here.
+
+  /// Whether the readings are newtons, not counts or whatever else a device gives.
+  [[nodiscard]] bool has_forces() const noexcept { return least_reading == kLeastNewtons; }
 
   /// What is wrong with it, as "arrays: ...".
   [[nodiscard]] Status validate() const;

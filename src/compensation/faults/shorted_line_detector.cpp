@@ -109,19 +109,39 @@ void ShortedLineDetector::judge_pair(const Observation& seen, Axis axis, std::si
     count.add(*equal_place, kEvidenceOfPress + std::min(others, kMostOfOtherPlaces), seen.frame, seen.conditioned.time);
     if (count.decides()) {
       faults.add({.kind = kShorted[axis], .place = line, .frame = count.first_frame, .time = count.first_time});
+      forget(pair);
+      return;
     }
   }
-  if (equal_place) learn(pair, *equal_place, beside);
+  if (equal_place) learn(seen, axis, line, *equal_place, beside);
 }
 
-/// A press that lasts is learned from once.
-void ShortedLineDetector::learn(Pair& pair, std::size_t place, const PressComparison& press) noexcept {
-  const std::size_t last = pair.learned_place.value_or(place);
-  const std::size_t step = std::max(place, last) - std::min(place, last);
-  if (pair.learned_place && step <= kSlide) return;
+/// A press that lasts is learned from once, however wide it is and wherever its hardest place wanders.
+void ShortedLineDetector::learn(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
+                                const PressComparison& press) noexcept {
+  Pair& pair = pairs_[axis][line];
+  const std::optional<std::size_t> last = pair.learned_place;
   pair.learned_place = place;
+  if (last && are_joined(seen, axis, line, *last, place)) return;
   pair.learned.add(press);
   equal_presses_.add(press);
+}
+
+/// All places between them are pressed, but those that a press may have slid from since the last frame.
+bool ShortedLineDetector::are_joined(const Observation& seen, Axis axis, std::size_t line, std::size_t a,
+                                     std::size_t b) const noexcept {
+  const auto [from, to] = std::minmax(a, b);
+  for (std::size_t place = from + kSlide; place + kSlide < to + 1; ++place) {
+    if (!seen.is_pressed(taxel_on_line(array_, axis, line, place))) return false;
+  }
+  return true;
+}
+
+/// Presses that a short made equal say nothing of healthy lines.
+void ShortedLineDetector::forget(Pair& pair) noexcept {
+  equal_presses_ = equal_presses_.without(pair.learned);
+  pair.learned = EqualPresses();
+  pair.learned_place.reset();
 }
 
 ShortedLineDetector::PlaceComparison ShortedLineDetector::compare_at(const Observation& seen, Axis axis,

@@ -36,7 +36,7 @@ class ShortedLineDetector {
     double ratio = 1.0;  // of their readings where they are shorted
     PressCount count{};
     EqualPresses learned{};                      // of them, until they are found to be shorted
-    std::optional<std::size_t> learned_place{};  // of the last press that was
+    std::optional<std::size_t> learned_place{};  // where the press was last of which that was
   };
 
   /// Two taxels at one place of a line and the next one.
@@ -63,7 +63,11 @@ class ShortedLineDetector {
                                            const FaultList& faults) const noexcept;
   [[nodiscard]] PressComparison compare_beside(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
                                                const FaultList& faults) const noexcept;
-  void learn(Pair& pair, std::size_t place, const PressComparison& press) noexcept;
+  void learn(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
+             const PressComparison& press) noexcept;
+  [[nodiscard]] bool are_joined(const Observation& seen, Axis axis, std::size_t line, std::size_t a,
+                                std::size_t b) const noexcept;
+  void forget(Pair& pair) noexcept;
   [[nodiscard]] bool stands_out(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
                                 double deviation) const noexcept;
 

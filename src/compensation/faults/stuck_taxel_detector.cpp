@@ -64,6 +64,7 @@ void StuckTaxelDetector::heal(const Observation& seen, const CountScale& scale, 
     if (std::abs(change) < kSameCount || ++changes_[taxel] < kHealChanges) continue;
     faults.remove(LineFaultKind::stuck_taxel, taxel);
     evidence_[taxel] = 0.0;
+    changes_[taxel] = 0;  // GroundedLineDetector may find it next
   }
 }
 
@@ -115,7 +116,6 @@ void StuckTaxelDetector::find(const Observation& seen, const TaxelBlock& block, 
                 .place = taxel,
                 .frame = seen.frame - std::min(seen.frame, frames),
                 .time = seen.conditioned.time});
-    changes_[taxel] = 0;
   }
 }
 

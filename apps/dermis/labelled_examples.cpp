@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "labelled_examples.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "dermis/recordings/recording.hpp"
+#include "load_source.hpp"
+#include "open_source.hpp"
+
+namespace dermis::app {
+namespace {
+
+using recognition::LabelledFrames;
+using recognition::Layout;
+using recognition::LoadRecording;
+using recognition::SensedArray;
+
+constexpr double kMostRateDifference = 0.1;  // of the first recording
+
+/// A recording, and what it says of its frames.
+struct ReadRecording {
+  LoadRecording recording;
+  SensedArray array;
+  double rate_hz = 0.0;
+};
+
+/// As the column `recording` of labels.csv names it: without folder, with the array where it is one of several.
+std::string name_of(const std::string& from) {
+  const std::string array = recordings::recording_place(from).array;
+  return std::filesystem::path(file_of(from)).filename().string() + (array.empty() ? "" : "#" + array);
+}
+
+/// By the median of the intervals; 0 where they tell nothing.
+double rate_of(std::vector<Nanos> times) {
+  if (times.size() < 2) return 0.0;
+  for (std::size_t i = times.size() - 1; i > 0; --i) times[i] -= times[i - 1];
+  const auto middle = times.begin() + 1 + static_cast<std::ptrdiff_t>((times.size() - 1) / 2);
+  std::nth_element(times.begin() + 1, middle, times.end());
+  const double rate = 1.0 / std::max(std::chrono::duration<double>(*middle).count(), 1e-9);
+  return recognition::is_rate(rate) ? rate : 0.0;
+}
+
+Result<ReadRecording> read_recording(const ExampleOptions& options, const std::string& from) {
+  Result<LoadSource> source = LoadSource::open({.from = from, .model = options.model, .tare = options.tare});
+  if (!source) return source.error();
+  if (source->is_live()) return bad_input("'" + from + "': is a device, which has no end; 'dermis record' it first");
+  ReadRecording read{.recording = {.name = name_of(from), .frames = {}}, .array = {}};
+  std::vector<Nanos> times;
+  for (;;) {
+    const Result<bool> more = source->next();
+    if (!more) return more.error();
+    if (!*more) break;
+    read.recording.frames.insert(read.recording.frames.end(), source->loads().begin(), source->loads().end());
+    read.recording.tare_frames += source->is_tare() ? 1 : 0;
+    times.push_back(source->time());
+  }
+  if (read.recording.tare_frames == times.size()) {
+    return bad_input(from + (times.empty() ? ": has no frame" : ": ends before it is tared, which takes 1 s"));
+  }
+  read.array = source->array().value_or(SensedArray{});
+  read.rate_hz = options.data.rate_hz > 0.0 ? options.data.rate_hz : rate_of(std::move(times));
+  return read;
+}
+
+/// Whether another recording is of the same array and rate as the first.
+Status check_alike(const ReadRecording& first, const ReadRecording& other) {
+  const std::string& name = other.recording.name;
+  const std::string& first_name = first.recording.name;
+  if (other.recording.name == first.recording.name) {
+    return bad_input("--in: two recordings are called " + name +
+                     "; rename one, so that the labels can tell them apart");
+  }
+  if (other.array.rows != first.array.rows || other.array.cols != first.array.cols) {
+    return bad_input(fmt::format("{}: has frames of {}x{} taxels, {} of {}x{}; learn from one array at a time", name,
+                                 other.array.rows, other.array.cols, first_name, first.array.rows, first.array.cols));
+  }
+  if (std::abs(other.rate_hz - first.rate_hz) > kMostRateDifference * first.rate_hz) {
+    return bad_input(fmt::format("{}: has {:.4g} frames a second, {} {:.4g}; learn from recordings of one rate", name,
+                                 other.rate_hz, first_name, first.rate_hz));
+  }
+  return Done{};
+}
+
+Result<LabelledFrames> read_recordings(const ExampleOptions& options) {
+  std::vector<ReadRecording> read;
+  for (const std::string& from : options.in) {
+    Result<ReadRecording> next = read_recording(options, from);
+    if (!next) return next.error();
+    for (const ReadRecording& before : read) {
+      if (Status alike = check_alike(before, *next); !alike) return alike.error();
+    }
+    read.push_back(*std::move(next));
+  }
+  Layout layout{.arrays = {read.front().array}, .readings = read.front().array.taxel_count()};
+  layout.rate_hz = read.front().rate_hz;
+  if (!options.model.empty()) layout.least_reading = recognition::kLeastNewtons;
+  std::vector<LoadRecording> recordings;
+  for (ReadRecording& one : read) recordings.push_back(std::move(one.recording));
+  return recognition::label_recordings(layout, std::move(recordings), options.data.labels, options.data.label);
+}
+
+}  // namespace
+
+Result<LabelledFrames> read_examples(const ExampleOptions& options) {
+  if (!recognition::is_rate(options.data.rate_hz)) return bad_input("--rate: must be 0.001 to 1e6");
+  const bool has_plain = !options.data.frames.empty() || !options.data.arrays.empty() || !options.data.extras.empty();
+  if (options.in.empty()) {
+    if (!options.model.empty() || options.tare) {
+      return bad_input("--model and --tare are for --in; the frames of --frames are loads already");
+    }
+    if (!options.data.frames.empty() && !options.data.arrays.empty()) return recognition::read_dataset(options.data);
+    return bad_input("name the examples: --in RECORDING..., or --frames FILE with --arrays FILE");
+  }
+  if (has_plain) return bad_input("--in: excludes --frames, --arrays and --extra; name one kind of examples");
+  return read_recordings(options);
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""`dermis learn --in`: recordings become classes, by the forces of a model or by tared readings, which `dermis recognise`
+names in other recordings."""
+import csv
+import io
+import json
+import random
+import unittest
+
+import support
+from support import SmallArray, dermis
+
+ROWS, COLS, RATE, IDLE = 6, 6, 50, 75
+
+
+class Forces(SmallArray):
+    """Each frame of the scene "multitouch" has loads of its own: few taxels are pressed, or many."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.kinds = {}
+        for seed in (3, 4, 5):
+            folder = cls.root / f"scene{seed}"
+            recording = cls.root / f"rec{seed}.mcap"
+            for step in (("simulate", "--array", cls.array, "--scene", "multitouch", "--frames", 150, "--seed", seed,
+                          "--out", folder), ("convert", folder / "frames.csv", recording)):
+                result = dermis(*step)
+                if result.returncode != 0:
+                    raise AssertionError(f"{step}: {result.stderr}")
+            pressed = [0] * 150
+            with open(folder / "loads.csv") as loads:
+                for load in csv.DictReader(loads):
+                    pressed[int(load["frame"])] += load["where"] != "all" and float(load["value"]) > 0.3
+            cls.kinds[seed] = {frame: "few" if count <= 2 else "many" for frame, count in enumerate(pressed)
+                               if 0 < count <= 2 or count >= 6}
+
+    def labels(self, *seeds, header="id,first,last,class,recording"):
+        lines = [f"r{seed}f{frame},{frame},{frame},{kind},rec{seed}.mcap"
+                 for seed in seeds for frame, kind in self.kinds[seed].items()]
+        return self.written("labels.csv", "\n".join([header, *lines]) + "\n")
+
+    def learn(self, *seeds, model=True, labels=None, arguments=()):
+        recordings = [self.root / f"rec{seed}.mcap" for seed in seeds]
+        return ["learn", "--in", *recordings, "--labels", labels or self.labels(*seeds), "--out",
+                self.work / "c.safetensors", *(("--model", self.model) if model else ()), *arguments]
+
+    def recognised(self, seed):
+        output = self.succeed("recognise", "--classes", self.work / "c.safetensors", "--model", self.model, "--in",
+                              self.root / f"rec{seed}.mcap")
+        return {int(line["last"]): line for line in csv.DictReader(io.StringIO(output))}
+
+    def right_share(self, seed):
+        lines = self.recognised(seed)
+        right = [lines[frame]["likeliest"] == kind for frame, kind in self.kinds[seed].items()]
+        return sum(right) / len(right)
+
+    def test_what_was_learned_from_recordings_is_recognised_in_another(self):
+        output = self.succeed(*self.learn(3, 4))
+        self.assertIn("2 folds of whole recordings, subjects or sessions", output)
+        self.assertIn("at 1 frames a second", output)
+        self.assertGreaterEqual(self.right_share(3), 0.95)
+        self.assertGreaterEqual(self.right_share(5), 0.9)
+
+    def test_the_same_frames_give_the_same_answer_in_every_file(self):
+        self.succeed(*self.learn(3))
+        recorded = self.recognised(3)
+        output = self.succeed("recognise", "--classes", self.work / "c.safetensors", "--model", self.model, "--in",
+                              self.root / "scene3" / "frames.csv")
+        from_text = {int(line["last"]): line for line in csv.DictReader(io.StringIO(output))}
+        self.assertEqual(len(recorded), 150)
+        for frame, line in recorded.items():
+            self.assertEqual((line["likeliest"], line["probability"]),
+                             (from_text[frame]["likeliest"], from_text[frame]["probability"]))
+
+    def evaluate(self, seed, *arguments):
+        return ["evaluate", "--classes", self.work / "c.safetensors", "--in", self.root / f"rec{seed}.mcap", "--model",
+                self.model, "--labels", self.labels(seed), *arguments]
+
+    def test_classes_are_judged_by_a_recording_that_they_have_not_seen(self):
+        self.succeed(*self.learn(3, 4))
+        text = self.succeed(*self.evaluate(5))
+        self.assertIn("accuracy", text)
+        self.assertIn("calibration error", text)
+        self.assertIn("answered", text)
+        judged = json.loads(self.succeed(*self.evaluate(5, "--json")))
+        self.assertEqual(judged["judged"], len(self.kinds[5]))
+        self.assertEqual(judged["classes"], ["few", "many"])
+        self.assertEqual(sum(judged["confusion"]), judged["judged"])
+        self.assertAlmostEqual(judged["accuracy"], self.right_share(5))
+        self.assertLessEqual(judged["calibration_error"], 0.1)
+
+    def test_classes_are_judged_by_plain_files_and_by_new_classes(self):
+        frames = ["--frames", self.work / "frames.npy", "--arrays",
+                  self.written("arrays.csv", "array,rows,cols,first_column\nskin,4,5,0\n")]
+        self.assertEqual(dermis("convert", self.root / "rec3.mcap", self.work / "frames.npy").returncode, 0)
+        labels = self.labels(3)
+        self.succeed("learn", *frames, "--labels", labels, "--out", self.work / "c.safetensors")
+        text = self.succeed("evaluate", "--classes", self.work / "c.safetensors", *frames, "--labels", labels)
+        self.assertIn(f"of {len(self.kinds[3])}, calibration error", text)
+        first, *others = labels.read_text().splitlines()
+        labels.write_text("\n".join([first, *others[:10], *(line.replace("few", "new") for line in others[10:])]) + "\n")
+        text = self.succeed("evaluate", "--classes", self.work / "c.safetensors", *frames, "--labels", labels)
+        self.assertRegex(text, r"of \d+ examples of classes that were not learned, \d+ are called unknown")
+
+    def test_what_cannot_be_judged(self):
+        self.succeed(*self.learn(3))
+        classes = self.work / "c.safetensors"
+        self.refuse(self.evaluate(4)[:-2], ["--labels"])
+        self.refuse(self.evaluate(4, "--report", self.work / "page"), ["--classes", "--report"])
+        self.refuse(["evaluate", "--classes", classes, "--in", self.root / "rec4.mcap", "--labels", self.labels(4)],
+                    [classes, "--model"])
+        self.refuse([*self.evaluate_arguments(), "--labels", self.labels(4)], ["--labels", "--classes"])
+        never = self.written("never.csv", "id,first,last,class\na,0,0,never\n")
+        self.refuse([*self.evaluate(4), "--label", "subject"], ["subject"])
+        self.refuse(["evaluate", "--classes", classes, "--model", self.model, "--in", self.root / "rec4.mcap",
+                     "--labels", never], [classes, "no label"])
+
+    def test_one_recording_needs_no_column_that_names_it(self):
+        lines = [f"f{frame},{frame},{frame},{kind}" for frame, kind in self.kinds[3].items()]
+        labels = self.written("labels.csv", "\n".join(["id,first,last,class", *lines]) + "\n")
+        output = self.succeed(*self.learn(3, labels=labels))
+        self.assertIn("in order of time", output)
+
+    def test_labels_that_do_not_fit(self):
+        header = "id,first,last,class,recording\na,0,0,few,rec3.mcap\n"
+        for line, places in (("b,150,150,many,rec3.mcap", ["rec3.mcap", "'b'", "frame 150", "150 frames"]),
+                             ("b,0,1,many,rec3.mcap", ["rec3.mcap", "'b' overlaps label 'a'", "frame 0"]),
+                             ("b,0,1,many,rec9.mcap", [":3", "'rec9.mcap'", "rec3.mcap, rec4.mcap"]),
+                             ("a,0,0,many,rec4.mcap", ["'a' stands twice"])):
+            with self.subTest(line):
+                self.refuse(self.learn(3, 4, labels=self.written("labels.csv", header + line + "\n")),
+                            ["labels.csv", *places])
+
+    def test_several_recordings_need_the_column_that_names_them(self):
+        labels = self.written("labels.csv", "id,first,last,class\na,0,0,few\nb,1,1,many\n")
+        self.refuse(self.learn(3, 4, labels=labels), ["labels.csv", "recording"])
+
+    def test_recordings_that_do_not_go_together(self):
+        twin = self.work / "folder"
+        twin.mkdir()
+        (twin / "rec3.mcap").write_bytes((self.root / "rec3.mcap").read_bytes())
+        arguments = self.learn(3)
+        self.refuse([*arguments[:3], twin / "rec3.mcap", *arguments[3:]], ["two recordings are called rec3.mcap"])
+        other = self.written("other.csv", "time_s,r0c0,r0c1\n0,1,2\n1,2,3\n")
+        self.refuse([*self.learn(3, model=False)[:3], other, *self.learn(3, model=False)[3:]],
+                    ["other.csv", "1x2", "4x5"])
+        self.refuse(["learn", "--in", "sim:idle?rate=100&rows=4&cols=5", *self.learn(3)[3:]], ["dermis record"])
+
+    def test_examples_that_are_named_twice_or_not_at_all(self):
+        labels, out = self.labels(3), self.work / "c.safetensors"
+        self.refuse(["learn", "--labels", labels, "--out", out], ["--in", "--frames"])
+        self.refuse(["learn", "--labels", labels, "--out", out, "--frames", labels], ["--arrays"])
+        self.refuse(["learn", "--labels", labels, "--out", out, "--frames", labels, "--arrays", labels, "--tare"],
+                    ["--tare"])
+        self.refuse(self.learn(3, arguments=["--frames", labels]), ["--in", "--frames"])
+
+    def test_classes_and_sources_that_do_not_fit(self):
+        self.succeed(*self.learn(3))
+        recording, classes = self.root / "rec4.mcap", self.work / "c.safetensors"
+        self.refuse(["recognise", "--classes", classes, "--in", recording], [classes, "--model"])
+        self.refuse(["recognise", "--classes", classes, "--model", self.model, "--in", "sim:idle?rows=3&cols=3"],
+                    ["3x3"])
+        self.succeed(*self.learn(3, model=False))
+        self.refuse(["recognise", "--classes", classes, "--model", self.model, "--in", recording],
+                    [classes, "--model"])
+        other = self.written("other.csv", "time_s,r0c0,r0c1\n0,1,2\n1,2,3\n")
+        self.refuse(["recognise", "--classes", classes, "--in", other], ["other.csv"])
+
+
+class TaredReadings(unittest.TestCase):
+    """Taps and holds of a device whose readings rest at 100 counts and more."""
+
+    setUp = SmallArray.setUp
+    succeed = SmallArray.succeed
+    refuse = SmallArray.refuse
+    written = SmallArray.written
+
+    def recording(self, name, seed, touches=24, idle=IDLE):
+        """Returns what happens: first and last frame, and kind."""
+        generator = random.Random(seed)
+        offsets = [generator.uniform(100, 300) for _ in range(ROWS * COLS)]
+        frames = [offsets] * idle
+        happened = []
+        for touch in range(touches):
+            kind = ("tap", "hold")[touch % 2]
+            length = generator.randint(5, 8) if kind == "tap" else generator.randint(35, 50)
+            taxel = generator.randrange(ROWS * COLS)
+            force = generator.uniform(300, 800)
+            happened.append((len(frames), len(frames) + length - 1, kind))
+            frames += [[o + force * (i == taxel) for i, o in enumerate(offsets)]] * length
+            frames += [offsets] * generator.randint(20, 30)
+        header = ",".join(["time_s", *(f"r{r}c{c}" for r in range(ROWS) for c in range(COLS))])
+        lines = [",".join([f"{i / RATE}", *(f"{value + generator.gauss(0, 1):.0f}" for value in frame)])
+                 for i, frame in enumerate(frames)]
+        text = self.written(f"{name}.csv", "\n".join([header, *lines]) + "\n")
+        self.succeed("convert", text, self.work / f"{name}.mcap")
+        return happened
+
+    def learn(self, happened, *arguments):
+        lines = [f"t{i},{first},{last},{kind}" for i, (first, last, kind) in enumerate(happened)]
+        labels = self.written("labels.csv", "\n".join(["id,first,last,class", *lines]) + "\n")
+        return ["learn", "--in", self.work / "taught.mcap", "--labels", labels, "--out", self.work / "c.safetensors",
+                "--tare", *arguments]
+
+    def test_gestures_are_found_and_named_in_another_recording(self):
+        self.succeed(*self.learn(self.recording("taught", 1)))
+        happened = self.recording("other", 2)
+        output = self.succeed("recognise", "--classes", self.work / "c.safetensors", "--tare", "--in",
+                              self.work / "other.mcap")
+        lines = list(csv.DictReader(io.StringIO(output)))
+        self.assertEqual(len(lines), len(happened))
+        for line, (first, last, kind) in zip(lines, happened):
+            self.assertEqual(line["likeliest"], kind)
+            self.assertLessEqual(abs(int(line["first"]) - first), 2)
+            self.assertLessEqual(abs(int(line["last"]) - last), 2)
+
+    def test_no_example_lies_in_the_tare(self):
+        self.refuse(self.learn([(RATE - 1, RATE + 3, "tap"), *self.recording("taught", 1)]),
+                    ["labels.csv", "taught.mcap", "'t0'", f"first {RATE} frames are the tare"])
+
+    def test_a_recording_that_ends_before_it_is_tared(self):
+        self.recording("taught", 1, touches=0, idle=RATE // 2)
+        self.refuse(self.learn([(0, 1, "tap")]), ["taught.mcap", "1 s"])
+
+    def test_poses_without_a_rate_are_told_so(self):
+        happened = self.recording("taught", 1)
+        labels = "".join(f"{i},{first + 2},{first + 2},{'left' if i % 2 else 'right'}\n"
+                         for i, (first, _, _) in enumerate(happened))
+        arrays = self.written("arrays.csv", f"array,rows,cols,first_column\nskin,{ROWS},{COLS},0\n")
+        self.assertEqual(dermis("convert", self.work / "taught.csv", self.work / "taught.npy").returncode, 0)
+        self.succeed("learn", "--frames", self.work / "taught.npy", "--arrays", arrays, "--labels",
+                     self.written("labels.csv", "id,first,last,class\n" + labels), "--out", self.work / "c.safetensors")
+        recognise = ["recognise", "--classes", self.work / "c.safetensors", "--in", self.work / "taught.csv"]
+        result = dermis(*recognise)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(support.error_lines(result)), 1)
+        self.assertIn("does not know the rate", result.stderr)
+        self.refuse([*recognise, "--rate", 10], ["--rate", "c.safetensors"])
+
+
+if __name__ == "__main__":
+    support.main()
