@@ -3,9 +3,8 @@
 #include "serve/array_recognition.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <chrono>
-#include <cmath>
+#include <span>
 #include <utility>
 
 namespace dermis::serve {
@@ -20,7 +19,6 @@ constexpr double kPosesHz = 30.0;
 constexpr double kMostHz = 1000.0;
 constexpr double kMillimetresPerMetre = 1000.0;
 constexpr Nanos kTellPeriod = std::chrono::milliseconds(100);
-constexpr Nanos kLongestGap = std::chrono::milliseconds(500);  // longer ones are not bridged
 
 /// 0: every frame is looked at, as the rate of the examples is not known.
 double rate_for(const Classes& classes) {
@@ -49,47 +47,21 @@ Result<ArrayRecognition> ArrayRecognition::create(Classes classes, const std::st
 }
 
 ArrayRecognition::ArrayRecognition(StreamRecogniser recogniser, double rate_hz, std::size_t taxels)
-    : recogniser_(std::move(recogniser)),
-      period_(rate_hz > 0.0 ? static_cast<std::int64_t>(1e9 / rate_hz) : 0),
-      last_newtons_(taxels),
-      between_(taxels) {}
+    : recogniser_(std::move(recogniser)), resampler_(rate_hz, taxels) {}
 
 std::optional<Answer> ArrayRecognition::next(const ForceFrame& force) {
   if (has(force.status, FrameStatus::rejected)) return std::nullopt;
-  assert(force.newtons.size() == last_newtons_.size());
-  if (!last_ || force.time < *last_ || force.time - *last_ > kLongestGap) begin_anew(force);
-  std::optional<Answer> answer;
-  if (period_ == Nanos{}) answer = follow(force.newtons);
-  while (period_ > Nanos{} && due_ <= force.time) {
-    const auto span = static_cast<double>((force.time - *last_).count());
-    interpolate(force, span > 0.0 ? static_cast<double>((due_ - *last_).count()) / span : 1.0);
-    if (const std::optional<Answer> found = follow(between_)) answer = found;
-    due_ += period_;
+  if (resampler_.leaps_to(force)) {
+    // What was going on then is not answered for.
+    static_cast<void>(recogniser_.finish());
+    told_.reset();
   }
-  last_ = force.time;
-  std::copy(force.newtons.begin(), force.newtons.end(), last_newtons_.begin());
+  std::optional<Answer> answer;
+  resampler_.take(force, [&](std::span<const float> newtons) {
+    if (const auto recognition = recogniser_.next(newtons)) answer = recognition->answer;
+  });
   if (!answer || !is_news(*answer, force.time)) return std::nullopt;
   return answer;
-}
-
-/// A recording was sought, or the device was away: what was going on then is not answered for.
-void ArrayRecognition::begin_anew(const ForceFrame& force) {
-  static_cast<void>(recogniser_.finish());
-  last_ = due_ = force.time;
-  told_.reset();
-}
-
-std::optional<Answer> ArrayRecognition::follow(std::span<const float> newtons) {
-  const std::optional<recognition::Recognition> recognition = recogniser_.next(newtons);
-  if (!recognition) return std::nullopt;
-  return recognition->answer;
-}
-
-void ArrayRecognition::interpolate(const ForceFrame& force, double share) {
-  const auto weight = static_cast<float>(share);
-  for (std::size_t k = 0; k < between_.size(); ++k) {
-    between_[k] = last_newtons_[k] + weight * (force.newtons[k] - last_newtons_[k]);
-  }
 }
 
 bool ArrayRecognition::is_news(const Answer& answer, Nanos time) {

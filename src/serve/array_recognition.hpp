@@ -4,14 +4,13 @@
 
 #include <cstddef>
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/recognition/stream_recogniser.hpp"
+#include "serve/frame_resampler.hpp"
 
 namespace dermis::serve {
 
@@ -32,17 +31,10 @@ class ArrayRecognition {
  private:
   ArrayRecognition(recognition::StreamRecogniser recogniser, double rate_hz, std::size_t taxels);
 
-  void begin_anew(const ForceFrame& force);
-  [[nodiscard]] std::optional<recognition::Answer> follow(std::span<const float> newtons);
-  void interpolate(const ForceFrame& force, double share);
   [[nodiscard]] bool is_news(const recognition::Answer& answer, Nanos time);
 
   recognition::StreamRecogniser recogniser_;
-  Nanos period_;                 ///< Of the frames that are looked at; 0: all are.
-  std::optional<Nanos> last_{};  ///< Frame that came.
-  std::vector<float> last_newtons_;
-  std::vector<float> between_;  ///< Newtons between two frames.
-  Nanos due_{};                 ///< Time of the next that is looked at.
+  FrameResampler resampler_;
   /// The pose that was told last.
   struct Told {
     std::size_t likeliest = 0;

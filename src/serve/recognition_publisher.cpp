@@ -10,29 +10,38 @@
 
 namespace dermis::serve {
 
-Result<RecognitionPublisher> RecognitionPublisher::create(const ServedSuit& suit, stream::Server& server,
-                                                          SuitRecorder& recorder) {
-  RecognitionPublisher publisher;
-  for (const ServedArray& array : suit.arrays) {
-    std::optional<Named>& named = publisher.arrays_.emplace_back();
-    if (!array.classes) continue;
-    Result<ArrayRecognition> recognition = ArrayRecognition::create(*array.classes, array.name, array.model->array);
-    if (!recognition) return bad_input(fmt::format("array '{}': {}", array.name, recognition.error().message));
-    named.emplace(
-        Named{*std::move(recognition), array.name,
-              EventTopic("/" + array.name + "/recognition", messages::classification_type(), server, recorder)});
+RecognitionPublisher::RecognitionPublisher(const ServedSuit& suit, stream::Server& server, SuitRecorder& recorder)
+    : server_(server), recorder_(recorder) {
+  for (const ServedArray& array : suit.arrays) arrays_.emplace_back().array = &array;
+}
+
+Status RecognitionPublisher::use(std::size_t array, recognition::Classes classes) {
+  Named& named = arrays_[array];
+  const std::string& name = named.array->name;
+  Result<ArrayRecognition> made = ArrayRecognition::create(std::move(classes), name, named.array->model->array);
+  if (!made) return bad_input(fmt::format("array '{}': {}", name, made.error().message));
+  if (!named.topic) {
+    named.topic.emplace("/" + name + "/recognition", messages::classification_type(), server_, recorder_);
   }
-  return publisher;
+  const std::lock_guard lock(named.next_mutex);
+  named.next = std::make_unique<ArrayRecognition>(*std::move(made));
+  named.has_next = true;
+  return Done{};
 }
 
 void RecognitionPublisher::publish(const live::ArrayResult& result) {
-  std::optional<Named>& named = arrays_[result.array];
-  if (!named) return;
-  const std::optional<recognition::Answer> answer = named->recognition.next(result.force);
+  Named& named = arrays_[result.array];
+  if (named.has_next.load(std::memory_order_acquire)) {
+    const std::lock_guard lock(named.next_mutex);
+    named.recognition = std::move(named.next);
+    named.has_next = false;
+  }
+  if (!named.recognition) return;
+  const std::optional<recognition::Answer> answer = named.recognition->next(result.force);
   if (!answer) return;
-  results_of(*answer, named->recognition.classes(), named->order, named->results);
-  messages::encode_classification(named->results, result.force.time, named->frame_id, named->message);
-  named->topic.publish(result.force.time, named->message);
+  results_of(*answer, named.recognition->classes(), named.order, named.results);
+  messages::encode_classification(named.results, result.force.time, named.array->name, named.message);
+  named.topic->publish(result.force.time, named.message);
 }
 
 void results_of(const recognition::Answer& answer, const recognition::Classes& classes, std::vector<std::size_t>& order,

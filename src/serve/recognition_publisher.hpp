@@ -2,9 +2,14 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "dermis/core/result.hpp"
@@ -19,24 +24,32 @@ namespace dermis::serve {
 /// The topics /<array>/recognition of docs/stream.md. Thread-safe: each array on a thread of its own.
 class RecognitionPublisher {
  public:
-  /// `suit`, `server` and `recorder` must outlive it. Fails, as "array 'chest': ...", where classes do not fit theirs.
-  [[nodiscard]] static Result<RecognitionPublisher> create(const ServedSuit& suit, stream::Server& server,
-                                                           SuitRecorder& recorder);
+  /// All must outlive it. An array without classes has no topic.
+  RecognitionPublisher(const ServedSuit& suit, stream::Server& server, SuitRecorder& recorder);
+
+  /// Takes classes into use with the next frame of the array. Fails, as "array 'chest': ...", where they do not fit.
+  /// One at a time.
+  [[nodiscard]] Status use(std::size_t array, recognition::Classes classes);
 
   void publish(const live::ArrayResult& result);
 
  private:
-  /// An array whose touches have names.
   struct Named {
-    ArrayRecognition recognition;
-    const std::string& frame_id;
-    EventTopic topic;
+    const ServedArray* array = nullptr;
+    std::optional<EventTopic> topic{};
+    std::atomic<bool> has_next = false;
+    std::mutex next_mutex{};
+    std::unique_ptr<ArrayRecognition> next{};
+    // Of the array's thread alone.
+    std::unique_ptr<ArrayRecognition> recognition{};
     std::vector<std::size_t> order{};
     std::vector<messages::Hypothesis> results{};
     std::vector<std::uint8_t> message{};
   };
 
-  std::vector<std::optional<Named>> arrays_;
+  stream::Server& server_;
+  SuitRecorder& recorder_;
+  std::deque<Named> arrays_;
 };
 
 /// Fills `results` with the answer, as docs/stream.md has it; `order` is used for sorting.

@@ -20,6 +20,7 @@
 #include "serve/status_publisher.hpp"
 #include "serve/suit_json.hpp"
 #include "serve/suit_recorder.hpp"
+#include "serve/teaching_services.hpp"
 #include "serve/threat_publisher.hpp"
 
 namespace dermis::serve {
@@ -32,6 +33,12 @@ constexpr int kErrorLevel = 2;
 std::vector<CalibratedArray> calibrated_arrays(const ServedSuit& suit) {
   std::vector<CalibratedArray> arrays;
   for (const ServedArray& one : suit.arrays) arrays.push_back({one.name, one.description, one.model_path});
+  return arrays;
+}
+
+std::vector<TaughtArray> taught_arrays(const ServedSuit& suit) {
+  std::vector<TaughtArray> arrays;
+  for (const ServedArray& array : suit.arrays) arrays.push_back({array.name, array.model->array, array.model_path});
   return arrays;
 }
 
@@ -78,11 +85,13 @@ class Session::Implementation {
   void on_result(const live::ArrayResult& result);
   [[nodiscard]] Status set_parameter(const stream::Parameter& parameter);
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
+  [[nodiscard]] Status use_classes(std::size_t array, recognition::Classes classes);
   void report_failed_recording(const Notice& notice, const std::string& why);
 
   ServedSuit suit_;
   ModelsInUse models_;
   CalibrationServices calibration_;
+  TeachingServices teaching_;
   SuitRecorder recorder_;
   std::unique_ptr<live::LiveSuit> live_;
   std::unique_ptr<stream::Server> server_;
@@ -102,6 +111,9 @@ Session::Implementation::Implementation(ServedSuit suit, const SessionOptions& o
             return use_model(array, model);
           },
           suit_.guide),
+      teaching_(
+          taught_arrays(suit_),
+          [this](std::size_t array, recognition::Classes classes) { return use_classes(array, std::move(classes)); }),
       recorder_(
           options.record, [this] { return recorded_arrays(suit_, models_); },
           [this, notice = options.server.notice](const std::string& why) { report_failed_recording(notice, why); }) {}
@@ -146,6 +158,9 @@ Status Session::Implementation::make_server(const SessionOptions& options) {
   for (const std::string& name : CalibrationServices::names()) {
     services.push_back({name, [this, name](std::string_view request) { return calibration_.call(name, request); }});
   }
+  for (const std::string& name : TeachingServices::names()) {
+    services.push_back({name, [this, name](std::string_view request) { return teaching_.call(name, request); }});
+  }
   if (suit_.threats) {
     services.push_back({"/threats/reset", [this](std::string_view request) { return threats_->reset(request); }});
   }
@@ -159,9 +174,12 @@ Status Session::Implementation::make_server(const SessionOptions& options) {
 
 Status Session::Implementation::make_publishers(const Notice& notice) {
   broadcaster_.emplace(suit_, *server_);
-  Result<RecognitionPublisher> recognition = RecognitionPublisher::create(suit_, *server_, recorder_);
-  if (!recognition) return recognition.error();
-  recognition_.emplace(*std::move(recognition));
+  recognition_.emplace(suit_, *server_, recorder_);
+  for (std::size_t k = 0; k < suit_.arrays.size(); ++k) {
+    const std::optional<recognition::Classes>& classes = suit_.arrays[k].classes;
+    if (!classes) continue;
+    if (Status used = recognition_->use(k, *classes); !used) return used;
+  }
   Result<std::unique_ptr<ThreatPublisher>> threats =
       ThreatPublisher::create(suit_, *server_, recorder_, [notice](const std::string& line) {
         if (notice) notice(line);
@@ -176,6 +194,7 @@ void Session::Implementation::on_result(const live::ArrayResult& result) {
   calibration_.feed(result.array, result.raw);
   broadcaster_->publish(result);
   recognition_->publish(result);
+  teaching_.feed(result);
   if (threats_) threats_->publish(result);
 }
 
@@ -192,6 +211,13 @@ Status Session::Implementation::use_model(std::size_t array, const std::shared_p
   parameters_->forget_tare(array);
   server_->set_document("/suit.json", "application/json", suit_json(suit_, models_));
   server_->parameters_changed();
+  return Done{};
+}
+
+Status Session::Implementation::use_classes(std::size_t array, recognition::Classes classes) {
+  if (Status used = recognition_->use(array, classes); !used) return used;
+  suit_.arrays[array].classes = std::move(classes);
+  server_->set_document("/suit.json", "application/json", suit_json(suit_, models_));
   return Done{};
 }
 

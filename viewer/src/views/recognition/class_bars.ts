@@ -52,14 +52,15 @@ export class ClassBars {
     this.#list.replaceChildren(...[...this.#bars.values()].map((bar) => bar.element));
     setHidden(this.#list, classes.length === 0);
     setHidden(this.#none, classes.length > 0);
-    setText(this.#none, `No classes are served for ${array}: learn them (dermis learn) and serve them (dermis serve --classes).`);
+    setText(this.#none, `No classes are served for ${array}: learn them (dermis learn) and serve them (dermis serve --classes), or teach them here.`);
     setText(this.#answer, "");
     setText(this.#reason, classes.length > 0 ? "nothing was recognised yet" : "");
     setText(this.#age, "");
     for (const bar of this.#bars.values()) bar.show(0, false);
   }
 
-  show({ answer, reason, classes }: Classification): void {
+  show({ answer, reason, classes, stampS }: Classification): void {
+    setData(this.element, "stamp", fixed(stampS, 6));
     setText(this.#answer, answer);
     setData(this.#answer, "unknown", String(answer === UNKNOWN && reason !== ""));
     const [first, second] = classes;

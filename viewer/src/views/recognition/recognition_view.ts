@@ -5,6 +5,7 @@ import { type Classification, readClassification } from "../../messages/classifi
 import type { View, ViewContext, ViewFactory } from "../../view";
 import { ClassBars } from "./class_bars";
 import { LimitTable, ThreatLog } from "./limit_table";
+import { TeachPanel } from "./teach_panel";
 
 const AGE_PERIOD_MS = 200;
 
@@ -14,6 +15,7 @@ class RecognitionView implements View {
   readonly element: HTMLElement;
   readonly #context: ViewContext;
   readonly #bars = new ClassBars();
+  readonly #teach: TeachPanel;
   readonly #limits = new LimitTable();
   readonly #log = new ThreatLog();
   readonly #unfollow: (() => void)[] = [];
@@ -24,11 +26,12 @@ class RecognitionView implements View {
 
   constructor(context: ViewContext) {
     this.#context = context;
+    this.#teach = new TeachPanel(context.stream, (classes) => this.#bars.begin(context.suit.selected.value?.name ?? "", classes));
     this.element = element(
       "div",
       { class: "view recognition-view", "data-view": "recognition" },
-      this.#bars.element,
-      element("div", { class: "threat-column" }, this.#limits.element, this.#log.element),
+      element("div", { class: "column" }, this.#bars.element, this.#teach.element),
+      element("div", { class: "column" }, this.#limits.element, this.#log.element),
     );
   }
 
@@ -47,6 +50,7 @@ class RecognitionView implements View {
   }
 
   draw(nowMs: number): void {
+    this.#teach.draw(nowMs);
     const { paused, live } = this.#context;
     if (this.#news !== undefined && !paused.value) {
       this.#bars.show(this.#news);
@@ -65,6 +69,7 @@ class RecognitionView implements View {
     this.#news = undefined;
     this.#shownS = NaN;
     this.#bars.begin(array.name, array.classes ?? []);
+    this.#teach.begin(array);
     this.#endArray = this.#context.stream.subscribe(`/${array.name}/recognition`, (message) => (this.#news = readClassification(message)));
   }
 }

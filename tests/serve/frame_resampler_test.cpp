@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/frame_resampler.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "serve/named_touches.hpp"
+
+namespace dermis::serve {
+namespace {
+
+/// What is used of frames of one taxel at these times, whose force is ten times their milliseconds.
+std::vector<float> used(FrameResampler& resampler, const std::vector<std::int64_t>& milliseconds) {
+  std::vector<float> all;
+  for (const std::int64_t time : milliseconds) {
+    resampler.take(force_frame(Nanos(1'000'000 * time), {static_cast<float>(10 * time)}),
+                   [&](std::span<const float> newtons) { all.push_back(newtons[0]); });
+  }
+  return all;
+}
+
+TEST(FrameResampler, gives_forces_at_even_times_between_frames) {
+  FrameResampler resampler(100.0, 1);
+  EXPECT_EQ(used(resampler, {0, 4, 16, 33}), (std::vector<float>{0.0F, 100.0F, 200.0F, 300.0F}));
+}
+
+TEST(FrameResampler, gives_every_frame_where_no_rate_is_wanted) {
+  FrameResampler resampler(0.0, 1);
+  EXPECT_EQ(used(resampler, {0, 4, 16}), (std::vector<float>{0.0F, 40.0F, 160.0F}));
+}
+
+TEST(FrameResampler, begins_anew_where_time_leaps) {
+  FrameResampler resampler(100.0, 1);
+  EXPECT_EQ(used(resampler, {0, 5, 9000, 9010, 100}), (std::vector<float>{0.0F, 90000.0F, 90100.0F, 1000.0F}));
+  EXPECT_FALSE(resampler.leaps_to(force_frame(Nanos(110'000'000), {0.0F})));
+  EXPECT_TRUE(resampler.leaps_to(force_frame(Nanos(90'000'000), {0.0F})));
+}
+
+}  // namespace
+}  // namespace dermis::serve

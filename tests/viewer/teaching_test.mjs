@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+// Usage: node teaching_test.mjs path/to/dermis
+// A person teaches three touches in the browser: a recording of simulated touches stands for the hand.
+import assert from "node:assert/strict";
+import { readdirSync, writeFileSync } from "node:fs";
+import { after, before, it } from "node:test";
+import { assertUnhurt, becomes, Bench, openBrowser, openPage, readCsv, WAIT_MS } from "./harness.mjs";
+
+const [ROWS, COLS] = [8, 8];
+const HZ = 50;
+const KINDS = ["tap", "hold", "stroke"];
+const TAUGHT = 10;
+const NEW = 60;
+const TOUCH_S = 2;
+const PAUSE_S = 20;
+const ARRAY = `[array]
+name = "palm"
+rows = ${ROWS}
+cols = ${COLS}
+pitch_mm = [10.0, 10.0]
+
+[readout]
+circuit = "force"
+adc_noise_counts = 0.002
+`;
+
+let bench;
+let browser;
+
+/** Numbers in 0 ... 1 by a linear congruence. */
+function chance(seed) {
+  let state = seed;
+  return () => (state = (1664525 * state + 1013904223) % 4294967296) / 4294967296;
+}
+
+/** Frames of two seconds with a touch of a kind somewhere, in newtons. */
+function touch(kind, next) {
+  const [row, col] = [2 + 3 * next(), 2 + 1.5 * next()];
+  const [newtons, slide] = [(0.8 + 0.4 * next()) * (kind === "hold" ? 3 : 1.5), kind === "stroke" ? 3 : 0];
+  const lasts = (0.9 + 0.2 * next()) * (kind === "tap" ? 0.12 : 0.8);
+  const wide = kind === "hold" ? 1.3 : 0.7;
+  return Array.from({ length: TOUCH_S * HZ }, (_, frame) => {
+    const share = (frame / HZ - 0.5) / lasts;
+    const force = share > 0 && share < 1 ? newtons * Math.min(1, 6 * Math.min(share, 1 - share)) : 0;
+    const at = col + slide * Math.min(1, Math.max(0, share));
+    const taxel = (index) => Math.hypot(Math.floor(index / COLS) - row, (index % COLS) - at) / wide;
+    return Array.from({ length: ROWS * COLS }, (_, index) => Math.max(0, force * Math.exp(-0.5 * taxel(index) ** 2) + 0.004 * (next() - 0.5)));
+  });
+}
+
+/** Ten of each kind, each ten after a pause, then sixty of all kinds by turns. */
+function recordTouches() {
+  const next = chance(7);
+  const rest = Array.from({ length: PAUSE_S * HZ }, () => Array.from({ length: ROWS * COLS }, () => Math.max(0, 0.004 * (next() - 0.5))));
+  const some = (count, kindOf) => Array.from({ length: count }, (_, index) => touch(kindOf(index), next)).flat();
+  const frames = [...KINDS.flatMap((kind) => [...rest, ...some(TAUGHT, () => kind)]), ...rest, ...some(NEW, (index) => KINDS[index % 3]), ...rest];
+  const names = Array.from({ length: ROWS * COLS }, (_, taxel) => `r${Math.floor(taxel / COLS)}c${taxel % COLS}`);
+  const lines = frames.map((frame, index) => [(index / HZ).toFixed(3), ...frame.map((newtons) => newtons.toFixed(4))].join());
+  writeFileSync(bench.path("touches.csv"), [["time_s", ...names].join(), ...lines, ""].join("\n"));
+  writeFileSync(bench.path("palm.toml"), ARRAY);
+  bench.run("convert", bench.path("touches.csv"), bench.path("touches.mcap"), "--array", bench.path("palm.toml"));
+}
+
+before(async () => {
+  bench = new Bench(process.argv[2]);
+  recordTouches();
+  browser = await openBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  bench?.close();
+});
+
+const part = (page, role) => page.locator(`[data-role=${role}]`);
+
+async function eventually(page, check, argument) {
+  await page.waitForFunction(check, argument, { polling: 20, timeout: WAIT_MS });
+}
+
+async function play(page, isToPlay) {
+  const isPlaying = (await part(page, "play").textContent()) === "Pause";
+  if (isPlaying !== isToPlay) await part(page, "play").click();
+}
+
+async function seek(page, seconds) {
+  const length = await part(page, "scrub").evaluate((bar, at) => {
+    bar.value = String(at);
+    bar.dispatchEvent(new Event("input"));
+    bar.dispatchEvent(new Event("change"));
+    return bar.value;
+  }, (1000 * seconds) / TOTAL_S);
+  return length;
+}
+
+const BLOCK_S = PAUSE_S + TAUGHT * TOUCH_S;
+const TOTAL_S = KINDS.length * BLOCK_S + PAUSE_S + NEW * TOUCH_S + PAUSE_S;
+
+async function teach(page, kind, index) {
+  await play(page, false);
+  await seek(page, index * BLOCK_S + PAUSE_S - 1);
+  await part(page, "teach-class").fill(kind);
+  await part(page, "teach-listen").click();
+  await part(page, "teach-listen").getByText("Stop").waitFor();
+  await play(page, true);
+  await eventually(page, ([name, count]) => document.querySelectorAll(`[data-taught="${name}"] canvas`).length === count, [kind, TAUGHT]);
+  await play(page, false);
+  await part(page, "teach-listen").click();
+  await part(page, "teach-listen").getByText("Begin").waitFor();
+}
+
+/** Every answer that the bars show, in order. */
+async function watchAnswers(page) {
+  await page.evaluate(() => {
+    const bars = document.querySelector("[aria-label='What touches']");
+    window.answers = [];
+    new MutationObserver(() => setTimeout(() => window.answers.push(document.querySelector("[data-role=answer]").textContent))).observe(bars, { attributes: true, attributeFilter: ["data-stamp"] });
+  });
+}
+
+it("teaches three touches, throws an example away, trains, and names new touches", async () => {
+  const server = await bench.serve("--port", "0", "--from", bench.path("touches.mcap"), "--model", bench.path("palm.toml"));
+  try {
+    const page = await openPage(browser, `${server.url}#/recognition`);
+    await becomes(page, "live");
+    await part(page, "transport").waitFor();
+    await part(page, "speed").selectOption("8");
+    assert.ok(await part(page, "teach-train").isDisabled());
+    for (const [index, kind] of KINDS.entries()) await teach(page, kind, index);
+    assert.match(await part(page, "teach-warnings").textContent(), /one session/);
+    await page.locator("[data-taught=tap] button").first().click();
+    await eventually(page, () => document.querySelectorAll("[data-taught=tap] canvas").length === 9);
+
+    await part(page, "teach-train").click();
+    await part(page, "teach-result").getByText(/were right when left out\. Saved as palm-touches-\d{8}-\d{6}\.safetensors and in use\./).waitFor();
+    await watchAnswers(page);
+    await seek(page, KINDS.length * BLOCK_S + PAUSE_S - 1);
+    await play(page, true);
+    await eventually(page, (count) => window.answers.length >= count, NEW);
+    const answers = await page.evaluate(() => window.answers);
+    assert.equal(answers.length, NEW);
+    const wrong = answers.filter((answer, index) => answer !== KINDS[index % 3] && answer !== "unknown");
+    const right = answers.filter((answer, index) => answer === KINDS[index % 3]).length;
+    assert.deepEqual(wrong, []);
+    assert.ok(right >= 0.75 * NEW, `${right} of ${NEW}: ${answers}`);
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+  }
+  const [model, ...more] = readdirSync(bench.folder).filter((name) => /^palm-touches-.*\.safetensors$/.test(name));
+  assert.deepEqual(more, []);
+  const saved = bench.path(model.replace(".safetensors", ""));
+  assert.equal(readCsv(`${saved}.labels.csv`).length, 3 * TAUGHT - 1);
+  const files = ["frames.npy", "arrays.csv", "labels.csv"].flatMap((name) => [`--${name.split(".")[0]}`, `${saved}.${name}`]);
+  bench.run("learn", ...files, "--rate", "50", "--out", bench.path("again.safetensors"));
+});
+
+it("warns of few examples, and says why there can be no training", async () => {
+  const server = await bench.serve("--port", "0", "--from", bench.path("touches.mcap"), "--model", bench.path("palm.toml"));
+  try {
+    const page = await openPage(browser, `${server.url}#/recognition`);
+    await becomes(page, "live");
+    await play(page, false);
+    await seek(page, PAUSE_S - 1);
+    await part(page, "teach-class").fill("tap");
+    await part(page, "teach-listen").click();
+    await part(page, "teach-listen").getByText("Stop").waitFor();
+    await play(page, true);
+    await page.locator("[data-taught=tap] canvas").nth(1).waitFor();
+    assert.match(await part(page, "teach-warnings").textContent(), /tap has \d of at least 5 examples/);
+    await part(page, "teach-listen").click();
+    await part(page, "teach-status").getByText("Teach at least two classes.").waitFor();
+    assert.ok(await part(page, "teach-train").isDisabled());
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+  }
+});

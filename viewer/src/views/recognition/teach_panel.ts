@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element, setHidden, setText } from "../../dom";
+import { fixed } from "../../format";
+import { rgbOf } from "../../render/color_map";
+import type { Stream } from "../../stream/stream";
+import type { ArrayDescription } from "../../suit";
+import { byClass, missing, type TaughtTouch, WANTED_EXAMPLES, warnings } from "./taught_touches";
+
+const POLL_MS = 250;
+
+interface Examples {
+  listening: string;
+  touched: boolean;
+  examples: TaughtTouch[];
+}
+
+interface Trained {
+  file: string;
+  classes: string[];
+  accuracy: number;
+  judged: number;
+  advice: string[];
+}
+
+/** A touch as a small picture that can be thrown away. */
+function thumbnail({ id, picture = [] }: TaughtTouch, { rows, cols }: ArrayDescription, throwAway: () => void): HTMLElement {
+  const canvas = element("canvas", { width: cols, height: rows, "aria-hidden": "true" });
+  const pen = canvas.getContext("2d")!;
+  const image = pen.createImageData(cols, rows);
+  picture.forEach((brightness, taxel) => image.data.set([...rgbOf(brightness / 255).map((share) => 255 * share), 255], 4 * taxel));
+  pen.putImageData(image, 0, 0);
+  return element("button", { class: "example", title: "Throw this example away", "aria-label": `Throw example ${id} away`, "data-example": id, onclick: throwAway }, canvas, element("span", { "aria-hidden": "true" }, "\u00d7"));
+}
+
+/** Names touches, collects them and has classes learned of them. */
+export class TeachPanel {
+  readonly element: HTMLElement;
+  readonly #stream: Stream;
+  readonly #onTrained: (classes: string[]) => void;
+  readonly #name = element("input", { class: "field", "data-role": "teach-class", maxlength: 40, placeholder: "such as tap" });
+  readonly #session = element("input", { class: "field", "data-role": "teach-session", maxlength: 20, value: "1" });
+  readonly #listen = element("button", { class: "button primary", "data-role": "teach-listen", type: "submit" }, "Begin");
+  readonly #train = element("button", { class: "button", "data-role": "teach-train", onclick: () => void this.#learn() }, "Train");
+  readonly #status = element("p", { class: "note", role: "status", "data-role": "teach-status" });
+  readonly #classes = element("ul", { class: "taught", "data-role": "taught" });
+  readonly #lines = element("ul", { class: "note dim", "data-role": "teach-warnings" });
+  readonly #result = element("ul", { class: "note", "data-role": "teach-result" });
+  readonly #pictures = new Map<number, HTMLElement>();
+  #array: ArrayDescription | undefined;
+  #known = 0;
+  #listening = "";
+  #shown = "";
+  #pollMs = 0;
+  #isBusy = false;
+
+  constructor(stream: Stream, onTrained: (classes: string[]) => void) {
+    this.#stream = stream;
+    this.#onTrained = onTrained;
+    const form = element(
+      "form",
+      { class: "teach-form" },
+      element("label", {}, "Class", this.#name),
+      element("label", {}, "Session", this.#session),
+      this.#listen,
+      this.#train,
+    );
+    this.#train.type = "button";
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      void this.#toggle();
+    });
+    this.element = element(
+      "section",
+      { class: "panel", "aria-label": "Teach touches", "data-role": "teach" },
+      element("header", { class: "panel-title" }, element("h2", {}, "Teach touches")),
+      form,
+      this.#status,
+      this.#classes,
+      this.#lines,
+      this.#result,
+    );
+    stream.services.follow((services) => setHidden(this.element, !services.has("/recognition/listen")));
+  }
+
+  begin(array: ArrayDescription): void {
+    this.#array = array;
+    this.#known = 0;
+    this.#shown = "";
+    this.#pictures.clear();
+    this.#classes.replaceChildren();
+    this.#result.replaceChildren();
+  }
+
+  draw(nowMs: number): void {
+    if (this.element.hidden || this.#isBusy || nowMs - this.#pollMs < POLL_MS) return;
+    this.#pollMs = nowMs;
+    void this.#work(() => this.#poll());
+  }
+
+  async #toggle(): Promise<void> {
+    const name = this.#listening === "" ? this.#name.value.trim() : "";
+    if (this.#listening === "" && name === "") return this.#name.focus();
+    await this.#call("/recognition/listen", { class: name, session: this.#session.value.trim() });
+    await this.#poll();
+  }
+
+  async #learn(): Promise<void> {
+    setText(this.#status, "Training \u2026");
+    const trained = (await this.#call("/recognition/train", {})) as Trained | undefined;
+    if (trained === undefined) return;
+    const right = `${fixed(100 * trained.accuracy, 0)} % of ${trained.judged} examples were right when left out. Saved as ${trained.file} and in use.`;
+    this.#result.replaceChildren(...[right, ...trained.advice].map((line) => element("li", {}, line)));
+    this.#onTrained(trained.classes);
+  }
+
+  async #poll(): Promise<void> {
+    const array = this.#array;
+    const answer = (await this.#call("/recognition/examples", { known: this.#known })) as Examples | undefined;
+    if (answer === undefined || array !== this.#array || array === undefined) return;
+    this.#listening = answer.listening;
+    for (const touch of answer.examples) {
+      this.#known = Math.max(this.#known, touch.id);
+      if (touch.picture !== undefined) this.#pictures.set(touch.id, thumbnail(touch, array, () => void this.#call("/recognition/throw_away", { example: touch.id })));
+    }
+    this.#show(answer);
+  }
+
+  #show({ listening, touched, examples }: Examples): void {
+    setText(this.#listen, listening === "" ? "Begin" : "Stop");
+    this.#name.disabled = this.#session.disabled = listening !== "";
+    const count = examples.filter((touch) => touch.class === listening).length;
+    const asked = touched ? "Touched: let go." : count >= WANTED_EXAMPLES ? "Enough: stop, and teach the next class." : "Touch the array, and let go.";
+    const lacking = missing(examples);
+    setText(this.#status, listening !== "" ? `${listening}: ${count} of ${WANTED_EXAMPLES}. ${asked}` : lacking !== "" ? `Name a class and begin. ${lacking}` : "Name another class, or train.");
+    this.#train.disabled = listening !== "" || lacking !== "";
+    const ids = examples.map(({ id }) => id).join();
+    if (ids === this.#shown) return;
+    this.#shown = ids;
+    this.#classes.replaceChildren(
+      ...[...byClass(examples)].map(([name, touches]) =>
+        element("li", { "data-taught": name }, element("strong", {}, `${name} (${touches.length})`), element("span", { class: "examples" }, ...touches.map(({ id }) => this.#pictures.get(id) ?? ""))),
+      ),
+    );
+    this.#lines.replaceChildren(...warnings(examples).map((line) => element("li", {}, line)));
+  }
+
+  /** One call of the poll at a time. */
+  async #work(task: () => Promise<void>): Promise<void> {
+    this.#isBusy = true;
+    try {
+      await task();
+    } finally {
+      this.#isBusy = false;
+    }
+  }
+
+  async #call(service: string, request: object): Promise<unknown> {
+    try {
+      return await this.#stream.callService(service, { array: this.#array?.name ?? "", ...request });
+    } catch (error) {
+      if (service !== "/recognition/examples") this.#result.replaceChildren(element("li", { class: "attention" }, error instanceof Error ? error.message : String(error)));
+      return undefined;
+    }
+  }
+}
