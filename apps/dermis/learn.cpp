@@ -6,17 +6,21 @@
 #include <chrono>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "bp_classifier.hpp"
 #include "commands.hpp"
 #include "confusion_table.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/text.hpp"
 #include "dermis/recognition/classes_file.hpp"
+#include "dermis/recognition/comparison.hpp"
 #include "dermis/recognition/dataset.hpp"
 #include "dermis/recognition/learning.hpp"
 #include "dermis/recognition/recogniser.hpp"
+#include "dermis/report/recognition_report.hpp"
 #include "labelled_examples.hpp"
 #include "status_line.hpp"
 #include "writable.hpp"
@@ -37,6 +41,7 @@ struct LearnOptions {
   std::string predictions;
   std::string open;
   std::string open_predictions;
+  std::string report;
 };
 
 Status check_options(const LearnOptions& options) {
@@ -47,6 +52,7 @@ Status check_options(const LearnOptions& options) {
   if (options.out.empty() && options.splits.empty() && options.open.empty()) {
     return bad_input("nothing would be written; name --out, or --splits with --predictions");
   }
+  if (!options.report.empty() && options.out.empty()) return bad_input("--report: needs --out");
   for (const std::string& path : {options.out, options.predictions, options.open_predictions}) {
     if (path.empty()) continue;
     if (Status writable = check_writable(path); !writable) return writable;
@@ -108,14 +114,25 @@ void print_report(const Learned& learned, double seconds) {
   for (const std::string& line : lines) fmt::print("{}\n", line);
 }
 
-Status write_model(const std::string& path, const LabelledFrames& data, const LearningSet& set,
-                   Clock::time_point start) {
+/// The page of --report, where it is asked for.
+Status write_report(const std::string& folder, const LabelledFrames& data, const LearningSet& set,
+                    const Learned& learned, Progress& progress) {
+  if (folder.empty()) return Done{};
+  const recognition::ComparedEstimator network{"BP network", answer_by_bp_network};
+  const auto estimators = recognition::compare_estimators(data, set, learned, std::span(&network, 1),
+                                                          [&](double share) { progress.show("comparison", share); });
+  if (!estimators) return estimators.error();
+  return report::write_recognition_report(folder, data, learned, *estimators);
+}
+
+Status write_model(const LearnOptions& options, const LabelledFrames& data, const LearningSet& set,
+                   Clock::time_point start, Progress& progress) {
   std::vector<std::size_t> all(data.labels.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
   Result<Learned> learned = set.learn(all);
   if (!learned) return learned.error();
   learned->classes.touches = recognition::learn_touches(data);
-  if (Status written = recognition::write_classes(path, learned->classes); !written) return written;
+  if (Status written = recognition::write_classes(options.out, learned->classes); !written) return written;
   print_report(*learned, std::chrono::duration<double>(Clock::now() - start).count());
   if (const auto& touches = learned->classes.touches) {
     const recognition::FindingReport finding = recognition::judge_touches(data, *touches);
@@ -126,7 +143,7 @@ Status write_model(const std::string& path, const LabelledFrames& data, const Le
         "where touches begin and end cannot be learned: 'dermis recognise' needs labels that leave a tenth of the "
         "frames without a touch, or labels of one frame each\n");
   }
-  return Done{};
+  return write_report(options.report, data, set, *learned, progress);
 }
 
 Status learn(const LearnOptions& options) {
@@ -159,7 +176,7 @@ Status learn(const LearnOptions& options) {
     if (!written) return written;
   }
   if (options.out.empty()) return Done{};
-  return write_model(options.out, *data, *set, Clock::now() - features_took);
+  return write_model(options, *data, *set, Clock::now() - features_took, progress);
 }
 
 }  // namespace
@@ -182,6 +199,8 @@ void add_learn(Command& command) {
   command.option("--predictions", options->predictions, "What is answered for the labels that --splits names");
   command.option("--open", options->open, "open.csv: splits with classes that are not learned");
   command.option("--open-predictions", options->open_predictions, "What is answered for the labels of --open");
+  command.option("--report", options->report,
+                 "Folder for an HTML report with pictures, which compares with other estimators");
   command.action([options] { return learn(*options); });
 }
 

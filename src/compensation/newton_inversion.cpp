@@ -81,6 +81,7 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
     : model_(std::move(model)),
       solver_(array.taxel_count()),
       tolerance_(tolerance_ratio),
+      most_steps_(options.most_steps.value_or(std::numeric_limits<int>::max())),
       drive_error_correlation_(array.readout.drive_error_correlation) {
   const Readout& readout = array.readout;
   const double noise_ratio = readout.adc_noise_counts / readout.full_scale_counts();
@@ -120,6 +121,7 @@ InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span
     return {false, std::numeric_limits<double>::infinity()};
   }
   ratio_ = ratio;
+  steps_left_ = most_steps_;
   for (std::size_t k = 0; k < ratio.size(); ++k) {
     readings_[k].scale = std::max(readings_[k].noise, -readings_[k].apparent_siemens(ratio[k]));
     measured_[k] = readings_[k].scaled(ratio[k]);
@@ -181,7 +183,7 @@ bool NewtonInversion::iterate(int bold_steps) noexcept {
   for (const double value : ratio_) largest = std::max(largest, std::abs(value));
   for (int k = 0; k < kMaxSteps; ++k) {
     if (tolerance_ > 0.0 && residual_ratio() <= tolerance_) return true;
-    if (!step(k < bold_steps ? kBoldRise : 1.0)) break;
+    if (--steps_left_ < 0 || !step(k < bold_steps ? kBoldRise : 1.0)) break;
   }
   return residual_ratio() <= std::max(tolerance_, kRounding * largest);
 }

@@ -94,6 +94,8 @@ class NewtonInversion final : public CrosstalkInversion {
   std::unique_ptr<DenseInverse> inverse_;        // of small arrays, where noise is not sampled
   std::unique_ptr<FloatingRows> floating_rows_;  // of arrays that it inverts: the start, mostly the solution
   double tolerance_;
+  int most_steps_;
+  int steps_left_ = 0;  // of this frame
   std::span<const double> ratio_;
   std::vector<double> measured_;  // x of the readings
   std::vector<double> x_;         // of the taxels

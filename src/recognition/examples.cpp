@@ -7,6 +7,8 @@
 #include <numeric>
 #include <set>
 
+#include "recognition/load.hpp"
+
 namespace dermis::recognition {
 namespace {
 
@@ -86,6 +88,22 @@ Status LabelledFrames::validate() const {
   if (Status checked = check_labels(); !checked) return checked;
   if (Status checked = check_frames(); !checked) return checked;
   return check_extras();
+}
+
+std::vector<float> held_image(const LabelledFrames& data, const Label& label) {
+  constexpr double kHeldShare = 0.5;  // of the largest force
+  const Segment segment = data.segment(label);
+  const std::size_t readings = data.layout.readings;
+  std::vector<double> forces(segment.frames.size() / readings);
+  for (std::size_t i = 0; i < segment.frames.size(); ++i) forces[i / readings] += load_of(segment.frames[i]);
+  const double held_from = kHeldShare * *std::max_element(forces.begin(), forces.end());
+  const auto held = static_cast<double>(
+      std::count_if(forces.begin(), forces.end(), [&](double force) { return force >= held_from; }));
+  std::vector<double> sum(readings);
+  for (std::size_t i = 0; i < segment.frames.size(); ++i) {
+    if (forces[i / readings] >= held_from) sum[i % readings] += load_of(segment.frames[i]) / held;
+  }
+  return {sum.begin(), sum.end()};
 }
 
 }  // namespace dermis::recognition

@@ -165,6 +165,10 @@ LearningSet::LearningSet(LearningSet&&) noexcept = default;
 LearningSet& LearningSet::operator=(LearningSet&&) noexcept = default;
 LearningSet::~LearningSet() = default;
 
+std::span<const double> LearningSet::features() const noexcept {
+  return {state_->features.data(), static_cast<std::size_t>(state_->features.size())};
+}
+
 Result<Learned> LearningSet::learn(std::span<const std::size_t> chosen) const {
   std::vector<Label> labels;
   for (const std::size_t label : chosen) labels.push_back(state_->labels[label]);

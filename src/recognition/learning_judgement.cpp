@@ -42,6 +42,7 @@ LearningReport judge(const Judged& judged, const Folds& folds, const std::vector
   LearningReport report;
   report.by_group = folds.kind == Folds::Kind::by_group;
   report.folds = folds.count;
+  report.fold_of = folds.fold_of;
   report.groups = group_count(labels);
   report.confusion.assign(class_count * class_count, 0);
   const Matrix probabilities = probabilities_of(judged, folds, scores);
@@ -53,6 +54,7 @@ LearningReport judge(const Judged& judged, const Folds& folds, const std::vector
     const double confidence = probabilities.row(static_cast<Eigen::Index>(i)).maxCoeff(&answer);
     const bool is_right = static_cast<std::size_t>(answer) == judged.classes[i];
     ++report.confusion[judged.classes[i] * class_count + static_cast<std::size_t>(answer)];
+    report.judgements.push_back({i, judged.classes[i], static_cast<std::size_t>(answer), confidence});
     ++report.judged;
     right += is_right ? 1 : 0;
     calibration.add(confidence, is_right);

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import random
+import re
 import unittest
 
 import support
@@ -73,6 +74,18 @@ class Forces(SmallArray):
         for frame, line in recorded.items():
             self.assertEqual((line["likeliest"], line["probability"]),
                              (from_text[frame]["likeliest"], from_text[frame]["probability"]))
+
+    def test_a_report_compares_with_other_estimators(self):
+        self.refuse(["learn", "--in", self.root / "rec3.mcap", "--labels", self.labels(3), "--report",
+                     self.work / "page"], ["nothing would be written", "--out"])
+        self.succeed(*self.learn(3, 4, arguments=["--report", self.work / "page"]))
+        page = (self.work / "page" / "index.html").read_text()
+        shares = {name: float(share) for name, share in
+                  re.findall(r"(dermis|nearest frame|BP network)</th><td[^>]*>([\d.]+) %", page)}
+        self.assertEqual(set(shares), {"dermis", "nearest frame", "BP network"})
+        self.assertGreaterEqual(shares["dermis"], 90)
+        self.assertGreaterEqual(shares["BP network"], 85)
+        self.assertTrue((self.work / "page" / "confusion.svg").exists())
 
     def evaluate(self, seed, *arguments):
         return ["evaluate", "--classes", self.work / "c.safetensors", "--in", self.root / f"rec{seed}.mcap", "--model",

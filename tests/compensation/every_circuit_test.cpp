@@ -237,6 +237,20 @@ TEST_P(EveryInversion, noise_becomes_what_the_jacobian_says) {
   }
 }
 
+TEST(NewtonInversion, leaves_a_frame_unsolved_after_the_steps_that_it_may_take) {
+  Random random(1);
+  const NamedCircuit circuit{.name = "divider_resistive_lines", .resistive_lines = true};
+  const auto array = random_array(circuit, 6, 6, random);
+  const auto ratio = model_ratios(array, random_siemens(array, random));
+  std::vector<double> inverted(ratio.size());
+  InversionOptions options;
+  options.most_steps = 1;
+  const auto hasty = inversion_for(array, options);
+  for (int frame = 0; frame < 2; ++frame) EXPECT_FALSE(hasty->invert(ratio, inverted).solved);
+  options.most_steps = 50;
+  EXPECT_TRUE(inversion_for(array, options)->invert(ratio, inverted).solved);
+}
+
 TEST(LargeInversion, floating_rows_and_resistive_lines_come_back) {
   for (const NamedCircuit& circuit : support::all_circuits()) {
     if (circuit.name != "divider_floating_rows" && circuit.name != "divider_floating_rows_resistive_lines") continue;

@@ -55,5 +55,13 @@ TEST(LabelledFrames, names_a_reading_that_is_no_number) {
   EXPECT_EQ(error_of(data), "reading 5 of frame 3 is not a number; write 0 where nothing was measured");
 }
 
+TEST(HeldImage, is_the_mean_of_the_frames_with_half_the_largest_force) {
+  LabelledFrames data;
+  data.layout = support::one_array(1, 2);
+  data.frames = {0, 1, 8, 0, 6, 2, -3, 0};
+  data.labels = {{"a", 0, 3, "x"}};
+  EXPECT_EQ(held_image(data, data.labels[0]), (std::vector<float>{7, 1}));
+}
+
 }  // namespace
 }  // namespace dermis::recognition

@@ -20,6 +20,9 @@ struct InversionOptions {
   /// Floating lines and lines with resistance: the noise of each taxel to a fifth, by twelve samples, instead of
   /// exactly (up to 400 taxels), which takes rows^3 cols^3 multiplications a frame.
   bool samples_noise = false;
+  /// Floating lines and lines with resistance: steps of Newton's method on a frame before it counts as unsolved, >= 1.
+  /// Readings that have a solution mostly take 1 to 20; empty: as long as there is hope, on large arrays for seconds.
+  std::optional<int> most_steps = std::nullopt;
   /// propagate_noise() adds what drivers do that are known only to readout.drive_error_ohm.
   bool counts_driver_errors = false;
 };

@@ -44,4 +44,8 @@ struct LabelledFrames {
   [[nodiscard]] Status validate() const;
 };
 
+/// What an example looks like, [readings]: the mean of its frames with at least half of its largest force. Readings
+/// that are no load are 0.
+[[nodiscard]] std::vector<float> held_image(const LabelledFrames& data, const Label& label);
+
 }  // namespace dermis::recognition

@@ -31,6 +31,14 @@ struct ConfusedPair {
   std::vector<Aspect> aspects;  ///< In which they are most alike first.
 };
 
+/// An answer to an example by what other folds taught.
+struct Judgement {
+  std::size_t example = 0;  ///< Its place among those chosen.
+  std::size_t truth = 0;    ///< The class that it is.
+  std::size_t answer = 0;   ///< The likeliest class.
+  double probability = 0.0;
+};
+
 /// What the classes know of examples that they had not learned from: of each fold by what the others taught.
 struct LearningReport {
   bool by_group = false;  ///< Whole subjects or sessions were held out; else runs in order of time.
@@ -40,6 +48,8 @@ struct LearningReport {
   std::size_t judged = 0;                  ///< Examples in `confusion`: not those whose class was in no other fold.
   double accuracy = 0.0;                   ///< Share of those that were right, 0 ... 1.
   double calibration_error = 0.0;          ///< Expected calibration error over 10 bins, 0 ... 1.
+  std::vector<std::size_t> fold_of{};      ///< Of each example chosen.
+  std::vector<Judgement> judgements{};     ///< Of the examples in `confusion`, in order.
   std::optional<ConfusedPair> confused{};  ///< Most often; empty where no two are.
 };
 
@@ -62,6 +72,9 @@ class LearningSet {
   /// Learns from some of the labels, by their place. Fails on a single class, on more than 1000, on a class with one
   /// example, and where no class differs from another in anything.
   [[nodiscard]] Result<Learned> learn(std::span<const std::size_t> chosen) const;
+
+  /// [labels, features] of all labels.
+  [[nodiscard]] std::span<const double> features() const noexcept;
 
  private:
   struct State;

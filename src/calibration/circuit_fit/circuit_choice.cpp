@@ -23,9 +23,8 @@ namespace {
 
 const double kSureSquare = 2.0 * std::log(1000.0);  // odds of a thousand to one tell one circuit from another
 
-constexpr std::size_t kFewFrames = 60;  // refute most circuits
-constexpr double kNearly = 1.1;         // of the misfit that the best circuit leaves
-constexpr double kEnough = 0.3;         // a step this small against the standard errors ends a fit
+constexpr double kNearly = 1.1;  // of the misfit that the best circuit leaves
+constexpr double kEnough = 0.3;  // a step this small against the standard errors ends a fit
 
 struct Kind {
   const char* name;
@@ -236,13 +235,14 @@ ArrayDescription without_circuit(const ArrayDescription& array) {
 
 Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames) {
   std::vector<Trial> trials = all_kinds();
-  try_kinds(array, frames, kFewFrames, trials);
+  const std::size_t few = few_frames(array.taxel_count());  // refute most circuits
+  try_kinds(array, frames, few, trials);
   std::vector<Trial> left = rivals(trials, frames);
   const bool is_slow = std::any_of(left.begin(), left.end(), [](const Trial& trial) {
     return trial.fit && trial.kind->idle_rows == IdleRows::floating;
   });
   const std::size_t most = affordable_frames_of_choice(array.taxel_count(), is_slow);
-  if (left.size() > 1 && most > kFewFrames && frames.frames.size() > kFewFrames) try_kinds(array, frames, most, left);
+  if (left.size() > 1 && most > few && frames.frames.size() > few) try_kinds(array, frames, most, left);
   const Trial& chosen = choose(left, frames);
   if (!chosen.fit) return bad_input("readout: no circuit explains the calibration frames");
   std::vector<CircuitCandidate> candidates = candidates_of(left, chosen);

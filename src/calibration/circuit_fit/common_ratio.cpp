@@ -11,6 +11,7 @@
 
 #include "calibration/circuit_fit/gauss_newton.hpp"
 #include "calibration/circuit_fit/judge_frames.hpp"
+#include "calibration/circuit_fit/sloped_inversion.hpp"
 #include "calibration/even_choice.hpp"
 
 namespace dermis::calibration {
@@ -33,6 +34,21 @@ bool is_impossible(const InvertedFrames& inverted) {
   return 2 * static_cast<std::size_t>(unsolved) > inverted.size();
 }
 
+/// The same of a few frames, without their noise, and no longer than until that is sure.
+Result<bool> is_impossible_at_first(const LineParameters& known, const std::vector<const CircuitFrame*>& frames) {
+  Result<SlopedInversion> inversion = SlopedInversion::create(known, Eigen::VectorXd(0), Slopes::none);
+  if (!inversion) return inversion.error();
+  std::vector<double> siemens(known.array().taxel_count());
+  std::size_t unsolved = 0;
+  for (std::size_t k = 0; k < frames.size() && 2 * unsolved <= frames.size(); ++k) {
+    if (2 * (k - unsolved) >= frames.size()) break;
+    if (inversion->invert(frames[k]->ratio, siemens)) continue;
+    inversion->forget();
+    ++unsolved;
+  }
+  return 2 * unsolved > frames.size();
+}
+
 /// Empty: the circuit cannot give most of the frames.
 Result<std::optional<CommonRatio>> try_ratio(const LineParameters& lines,
                                              const std::vector<const CircuitFrame*>& frames, const Rubber& unknown,
@@ -40,13 +56,14 @@ Result<std::optional<CommonRatio>> try_ratio(const LineParameters& lines,
   CommonRatio trial;
   trial.ratio = ratio;
   trial.array = lines.array_at(lines.start(ratio));
-  for (const std::size_t most : {kFirstFrames, frames.size()}) {
-    Result<InvertedFrames> inverted = invert_frames(trial.array, some_of(frames, most));
-    if (!inverted) return inverted.error();
-    if (is_impossible(*inverted)) return std::optional<CommonRatio>();
-    trial.inverted = *std::move(inverted);
-  }
   const LineParameters known(trial.array);
+  const Result<bool> is_hopeless = is_impossible_at_first(known, some_of(frames, kFirstFrames));
+  if (!is_hopeless) return is_hopeless.error();
+  if (*is_hopeless) return std::optional<CommonRatio>();
+  Result<InvertedFrames> inverted = invert_frames(trial.array, frames);
+  if (!inverted) return inverted.error();
+  if (is_impossible(*inverted)) return std::optional<CommonRatio>();
+  trial.inverted = *std::move(inverted);
   const Iteration laws = fit_laws(known, trial.inverted, frames, {Eigen::VectorXd(0), unknown, Scatter{}});
   trial.rubber = laws.estimate.rubber;
   trial.scatter = laws.estimate.scatter;

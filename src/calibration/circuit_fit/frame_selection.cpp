@@ -37,6 +37,12 @@ std::size_t affordable_frames_of_choice(std::size_t taxels, bool is_slow) {
   return static_cast<std::size_t>(work / static_cast<double>(taxels));
 }
 
+std::size_t few_frames(std::size_t taxels) {
+  constexpr std::size_t kFewest = 24;
+  constexpr std::size_t kFew = 60;
+  return std::clamp(affordable_frames_of_choice(taxels, true), kFewest, kFew);
+}
+
 std::vector<const CircuitFrame*> select_frames(const CircuitFrames& frames, std::size_t most) {
   const auto several =
       static_cast<std::size_t>(std::count_if(frames.frames.begin(), frames.frames.end(), presses_several));

@@ -14,8 +14,7 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr std::size_t kStartFrames = 300;  // the start is found with these, fewer where they are large
-constexpr std::size_t kLeastStartFrames = 60;
+constexpr std::size_t kStartFrames = 300;   // the start is found with these, fewer where they are large
 constexpr std::size_t kFirstFrames = 1500;  // and the way to the solution with these
 constexpr double kEnoughAtFirst = 0.1;      // a step this small against the standard errors ends the fit
 constexpr double kEnough = 0.25;            // the same, with all frames
@@ -54,7 +53,8 @@ Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const Circu
   const auto first = select_frames(frames, std::min(kFirstFrames, most));
   const Rubber unknown = unknown_rubber(frames, array.taxel_count(), 1.0 / lines.reference_ohm());
   const std::size_t quick = affordable_frames_of_choice(array.taxel_count(), is_inverted_slowly(array));
-  const auto few = select_frames(frames, std::min({kStartFrames, most, std::max(kLeastStartFrames, quick)}));
+  const auto few =
+      select_frames(frames, std::min({kStartFrames, most, std::max(few_frames(array.taxel_count()), quick)}));
   const Result<CommonRatio> common = fit_common_ratio(lines, few, unknown);
   if (!common) return common.error();
   Estimate start{lines.start(common->ratio), common->rubber, common->scatter};

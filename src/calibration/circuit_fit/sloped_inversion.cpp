@@ -12,6 +12,7 @@ using Eigen::VectorXd;
 
 constexpr double kSlopeStep = 1e-3;   // of a parameter
 constexpr double kTolerance = 1e-12;  // of the inversions, in readings over the supply
+constexpr int kMostSteps = 25;        // of a frame: circuits are tried that cannot give it
 
 }  // namespace
 
@@ -34,6 +35,7 @@ Result<SlopedInversion> SlopedInversion::create(const LineParameters& lines, con
   }
   compensation::InversionOptions options;  // far below the noise; differences need more
   options.samples_noise = true;
+  options.most_steps = kMostSteps;
   if (count > 0 && !is_slow) options.tolerance_ratio = kTolerance;
   for (Index p = -1; p < (is_slow ? 0 : count); ++p) {
     VectorXd shifted = parameters;

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/recognition/comparison.hpp"
+
+namespace dermis::app {
+
+/// A BP network on the features of 'dermis learn', to compare with: one hidden layer of 16 or 64 tanh units, an output
+/// of log-sigmoid for each class, Adam on mini-batches. One fold of what is taught is left out to choose the size and
+/// the number of epochs with the most right answers; then all of it is learned for so long. Probabilities are shares of
+/// the odds of the outputs.
+[[nodiscard]] Result<std::vector<float>> answer_by_bp_network(const recognition::Lesson& lesson);
+
+}  // namespace dermis::app
