@@ -29,7 +29,6 @@ using recognition::LabelledFrames;
 constexpr std::size_t kMostExamples = 1000;
 constexpr std::size_t kMostNameBytes = 60;
 constexpr std::size_t kMostRequestBytes = 4096;
-constexpr double kLeastNewtons = 0.01;
 constexpr double kMillimetresPerMetre = 1000.0;
 constexpr double kBrightest = 255.0;
 constexpr double kSameTouch = 0.5;  // no two touches agree so well with one example
@@ -206,7 +205,7 @@ LabelledFrames TeachingServices::data_of(std::size_t array) const {
                          kMillimetresPerMetre * description.col_pitch_m}};
   data.layout.readings = description.taxel_count();
   data.layout.rate_hz = TouchCollector::kRateHz;
-  data.layout.least_reading = kLeastNewtons;
+  data.layout.least_reading = recognition::kLeastNewtons;
   for (const Example& example : lesson.examples) {
     const std::size_t before = data.frame_count();
     const CollectedTouch& touch = example.touch;
@@ -236,7 +235,7 @@ Result<std::string> TeachingServices::train(const json& request) {
   const TaughtArray& taught = lessons_[*array].array;
   const std::string name = taught.name + "-touches-" + time_stamp();
   const std::string path = (std::filesystem::path(taught.model).parent_path() / name).string();
-  if (Status written = write_taught(path, data); !written) return written.error();
+  if (Status written = write_taught(path, taught.description, data); !written) return written.error();
   if (Status written = recognition::write_classes(path + ".safetensors", classes); !written) return written.error();
   const json answer = {{"file", name + ".safetensors"},
                        {"classes", classes.names},

@@ -14,8 +14,9 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/csv_table.hpp"
 #include "dermis/recognition/classes_file.hpp"
-#include "dermis/recognition/dataset.hpp"
 #include "serve/named_touches.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -135,14 +136,13 @@ TEST_F(Teaching, training_uses_the_classes_and_saves_what_dermis_learn_reads) {
   ASSERT_TRUE(saved) << saved.error().message;
   EXPECT_EQ(*saved, *used_);
   const std::string stem = path.substr(0, path.size() - std::string(".safetensors").size());
-  const auto data = recognition::read_dataset({.frames = stem + ".frames.npy",
-                                               .arrays = stem + ".arrays.csv",
-                                               .extras = "",
-                                               .labels = stem + ".labels.csv",
-                                               .rate_hz = TouchCollector::kRateHz});
-  ASSERT_TRUE(data) << data.error().message;
-  EXPECT_EQ(data->labels.size(), 20U);
-  EXPECT_EQ(data->labels[19].group, "2");
+  const auto array = files::read_array(stem + ".array.toml");
+  ASSERT_TRUE(array) << array.error().message;
+  EXPECT_EQ(array->readout.quantity, Quantity::force);
+  EXPECT_EQ(array->row_pitch_m, touched_array().row_pitch_m);
+  const Result<files::CsvTable> labels = files::CsvTable::read(stem + ".labels.csv");
+  ASSERT_TRUE(labels) << labels.error().message;
+  EXPECT_EQ(labels->rows(), 20U);
 }
 
 TEST_F(Teaching, advice_warns_of_few_examples_and_of_one_session) {

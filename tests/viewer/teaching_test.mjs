@@ -153,8 +153,9 @@ it("teaches three touches, throws an example away, trains, and names new touches
   assert.deepEqual(more, []);
   const saved = bench.path(model.replace(".safetensors", ""));
   assert.equal(readCsv(`${saved}.labels.csv`).length, 3 * TAUGHT - 1);
-  const files = ["frames.npy", "arrays.csv", "labels.csv"].flatMap((name) => [`--${name.split(".")[0]}`, `${saved}.${name}`]);
-  bench.run("learn", ...files, "--rate", "50", "--out", bench.path("again.safetensors"));
+  bench.run("learn", "--in", `${saved}.frames.csv`, "--model", `${saved}.array.toml`, "--labels", `${saved}.labels.csv`, "--out", bench.path("again.safetensors"));
+  const again = await bench.serve("--port", "0", "--from", bench.path("touches.mcap"), "--model", bench.path("palm.toml"), "--classes", bench.path("again.safetensors"));
+  await again.stop();
 });
 
 it("warns of few examples, and says why there can be no training", async () => {
