@@ -41,13 +41,12 @@ class ResidualProblem : public LeastSquaresProblem {
     return 0.5 * residuals_.squaredNorm();
   }
 
-  double linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) override {
+  void linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) override {
     residual_function_(point, view(residuals_), view(jacobian_));
     Eigen::Map<Matrix> square(normal.data(), jacobian_.cols(), jacobian_.cols());
     square.setZero();
     square.selfadjointView<Eigen::Lower>().rankUpdate(jacobian_.transpose());
     Eigen::Map<Vector>(gradient.data(), jacobian_.cols()).noalias() = jacobian_.transpose() * residuals_;
-    return 0.5 * residuals_.squaredNorm();
   }
 
  private:
@@ -70,7 +69,8 @@ class DampedDescent {
 
   LevenbergMarquardtReport run() {
     LevenbergMarquardtReport report;
-    error_ = linearise();
+    linearise();
+    error_ = problem_.error(view(point_));
     report.initial_error = error_;
     std::optional<Stop> stop = stop_at_start();
     while (!stop && report.iterations < options_.max_iterations) {
@@ -113,11 +113,11 @@ class DampedDescent {
     damping_ = std::max(damping_ / kDampingFactor, kMinDamping);
     if (error_ <= options_.error_goal) return Stop::error_goal;
     if (slow) return Stop::relative_reduction;
-    error_ = linearise();  // as a call that begins here has it, to the last bit
+    linearise();
     return stop_at_gradient();
   }
 
-  double linearise() { return problem_.linearise(view(point_), view(gradient_), view(normal_)); }
+  void linearise() { problem_.linearise(view(point_), view(gradient_), view(normal_)); }
 
   void set_trial() {
     damped_ = normal_;

@@ -12,7 +12,7 @@
 namespace dermis::recognition {
 namespace {
 
-constexpr double kKnownShare = 0.95;  // of the examples shall not be called unknown
+constexpr double kKnownShare = 0.95;  // of new touches of known classes shall not be called unknown
 
 /// What the unknown score is made from, of several examples.
 struct Observations {
@@ -99,6 +99,13 @@ std::vector<double> weights_of(const Classes& classes, const std::vector<std::ve
   return can_be_told ? telling_weights(known, ranks_of(classes, unknown)) : even_weights(classes.experts.size());
 }
 
+/// The score of one more example ranks anywhere among these (at least one) with equal probability.
+double unknown_from(std::vector<double> known_scores) {
+  const std::size_t place = nearest_rank(known_scores.size() + 1, kKnownShare);
+  const std::size_t last = known_scores.size() - 1;
+  return ranked(std::move(known_scores), std::min(place, last));
+}
+
 }  // namespace
 
 void learn_unknown(Classes& classes, const Judged& judged, const Matrix& scores, const std::vector<Matrix>& distances) {
@@ -117,7 +124,7 @@ void learn_unknown(Classes& classes, const Judged& judged, const Matrix& scores,
   for (std::size_t rank = 0; rank < ranks.size(); ++rank) {
     for (std::size_t i = 0; i < unknown_scores.size(); ++i) unknown_scores[i] += weights[rank] * ranks[rank][i];
   }
-  classes.unknown_from = quantile(std::move(unknown_scores), kKnownShare);
+  classes.unknown_from = unknown_from(std::move(unknown_scores));
 }
 
 }  // namespace dermis::recognition

@@ -67,18 +67,23 @@ Result<SuitDescription> describe(const SuitPlace& place) {
   return suit;
 }
 
-Status read_classes(const std::string& path, ServedArray& array) {
+using Notice = std::function<void(const std::string&)>;
+
+Status read_classes(const std::string& path, const Notice& notice, ServedArray& array) {
   if (path.empty()) return Done{};
   Result<recognition::Classes> classes = recognition::read_classes(path);
   if (!classes) return classes.error();
   const Result<ArrayRecognition> fits = ArrayRecognition::create(*classes, array.name, array.model->array);
   if (!fits) return bad_input(fmt::format("{}: {}", path, fits.error().message));
+  if (!classes->layout.has_forces() && notice) {
+    notice(path + ": was not learned with --model; what it learned from is taken for newtons");
+  }
   array.classes = *std::move(classes);
   return Done{};
 }
 
 /// Zones of arrays that are not there may be misspelt.
-Status read_threats(const std::string& path, const std::function<void(const std::string&)>& notice, ServedSuit& suit) {
+Status read_threats(const std::string& path, const Notice& notice, ServedSuit& suit) {
   if (path.empty()) return Done{};
   Result<threats::ThreatLimits> limits = threats::read_threat_limits(path);
   if (!limits) return limits.error();
@@ -101,7 +106,7 @@ Status read_threats(const std::string& path, const std::function<void(const std:
   return Done{};
 }
 
-Result<ServedArray> open_array(const SuitArray& described, Models& models) {
+Result<ServedArray> open_array(const SuitArray& described, const Notice& notice, Models& models) {
   Result<Models::Known> known = models.read(described.model);
   if (!known) return known.error();
   const ArrayDescription& array = known->model->array;
@@ -116,7 +121,7 @@ Result<ServedArray> open_array(const SuitArray& described, Models& models) {
                      described.base_from_array,
                      std::move(known->description),
                      described.model};
-  if (Status read = read_classes(described.classes, served); !read) return read.error();
+  if (Status read = read_classes(described.classes, notice, served); !read) return read.error();
   return served;
 }
 
@@ -207,7 +212,7 @@ Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions opti
   suit.name = described->name;
   Models models;
   for (const SuitArray& one : described->arrays) {
-    Result<ServedArray> array = open_array(one, models);
+    Result<ServedArray> array = open_array(one, options.notice, models);
     if (!array) return array.error();
     suit.arrays.push_back(*std::move(array));
   }

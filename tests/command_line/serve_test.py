@@ -34,17 +34,19 @@ zone = "edge"
 
 class Serve(SmallArray):
     def serve(self, *options):
-        """The running server and its address."""
+        """The running server, with the notices that it gives first, and its address."""
         process = subprocess.Popen([support.BINARY, "serve", "--port", "0", *map(str, options)], cwd=self.work,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
-        line = process.stderr.readline()
-        found = re.search(r"serving (.*) at (http://\S+/)", line)
-        self.assertTrue(found, line)
-        return process, found[2]
+        process.notices = []
+        for line in process.stderr:
+            if found := re.search(r"serving (.*) at (http://\S+/)", line):
+                return process, found[2]
+            process.notices.append(line)
+        self.fail("".join(process.notices))
 
     def end(self, process):
         process.send_signal(signal.SIGINT)
@@ -113,6 +115,7 @@ class Serve(SmallArray):
         threats = self.written("threats.toml", LIMITS.format(array="small", last_row=1))
         process, address = self.serve("--from", LIVE, "--model", self.model, "--classes", self.learned(4, 5),
                                       "--threats", threats)
+        self.assertEqual(["not learned with --model" in notice for notice in process.notices], [True])
         [array] = json.loads(self.get(address + "suit.json"))["arrays"]
         self.assertEqual(array["classes"], ["lower", "upper"])
         self.assertEqual([(limit["name"], limit["zone"]["rows"]) for limit in array["limits"]], [("edge", [0, 1])])

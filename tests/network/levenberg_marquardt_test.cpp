@@ -261,7 +261,7 @@ class NormalEquations : public LeastSquaresProblem {
     return half_square(linear_.residual(), linear_.rows, {point.begin(), point.end()});
   }
 
-  double linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) override {
+  void linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) override {
     const std::size_t cols = linear_.cols;
     const std::vector<double> p(point.begin(), point.end());
     std::fill(gradient.begin(), gradient.end(), 0.0);
@@ -274,7 +274,6 @@ class NormalEquations : public LeastSquaresProblem {
         for (std::size_t l = 0; l <= k; ++l) normal[k * cols + l] += row[k] * row[l];
       }
     }
-    return error(point);
   }
 
  private:

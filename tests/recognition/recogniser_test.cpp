@@ -79,6 +79,22 @@ TEST(Recogniser, says_that_it_does_not_know_what_is_unlike_all_examples) {
   EXPECT_LE(unknown, 15U);
 }
 
+TEST(Recogniser, calls_few_new_touches_unknown_also_after_few_examples) {
+  constexpr std::uint64_t kSets = 40;
+  constexpr std::size_t kTouches = 60;
+  std::size_t unknown = 0;
+  for (std::uint64_t seed = 1; seed <= kSets; ++seed) {
+    const LabelledFrames data = support::poses(8, seed);
+    Recogniser recogniser = recogniser_of(learned_from(data), data.layout);
+    Random random(1000 + seed);
+    for (std::size_t i = 0; i < kTouches; ++i) {
+      const std::vector<float> frame = support::pose(random, i % support::kPoses);
+      unknown += recogniser.recognise({frame, {}}).verdict != Verdict::known ? 1 : 0;
+    }
+  }
+  EXPECT_LE(static_cast<double>(unknown), 0.08 * kSets * kTouches);
+}
+
 TEST(Recogniser, moves_to_an_array_of_another_pitch) {
   LabelledFrames data = support::poses(12, 6);
   data.layout = support::one_array(12, 10, 4.0);

@@ -26,8 +26,8 @@ class LeastSquaresProblem {
   /// Half the sum of squares at `point` [n].
   virtual double error(std::span<const double> point) = 0;
 
-  /// The same, its gradient in `gradient` [n] and J^T J in `normal` [n, n], of which only the lower triangle is read.
-  virtual double linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) = 0;
+  /// Its gradient in `gradient` [n] and J^T J in `normal` [n, n], of which only the lower triangle is read.
+  virtual void linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) = 0;
 };
 
 /// Called after each iteration with its number from 1, the error of the best point so far, which is what the parameters

@@ -15,8 +15,8 @@ class NetworkProblem : public network::LeastSquaresProblem {
 
   double error(std::span<const double> point) override { return network_.error(point, samples_); }
 
-  double linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) override {
-    return network_.normal_equations(point, samples_, gradient, normal);
+  void linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) override {
+    network_.normal_equations(point, samples_, gradient, normal);
   }
 
  private:
