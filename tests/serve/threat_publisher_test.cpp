@@ -23,7 +23,10 @@ namespace {
 using nlohmann::json;
 
 constexpr Nanos kFrame{10'000'000};
-enum State { kClear, kCrossed, kActive, kLatched };
+// States of dermis_msgs/Threat.
+constexpr int kClear = 0;
+constexpr int kActive = 2;
+constexpr int kLatched = 3;
 
 threats::ThreatLimits limits(bool latched) {
   threats::ThreatLimits limits;
