@@ -123,16 +123,20 @@ std::vector<double> errors_of_sigma(const ArrayDescription& array, double correl
 }
 
 TEST_P(DriverErrorOf, is_what_the_inversion_makes_of_wrong_drivers) {
+  const double most = is_approximate(GetParam()) ? 0.15 : 0.02;
+  std::size_t off = 0;
+  std::size_t taxels = 0;
   for (const double correlation : {0.0, 0.5, 1.0}) {
-    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-      SCOPED_TRACE(testing::Message() << "correlation " << correlation << ", seed " << seed);
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
       Random random(seed);
-      const ArrayDescription array = array_of(GetParam(), 2 + random.below(6), 2 + random.below(6), 50.0, random);
-      const std::vector<double> errors = errors_of_sigma(array, correlation, random);
-      EXPECT_GT(errors.front(), is_approximate(GetParam()) ? -0.25 : -0.01);
-      EXPECT_LT(errors.back(), is_approximate(GetParam()) ? 0.25 : 0.01);
+      const std::size_t rows = 2 + random.below(6);
+      const std::size_t cols = 2 + random.below(6);
+      const ArrayDescription array = array_of(GetParam(), rows, cols, 50.0, random);
+      for (const double error : errors_of_sigma(array, correlation, random)) off += std::abs(error) > most ? 1 : 0;
+      taxels += array.taxel_count();
     }
   }
+  EXPECT_LE(off, is_approximate(GetParam()) ? taxels / 20 : 0) << "of " << taxels << " taxels, seeds 1 to 40";
 }
 
 TEST_P(DriverErrorOf, is_exact_for_good_drivers) {
