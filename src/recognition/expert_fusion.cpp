@@ -169,4 +169,19 @@ Matrix fused_scores(const std::vector<Matrix>& scores, const std::vector<double>
   return sum;
 }
 
+Matrix fused_out_of_fold(const Judged& judged, const std::vector<Matrix>& scores) {
+  Matrix all(scores.front().rows(), scores.front().cols());
+  for (std::size_t fold = 0; fold < judged.is_known.size(); ++fold) {
+    Judged others = judged;
+    for (std::size_t i = 0; i < judged.fold_of.size(); ++i) {
+      if (judged.fold_of[i] == fold) others.is_known[fold][others.classes[i]] = 0;  // counts no more
+    }
+    const Matrix fused = fused_scores(scores, fuse(others, scores));
+    for (std::size_t i = 0; i < judged.fold_of.size(); ++i) {
+      if (judged.fold_of[i] == fold) all.row(index(i)) = fused.row(index(i));
+    }
+  }
+  return all;
+}
+
 }  // namespace dermis::recognition

@@ -37,4 +37,7 @@ void softmax(const Judged& judged, Matrix& scores);
 /// sum of w scores
 [[nodiscard]] Matrix fused_scores(const std::vector<Matrix>& scores, const std::vector<double>& weights);
 
+/// The same, the examples of each fold with the weights that suit the other folds.
+[[nodiscard]] Matrix fused_out_of_fold(const Judged& judged, const std::vector<Matrix>& scores);
+
 }  // namespace dermis::recognition

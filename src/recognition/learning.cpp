@@ -199,7 +199,7 @@ Result<Learned> LearningSet::learn(std::span<const std::size_t> chosen) const {
     classes.experts.push_back(train_expert(table, panel.columns[i], panel.choices[i].shrinkage));
     classes.experts.back().weight = weights[i] * panel.choices[i].sharpness;
   }
-  learn_unknown(classes, judged, fused_scores(scores, weights), distances_of(table, panel, folds));
+  learn_unknown(classes, judged, fused_out_of_fold(judged, scores), distances_of(table, panel, folds));
   learned.report = report_of(classes, table, folds, labels, scores);
   return learned;
 }

@@ -10,24 +10,6 @@
 namespace dermis::recognition {
 namespace {
 
-/// Probabilities of the examples of each fold, by the weights that suit the other folds.
-Matrix probabilities_of(const Judged& judged, const Folds& folds, const std::vector<Matrix>& scores) {
-  Matrix probabilities(scores.front().rows(), scores.front().cols());
-  for (std::size_t fold = 0; fold < folds.count; ++fold) {
-    Judged others = judged;
-    for (std::size_t i = 0; i < folds.fold_of.size(); ++i) {
-      if (folds.fold_of[i] == fold) others.is_known[fold][others.classes[i]] = 0;  // counts no more
-    }
-    const Matrix fused = fused_scores(scores, fuse(others, scores));
-    for (std::size_t i = 0; i < folds.fold_of.size(); ++i) {
-      if (folds.fold_of[i] != fold) continue;
-      probabilities.row(static_cast<Eigen::Index>(i)) = fused.row(static_cast<Eigen::Index>(i));
-    }
-  }
-  softmax(judged, probabilities);
-  return probabilities;
-}
-
 std::size_t group_count(const std::vector<Label>& labels) {
   std::set<std::string> groups;
   for (const Label& label : labels) groups.insert(label.group);
@@ -45,7 +27,8 @@ LearningReport judge(const Judged& judged, const Folds& folds, const std::vector
   report.fold_of = folds.fold_of;
   report.groups = group_count(labels);
   report.confusion.assign(class_count * class_count, 0);
-  const Matrix probabilities = probabilities_of(judged, folds, scores);
+  Matrix probabilities = fused_out_of_fold(judged, scores);
+  softmax(judged, probabilities);
   CalibrationError calibration;
   std::size_t right = 0;
   for (std::size_t i = 0; i < judged.classes.size(); ++i) {

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "recognition/load.hpp"
 #include "recognition/pose_block.hpp"
 
 namespace dermis::recognition {
@@ -102,7 +103,10 @@ void SegmentFeatures::image_at(ArrayFeatures& array, const Segment& segment, std
   const bool is_last = (below + 1) * source_.readings >= segment.frames.size();
   if (share == 0.0F || is_last) return array.regrid.apply(first, array.image);
   const std::span<const float> second = segment.frames.subspan((below + 1) * source_.readings, source_.readings);
-  for (std::size_t i = 0; i < blend_.size(); ++i) blend_[i] = first[i] + share * (second[i] - first[i]);
+  for (std::size_t i = 0; i < blend_.size(); ++i) {
+    const auto before = static_cast<float>(load_of(first[i]));
+    blend_[i] = before + share * (static_cast<float>(load_of(second[i])) - before);
+  }
   array.regrid.apply(blend_, array.image);
 }
 

@@ -23,6 +23,20 @@ std::size_t window_of(const Classes& classes, const Layout& source) {
   return static_cast<std::size_t>(std::clamp(frames, 1.0, static_cast<double>(kMostPoseFrames)));
 }
 
+/// Where the touch of the last of these frames began: what was before it fell below half of its force. One much weaker
+/// than the largest force is noise after a touch.
+std::size_t onset_among(std::span<const double> forces) {
+  constexpr double kReleased = 0.5;
+  constexpr double kLeastShare = 0.1;
+  const double least = kLeastShare * *std::max_element(forces.begin(), forces.end());
+  double peak = 0.0;
+  for (std::size_t frame = forces.size(); frame > 0; --frame) {
+    peak = std::max(peak, forces[frame - 1]);
+    if (peak >= least && forces[frame - 1] < kReleased * peak) return frame;
+  }
+  return 0;
+}
+
 }  // namespace
 
 double force_of(const Layout& layout, std::span<const float> readings) {
@@ -54,26 +68,36 @@ StreamRecogniser::StreamRecogniser(Recogniser recogniser, const Layout& source, 
       source_(source),
       window_(window),
       readings_(2 * window * source.readings),
-      extras_(2 * window * source.extras) {
+      extras_(2 * window * source.extras),
+      forces_(2 * window) {
   if (recogniser_.classes().moving) finder_.emplace(*recogniser_.classes().touches);
 }
 
 void StreamRecogniser::keep(std::span<const float> readings, std::span<const float> extras) {
   assert(readings.size() == source_.readings && extras.size() == source_.extras);
-  const auto move_up = [&](std::vector<float>& buffer, std::size_t columns) {
+  const auto move_up = [&](auto& buffer, std::size_t columns) {
     const auto end = buffer.begin() + static_cast<std::ptrdiff_t>(kept_ * columns);
     std::copy(end - static_cast<std::ptrdiff_t>(window_ * columns), end, buffer.begin());
   };
   if (kept_ == 2 * window_) {
     move_up(readings_, source_.readings);
     move_up(extras_, source_.extras);
+    move_up(forces_, 1);
     kept_ = window_;
   }
   std::copy(readings.begin(), readings.end(),
             readings_.begin() + static_cast<std::ptrdiff_t>(kept_ * source_.readings));
   std::copy(extras.begin(), extras.end(), extras_.begin() + static_cast<std::ptrdiff_t>(kept_ * source_.extras));
+  forces_[kept_] = force_of(source_, readings);
   ++kept_;
   ++frame_;
+}
+
+/// The last half second, or what of it is the touch that is there now.
+Touch StreamRecogniser::held_touch() const {
+  const std::size_t count = std::min(kept_, window_);
+  const std::size_t onset = onset_among(std::span(forces_).subspan(kept_ - count, count));
+  return {frame_ - count + onset, frame_ - 1};
 }
 
 Recognition StreamRecogniser::recognise(const Touch& touch) {
@@ -88,8 +112,8 @@ Recognition StreamRecogniser::recognise(const Touch& touch) {
 
 std::optional<Recognition> StreamRecogniser::next(std::span<const float> readings, std::span<const float> extras) {
   keep(readings, extras);
-  if (!finder_) return recognise({frame_ - std::min(kept_, window_), frame_ - 1});
-  const std::optional<Touch> touch = finder_->next(force_of(source_, readings));
+  if (!finder_) return recognise(held_touch());
+  const std::optional<Touch> touch = finder_->next(forces_[kept_ - 1]);
   if (!touch) return std::nullopt;
   return recognise(*touch);
 }

@@ -3,16 +3,17 @@
 #include "recognition/unknown_learning.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
-#include "dermis/core/quantile.hpp"
 #include "recognition/rank_table.hpp"
 
 namespace dermis::recognition {
 namespace {
 
 constexpr double kKnownShare = 0.95;  // of new touches of known classes shall not be called unknown
+constexpr double kConfidence = 0.95;
 
 /// What the unknown score is made from, of several examples.
 struct Observations {
@@ -24,6 +25,8 @@ struct Observations {
 /// for there is none.
 Observations observe(Judged judged, const Matrix& scores, const std::vector<Matrix>& distances,
                      bool without_their_class) {
+  // So many examples do not tell what is more certain: of n that are right the next may be wrong by 1 / (n + 2).
+  const double least_doubt = 1.0 / static_cast<double>(judged.classes.size() + 2);
   Observations result{std::vector<std::vector<double>>(distances.size()), {}};
   for (std::size_t i = 0; i < judged.classes.size(); ++i) {
     if (!judged.counts(i)) continue;
@@ -39,7 +42,7 @@ Observations observe(Judged judged, const Matrix& scores, const std::vector<Matr
     softmax({{0}, {0}, {answers}}, probabilities);
     is_known = 1;
     Eigen::Index answer = 0;
-    result.doubts.push_back(1.0 - probabilities.row(0).maxCoeff(&answer));
+    result.doubts.push_back(std::max(1.0 - probabilities.row(0).maxCoeff(&answer), least_doubt));
     for (std::size_t expert = 0; expert < distances.size(); ++expert) {
       result.distances[expert].push_back(distances[expert](row, answer));
     }
@@ -47,8 +50,17 @@ Observations observe(Judged judged, const Matrix& scores, const std::vector<Matr
   return result;
 }
 
-/// Ranks of the distances by each expert, then of the doubts: [experts + 1][examples]
-std::vector<std::vector<double>> ranks_of(const Classes& classes, const Observations& observations) {
+/// Ranks of the distances by each expert, then of the doubts: [experts + 1][examples]; each among the others, as that
+/// of a new touch is among them.
+std::vector<std::vector<double>> ranks_of_known(const Observations& known) {
+  std::vector<std::vector<double>> ranks;
+  for (const std::vector<double>& distances : known.distances) ranks.push_back(ranks_among_others(distances));
+  ranks.push_back(ranks_among_others(known.doubts));
+  return ranks;
+}
+
+/// The same, of what is not in the tables of the classes.
+std::vector<std::vector<double>> ranks_of_unknown(const Classes& classes, const Observations& observations) {
   std::vector<std::vector<double>> ranks;
   const auto add = [&](const std::vector<float>& table, const std::vector<double>& values) {
     ranks.emplace_back();
@@ -96,14 +108,40 @@ std::vector<double> even_weights(std::size_t experts) {
 std::vector<double> weights_of(const Classes& classes, const std::vector<std::vector<double>>& known,
                                const Observations& unknown) {
   const bool can_be_told = classes.names.size() > 2 && !unknown.doubts.empty();
-  return can_be_told ? telling_weights(known, ranks_of(classes, unknown)) : even_weights(classes.experts.size());
+  return can_be_told ? telling_weights(known, ranks_of_unknown(classes, unknown))
+                     : even_weights(classes.experts.size());
 }
 
-/// The score of one more example ranks anywhere among these (at least one) with equal probability.
+/// How many of n scores may lie above a limit that, as sure as kConfidence, has the share of all below it (S. S. Wilks,
+/// "Determination of sample sizes for setting tolerance limits", 1941), and one: 0 where n scores are too few.
+std::size_t place_from_above(std::size_t scores) {
+  const auto count = static_cast<double>(scores);
+  double log_chance = count * std::log(kKnownShare);  // that `above` scores lie above the quantile of all
+  double chance_of_fewer = 0.0;
+  std::size_t above = 0;
+  while (above < scores && chance_of_fewer + std::exp(log_chance) <= 1.0 - kConfidence) {
+    chance_of_fewer += std::exp(log_chance);
+    ++above;
+    const auto number = static_cast<double>(above);
+    log_chance += std::log((count - number + 1.0) / number * (1.0 - kKnownShare) / kKnownShare);
+  }
+  return above;
+}
+
+/// The tolerance limit of the scores (at least one): the share of new ones lies below it. Where they are too few the
+/// largest goes on as an exponential tail would, whose mean is that of the upper quarter.
 double unknown_from(std::vector<double> known_scores) {
-  const std::size_t place = nearest_rank(known_scores.size() + 1, kKnownShare);
-  const std::size_t last = known_scores.size() - 1;
-  return ranked(std::move(known_scores), std::min(place, last));
+  std::sort(known_scores.begin(), known_scores.end());
+  const std::size_t count = known_scores.size();
+  const std::size_t place = place_from_above(count);
+  if (place > 0) return known_scores[count - place];
+  const std::size_t upper = (count + 3) / 4;
+  const double below = known_scores[count > upper ? count - upper - 1 : 0];
+  double mean_excess = 0.0;
+  for (std::size_t i = count - upper; i < count; ++i)
+    mean_excess += (known_scores[i] - below) / static_cast<double>(upper);
+  const double exceeded = 1.0 - std::pow(1.0 - kConfidence, 1.0 / static_cast<double>(count));  // the largest, at most
+  return known_scores.back() + mean_excess * std::log(exceeded / (1.0 - kKnownShare));
 }
 
 }  // namespace
@@ -114,7 +152,7 @@ void learn_unknown(Classes& classes, const Judged& judged, const Matrix& scores,
   for (std::size_t expert = 0; expert < distances.size(); ++expert) {
     classes.experts[expert].distances = rank_table(known.distances[expert]);
   }
-  const std::vector<std::vector<double>> ranks = ranks_of(classes, known);
+  const std::vector<std::vector<double>> ranks = ranks_of_known(known);
   const std::vector<double> weights = weights_of(classes, ranks, observe(judged, scores, distances, true));
   for (std::size_t expert = 0; expert < distances.size(); ++expert) {
     classes.experts[expert].unknown_weight = weights[expert];

@@ -55,6 +55,25 @@ TEST(Fusion, finds_the_least_log_loss) {
   EXPECT_GT(weights[1], weights[0]);
 }
 
+TEST(Fusion, out_of_fold_takes_the_weights_that_suit_the_other_folds) {
+  Judged judged = judged_examples();
+  for (std::size_t i = 0; i < kExamples; ++i) judged.fold_of[i] = i < kExamples / 2 ? 0 : 1;
+  judged.is_known.assign(2, std::vector<std::uint8_t>(kClasses, 1));
+  const std::vector<Matrix> scores{scores_of(1.0, 1), scores_of(2.0, 2)};
+  const Matrix fused = fused_out_of_fold(judged, scores);
+  for (std::size_t fold = 0; fold < 2; ++fold) {
+    Judged others = judged_examples();
+    std::vector<Matrix> of_others;
+    const Eigen::Index half = index(kExamples / 2);
+    const Eigen::Index first = fold == 0 ? half : 0;
+    for (const Matrix& all : scores) of_others.emplace_back(all.middleRows(first, half));
+    others.classes.assign(judged.classes.begin() + first, judged.classes.begin() + first + half);
+    others.fold_of.resize(kExamples / 2);
+    const Matrix expected = fused_scores(scores, fuse(others, of_others)).middleRows(half - first, half);
+    EXPECT_TRUE(fused.middleRows(half - first, half).isApprox(expected, 1e-6)) << fold;
+  }
+}
+
 TEST(Fusion, gives_no_weight_to_an_expert_that_is_wrong) {
   const Judged judged = judged_examples();
   const std::vector<double> weights = fuse(judged, {scores_of(2.0, 4), scores_of(-1.0, 5)});

@@ -29,8 +29,20 @@ TEST(RankTable, ranks_rise_from_0_to_1_and_on_with_the_logarithm) {
 
 TEST(RankTable, of_equal_values_ranks_what_exceeds_them) {
   const std::vector<float> table = rank_table({0.0, 0.0, 0.0});
-  EXPECT_EQ(rank_in(table, 0.0), 1.0);
+  EXPECT_EQ(rank_in(table, 0.0), 0.0);
   EXPECT_EQ(rank_in(table, 1.0), 1.0);
+  EXPECT_EQ(rank_in(rank_table({0.1, 0.1, 0.1, 0.4}), 0.1), 0.0);
+}
+
+TEST(RankTable, ranks_each_value_among_the_others) {
+  const std::vector<double> ranks = ranks_among_others({3.0, 1.0, 8.0, 4.0});
+  ASSERT_EQ(ranks.size(), 4U);
+  EXPECT_EQ(ranks[0], rank_in(rank_table({1.0, 4.0, 8.0}), 3.0));
+  EXPECT_EQ(ranks[1], 0.0);
+  EXPECT_NEAR(ranks[2], 1.0 + std::log(2.0), 1e-6) << "the largest goes beyond all others, as a new one may";
+  EXPECT_EQ(ranks[3], rank_in(rank_table({1.0, 3.0, 8.0}), 4.0));
+  EXPECT_EQ(ranks_among_others({5.0}), std::vector<double>{1.0});
+  EXPECT_EQ(ranks_among_others({2.0, 2.0, 2.0}), (std::vector<double>{0.0, 0.0, 0.0}));
 }
 
 }  // namespace

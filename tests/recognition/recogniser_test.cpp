@@ -48,6 +48,28 @@ TEST(Recogniser, names_poses_that_it_has_not_seen) {
   EXPECT_GE(accuracy_on_poses(recogniser, 1.0, 2), 0.93);
 }
 
+TEST(Recogniser, taught_by_ten_examples_each_calls_few_new_touches_unknown) {
+  constexpr std::size_t kTaught = 10 * support::kPoses;
+  constexpr std::size_t kTeachers = 40;
+  std::size_t unknown_in_all = 0;
+  std::size_t above_one_in_twenty = 0;
+  for (std::uint64_t seed = 1; seed <= kTeachers; ++seed) {
+    LabelledFrames data = support::poses(20, seed);
+    const std::vector<Label> others(data.labels.begin() + kTaught, data.labels.end());
+    data.labels.resize(kTaught);
+    Recogniser recogniser = recogniser_of(learned_from(data), data.layout);
+    std::size_t unknown = 0;
+    for (const Label& label : others) {
+      unknown += recogniser.recognise(data.segment(label)).verdict != Verdict::known ? 1 : 0;
+    }
+    unknown_in_all += unknown;
+    above_one_in_twenty += 20 * unknown > others.size() ? 1 : 0;
+  }
+  EXPECT_LE(above_one_in_twenty, kTeachers / 5);
+  EXPECT_GE(unknown_in_all, kTeachers * kTaught / 200);
+  EXPECT_LE(unknown_in_all, kTeachers * kTaught / 30);
+}
+
 TEST(Recogniser, gives_probabilities_that_sum_to_one) {
   const LabelledFrames data = support::poses(8, 3);
   Recogniser recogniser = recogniser_of(learned_from(data), data.layout);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "simulated_touches.hpp"
 
@@ -105,6 +106,25 @@ TEST(Features, of_a_single_taxel_are_finite) {
   SegmentFeatures features(layout, layout, true, 2);
   const std::span<const double> values = features.compute({frames, {}});
   EXPECT_TRUE(std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }));
+}
+
+TEST(Features, take_a_reading_that_is_no_load_as_0_between_frames_too) {
+  const Layout examples = support::one_array(kSide, kSide, 4.0, 100.0);
+  const Layout source = support::one_array(kSide, kSide, 4.0, 150.0);
+  SegmentFeatures features(examples, source, true, 6);
+  std::vector<float> frames;
+  for (int frame = 0; frame < 6; ++frame) {
+    const std::vector<float> readings = touch(9.0, 9.0, 1.0, 1.8);
+    frames.insert(frames.end(), readings.begin(), readings.end());
+  }
+  float& reading = frames[2 * kSide * kSide + 9 * kSide + 9];
+  reading = 0.0F;
+  const std::span<const double> all = features.compute({frames, {}});
+  const std::vector<double> expected(all.begin(), all.end());
+  for (const float none : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -500.0F}) {
+    reading = none;
+    EXPECT_TRUE(std::ranges::equal(features.compute({frames, {}}), expected)) << none;
+  }
 }
 
 TEST(Features, of_the_expert_all_are_those_of_the_recipe) {

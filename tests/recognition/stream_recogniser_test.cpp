@@ -93,16 +93,40 @@ TEST(StreamRecogniser, names_a_pose_with_every_frame) {
   }
 }
 
-TEST(StreamRecogniser, looks_at_the_last_half_second_of_a_pose) {
-  LabelledFrames data = support::poses(5, 4);
-  data.layout.rate_hz = 10.0;
-  Result<StreamRecogniser> recogniser = StreamRecogniser::create(support::small_classes(), data.layout);
-  ASSERT_TRUE(recogniser);
-  for (std::size_t frame = 0; frame < 20; ++frame) {
-    const std::optional<Recognition> recognition = recogniser->next(frame_of(data, frame));
-    ASSERT_TRUE(recognition);
-    EXPECT_EQ(recognition->frames.first, frame < 5 ? 0 : frame - 4);
+/// The frames that are looked at with each frame of a pose whose force is so much at ten frames a second.
+std::vector<Touch> looked_at(const std::vector<double>& forces) {
+  Layout layout = support::one_array(12, 10);
+  layout.rate_hz = 10.0;
+  Result<StreamRecogniser> recogniser = StreamRecogniser::create(support::small_classes(), layout);
+  EXPECT_TRUE(recogniser);
+  std::vector<Touch> frames;
+  for (const double force : forces) {
+    const std::vector<float> frame(layout.readings, static_cast<float>(force));
+    frames.push_back(recogniser->next(frame)->frames);
   }
+  return frames;
+}
+
+TEST(StreamRecogniser, looks_at_the_last_half_second_of_a_pose) {
+  const std::vector<Touch> frames = looked_at(std::vector<double>(20, 3.0));
+  for (std::size_t frame = 0; frame < 20; ++frame) {
+    EXPECT_EQ(frames[frame], (Touch{frame < 5 ? 0 : frame - 4, frame}));
+  }
+}
+
+TEST(StreamRecogniser, looks_no_further_back_than_the_touch_that_is_there) {
+  const std::vector<Touch> frames = looked_at({3.0, 3.0, 0.1, 0.0, 1.0, 2.0, 2.0, 1.8, 2.0, 2.0, 2.0});
+  EXPECT_EQ(frames[4], (Touch{4, 4})) << "a touch begins";
+  EXPECT_EQ(frames[5], (Touch{4, 5}));
+  EXPECT_EQ(frames[7], (Touch{4, 7}));
+  EXPECT_EQ(frames[10], (Touch{6, 10})) << "half a second";
+}
+
+TEST(StreamRecogniser, looks_at_a_pose_that_was_there_for_half_a_second_after_it) {
+  const std::vector<Touch> frames = looked_at({0.01, 0.02, 3.0, 3.0, 0.02, 0.005, 0.02, 0.01, 0.02, 0.02});
+  EXPECT_EQ(frames[3], (Touch{2, 3}));
+  EXPECT_EQ(frames[5], (Touch{2, 5})) << "noise is no new touch";
+  EXPECT_EQ(frames[7], (Touch{3, 7}));
 }
 
 TEST(StreamRecogniser, allocates_nothing_per_frame) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "serve/named_touches.hpp"
@@ -29,6 +31,20 @@ TEST(FrameResampler, gives_forces_at_even_times_between_frames) {
 TEST(FrameResampler, gives_every_frame_where_no_rate_is_wanted) {
   FrameResampler resampler(0.0, 1);
   EXPECT_EQ(used(resampler, {0, 4, 16}), (std::vector<float>{0.0F, 40.0F, 160.0F}));
+}
+
+TEST(FrameResampler, a_taxel_that_says_nothing_has_no_load_and_spoils_no_other_frame) {
+  constexpr float kNothing = std::numeric_limits<float>::quiet_NaN();
+  FrameResampler resampler(100.0, 1);
+  std::vector<float> all;
+  for (const auto& [time, newtons] : {std::pair{0, 1.0F}, {15, kNothing}, {30, 6.0F}, {45, 6.0F}}) {
+    resampler.take(force_frame(Nanos(1'000'000LL * time), {newtons}),
+                   [&](std::span<const float> one) { all.push_back(one[0]); });
+  }
+  ASSERT_EQ(all.size(), 5U);
+  EXPECT_NEAR(all[1], 1.0 / 3.0, 1e-6);
+  EXPECT_NEAR(all[2], 2.0, 1e-6);
+  EXPECT_NEAR(all[3], 6.0, 1e-6);
 }
 
 TEST(FrameResampler, begins_anew_where_time_leaps) {

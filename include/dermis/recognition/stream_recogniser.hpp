@@ -20,7 +20,8 @@ struct Recognition {
 };
 
 /// Names what happens in a stream frame by frame: a gesture once it is over, from onset to release; a pose with every
-/// frame, from the last half second. Allocates only when made. Not thread-safe.
+/// frame, from the last half second but not from before the touch that is there. Allocates only when made. Not
+/// thread-safe.
 class StreamRecogniser {
  public:
   /// `source`: as for Recogniser::create(). Fails on classes of gestures whose onset and release were not learned, and
@@ -38,6 +39,7 @@ class StreamRecogniser {
   StreamRecogniser(Recogniser recogniser, const Layout& source, std::size_t window);
 
   void keep(std::span<const float> readings, std::span<const float> extras);
+  [[nodiscard]] Touch held_touch() const;
   [[nodiscard]] Recognition recognise(const Touch& touch);
 
   Recogniser recogniser_;
@@ -48,6 +50,7 @@ class StreamRecogniser {
   std::size_t kept_ = 0;               ///< How many of the last ones are in the buffers.
   std::vector<float> readings_;        ///< [2 window, readings]: so that the last ones are always in one piece.
   std::vector<float> extras_;
+  std::vector<double> forces_;  ///< Of the same frames.
 };
 
 /// Sum of the readings of a frame that are a load.
