@@ -130,7 +130,7 @@ Status Session::Implementation::start(const SessionOptions& options) {
   if (Status made = make_server(options); !made) return made;
   if (Status made = make_publishers(options.server.notice); !made) return made;
   parameters_.emplace(suit_, *live_, *broadcaster_, recorder_);
-  status_.emplace(SuitAtWork{suit_, models_, *live_, recorder_, calibration_}, *server_);
+  status_.emplace(SuitAtWork{suit_, models_, *live_, recorder_, calibration_, threats_.get()}, *server_);
   server_->start();
   return options.record.empty() ? Status(Done{}) : recorder_.begin();
 }

@@ -13,6 +13,7 @@
 #include "serve/calibration_services.hpp"
 #include "serve/models_in_use.hpp"
 #include "serve/suit_recorder.hpp"
+#include "serve/threat_publisher.hpp"
 
 namespace dermis::serve {
 
@@ -23,6 +24,7 @@ struct SuitAtWork {
   const live::LiveSuit& live;
   const SuitRecorder& recorder;
   const CalibrationServices& calibration;
+  const ThreatPublisher* threats = nullptr;  ///< nullptr: nothing is limited
 };
 
 /// The channels of docs/stream.md that tell how the work goes, and where a playback is. Not thread-safe.

@@ -34,6 +34,19 @@ messages::Threat::State state_of(const ThreatLimit& limit, const ThreatState& st
   return state.now.value < limit.release_share * limit.limit ? State::latched : State::active;
 }
 
+messages::Diagnosis diagnosis_of(const std::string& array, const ThreatLimit& limit, const ThreatState& state) {
+  messages::Diagnosis diagnosis;
+  diagnosis.level = messages::Diagnosis::Level::error;
+  diagnosis.name = fmt::format("threat '{}' on '{}'", limit.name, array);
+  diagnosis.hardware_id = array;
+  diagnosis.message = threats::describe(limit, state.now);
+  const bool is_latched = state_of(limit, state) == messages::Threat::State::latched;
+  diagnosis.values = {{"state", is_latched ? "over, until it is reset" : "there"},
+                      {"worst", threats::describe(limit, state.worst)},
+                      {"first crossed", fmt::format("{:.3f} s", std::chrono::duration<double>(state.crossed).count())}};
+  return diagnosis;
+}
+
 Result<std::unique_ptr<ThreatPublisher>> ThreatPublisher::create(const ServedSuit& suit, stream::Server& server,
                                                                  SuitRecorder& recorder, Log log) {
   if (!suit.threats) return std::unique_ptr<ThreatPublisher>();
@@ -64,6 +77,25 @@ void ThreatPublisher::publish(const live::ArrayResult& result) {
   tell(watched, time, all);
 }
 
+std::vector<messages::Diagnosis> ThreatPublisher::diagnoses() const {
+  std::vector<messages::Diagnosis> diagnoses;
+  for (const Watched& watched : arrays_) {
+    const std::lock_guard lock(watched.standing_mutex);
+    for (const ThreatState& state : watched.standing) {
+      diagnoses.push_back(diagnosis_of(watched.array, limits_.limits[state.limit], state));
+    }
+  }
+  return diagnoses;
+}
+
+void ThreatPublisher::keep_standing(Watched& watched) {
+  const std::lock_guard lock(watched.standing_mutex);
+  watched.standing.clear();
+  for (const ThreatState& state : watched.monitor.states()) {
+    if (state.phase == ThreatPhase::standing) watched.standing.push_back(state);
+  }
+}
+
 Result<std::string> ThreatPublisher::reset(std::string_view /*request*/) {
   for (Watched& watched : arrays_) watched.is_reset_wanted = true;
   return std::string("{}");
@@ -71,12 +103,15 @@ Result<std::string> ThreatPublisher::reset(std::string_view /*request*/) {
 
 /// What began or ended, and where `all`, to clients, how the other limits stand.
 void ThreatPublisher::tell(Watched& watched, Nanos time, bool all) {
+  bool is_news = all;
   for (const ThreatState& state : watched.monitor.states()) {
     if (!state.changed && !all) continue;
+    is_news = true;
     encode(watched, state, time);
     state.changed ? topic_.publish(time, watched.message) : topic_.show(time, watched.message);
     if (state.changed && state.phase == ThreatPhase::standing) log(watched, state, time);
   }
+  if (is_news) keep_standing(watched);
 }
 
 /// One line a second at most: the topic has all of them.

@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +36,9 @@ class ThreatPublisher {
 
   void publish(const live::ArrayResult& result);
 
+  /// A status for each threat that is there, as half a second ago or later.
+  [[nodiscard]] std::vector<messages::Diagnosis> diagnoses() const;
+
   /// The service /threats/reset: latched threats end with the next frame of their array.
   [[nodiscard]] Result<std::string> reset(std::string_view request);
 
@@ -46,6 +50,8 @@ class ThreatPublisher {
     std::optional<Nanos> told{};    ///< When all limits were.
     std::optional<Nanos> logged{};  ///< When the last line was.
     std::vector<std::uint8_t> message{};
+    mutable std::mutex standing_mutex{};
+    std::vector<threats::ThreatState> standing{};  ///< The threats that are there.
 
     Watched(threats::ThreatMonitor its_monitor, const std::string& its_array)
         : monitor(std::move(its_monitor)), array(its_array) {}
@@ -53,6 +59,7 @@ class ThreatPublisher {
 
   ThreatPublisher(const threats::ThreatLimits& limits, EventTopic topic, Log log);
   void tell(Watched& watched, Nanos time, bool all);
+  static void keep_standing(Watched& watched);
   void log(Watched& watched, const threats::ThreatState& state, Nanos time) const;
   void encode(Watched& watched, const threats::ThreatState& state, Nanos time) const;
 
@@ -61,6 +68,10 @@ class ThreatPublisher {
   Log log_;
   std::deque<Watched> arrays_;
 };
+
+/// A threat that is there, as a status of the array: what is exceeded by how much, since when.
+[[nodiscard]] messages::Diagnosis diagnosis_of(const std::string& array, const threats::ThreatLimit& limit,
+                                               const threats::ThreatState& state);
 
 /// As a message says it.
 [[nodiscard]] messages::Threat::State state_of(const threats::ThreatLimit& limit, const threats::ThreatState& state);

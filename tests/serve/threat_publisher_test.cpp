@@ -151,6 +151,26 @@ TEST_F(Watching, a_latched_threat_stands_until_it_is_reset) {
   EXPECT_EQ(changes("throat"), std::vector<int>{kClear});
 }
 
+TEST_F(Watching, the_health_has_a_row_for_a_threat_while_it_is_there) {
+  watch(true);
+  press(0, 1.0F);
+  EXPECT_TRUE(publisher_->diagnoses().empty());
+  press(0, 6.0F);
+  ASSERT_EQ(publisher_->diagnoses().size(), 1U);
+  const messages::Diagnosis there = publisher_->diagnoses().front();
+  EXPECT_EQ(there.level, messages::Diagnosis::Level::error);
+  EXPECT_EQ(there.name, "threat 'throat' on 'chest'");
+  EXPECT_TRUE(there.message.starts_with("taxel_force 6.0 +- 0.0 N, limit 5, at x ")) << there.message;
+  EXPECT_EQ(there.values[0], (std::pair<std::string, std::string>{"state", "there"}));
+  EXPECT_EQ(there.values[2], (std::pair<std::string, std::string>{"first crossed", "0.020 s"}));
+  for (int frame = 0; frame < 60; ++frame) press(0, 0.0F);
+  EXPECT_EQ(publisher_->diagnoses().front().values[0].second, "over, until it is reset");
+  EXPECT_TRUE(publisher_->diagnoses().front().values[1].second.starts_with("taxel_force 6.0")) << "the worst";
+  ASSERT_TRUE(publisher_->reset("{}"));
+  press(0, 0.0F);
+  EXPECT_TRUE(publisher_->diagnoses().empty());
+}
+
 TEST_F(Watching, all_limits_are_told_twice_a_second_and_a_line_is_logged_once_a_second) {
   watch(false);
   for (int frame = 0; frame < 300; ++frame) press(0, frame % 2 == 0 ? 6.0F : 0.0F);
