@@ -71,6 +71,21 @@ std::vector<std::uint8_t> picture_of(const CollectedTouch& touch, std::size_t ta
   return picture;
 }
 
+std::string folder_of(const TaughtArray& array) {
+  return std::filesystem::path(array.model).parent_path().string();
+}
+
+recognition::Layout taught_layout(const TaughtArray& array) {
+  const ArrayDescription& description = array.description;
+  recognition::Layout layout;
+  layout.arrays = {{array.name, description.rows, description.cols, 0, kMillimetresPerMetre * description.row_pitch_m,
+                    kMillimetresPerMetre * description.col_pitch_m}};
+  layout.readings = description.taxel_count();
+  layout.rate_hz = TouchCollector::kRateHz;
+  layout.least_reading = recognition::kLeastNewtons;
+  return layout;
+}
+
 /// Frames that both have in common, of those that one of them has.
 double agreement(const recognition::Label& label, const recognition::Touch& touch) {
   const std::size_t first = std::max(label.first, touch.first);
@@ -109,8 +124,9 @@ TeachingServices::TeachingServices(std::vector<TaughtArray> arrays, UseClasses u
 }
 
 const std::vector<std::string>& TeachingServices::names() {
-  static const std::vector<std::string> kNames = {"/recognition/listen", "/recognition/examples",
-                                                  "/recognition/throw_away", "/recognition/train"};
+  static const std::vector<std::string> kNames = {"/recognition/listen",     "/recognition/examples",
+                                                  "/recognition/throw_away", "/recognition/saved",
+                                                  "/recognition/load",       "/recognition/train"};
   return kNames;
 }
 
@@ -130,6 +146,8 @@ Result<std::string> TeachingServices::call(std::string_view service, std::string
   if (service == "/recognition/listen") return listen(parsed);
   if (service == "/recognition/examples") return examples(parsed);
   if (service == "/recognition/throw_away") return throw_away(parsed);
+  if (service == "/recognition/saved") return saved(parsed);
+  if (service == "/recognition/load") return load(parsed);
   if (service == "/recognition/train") return train(parsed);
   return bad_input("there is no such service");
 }
@@ -198,14 +216,7 @@ Result<std::string> TeachingServices::throw_away(const json& request) {
 LabelledFrames TeachingServices::data_of(std::size_t array) const {
   const std::lock_guard lock(mutex_);
   const Lesson& lesson = lessons_[array];
-  const ArrayDescription& description = lesson.array.description;
-  LabelledFrames data;
-  data.layout.arrays = {{lesson.array.name, description.rows, description.cols, 0,
-                         kMillimetresPerMetre * description.row_pitch_m,
-                         kMillimetresPerMetre * description.col_pitch_m}};
-  data.layout.readings = description.taxel_count();
-  data.layout.rate_hz = TouchCollector::kRateHz;
-  data.layout.least_reading = recognition::kLeastNewtons;
+  LabelledFrames data{taught_layout(lesson.array), {}, {}, {}};
   for (const Example& example : lesson.examples) {
     const std::size_t before = data.frame_count();
     const CollectedTouch& touch = example.touch;
@@ -215,6 +226,47 @@ LabelledFrames TeachingServices::data_of(std::size_t array) const {
                            example.session, static_cast<double>(example.id)});
   }
   return data;
+}
+
+Result<std::string> TeachingServices::saved(const json& request) const {
+  const Result<std::size_t> array = find_array(request);
+  if (!array) return array.error();
+  const TaughtArray& taught = lessons_[*array].array;
+  std::vector<std::string> names = saved_touches(folder_of(taught), taught.name);
+  const std::lock_guard lock(mutex_);
+  const std::vector<std::string>& known = lessons_[*array].files;
+  std::erase_if(names, [&](const std::string& name) { return std::ranges::find(known, name) != known.end(); });
+  return dumped({{"files", names}});
+}
+
+/// Only what saved() names: no request leads out of the folder of the model.
+Result<std::string> TeachingServices::load(const json& request) {
+  const Result<std::size_t> array = find_array(request);
+  if (!array) return array.error();
+  const auto file = request.find("file");
+  Lesson& lesson = lessons_[*array];
+  const std::string folder = folder_of(lesson.array);
+  const std::vector<std::string> names = saved_touches(folder, lesson.array.name);
+  const bool is_saved =
+      file != request.end() && file->is_string() && std::ranges::find(names, file->get<std::string>()) != names.end();
+  if (!is_saved) return bad_input("file: there are no saved touches of that name");
+  const auto name = file->get<std::string>();
+  const Result<LabelledFrames> data =
+      read_taught((std::filesystem::path(folder) / name).string(), taught_layout(lesson.array));
+  if (!data) return data.error();
+  std::vector<CollectedTouch> touches = touches_of(*data);
+  const std::lock_guard lock(mutex_);
+  if (std::ranges::find(lesson.files, name) != lesson.files.end())
+    return bad_input("file: is among the examples already");
+  if (lesson.examples.size() + touches.size() > kMostExamples) {
+    return bad_input(fmt::format("file: with it there were more than {} examples", kMostExamples));
+  }
+  for (std::size_t place = 0; place < touches.size(); ++place) {
+    const recognition::Label& label = data->labels[place];
+    lesson.examples.push_back({++last_id_, label.name, label.group, std::move(touches[place])});
+  }
+  lesson.files.push_back(name);
+  return dumped({{"examples", touches.size()}});
 }
 
 Result<std::string> TeachingServices::train(const json& request) {
@@ -234,9 +286,13 @@ Result<std::string> TeachingServices::train(const json& request) {
   classes.touches = limits;
   const TaughtArray& taught = lessons_[*array].array;
   const std::string name = taught.name + "-touches-" + time_stamp();
-  const std::string path = (std::filesystem::path(taught.model).parent_path() / name).string();
+  const std::string path = (std::filesystem::path(folder_of(taught)) / name).string();
   if (Status written = write_taught(path, taught.description, data); !written) return written.error();
   if (Status written = recognition::write_classes(path + ".safetensors", classes); !written) return written.error();
+  {
+    const std::lock_guard lock(mutex_);
+    lessons_[*array].files.push_back(name);
+  }
   const json answer = {{"file", name + ".safetensors"},
                        {"classes", classes.names},
                        {"accuracy", learned->report.accuracy},

@@ -57,6 +57,7 @@ class TeachingServices {
     TaughtArray array;
     TouchCollector collector;
     std::vector<Example> examples{};
+    std::vector<std::string> files{};  ///< Whose examples are among these.
   };
   static constexpr std::size_t kNone = ~std::size_t{0};
 
@@ -64,6 +65,8 @@ class TeachingServices {
   [[nodiscard]] Result<std::string> listen(const nlohmann::json& request);
   [[nodiscard]] Result<std::string> examples(const nlohmann::json& request) const;
   [[nodiscard]] Result<std::string> throw_away(const nlohmann::json& request);
+  [[nodiscard]] Result<std::string> saved(const nlohmann::json& request) const;
+  [[nodiscard]] Result<std::string> load(const nlohmann::json& request);
   [[nodiscard]] Result<std::string> train(const nlohmann::json& request);
   [[nodiscard]] recognition::LabelledFrames data_of(std::size_t array) const;
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -143,6 +144,50 @@ TEST_F(Teaching, training_uses_the_classes_and_saves_what_dermis_learn_reads) {
   const Result<files::CsvTable> labels = files::CsvTable::read(stem + ".labels.csv");
   ASSERT_TRUE(labels) << labels.error().message;
   EXPECT_EQ(labels->rows(), 20U);
+}
+
+/// The same server another day: nothing is known of the examples.
+class AnotherDay : public Teaching {
+ protected:
+  json call_again(const std::string& service, json request = json::object()) {
+    request["array"] = "skin";
+    const Result<std::string> answer = again_.call(service, request.dump());
+    return answer ? json::parse(*answer) : json(answer.error().message);
+  }
+
+  TeachingServices again_{{{"skin", touched_array(), folder_.file("model.safetensors")}},
+                          [](std::size_t, const recognition::Classes&) { return Status(Done{}); }};
+};
+
+TEST_F(AnotherDay, goes_on_with_what_was_saved) {
+  teach("tap", 0.1, 10);
+  teach("hold", 0.5, 9, "2");
+  const std::string file = call("/recognition/train")["file"];
+  const std::string name = file.substr(0, file.find('.'));
+  EXPECT_EQ(call("/recognition/saved"), (json{{"files", json::array()}})) << "its examples are here already";
+  EXPECT_EQ(call("/recognition/load", {{"file", name}}), "file: is among the examples already");
+  EXPECT_EQ(call_again("/recognition/saved"), (json{{"files", {name}}}));
+  EXPECT_EQ(call_again("/recognition/load", {{"file", name}}), (json{{"examples", 19}}));
+  const json before = call("/recognition/examples")["examples"];
+  const json after = call_again("/recognition/examples")["examples"];
+  ASSERT_EQ(after.size(), 19U);
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    EXPECT_EQ(after[k]["class"], before[k]["class"]);
+    EXPECT_EQ(after[k]["session"], before[k]["session"]);
+  }
+  const json trained = call_again("/recognition/train");
+  ASSERT_TRUE(trained.is_object()) << trained;
+  EXPECT_GE(trained["accuracy"], 0.9);
+}
+
+TEST_F(AnotherDay, loads_nothing_but_touches_of_the_array_beside_its_model) {
+  for (const char* name : {"../skin-touches-1", "skin-touches-1", "model", ""}) {
+    EXPECT_EQ(call("/recognition/load", {{"file", name}}), "file: there are no saved touches of that name") << name;
+  }
+  std::ofstream(folder_.file("skin-touches-1.labels.csv")) << "id,first,last,class,session\nt1,5,9,tap,1\n";
+  const std::string missing = call("/recognition/load", {{"file", "skin-touches-1"}});
+  EXPECT_NE(missing.find("skin-touches-1.frames.csv"), std::string::npos) << missing;
+  EXPECT_TRUE(counts().empty());
 }
 
 TEST_F(Teaching, advice_warns_of_few_examples_and_of_one_session) {

@@ -185,3 +185,21 @@ it("warns of few examples, and says why there can be no training", async () => {
     await server.stop();
   }
 });
+
+it("goes on another day with what was taught before", async () => {
+  const server = await bench.serve("--port", "0", "--from", bench.path("touches.mcap"), "--model", bench.path("palm.toml"));
+  try {
+    const page = await openPage(browser, `${server.url}#/recognition`);
+    await becomes(page, "live");
+    await part(page, "teach-saved").locator("option").waitFor({ state: "attached" });
+    await part(page, "teach-load").click();
+    await eventually(page, (count) => document.querySelectorAll("[data-taught] canvas").length === count, KINDS.length * TAUGHT - 1);
+    await part(page, "teach-before").waitFor({ state: "hidden" });
+    await part(page, "teach-train").click();
+    await part(page, "teach-result").getByText(/were right when left out/).waitFor();
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+  }
+});

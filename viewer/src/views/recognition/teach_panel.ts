@@ -8,6 +8,8 @@ import type { ArrayDescription } from "../../suit";
 import { byClass, missing, type TaughtTouch, WANTED_EXAMPLES, warnings } from "./taught_touches";
 
 const POLL_MS = 250;
+/** Services that are called without being asked for. */
+const SILENT = ["/recognition/examples", "/recognition/saved"];
 
 interface Examples {
   listening: string;
@@ -42,6 +44,13 @@ export class TeachPanel {
   readonly #session = element("input", { class: "field", "data-role": "teach-session", maxlength: 20, value: "1" });
   readonly #listen = element("button", { class: "button primary", "data-role": "teach-listen", type: "submit" }, "Begin");
   readonly #train = element("button", { class: "button", "data-role": "teach-train", onclick: () => void this.#learn() }, "Train");
+  readonly #saved = element("select", { class: "field", "data-role": "teach-saved" });
+  readonly #before = element(
+    "div",
+    { class: "teach-form", "data-role": "teach-before", hidden: true },
+    element("label", {}, "Taught before", this.#saved),
+    element("button", { class: "button", type: "button", "data-role": "teach-load", onclick: () => void this.#load() }, "Load"),
+  );
   readonly #status = element("p", { class: "note", role: "status", "data-role": "teach-status" });
   readonly #classes = element("ul", { class: "taught", "data-role": "taught" });
   readonly #lines = element("ul", { class: "note dim", "data-role": "teach-warnings" });
@@ -75,12 +84,16 @@ export class TeachPanel {
       { class: "panel", "aria-label": "Teach touches", "data-role": "teach" },
       element("header", { class: "panel-title" }, element("h2", {}, "Teach touches")),
       form,
+      this.#before,
       this.#status,
       this.#classes,
       this.#lines,
       this.#result,
     );
-    stream.services.follow((services) => setHidden(this.element, !services.has("/recognition/listen")));
+    stream.services.follow((services) => {
+      setHidden(this.element, !services.has("/recognition/listen"));
+      if (services.has("/recognition/saved")) void this.#listSaved();
+    });
   }
 
   begin(array: ArrayDescription): void {
@@ -90,6 +103,7 @@ export class TeachPanel {
     this.#pictures.clear();
     this.#classes.replaceChildren();
     this.#result.replaceChildren();
+    void this.#listSaved();
   }
 
   draw(nowMs: number): void {
@@ -112,6 +126,24 @@ export class TeachPanel {
     const right = `${fixed(100 * trained.accuracy, 0)} % of ${trained.judged} examples were right when left out. Saved as ${trained.file} and in use.`;
     this.#result.replaceChildren(...[right, ...trained.advice].map((line) => element("li", {}, line)));
     this.#onTrained(trained.classes);
+  }
+
+  /** What was saved another day, and is not among the examples. */
+  async #listSaved(): Promise<void> {
+    const array = this.#array;
+    if (array === undefined) return;
+    const answer = (await this.#call("/recognition/saved", {})) as { files: string[] } | undefined;
+    if (array !== this.#array) return;
+    const files = answer?.files ?? [];
+    this.#saved.replaceChildren(...files.map((file) => element("option", { value: file }, file)));
+    setHidden(this.#before, files.length === 0);
+  }
+
+  async #load(): Promise<void> {
+    const loaded = await this.#call("/recognition/load", { file: this.#saved.value });
+    if (loaded === undefined) return;
+    await this.#listSaved();
+    await this.#poll();
   }
 
   async #poll(): Promise<void> {
@@ -159,7 +191,7 @@ export class TeachPanel {
     try {
       return await this.#stream.callService(service, { array: this.#array?.name ?? "", ...request });
     } catch (error) {
-      if (service !== "/recognition/examples") this.#result.replaceChildren(element("li", { class: "attention" }, error instanceof Error ? error.message : String(error)));
+      if (!SILENT.includes(service)) this.#result.replaceChildren(element("li", { class: "attention" }, error instanceof Error ? error.message : String(error)));
       return undefined;
     }
   }
