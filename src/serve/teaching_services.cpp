@@ -29,7 +29,6 @@ using recognition::LabelledFrames;
 constexpr std::size_t kMostExamples = 1000;
 constexpr std::size_t kMostNameBytes = 60;
 constexpr std::size_t kMostRequestBytes = 4096;
-constexpr double kMillimetresPerMetre = 1000.0;
 constexpr double kBrightest = 255.0;
 constexpr double kSameTouch = 0.5;  // no two touches agree so well with one example
 
@@ -200,9 +199,7 @@ LabelledFrames TeachingServices::data_of(std::size_t array) const {
   const Lesson& lesson = lessons_[array];
   const ArrayDescription& description = lesson.array.description;
   LabelledFrames data;
-  data.layout.arrays = {{lesson.array.name, description.rows, description.cols, 0,
-                         kMillimetresPerMetre * description.row_pitch_m,
-                         kMillimetresPerMetre * description.col_pitch_m}};
+  data.layout.arrays = {recognition::sensed_array(description, lesson.array.name)};
   data.layout.readings = description.taxel_count();
   data.layout.rate_hz = TouchCollector::kRateHz;
   data.layout.least_reading = recognition::kLeastNewtons;
