@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "dermis/pipeline/direct_model.hpp"
+#include "dermis/pipeline/pipeline.hpp"
 #include "force_mat.hpp"
 
 namespace dermis::operation {
