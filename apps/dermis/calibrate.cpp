@@ -19,8 +19,8 @@
 #include "dermis/paper/bank_training.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "open_source.hpp"
 #include "seconds.hpp"
+#include "source_options.hpp"
 #include "status_line.hpp"
 #include "writable.hpp"
 
@@ -51,7 +51,7 @@ struct CalibrateOptions {
 };
 
 Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::string>& provenance) {
-  const std::string frames = file_of(options.frames);
+  const std::string frames = sources::file_of(options.frames);
   for (const auto& [key, path] : {std::pair{"array hash", &options.array}, std::pair{"frames hash", &frames},
                                   std::pair{"loads hash", &options.loads}}) {
     if (std::filesystem::is_directory(*path)) continue;  // of pictures
@@ -195,7 +195,7 @@ Status calibrate(const CalibrateOptions& options) {
     if (Status writable = check_writable(options.bank); !writable) return writable;
   }
   auto start = Clock::now();
-  const Result<std::vector<RawFrame>> frames = read_frames(options.frames, *array);
+  const Result<std::vector<RawFrame>> frames = sources::read_frames(options.frames, source_options(&*array));
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = files::read_loads(options.loads, *array, frames->size());
   if (!loads) return loads.error();

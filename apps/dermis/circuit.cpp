@@ -2,9 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,10 +10,10 @@
 #include <vector>
 
 #include "commands.hpp"
-#include "dermis/compensation/crosstalk.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/taxel_tables_csv.hpp"
 #include "dermis/health/circuit_advice.hpp"
+#include "dermis/health/circuit_inversion.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 #include "status_line.hpp"
 
@@ -64,48 +62,6 @@ Result<ArrayDescription> read_known_circuit(const std::string& path) {
   return array;
 }
 
-/// Conductances and their 1-sigma of one frame after another.
-class Inverter {
- public:
-  static Result<Inverter> create(const ArrayDescription& array, double noise_ratio) {
-    auto inversion = compensation::make_crosstalk_inversion(array, {.tolerance_ratio = 0.0});
-    if (!inversion) return inversion.error();
-    return Inverter(array, *std::move(inversion), noise_ratio);
-  }
-
-  /// False where the frame has no solution: all is NaN then.
-  [[nodiscard]] bool invert(std::vector<double>& reading) {
-    if (falls_with_pressure_) {
-      for (double& value : reading) value = 1.0 - value;
-    }
-    inversion_->forget();  // a frame does not depend on the one before
-    const bool solved = inversion_->invert(reading, siemens).solved;
-    if (solved) {
-      inversion_->propagate_noise(noise_ratio_, sigma);
-    } else {
-      std::fill(siemens.begin(), siemens.end(), std::numeric_limits<double>::quiet_NaN());
-      std::fill(sigma.begin(), sigma.end(), std::numeric_limits<double>::quiet_NaN());
-    }
-    return solved;
-  }
-
-  std::vector<double> siemens;
-  std::vector<double> sigma;
-
- private:
-  Inverter(const ArrayDescription& array, std::unique_ptr<compensation::CrosstalkInversion> inversion,
-           double noise_ratio)
-      : siemens(array.taxel_count()),
-        sigma(array.taxel_count()),
-        inversion_(std::move(inversion)),
-        noise_ratio_(noise_ratio),
-        falls_with_pressure_(!array.readout.pressure_raises_reading) {}
-
-  std::unique_ptr<compensation::CrosstalkInversion> inversion_;
-  double noise_ratio_;
-  bool falls_with_pressure_;
-};
-
 Result<double> noise_ratio(const InvertOptions& options, const ArrayDescription& array) {
   if (!options.noise_ratio) {
     const Result<double> noise = health::adc_noise_ratio(array);
@@ -142,8 +98,8 @@ Status circuit_invert(const InvertOptions& options) {
   if (!array) return array.error();
   const Result<double> noise = noise_ratio(options, *array);
   if (!noise) return noise.error();
-  Result<Inverter> inverter = Inverter::create(*array, *noise);
-  if (!inverter) return in_file(options.array, inverter.error());
+  Result<health::CircuitInversion> inversion = health::CircuitInversion::create(*array, *noise);
+  if (!inversion) return in_file(options.array, inversion.error());
   Result<TaxelTablesReader> in =
       TaxelTablesReader::open(options.readings, array->rows, array->cols, TableValues::finite);
   if (!in) return in.error();
@@ -164,10 +120,10 @@ Status circuit_invert(const InvertOptions& options) {
     const Result<bool> more = in->next(reading);
     if (!more) return more.error();
     if (!*more) break;
-    if (!inverter->invert(reading) && unsolved++ == 0) first_unsolved_line = in->line();
-    if (Status written = out->write(inverter->siemens); !written) return written;
+    if (!inversion->invert(reading) && unsolved++ == 0) first_unsolved_line = in->line();
+    if (Status written = out->write(inversion->siemens()); !written) return written;
     if (!sigma) continue;
-    if (Status written = sigma->write(inverter->sigma); !written) return written;
+    if (Status written = sigma->write(inversion->sigma_siemens()); !written) return written;
   }
   if (Status written = out->commit(); !written) return written;
   if (sigma) {

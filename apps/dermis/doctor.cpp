@@ -9,13 +9,15 @@
 
 #include "commands.hpp"
 #include "dermis/health/examination.hpp"
-#include "open_source.hpp"
+#include "dermis/operation/operation.hpp"
+#include "source_options.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
 
 using health::Diagnosis;
+using operation::Operation;
 using Json = nlohmann::ordered_json;
 
 struct DoctorOptions {
@@ -63,22 +65,22 @@ void print_json(const Diagnosis& diagnosis, const ArrayDescription& array) {
 }
 
 Result<Diagnosis> examine(Operation& operation) {
-  auto& [model, pipeline, source] = operation;
-  health::Examination examination(model);
+  health::Examination examination(operation.model);
   RawFrame raw;
   ForceFrame force;
   while (!stop_flag().load()) {
-    const Result<bool> more = source->next(raw);
+    const Result<bool> more = operation.frames->next(raw);
     if (!more) return more.error();
     if (!*more) break;
-    pipeline.process(raw, force);
-    examination.add(raw, pipeline);
+    operation.pipeline.process(raw, force);
+    examination.add(raw, operation.pipeline);
   }
-  return examination.diagnosis(pipeline);
+  return examination.diagnosis(operation.pipeline);
 }
 
 Status doctor(const DoctorOptions& options) {
-  const Result<std::unique_ptr<Operation>> operation = open_operation(options.model, options.in);
+  const Result<std::unique_ptr<Operation>> operation =
+      operation::open_operation(options.model, options.in, source_options());
   if (!operation) return operation.error();
   const Result<Diagnosis> diagnosis = examine(**operation);
   if (!diagnosis) return diagnosis.error();

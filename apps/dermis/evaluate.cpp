@@ -12,8 +12,8 @@
 #include "dermis/pipeline/model.hpp"
 #include "dermis/report/evaluation_report.hpp"
 #include "evaluate_classes.hpp"
-#include "labelled_examples.hpp"
-#include "open_source.hpp"
+#include "example_options.hpp"
+#include "source_options.hpp"
 
 namespace dermis::app {
 namespace {
@@ -27,7 +27,7 @@ struct EvaluateOptions {
   std::string report;
   std::string bank;
   std::string classes;
-  ExampleOptions examples;  // of the classes; --model and --frames are above
+  operation::ExampleOptions examples;  // of the classes; --model and --frames are above
   bool json = false;
 };
 
@@ -79,7 +79,7 @@ Status evaluate_forces(const EvaluateOptions& options) {
   if (Status checked = check_needed(options); !checked) return checked;
   const Result<pipeline::Model> model = pipeline::read_model(options.model);
   if (!model) return model.error();
-  const Result<std::vector<RawFrame>> frames = read_frames(options.frames, model->array);
+  const Result<std::vector<RawFrame>> frames = sources::read_frames(options.frames, source_options(&model->array));
   if (!frames) return frames.error();
   const Result<std::vector<Load>> loads = files::read_loads(options.loads, model->array, frames->size());
   if (!loads) return loads.error();
@@ -103,7 +103,7 @@ Status evaluate(const EvaluateOptions& options) {
   if (!options.loads.empty() || !options.bank.empty() || !options.report.empty()) {
     return bad_input("--classes: excludes --loads, --bank and --report, which are of forces");
   }
-  ExampleOptions examples = options.examples;
+  operation::ExampleOptions examples = options.examples;
   examples.model = options.model;
   examples.data.frames = options.frames;
   return evaluate_classes(options.classes, examples, options.json);
@@ -120,16 +120,12 @@ void add_evaluate(Command& command) {
   command.option("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
   command.flag("--json", options->json, "Print the result as JSON");
   command.option("--report", options->report, "Folder for an HTML report with pictures");
-  command.option("--classes", options->classes, "Judge the classes of 'dermis learn', not forces");
-  recognition::DatasetFiles& data = options->examples.data;
-  command.option("--in", options->examples.in,
-                 "Recordings for --classes, with --model where the classes are of forces");
-  command.flag("--tare", options->examples.tare, "Nothing touches in the first second of each --in");
-  command.option("--labels", data.labels, "labels.csv for --classes: which frames are of which class");
-  command.option("--label", data.label, "Column of labels.csv that names the class").shows_default();
-  command.option("--arrays", data.arrays, "arrays.csv for --classes, where --frames are tared frames.npy");
-  command.option("--extra", data.extras, "extra.npy: further readings beside those --frames");
-  command.option("--rate", data.rate_hz, "Frames a second, where they differ from those of the examples [Hz]");
+  command.option(
+      "--classes", options->classes,
+      "Judge the classes of 'dermis learn', not forces, on labelled examples: --in, or --frames of tared frames.npy");
+  add_example_options(command, options->examples);
+  command.option("--rate", options->examples.data.rate_hz,
+                 "Frames a second, where they differ from those of the examples [Hz]");
   command.action([options] { return evaluate(*options); });
 }
 

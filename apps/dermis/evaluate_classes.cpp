@@ -7,9 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "confusion_table.hpp"
+#include "dermis/operation/load_source.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recognition/evaluation.hpp"
-#include "load_source.hpp"
+#include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
@@ -41,14 +42,14 @@ void print_text(const Classes& classes, const ClassesEvaluation& evaluation) {
 
 }  // namespace
 
-Status evaluate_classes(const std::string& path, const ExampleOptions& examples, bool json) {
+Status evaluate_classes(const std::string& path, const operation::ExampleOptions& examples, bool json) {
   const Result<Classes> classes = recognition::read_classes(path);
   if (!classes) return classes.error();
   if (examples.data.labels.empty()) return bad_input("--labels is required: which frames are of which class");
   if (!examples.in.empty()) {
-    if (Status checked = check_loads(classes->layout, path, examples.model); !checked) return checked;
+    if (Status checked = operation::check_loads(classes->layout, path, examples.model); !checked) return checked;
   }
-  Result<recognition::LabelledFrames> data = read_examples(examples);
+  Result<recognition::LabelledFrames> data = operation::read_examples(examples, {.notice = say});
   if (!data) return data.error();
   if (examples.data.rate_hz == 0.0) data->layout.rate_hz = classes->layout.rate_hz;
   const Result<ClassesEvaluation> evaluation = recognition::evaluate_classes(*classes, *data);

@@ -10,24 +10,24 @@
 #include <string>
 #include <vector>
 
-#include "bp_classifier.hpp"
 #include "commands.hpp"
 #include "confusion_table.hpp"
 #include "dermis/files/atomic_file.hpp"
-#include "dermis/files/text.hpp"
+#include "dermis/paper/bp_classifier.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recognition/comparison.hpp"
 #include "dermis/recognition/dataset.hpp"
 #include "dermis/recognition/learning.hpp"
-#include "dermis/recognition/recogniser.hpp"
+#include "dermis/recognition/predictions.hpp"
 #include "dermis/report/recognition_report.hpp"
-#include "labelled_examples.hpp"
+#include "example_options.hpp"
 #include "status_line.hpp"
 #include "writable.hpp"
 
 namespace dermis::app {
 namespace {
 
+using recognition::Answers;
 using recognition::LabelledFrames;
 using recognition::Learned;
 using recognition::LearningSet;
@@ -35,7 +35,7 @@ using recognition::Split;
 using Clock = std::chrono::steady_clock;
 
 struct LearnOptions {
-  ExampleOptions examples;
+  operation::ExampleOptions examples;
   std::string out;
   std::string splits;
   std::string predictions;
@@ -60,40 +60,14 @@ Status check_options(const LearnOptions& options) {
   return Done{};
 }
 
-/// A line for each label that a split asks for.
-Status predict(const LabelledFrames& data, const LearningSet& set, const Split& split, bool may_be_unknown,
-               std::string& lines) {
-  const Result<Learned> learned = set.learn(split.taught);
-  if (!learned) return bad_input("split " + files::in_quotes(split.name) + ": " + learned.error().message);
-  Result<recognition::Recogniser> recogniser =
-      recognition::Recogniser::create(learned->classes, data.layout, data.longest());
-  if (!recogniser) return recogniser.error();
-  for (const std::size_t place : split.asked) {
-    const recognition::Label& label = data.labels[place];
-    const recognition::Answer answer = recogniser->recognise(data.segment(label));
-    const bool is_unknown = may_be_unknown && answer.verdict != recognition::Verdict::known;
-    lines += fmt::format("{},{},{},", split.name, label.id,
-                         is_unknown ? "unknown" : learned->classes.names[answer.likeliest]);
-    files::append_number(lines, answer.probabilities[answer.likeliest]);
-    if (may_be_unknown) {
-      lines += ",";
-      files::append_number(lines, answer.unknown_score);
-    }
-    lines += "\n";
-  }
-  return Done{};
-}
-
 Status write_predictions(const std::string& path, const LabelledFrames& data, const LearningSet& set,
-                         const std::vector<Split>& splits, bool may_be_unknown, Progress& progress) {
-  std::string lines = may_be_unknown ? "split,id,class,probability,unknown_score\n" : "split,id,class,probability\n";
-  for (std::size_t i = 0; i < splits.size(); ++i) {
-    if (Status predicted = predict(data, set, splits[i], may_be_unknown, lines); !predicted) return predicted;
-    progress.show("splits", static_cast<double>(i + 1) / static_cast<double>(splits.size()));
-  }
+                         const std::vector<Split>& splits, Answers answers, Progress& progress) {
+  const auto show = [&](double share) { progress.show("splits", share); };
+  const Result<std::string> lines = recognition::predictions_of(data, set, splits, answers, show);
+  if (!lines) return lines.error();
   Result<files::AtomicFile> file = files::AtomicFile::create(path);
   if (!file) return file.error();
-  file->write(lines);
+  file->write(*lines);
   return file->commit();
 }
 
@@ -118,7 +92,7 @@ void print_report(const Learned& learned, double seconds) {
 Status write_report(const std::string& folder, const LabelledFrames& data, const LearningSet& set,
                     const Learned& learned, Progress& progress) {
   if (folder.empty()) return Done{};
-  const recognition::ComparedEstimator network{"BP network", answer_by_bp_network};
+  const recognition::ComparedEstimator network{"BP network", paper::answer_by_bp_network};
   const auto estimators = recognition::compare_estimators(data, set, learned, std::span(&network, 1),
                                                           [&](double share) { progress.show("comparison", share); });
   if (!estimators) return estimators.error();
@@ -148,7 +122,7 @@ Status write_model(const LearnOptions& options, const LabelledFrames& data, cons
 
 Status learn(const LearnOptions& options) {
   if (Status checked = check_options(options); !checked) return checked;
-  const Result<LabelledFrames> data = read_examples(options.examples);
+  const Result<LabelledFrames> data = operation::read_examples(options.examples, {.notice = say});
   if (!data) return data.error();
   std::vector<Split> splits;
   std::vector<Split> open_splits;
@@ -168,11 +142,12 @@ Status learn(const LearnOptions& options) {
   if (!set) return set.error();
   const auto features_took = Clock::now() - start;
   if (!splits.empty()) {
-    Status written = write_predictions(options.predictions, *data, *set, splits, false, progress);
+    Status written = write_predictions(options.predictions, *data, *set, splits, Answers::classes, progress);
     if (!written) return written;
   }
   if (!open_splits.empty()) {
-    Status written = write_predictions(options.open_predictions, *data, *set, open_splits, true, progress);
+    Status written =
+        write_predictions(options.open_predictions, *data, *set, open_splits, Answers::classes_or_unknown, progress);
     if (!written) return written;
   }
   if (options.out.empty()) return Done{};
@@ -183,16 +158,11 @@ Status learn(const LearnOptions& options) {
 
 void add_learn(Command& command) {
   auto options = std::make_shared<LearnOptions>();
-  recognition::DatasetFiles& data = options->examples.data;
-  command.option("--in", options->examples.in, "Recordings, or other files of frames, whose frames the labels count");
+  add_example_options(command, options->examples).required();
   command.option("--model", options->examples.model, "Learn from the forces [N] of --in by this model of its array");
-  command.flag("--tare", options->examples.tare, "Nothing touches in the first second of each --in: that is zero load");
-  command.option("--frames", data.frames, "frames.npy: tared frames, the readings of all arrays side by side");
-  command.option("--arrays", data.arrays, "arrays.csv: where the readings of each array of --frames are");
-  command.option("--extra", data.extras, "extra.npy: further readings beside each of --frames, such as joint angles");
-  command.option("--labels", data.labels, "labels.csv: which frames are an example of which class").required();
-  command.option("--label", data.label, "Column of labels.csv that names the class").shows_default();
-  command.option("--rate", data.rate_hz,
+  command.option("--frames", options->examples.data.frames,
+                 "frames.npy: tared frames, the readings of all arrays side by side");
+  command.option("--rate", options->examples.data.rate_hz,
                  "Frames a second [Hz]; of --in, by default, as the times of its frames have it");
   command.option("--out", options->out, "Classes to write (safetensors)");
   command.option("--splits", options->splits, "splits.csv: learn once for each split from all that it does not name");

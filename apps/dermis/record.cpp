@@ -9,10 +9,10 @@
 #include "commands.hpp"
 #include "dermis/acquisition/recorder.hpp"
 #include "dermis/files/array_toml.hpp"
+#include "dermis/operation/frame_output.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "frame_output.hpp"
-#include "open_source.hpp"
 #include "seconds.hpp"
+#include "source_options.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 
@@ -73,18 +73,18 @@ Status record(const RecordOptions& options) {
   const Result<Known> known = read_known(options);
   if (!known) return known.error();
   const ArrayDescription* array = known->array ? &*known->array : nullptr;
-  FrameOutput output{options.out, array, known->model ? &*known->model : nullptr, options.model, {}};
-  if (Status possible = check_output(output); !possible) return possible;
-  Result<std::unique_ptr<FrameSource>> source = open_source(options.from, array);
+  operation::FrameOutput output{options.out, array, known->model ? &*known->model : nullptr, options.model, {}};
+  if (Status possible = operation::check_output(output); !possible) return possible;
+  Result<std::unique_ptr<FrameSource>> source = sources::open_source(options.from, source_options(array));
   if (!source) return source.error();
-  output.notes = notes_of_source(**source, options.from);
+  output.notes = operation::notes_of_source(**source, options.from);
   recorder.source_stops = (*source)->is_live();
 
   LiveLine line;
   recorder.progress = [&](const acquisition::RecorderProgress& progress) { line.show(with_queue(progress)); };
   acquisition::RecorderProgress last;
   Status recorded = acquisition::record(
-      **source, [&](const FrameShape& shape) { return create_recording(output, shape); }, recorder, last);
+      **source, [&](const FrameShape& shape) { return operation::create_recording(output, shape); }, recorder, last);
   line.end();
   if (last.frames > 0) {
     std::string sum = options.out + ": " + summary(last.frames, last.source);

@@ -5,15 +5,17 @@
 #include <string>
 
 #include "commands.hpp"
+#include "dermis/operation/frame_output.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/sources/pacer.hpp"
-#include "frame_output.hpp"
-#include "open_source.hpp"
+#include "source_options.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
+
+using operation::FrameOutput;
 
 struct ReplayOptions {
   std::string recording;
@@ -26,7 +28,8 @@ Result<std::unique_ptr<FrameSink>> create_sink(const FrameOutput& output, const 
   const Result<recordings::FrameFormat> format = recordings::output_format(output.path);
   if (!format) return format.error();
   const bool is_table = *format == recordings::FrameFormat::csv;
-  return output.model != nullptr && is_table ? create_forces(output) : create_recording(output, shape);
+  return output.model != nullptr && is_table ? operation::create_forces(output)
+                                             : operation::create_recording(output, shape);
 }
 
 /// Frame times of the recording -> moments of the replay.
@@ -60,7 +63,7 @@ Status replay(const ReplayOptions& options) {
     model = std::move(*read);
   }
   const ArrayDescription* array = model ? &model->array : nullptr;
-  Result<std::unique_ptr<FrameSource>> source = open_source(options.recording, array);
+  Result<std::unique_ptr<FrameSource>> source = sources::open_source(options.recording, source_options(array));
   if (!source) return source.error();
   RawFrame frame;
   Result<bool> more = (*source)->next(frame);
@@ -68,7 +71,7 @@ Status replay(const ReplayOptions& options) {
   if (!*more) return bad_input("'" + options.recording + "': has no frame to replay");
 
   const FrameOutput output{options.out, array, model ? &*model : nullptr, options.model,
-                           notes_of_source(**source, options.recording)};
+                           operation::notes_of_source(**source, options.recording)};
   Result<std::unique_ptr<FrameSink>> sink = create_sink(output, *(*source)->shape());
   if (!sink) return sink.error();
   Tempo tempo(options.speed, frame.time, &stop_flag());

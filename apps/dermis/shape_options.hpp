@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "command_line.hpp"
-#include "dermis/core/frames.hpp"
+#include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
 
 namespace dermis::app {

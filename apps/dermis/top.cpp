@@ -8,16 +8,16 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
 
-#include "array_view.hpp"
 #include "commands.hpp"
+#include "dermis/operation/array_view.hpp"
+#include "dermis/operation/view_player.hpp"
 #include "dermis/report/terminal_picture.hpp"
-#include "dermis/sources/pacer.hpp"
+#include "source_options.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
@@ -68,78 +68,17 @@ class OtherScreen {
   ~OtherScreen() { put("\x1b[0m\x1b[?25h\x1b[?1049l"); }
 };
 
-/// Reads frames on a thread of its own, so that the screen follows the terminal while none comes.
-class Watcher {
- public:
-  Watcher(ArrayView& view, const TopOptions& options) : view_(view), options_(options), thread_([this] { run(); }) {}
-  Watcher(const Watcher&) = delete;
-  Watcher& operator=(const Watcher&) = delete;
-  ~Watcher() {
-    stop_flag().store(true);
-    thread_.join();
-  }
-
-  [[nodiscard]] report::TerminalPicture picture() const {
-    const std::scoped_lock lock(mutex_);
-    return picture_;
-  }
-  [[nodiscard]] Status status() const {
-    const std::scoped_lock lock(mutex_);
-    return status_;
-  }
-
- private:
-  void run() {
-    sources::Pacer pacer(&stop_flag());
-    std::optional<Nanos> first;
-    while (!stop_flag().load()) {
-      const Result<bool> more = view_.next();
-      if (!more || !*more) {
-        const std::scoped_lock lock(mutex_);
-        if (!more) status_ = more.error();
-        picture_.has_ended = true;
-        return;
-      }
-      if (!first) first = view_.raw().time;
-      if (!view_.is_live() && !pacer.wait_until(sources::due_after(*first, view_.raw().time))) return;
-      update();
-    }
-  }
-
-  /// The scale grows where it must, and never shrinks.
-  void update() {
-    largest_ = std::max(largest_, largest_of(view_.values()));
-    const std::scoped_lock lock(mutex_);
-    picture_.name = view_.name();
-    picture_.unit = view_.unit();
-    picture_.shape = view_.shape();
-    picture_.values = view_.values();
-    picture_.high = options_.high.value_or(view_.scale(largest_));
-    picture_.has_contacts = view_.has_model();
-    picture_.report = view_.contacts();
-    picture_.statistics = view_.statistics();
-  }
-
-  ArrayView& view_;
-  const TopOptions& options_;
-  double largest_ = 0.0;
-  mutable std::mutex mutex_;  ///< Of the next two.
-  report::TerminalPicture picture_;
-  Status status_ = Done{};
-  std::thread thread_;
-};
-
-Status show(ArrayView& view, const TopOptions& options) {
+Status show(operation::ArrayView& view, const TopOptions& options) {
   const report::TerminalColours colours = colours_of_terminal();
   const OtherScreen screen;
-  const Watcher watcher(view, options);
+  const operation::ViewPlayer player(view, stop_flag(), options.high);
   while (!stop_flag().load()) {
-    const report::TerminalPicture picture = watcher.picture();
+    const report::TerminalPicture picture = player.picture();
     const std::string screen_text = picture.values.empty()
                                         ? "waiting for the first frame\x1b[K"
                                         : report::terminal_screen(picture, size_of_terminal(), colours);
     if (!put("\x1b[H" + screen_text + "\x1b[J")) break;
-    if (Status status = watcher.status(); !status) return status;
+    if (Status status = player.status(); !status) return status;
     std::this_thread::sleep_for(kRedrawTime);
   }
   return Done{};
@@ -153,7 +92,8 @@ Status top(const TopOptions& options) {
     return bad_input("--high: must be more than 0");
   }
   static_cast<void>(stop_flag());  // from here on, Ctrl-C ends the show and not the process
-  const Result<std::unique_ptr<ArrayView>> view = ArrayView::open(options.from, options.model);
+  const Result<std::unique_ptr<operation::ArrayView>> view =
+      operation::ArrayView::open(options.from, options.model, source_options());
   if (!view) return view.error();
   return show(**view, options);
 }

@@ -10,10 +10,10 @@
 #include <cmath>
 #include <vector>
 
+#include "dermis/core/millimetres.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/config_table.hpp"
 #include "dermis/files/taxel_text.hpp"
-#include "files/millimetres.hpp"
 
 namespace dermis::files {
 namespace {

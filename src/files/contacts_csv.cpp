@@ -5,8 +5,8 @@
 #include <initializer_list>
 #include <utility>
 
+#include "dermis/core/millimetres.hpp"
 #include "dermis/files/text.hpp"
-#include "files/millimetres.hpp"
 
 namespace dermis::files {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <memory>
 
+#include "dermis/core/millimetres.hpp"
 #include "dermis/files/input.hpp"
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/files/text.hpp"
 #include "files/csv_reader.hpp"
-#include "files/millimetres.hpp"
 
 namespace dermis::files {
 namespace {

@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
+#include "dermis/core/millimetres.hpp"
 #include "dermis/files/config_table.hpp"
-#include "files/millimetres.hpp"
 
 namespace dermis::files {
 namespace {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "dermis/core/millimetres.hpp"
 #include "recognition/names.hpp"
 
 namespace dermis::recognition {
@@ -43,6 +44,14 @@ Status check_overlap(const std::vector<SensedArray>& arrays, std::size_t reading
 }
 
 }  // namespace
+
+SensedArray sensed_array(const ArrayDescription& array, const std::string& name) {
+  return {.name = name,
+          .rows = array.rows,
+          .cols = array.cols,
+          .row_pitch_mm = kMillimetresPerMetre * array.row_pitch_m,
+          .col_pitch_mm = kMillimetresPerMetre * array.col_pitch_m};
+}
 
 bool is_rate(double rate_hz) noexcept {
   return rate_hz == 0.0 || (rate_hz >= kLeastRate && rate_hz <= kMostRate);

@@ -17,7 +17,6 @@ using recognition::StreamRecogniser;
 
 constexpr double kPosesHz = 30.0;
 constexpr double kMostHz = 1000.0;
-constexpr double kMillimetresPerMetre = 1000.0;
 constexpr Nanos kTellPeriod = std::chrono::milliseconds(100);
 
 /// 0: every frame is looked at, as the rate of the examples is not known.
@@ -27,8 +26,7 @@ double rate_for(const Classes& classes) {
 
 Layout layout_of(const std::string& name, const ArrayDescription& array, double rate_hz) {
   Layout layout;
-  layout.arrays = {{name, array.rows, array.cols, 0, kMillimetresPerMetre * array.row_pitch_m,
-                    kMillimetresPerMetre * array.col_pitch_m}};
+  layout.arrays = {recognition::sensed_array(array, name)};
   layout.readings = array.taxel_count();
   layout.rate_hz = rate_hz;
   return layout;

@@ -29,7 +29,6 @@ using recognition::LabelledFrames;
 constexpr std::size_t kMostExamples = 1000;
 constexpr std::size_t kMostNameBytes = 60;
 constexpr std::size_t kMostRequestBytes = 4096;
-constexpr double kMillimetresPerMetre = 1000.0;
 constexpr double kBrightest = 255.0;
 constexpr double kSameTouch = 0.5;  // no two touches agree so well with one example
 
@@ -76,11 +75,9 @@ std::string folder_of(const TaughtArray& array) {
 }
 
 recognition::Layout taught_layout(const TaughtArray& array) {
-  const ArrayDescription& description = array.description;
   recognition::Layout layout;
-  layout.arrays = {{array.name, description.rows, description.cols, 0, kMillimetresPerMetre * description.row_pitch_m,
-                    kMillimetresPerMetre * description.col_pitch_m}};
-  layout.readings = description.taxel_count();
+  layout.arrays = {recognition::sensed_array(array.description, array.name)};
+  layout.readings = array.description.taxel_count();
   layout.rate_hz = TouchCollector::kRateHz;
   layout.least_reading = recognition::kLeastNewtons;
   return layout;

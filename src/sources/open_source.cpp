@@ -58,4 +58,21 @@ Result<std::unique_ptr<FrameSource>> open_source(const acquisition::SourceUri& u
   return acquisition::open_device(uri, {shape_of(options.array), options.stop, options.notice});
 }
 
+Result<std::vector<RawFrame>> read_frames(const std::string& from, const SourceOptions& options) {
+  const Result<std::unique_ptr<FrameSource>> source = open_source(from, options);
+  if (!source) return source.error();
+  if ((*source)->is_live()) return has_no_end(from);
+  return recordings::read_frames(**source);
+}
+
+Error has_no_end(const std::string& from) {
+  return bad_input("'" + from + "': is a device, which has no end; 'dermis record' it first");
+}
+
+std::string file_of(const std::string& from) {
+  const bool is_uri = acquisition::is_source_uri(from);
+  const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
+  return recordings::recording_place(is_uri && uri ? uri->path : from).path;
+}
+
 }  // namespace dermis::sources

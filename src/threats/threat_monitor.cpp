@@ -11,13 +11,13 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/core/millimetres.hpp"
 #include "threats/measure.hpp"
 #include "threats/rate_window.hpp"
 
 namespace dermis::threats {
 namespace {
 
-constexpr double kMillimetresPerMetre = 1000.0;
 constexpr double kKilo = 1e-3;
 
 bool is_pressure(ThreatQuantity quantity) {

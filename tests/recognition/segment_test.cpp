@@ -21,6 +21,16 @@ std::string error_of(const Layout& layout) {
   return status ? "no error" : status.error().message;
 }
 
+TEST(SensedArray, of_an_array_has_its_shape_and_its_pitch_in_millimetres) {
+  ArrayDescription array;
+  array.name = "skin";
+  array.rows = 3;
+  array.cols = 5;
+  array.row_pitch_m = 0.0035;
+  array.col_pitch_m = 0.004;
+  EXPECT_EQ(sensed_array(array, "left hand"), (SensedArray{"left hand", 3, 5, 0, 3.5, 4.0}));
+}
+
 TEST(Layout, of_two_arrays_is_good) {
   EXPECT_EQ(error_of(two_fingers()), "no error");
 }

@@ -251,5 +251,24 @@ TEST(OpenSource, refuses_what_is_not_there) {
   EXPECT_NE(refusal("sim:idle?speed=3").find("speed"), std::string::npos) << refusal("sim:idle?speed=3");
 }
 
+TEST(ReadFrames, gives_all_frames_of_a_file_and_none_of_a_device) {
+  const TemporaryFolder folder;
+  write_file(folder.file("frames.csv"), some_frames(3));
+  const ArrayDescription array = small_array();
+  const Result<std::vector<RawFrame>> frames = read_frames(folder.file("frames.csv"), {.array = &array});
+  ASSERT_TRUE(frames) << frames.error().message;
+  ASSERT_EQ(frames->size(), 3U);
+  EXPECT_EQ(frames->back().counts, some_frames(3).back().counts);
+  const Result<std::vector<RawFrame>> endless = read_frames("sim:idle");
+  ASSERT_FALSE(endless);
+  EXPECT_EQ(endless.error().message, "'sim:idle': is a device, which has no end; 'dermis record' it first");
+}
+
+TEST(FileOf, leaves_out_the_array_and_what_a_uri_says_of_the_file) {
+  EXPECT_EQ(file_of("run/frames.csv"), "run/frames.csv");
+  EXPECT_EQ(file_of("rec.mcap#chest"), "rec.mcap");
+  EXPECT_EQ(file_of("file:/run/frames.npy?rate=50"), "/run/frames.npy");
+}
+
 }  // namespace
 }  // namespace dermis::sources

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/core/array_description.hpp"
 #include "dermis/core/result.hpp"
 
 /// What is recognised: a piece of the stream of one or several arrays.
@@ -27,6 +28,9 @@ struct SensedArray {
   [[nodiscard]] bool has_pitch() const noexcept { return row_pitch_mm > 0.0 && col_pitch_mm > 0.0; }
   bool operator==(const SensedArray&) const = default;
 };
+
+/// An array whose taxels are the readings of a frame. `name`: that of the array, or the one it has in a suit.
+[[nodiscard]] SensedArray sensed_array(const ArrayDescription& array, const std::string& name);
 
 /// Whether so many frames a second can be, or 0: not known.
 [[nodiscard]] bool is_rate(double rate_hz) noexcept;

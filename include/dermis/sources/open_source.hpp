@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "dermis/acquisition/source_uri.hpp"
 #include "dermis/core/array_description.hpp"
@@ -41,5 +42,14 @@ struct SourceOptions {
 /// examples/chest, with the rows and cols of the URI.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const acquisition::SourceUri& uri,
                                                                const SourceOptions& options = {});
+
+/// All frames of the file that `from` names. Fails where open_source() does, and on a device, which has no end.
+[[nodiscard]] Result<std::vector<RawFrame>> read_frames(const std::string& from, const SourceOptions& options = {});
+
+/// What is wrong with a source that has no end where one is needed; it names the mend.
+[[nodiscard]] Error has_no_end(const std::string& from);
+
+/// The path of the file that `from` names: without the name of an array in it, and without what a URI says of it.
+[[nodiscard]] std::string file_of(const std::string& from);
 
 }  // namespace dermis::sources

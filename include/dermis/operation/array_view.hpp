@@ -11,22 +11,24 @@
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/contact.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/operation/operation.hpp"
+#include "dermis/sources/open_source.hpp"
 
-namespace dermis::app {
+namespace dermis::operation {
 
 /// End of a colour scale that covers a value: 1, 2 or 5 times a power of ten newtons, at least 1.
 [[nodiscard]] double force_scale(double newtons);
 
 /// A source of frames as it is shown: in newtons with its contacts where there is a model, or where a recording says
-/// that its readings are forces; else in counts.
+/// that its readings are forces; else in counts. Not thread-safe.
 class ArrayView {
  public:
-  /// `model`: a file, or empty.
-  [[nodiscard]] static Result<std::unique_ptr<ArrayView>> open(const std::string& from, const std::string& model);
+  /// `model`: as for pipeline::read_model(), or empty. `from` and `options`: as for sources::open_source(), but the
+  /// array is that of the model where there is one.
+  [[nodiscard]] static Result<std::unique_ptr<ArrayView>> open(const std::string& from, const std::string& model,
+                                                               sources::SourceOptions options = {});
 
-  /// Returns false at the end.
+  /// Takes the next frame. Returns false at the end.
   [[nodiscard]] Result<bool> next();
 
   // Of the last frame.
@@ -36,30 +38,31 @@ class ArrayView {
 
   [[nodiscard]] FrameShape shape() const;
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  [[nodiscard]] const char* unit() const noexcept { return model_ ? "N" : "counts"; }
+  /// What was opened.
+  [[nodiscard]] const std::string& from() const noexcept { return from_; }
+  [[nodiscard]] const char* unit() const noexcept { return work_ ? "N" : "counts"; }
   [[nodiscard]] double row_pitch_m() const noexcept { return row_pitch_m_; }
   [[nodiscard]] double col_pitch_m() const noexcept { return col_pitch_m_; }
   /// End of a colour scale that covers the largest of the values: of forces, force_scale(); of counts, that of the ADC,
   /// as described or as it must be.
   [[nodiscard]] double scale(double largest) const;
   [[nodiscard]] bool is_live() const { return source_->is_live(); }
-  [[nodiscard]] bool has_model() const noexcept { return model_.has_value(); }
+  [[nodiscard]] bool has_model() const noexcept { return work_.has_value(); }
   [[nodiscard]] SourceStatistics statistics() const { return source_->statistics(); }
 
  private:
   ArrayView() = default;
-  [[nodiscard]] Status open_model(const std::string& model);
-  [[nodiscard]] Status use_model(pipeline::Model model);
-  [[nodiscard]] Status describe(const std::string& from);
+  void use(ModelAtWork work);
+  [[nodiscard]] Status describe();
   [[nodiscard]] Status set_array(const ArrayDescription& array);
 
   std::unique_ptr<FrameSource> source_;
-  std::optional<pipeline::Model> model_;
-  std::optional<pipeline::Pipeline> pipeline_;
+  std::optional<ModelAtWork> work_;
   std::optional<fusion::ContactTracker> tracker_;
+  std::string from_;
   std::string name_;
-  double row_pitch_m_ = 0.010;
-  double col_pitch_m_ = 0.010;
+  double row_pitch_m_ = ArrayDescription{}.row_pitch_m;
+  double col_pitch_m_ = ArrayDescription{}.col_pitch_m;
   std::optional<double> full_scale_counts_;
   RawFrame raw_;
   ForceFrame force_;
@@ -70,4 +73,4 @@ class ArrayView {
 /// 0 where none is finite.
 [[nodiscard]] double largest_of(const std::vector<double>& values);
 
-}  // namespace dermis::app
+}  // namespace dermis::operation

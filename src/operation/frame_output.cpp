@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "frame_output.hpp"
+#include "dermis/operation/frame_output.hpp"
 
 #include <unistd.h>
 
@@ -17,7 +17,7 @@
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/recording.hpp"
 
-namespace dermis::app {
+namespace dermis::operation {
 namespace {
 
 /// Frames into a recording, each with its forces.
@@ -129,4 +129,4 @@ Result<std::unique_ptr<FrameSink>> create_forces(const FrameOutput& output) {
   return std::unique_ptr<FrameSink>(std::make_unique<ForcesOnly>(std::move(*pipeline), std::move(*forces)));
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::operation

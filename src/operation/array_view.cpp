@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "array_view.hpp"
+#include "dermis/operation/array_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +8,11 @@
 #include <utility>
 
 #include "dermis/files/array_toml.hpp"
+#include "dermis/operation/frame_output.hpp"
 #include "dermis/pipeline/direct_model.hpp"
 #include "dermis/recordings/frame_files.hpp"
-#include "frame_output.hpp"
-#include "open_source.hpp"
 
-namespace dermis::app {
+namespace dermis::operation {
 
 double force_scale(double newtons) {
   double decade = 1.0;
@@ -30,31 +29,26 @@ double largest_of(const std::vector<double>& values) {
   return largest;
 }
 
-Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, const std::string& model) {
+Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, const std::string& model,
+                                                   sources::SourceOptions options) {
   std::unique_ptr<ArrayView> view(new ArrayView());
   if (!model.empty()) {
-    if (const Status opened = view->open_model(model); !opened) return opened.error();
+    Result<ModelAtWork> work = ModelAtWork::read(model);
+    if (!work) return work.error();
+    view->use(*std::move(work));
+    options.array = &view->work_->model.array;
   }
-  Result<std::unique_ptr<FrameSource>> source = open_source(from, view->model_ ? &view->model_->array : nullptr);
+  Result<std::unique_ptr<FrameSource>> source = sources::open_source(from, options);
   if (!source) return source.error();
   view->source_ = *std::move(source);
-  if (const Status described = view->describe(from); !described) return described.error();
+  view->from_ = from;
+  if (const Status described = view->describe(); !described) return described.error();
   return view;
 }
 
-Status ArrayView::open_model(const std::string& path) {
-  Result<pipeline::Model> model = pipeline::read_model(path);
-  if (!model) return model.error();
-  return use_model(std::move(*model));
-}
-
-Status ArrayView::use_model(pipeline::Model model) {
-  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
-  if (!pipeline) return pipeline.error();
-  model_ = std::move(model);
-  pipeline_.emplace(std::move(*pipeline));
-  tracker_.emplace(model_->array, fusion::ContactOptions{}, model_->strip);
-  return Done{};
+void ArrayView::use(ModelAtWork work) {
+  work_.emplace(std::move(work));
+  tracker_.emplace(work_->model.array, fusion::ContactOptions{}, work_->model.strip);
 }
 
 Status ArrayView::set_array(const ArrayDescription& array) {
@@ -62,18 +56,21 @@ Status ArrayView::set_array(const ArrayDescription& array) {
   row_pitch_m_ = array.row_pitch_m;
   col_pitch_m_ = array.col_pitch_m;
   full_scale_counts_ = array.readout.full_scale_counts();
-  if (model_ || array.readout.quantity == Quantity::counts) return Done{};
-  return use_model(pipeline::direct_model(array));
+  if (work_ || array.readout.quantity == Quantity::counts) return Done{};
+  Result<ModelAtWork> work = ModelAtWork::create(pipeline::direct_model(array));
+  if (!work) return work.error();
+  use(*std::move(work));
+  return Done{};
 }
 
 /// By the model, else by what the file says of itself.
-Status ArrayView::describe(const std::string& from) {
-  if (model_) return set_array(model_->array);
-  const recordings::FrameNotes notes = notes_of_source(*source_, from);
+Status ArrayView::describe() {
+  if (work_) return set_array(work_->model.array);
+  const recordings::FrameNotes notes = notes_of_source(*source_, from_);
   name_ = notes.name;
-  if (name_.empty()) name_ = is_live() ? from : std::filesystem::path(from).filename().string();
+  if (name_.empty()) name_ = is_live() ? from_ : std::filesystem::path(from_).filename().string();
   if (notes.array_toml.empty()) return Done{};
-  const Result<ArrayDescription> array = files::array_from_toml(notes.array_toml, from);
+  const Result<ArrayDescription> array = files::array_from_toml(notes.array_toml, from_);
   if (!array) return Done{};
   return set_array(*array);
 }
@@ -81,8 +78,8 @@ Status ArrayView::describe(const std::string& from) {
 Result<bool> ArrayView::next() {
   Result<bool> more = source_->next(raw_);
   if (!more || !*more) return more;
-  if (pipeline_) {
-    pipeline_->process(raw_, force_);
+  if (work_) {
+    work_->pipeline.process(raw_, force_);
     tracker_->process(force_, report_);
     values_.assign(force_.newtons.begin(), force_.newtons.end());
   } else {
@@ -96,11 +93,11 @@ FrameShape ArrayView::shape() const {
 }
 
 double ArrayView::scale(double largest) const {
-  if (model_) return force_scale(largest);
+  if (work_) return force_scale(largest);
   if (full_scale_counts_) return *full_scale_counts_;
   double high = 255.0;
   while (high < largest) high = 2.0 * high + 1.0;
   return high;
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::operation

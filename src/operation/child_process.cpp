@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "child_process.hpp"
+#include "dermis/operation/child_process.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-namespace dermis::app {
+namespace dermis::operation {
 namespace {
 
 constexpr std::chrono::seconds kGrace{2};
@@ -29,7 +29,7 @@ class SpawnSettings {
     ::posix_spawnattr_init(&attributes_);
     sigset_t as_usual{};
     sigemptyset(&as_usual);
-    sigaddset(&as_usual, SIGPIPE);  // main() ignores both
+    sigaddset(&as_usual, SIGPIPE);  // a program that ignores them hands that on
     sigaddset(&as_usual, SIGXFSZ);
     ::posix_spawnattr_setsigdefault(&attributes_, &as_usual);
     ::posix_spawnattr_setpgroup(&attributes_, 0);
@@ -97,4 +97,4 @@ void ChildProcess::stop() noexcept {
   while (!exit_status()) std::this_thread::sleep_for(kLook);
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::operation

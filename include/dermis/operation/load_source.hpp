@@ -2,28 +2,25 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "dermis/core/array_description.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
-#include "dermis/pipeline/model.hpp"
-#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/operation/operation.hpp"
 #include "dermis/recognition/segment.hpp"
+#include "dermis/sources/open_source.hpp"
 
-namespace dermis::app {
+namespace dermis::operation {
 
-/// What 'dermis learn' and 'dermis recognise' read loads from; both must see the same in the same frames.
+/// What classes are learned from and recognised in; both must see the same loads in the same frames.
 struct LoadInput {
-  std::string from;                         ///< As for open_source().
-  std::string model;                        ///< Path; empty: the readings are the loads.
-  bool tare = false;                        ///< The first second is unloaded.
-  const ArrayDescription* array = nullptr;  ///< That frames without a model must have the shape of; null: any.
-  const std::atomic<bool>* stop = nullptr;  ///< As for sources::open_source().
+  std::string from;                 ///< As for sources::open_source().
+  std::string model{};              ///< As for pipeline::read_model(); empty: the readings are the loads.
+  bool tare = false;                ///< The first second is unloaded.
+  sources::SourceOptions source{};  ///< With a model, the array is that of the model.
 };
 
 /// Whether loads by `model` (empty: readings) are what the classes of a file were learned from, whose layout is
@@ -47,6 +44,7 @@ class UnloadedReadings {
 };
 
 /// Frames of a source as loads: newtons of a model, or readings, tared if asked. Where there is no load to tell, 0.
+/// Not thread-safe.
 class LoadSource {
  public:
   [[nodiscard]] static Result<LoadSource> open(const LoadInput& input);
@@ -64,22 +62,17 @@ class LoadSource {
   [[nodiscard]] bool is_live() const { return frames_->is_live(); }
 
  private:
-  struct Forces {
-    pipeline::Model model;
-    pipeline::Pipeline pipeline;
-    ForceFrame frame;
-  };
-
   LoadSource() = default;
   void process_forces();
   void process_readings();
 
   std::unique_ptr<FrameSource> frames_;
-  std::unique_ptr<Forces> forces_;  ///< Null without a model.
+  std::optional<ModelAtWork> work_;
   std::optional<UnloadedReadings> unloaded_;
   RawFrame raw_;
+  ForceFrame force_;
   std::vector<float> loads_;
   bool is_tare_ = false;
 };
 
-}  // namespace dermis::app
+}  // namespace dermis::operation

@@ -7,7 +7,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/recognition/comparison.hpp"
 
-namespace dermis::app {
+namespace dermis::paper {
 
 /// A BP network on the features of 'dermis learn', to compare with: one hidden layer of 16 or 64 tanh units, an output
 /// of log-sigmoid for each class, Adam on mini-batches. One fold of what is taught is left out to choose the size and
@@ -15,4 +15,4 @@ namespace dermis::app {
 /// the odds of the outputs.
 [[nodiscard]] Result<std::vector<float>> answer_by_bp_network(const recognition::Lesson& lesson);
 
-}  // namespace dermis::app
+}  // namespace dermis::paper

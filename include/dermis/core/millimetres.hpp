@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-namespace dermis::files {
+namespace dermis {
 
-/// Files for people are in millimetres, everything else in metres.
+/// What people read and write is in millimetres, everything else in metres.
 inline constexpr double kMillimetresPerMetre = 1e3;
 
-}  // namespace dermis::files
+}  // namespace dermis

@@ -1,22 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "load_source.hpp"
+#include "dermis/operation/load_source.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
 
-#include "dermis/sources/open_source.hpp"
-#include "status_line.hpp"
-
-namespace dermis::app {
+namespace dermis::operation {
 namespace {
 
 constexpr std::size_t kTareFrames = 10;
 constexpr std::chrono::seconds kTareTime{1};
 constexpr std::chrono::seconds kMostTareTime{10};
-constexpr double kMillimetresPerMetre = 1000.0;
 
 }  // namespace
 
@@ -59,19 +55,17 @@ void UnloadedReadings::subtract_from(std::vector<float>& readings) const {
 
 Result<LoadSource> LoadSource::open(const LoadInput& input) {
   LoadSource source;
+  sources::SourceOptions options = input.source;
   if (!input.model.empty()) {
-    Result<pipeline::Model> model = pipeline::read_model(input.model);
-    if (!model) return model.error();
-    Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(*model);
-    if (!pipeline) return pipeline.error();
-    source.forces_ = std::make_unique<Forces>(Forces{*std::move(model), *std::move(pipeline), {}});
-    if (input.tare) source.forces_->pipeline.drift().tare();
+    Result<ModelAtWork> work = ModelAtWork::read(input.model);
+    if (!work) return work.error();
+    source.work_.emplace(*std::move(work));
+    options.array = &source.work_->model.array;
+    if (input.tare) source.work_->pipeline.drift().tare();
   } else if (input.tare) {
     source.unloaded_.emplace();
   }
-  const ArrayDescription* const array = source.forces_ ? &source.forces_->model.array : input.array;
-  Result<std::unique_ptr<FrameSource>> frames =
-      sources::open_source(input.from, {.array = array, .stop = input.stop, .notice = say});
+  Result<std::unique_ptr<FrameSource>> frames = sources::open_source(input.from, options);
   if (!frames) return frames.error();
   source.frames_ = *std::move(frames);
   return source;
@@ -80,15 +74,15 @@ Result<LoadSource> LoadSource::open(const LoadInput& input) {
 Result<bool> LoadSource::next() {
   Result<bool> more = frames_->next(raw_);
   if (!more || !*more) return more;
-  forces_ ? process_forces() : process_readings();
+  work_ ? process_forces() : process_readings();
   for (float& load : loads_) load = !is_tare_ && std::isfinite(load) ? std::max(load, 0.0F) : 0.0F;
   return true;
 }
 
 void LoadSource::process_forces() {
-  forces_->pipeline.process(raw_, forces_->frame);
-  is_tare_ = forces_->pipeline.drift().taring();
-  loads_ = forces_->frame.newtons;
+  work_->pipeline.process(raw_, force_);
+  is_tare_ = work_->pipeline.drift().taring();
+  loads_ = force_.newtons;
 }
 
 void LoadSource::process_readings() {
@@ -98,17 +92,10 @@ void LoadSource::process_readings() {
 }
 
 std::optional<recognition::SensedArray> LoadSource::array() const {
-  if (forces_) {
-    const ArrayDescription& array = forces_->model.array;
-    return recognition::SensedArray{.name = array.name,
-                                    .rows = array.rows,
-                                    .cols = array.cols,
-                                    .row_pitch_mm = kMillimetresPerMetre * array.row_pitch_m,
-                                    .col_pitch_mm = kMillimetresPerMetre * array.col_pitch_m};
-  }
+  if (work_) return recognition::sensed_array(work_->model.array, work_->model.array.name);
   const std::optional<FrameShape> shape = frames_->shape();
   if (!shape) return std::nullopt;
   return recognition::SensedArray{.name = "array", .rows = shape->rows, .cols = shape->cols};
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::operation

@@ -12,7 +12,7 @@
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recordings/frame_files.hpp"
 
-namespace dermis::app {
+namespace dermis::operation {
 
 /// What is known of frames that are to be written.
 struct FrameOutput {
@@ -37,4 +37,4 @@ struct FrameOutput {
 /// The forces of the model alone, as forces.csv.
 [[nodiscard]] Result<std::unique_ptr<FrameSink>> create_forces(const FrameOutput& output);
 
-}  // namespace dermis::app
+}  // namespace dermis::operation

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "labelled_examples.hpp"
+#include "dermis/operation/labelled_examples.hpp"
 
 #include <fmt/core.h>
 
@@ -10,11 +10,11 @@
 #include <filesystem>
 #include <utility>
 
+#include "dermis/core/quantile.hpp"
+#include "dermis/operation/load_source.hpp"
 #include "dermis/recordings/recording.hpp"
-#include "load_source.hpp"
-#include "open_source.hpp"
 
-namespace dermis::app {
+namespace dermis::operation {
 namespace {
 
 using recognition::LabelledFrames;
@@ -34,23 +34,25 @@ struct ReadRecording {
 /// As the column `recording` of labels.csv names it: without folder, with the array where it is one of several.
 std::string name_of(const std::string& from) {
   const std::string array = recordings::recording_place(from).array;
-  return std::filesystem::path(file_of(from)).filename().string() + (array.empty() ? "" : "#" + array);
+  return std::filesystem::path(sources::file_of(from)).filename().string() + (array.empty() ? "" : "#" + array);
 }
 
 /// By the median of the intervals; 0 where they tell nothing.
-double rate_of(std::vector<Nanos> times) {
+double rate_of(const std::vector<Nanos>& times) {
   if (times.size() < 2) return 0.0;
-  for (std::size_t i = times.size() - 1; i > 0; --i) times[i] -= times[i - 1];
-  const auto middle = times.begin() + 1 + static_cast<std::ptrdiff_t>((times.size() - 1) / 2);
-  std::nth_element(times.begin() + 1, middle, times.end());
-  const double rate = 1.0 / std::max(std::chrono::duration<double>(*middle).count(), 1e-9);
+  std::vector<Nanos> intervals;
+  for (std::size_t i = 1; i < times.size(); ++i) intervals.push_back(times[i] - times[i - 1]);
+  const Nanos usual = upper_median(std::move(intervals));
+  const double rate = 1.0 / std::max(std::chrono::duration<double>(usual).count(), 1e-9);
   return recognition::is_rate(rate) ? rate : 0.0;
 }
 
-Result<ReadRecording> read_recording(const ExampleOptions& options, const std::string& from) {
-  Result<LoadSource> source = LoadSource::open({.from = from, .model = options.model, .tare = options.tare});
+Result<ReadRecording> read_recording(const ExampleOptions& options, const std::string& from,
+                                     const sources::SourceOptions& how) {
+  Result<LoadSource> source =
+      LoadSource::open({.from = from, .model = options.model, .tare = options.tare, .source = how});
   if (!source) return source.error();
-  if (source->is_live()) return bad_input("'" + from + "': is a device, which has no end; 'dermis record' it first");
+  if (source->is_live()) return sources::has_no_end(from);
   ReadRecording read{.recording = {.name = name_of(from), .frames = {}}, .array = {}};
   std::vector<Nanos> times;
   for (;;) {
@@ -65,7 +67,7 @@ Result<ReadRecording> read_recording(const ExampleOptions& options, const std::s
     return bad_input(from + (times.empty() ? ": has no frame" : ": ends before it is tared, which takes 1 s"));
   }
   read.array = source->array().value_or(SensedArray{});
-  read.rate_hz = options.data.rate_hz > 0.0 ? options.data.rate_hz : rate_of(std::move(times));
+  read.rate_hz = options.data.rate_hz > 0.0 ? options.data.rate_hz : rate_of(times);
   return read;
 }
 
@@ -88,10 +90,10 @@ Status check_alike(const ReadRecording& first, const ReadRecording& other) {
   return Done{};
 }
 
-Result<LabelledFrames> read_recordings(const ExampleOptions& options) {
+Result<LabelledFrames> read_recordings(const ExampleOptions& options, const sources::SourceOptions& how) {
   std::vector<ReadRecording> read;
   for (const std::string& from : options.in) {
-    Result<ReadRecording> next = read_recording(options, from);
+    Result<ReadRecording> next = read_recording(options, from, how);
     if (!next) return next.error();
     for (const ReadRecording& before : read) {
       if (Status alike = check_alike(before, *next); !alike) return alike.error();
@@ -108,7 +110,7 @@ Result<LabelledFrames> read_recordings(const ExampleOptions& options) {
 
 }  // namespace
 
-Result<LabelledFrames> read_examples(const ExampleOptions& options) {
+Result<LabelledFrames> read_examples(const ExampleOptions& options, const sources::SourceOptions& source) {
   if (!recognition::is_rate(options.data.rate_hz)) return bad_input("--rate: must be 0.001 to 1e6");
   const bool has_plain = !options.data.frames.empty() || !options.data.arrays.empty() || !options.data.extras.empty();
   if (options.in.empty()) {
@@ -119,7 +121,7 @@ Result<LabelledFrames> read_examples(const ExampleOptions& options) {
     return bad_input("name the examples: --in RECORDING..., or --frames FILE with --arrays FILE");
   }
   if (has_plain) return bad_input("--in: excludes --frames, --arrays and --extra; name one kind of examples");
-  return read_recordings(options);
+  return read_recordings(options, source);
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::operation

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "bp_classifier.hpp"
+#include "dermis/paper/bp_classifier.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,11 +11,9 @@
 #include "dermis/paper/initialisation.hpp"
 #include "dermis/paper/training.hpp"
 
-namespace dermis::app {
+namespace dermis::paper {
 namespace {
 
-using paper::NetworkShape;
-using paper::Samples;
 using recognition::Lesson;
 
 constexpr std::array<std::size_t, 2> kHiddenUnits{16, 64};
@@ -59,14 +57,14 @@ Division divide(const Lesson& lesson) {
 }
 
 NetworkShape shape_of(const Lesson& lesson, std::size_t hidden) {
-  return {lesson.features, {{hidden, paper::Activation::tanh}, {lesson.classes, paper::Activation::log_sigmoid}}};
+  return {lesson.features, {{hidden, Activation::tanh}, {lesson.classes, Activation::log_sigmoid}}};
 }
 
 /// [patterns, classes]
 std::vector<float> outputs_of(const NetworkShape& shape, const std::vector<float>& parameters,
                               const std::vector<float>& inputs) {
   std::vector<float> outputs(inputs.size() / shape.inputs * shape.outputs());
-  paper::FeedForward<float>(shape).evaluate(parameters, inputs, outputs);
+  FeedForward<float>(shape).evaluate(parameters, inputs, outputs);
   return outputs;
 }
 
@@ -92,16 +90,16 @@ void to_probabilities(std::vector<float>& outputs, std::size_t classes) {
 }
 
 /// Returns the parameters after `epochs`, or where `goes_on` ends the training.
-Result<std::vector<float>> train(const NetworkShape& shape, const Samples<float>& samples, std::uint64_t epochs,
-                                 const paper::TrainingCallback<float>& goes_on) {
-  paper::TrainingOptions options;
-  options.algorithm = paper::TrainingAlgorithm::adam;
+Result<std::vector<float>> trained_parameters(const NetworkShape& shape, const Samples<float>& samples,
+                                              std::uint64_t epochs, const TrainingCallback<float>& goes_on) {
+  TrainingOptions options;
+  options.algorithm = TrainingAlgorithm::adam;
   options.batch = kBatch;
   options.rate = 0.003;
   options.epochs = epochs;
   options.seed = kSeed;
-  paper::TrainingState<float> state = paper::start_training(shape, paper::xavier_start<float>(shape, kSeed), options);
-  const Result<paper::TrainingReport> report = paper::train(state, samples, options, {}, goes_on);
+  TrainingState<float> state = start_training(shape, xavier_start<float>(shape, kSeed), options);
+  const Result<TrainingReport> report = train(state, samples, options, {}, goes_on);
   if (!report) return report.error();
   return state.parameters;
 }
@@ -114,13 +112,13 @@ struct Trial {
 
 Result<Trial> try_out(const NetworkShape& shape, const Lesson& lesson, const Division& division) {
   Trial best;
-  const auto look = [&](const paper::TrainingState<float>& state) {
+  const auto look = [&](const TrainingState<float>& state) {
     const std::vector<float> outputs = outputs_of(shape, state.parameters, division.held_out.inputs);
     const std::size_t right = count_right(outputs, division.held_out.targets, lesson.classes);
     if (right > best.right) best = {right, state.epoch};
     return state.epoch < best.epochs + kPatience;
   };
-  const auto trained = train(shape, division.learned.samples(lesson), kMostEpochs, look);
+  const auto trained = trained_parameters(shape, division.learned.samples(lesson), kMostEpochs, look);
   if (!trained) return trained.error();
   return best;
 }
@@ -140,11 +138,11 @@ Result<std::vector<float>> answer_by_bp_network(const Lesson& lesson) {
   }
   Patterns all;
   for (std::size_t i = 0; i < lesson.class_of.size(); ++i) all.add(lesson, i);
-  const auto parameters = train(shape, all.samples(lesson), best.epochs, {});
+  const auto parameters = trained_parameters(shape, all.samples(lesson), best.epochs, {});
   if (!parameters) return parameters.error();
   std::vector<float> answers = outputs_of(shape, *parameters, lesson.asked);
   to_probabilities(answers, lesson.classes);
   return answers;
 }
 
-}  // namespace dermis::app
+}  // namespace dermis::paper

@@ -2,21 +2,20 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <sys/types.h>
-
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "dermis/core/result.hpp"
 
-namespace dermis::app {
+namespace dermis::operation {
 
 /// A program that runs beside this one, with its output and an empty input. Neither it nor what it starts outlives this
-/// object, but where they leave its process group.
+/// object, but where they leave its process group. Not thread-safe.
 class ChildProcess {
  public:
-  /// `command`: the program, found as a shell finds it, and its arguments; not empty.
+  /// `command`: the program, found as a shell finds it, and its arguments; not empty. Gives SIGCHLD its usual meaning:
+  /// a process that ignores it cannot wait for another. Fails where there is no such program.
   [[nodiscard]] static Result<ChildProcess> start(const std::vector<std::string>& command);
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;
@@ -29,10 +28,10 @@ class ChildProcess {
   void stop() noexcept;
 
  private:
-  explicit ChildProcess(pid_t pid) : pid_(pid) {}
+  explicit ChildProcess(int pid) : pid_(pid) {}
 
-  pid_t pid_;  // 0: it has been waited for
+  int pid_;  // of POSIX; 0: it has been waited for
   std::optional<int> exit_status_;
 };
 
-}  // namespace dermis::app
+}  // namespace dermis::operation

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include "command_line.hpp"
+#include "dermis/operation/labelled_examples.hpp"
+
+namespace dermis::app {
+
+/// Declares --in, --tare, --arrays, --extra, --label and --labels, which it returns; `examples` must live as long as
+/// the action.
+Option add_example_options(Command& command, operation::ExampleOptions& examples);
+
+}  // namespace dermis::app

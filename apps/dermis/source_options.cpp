@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "source_options.hpp"
+
+#include "status_line.hpp"
+#include "stop_flag.hpp"
+
+namespace dermis::app {
+
+sources::SourceOptions source_options(const ArrayDescription* array) {
+  return {.array = array, .stop = &stop_flag(), .notice = say};
+}
+
+}  // namespace dermis::app

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::health {
+
+/// What a readout circuit says of its taxels, each frame by itself and as exactly as numbers are: for who designs one.
+/// Not thread-safe.
+class CircuitInversion {
+ public:
+  /// `noise_ratio`: standard deviation of a reading over the supply, > 0. Fails where
+  /// compensation::make_crosstalk_inversion() does.
+  [[nodiscard]] static Result<CircuitInversion> create(const ArrayDescription& array, double noise_ratio);
+
+  /// `reading` [rows, cols]: over the supply, as the array gives it. False where no conductances give these readings.
+  [[nodiscard]] bool invert(std::vector<double> reading);
+
+  /// Of the last frame [rows, cols] [S], and their standard deviations; NaN where it has no solution.
+  [[nodiscard]] const std::vector<double>& siemens() const noexcept { return siemens_; }
+  [[nodiscard]] const std::vector<double>& sigma_siemens() const noexcept { return sigma_siemens_; }
+
+ private:
+  CircuitInversion(const ArrayDescription& array, std::unique_ptr<compensation::CrosstalkInversion> inversion,
+                   double noise_ratio);
+
+  std::unique_ptr<compensation::CrosstalkInversion> inversion_;
+  double noise_ratio_;
+  bool falls_with_pressure_;
+  std::vector<double> siemens_;
+  std::vector<double> sigma_siemens_;
+};
+
+}  // namespace dermis::health

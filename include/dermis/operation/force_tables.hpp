@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "dermis/core/contacts.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/files/contacts_csv.hpp"
+#include "dermis/files/forces_csv.hpp"
+#include "dermis/fusion/contact.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::operation {
+
+/// Files to write (docs/file-formats.md); those that are empty are not.
+struct ForceTablePaths {
+  std::string forces;
+  std::string sigmas;  ///< Of the forces, their standard deviations.
+  std::string contacts;
+};
+
+/// The forces of a model frame by frame as tables. Each appears complete with commit(), or not at all. Not thread-safe.
+class ForceTables {
+ public:
+  /// Fails where a table cannot be written.
+  [[nodiscard]] static Result<ForceTables> create(const ForceTablePaths& paths, const pipeline::Model& model);
+
+  [[nodiscard]] Status write(const ForceFrame& force);
+  [[nodiscard]] Status commit();
+
+ private:
+  /// What touches the array.
+  struct ContactTable {
+    [[nodiscard]] Status write(const ForceFrame& force);
+    [[nodiscard]] Status commit() { return table.commit(); }
+
+    fusion::ContactTracker tracker;
+    files::ContactsCsvWriter table;
+    ContactReport report{};
+  };
+
+  ForceTables() = default;
+  template <typename Work>
+  [[nodiscard]] Status for_each(Work work);
+
+  std::optional<files::ForcesCsvWriter> forces_;
+  std::optional<files::ForcesCsvWriter> sigmas_;
+  std::optional<ContactTable> contacts_;
+};
+
+}  // namespace dermis::operation

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/sources/open_source.hpp"
+
+namespace dermis::operation {
+
+/// A model and the pipeline that computes forces by it.
+struct ModelAtWork {
+  pipeline::Model model;
+  pipeline::Pipeline pipeline;
+
+  [[nodiscard]] static Result<ModelAtWork> create(pipeline::Model model);
+  /// `path`: as for pipeline::read_model().
+  [[nodiscard]] static Result<ModelAtWork> read(const std::string& path);
+};
+
+/// A model at work on a source. Not thread-safe.
+struct Operation : ModelAtWork {
+  std::unique_ptr<FrameSource> frames;
+};
+
+/// `from` and `options`: as for sources::open_source(), but the array is that of the model. Fails where
+/// pipeline::read_model() or sources::open_source() do.
+[[nodiscard]] Result<std::unique_ptr<Operation>> open_operation(const std::string& model, const std::string& from,
+                                                                sources::SourceOptions options = {});
+
+}  // namespace dermis::operation

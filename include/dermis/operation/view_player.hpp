@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "dermis/core/result.hpp"
+#include "dermis/operation/array_view.hpp"
+#include "dermis/report/terminal_picture.hpp"
+
+namespace dermis::operation {
+
+/// Takes the frames of a view on a thread of its own, those of a file at their pace, for who draws one now and then.
+class ViewPlayer {
+ public:
+  /// Begins. `stop`: what the source of the view was opened with; it ends the playing, and the end of the player sets
+  /// it. `high`: end of the colour scale; empty: ArrayView::scale() of the largest value so far. The view and `stop`
+  /// must outlive the player.
+  ViewPlayer(ArrayView& view, std::atomic<bool>& stop, std::optional<double> high = {});
+  ViewPlayer(const ViewPlayer&) = delete;
+  ViewPlayer& operator=(const ViewPlayer&) = delete;
+  ~ViewPlayer();
+
+  /// Of the last frame; without values before the first. Thread-safe.
+  [[nodiscard]] report::TerminalPicture picture() const;
+  /// Whether the source has failed. Thread-safe.
+  [[nodiscard]] Status status() const;
+
+ private:
+  void run();
+  void update();
+
+  ArrayView& view_;
+  std::atomic<bool>& stop_;
+  std::optional<double> high_;
+  double largest_ = 0.0;
+  mutable std::mutex mutex_;  ///< Of the next two.
+  report::TerminalPicture picture_;
+  Status status_ = Done{};
+  std::thread thread_;  ///< The last: it uses all others.
+};
+
+}  // namespace dermis::operation

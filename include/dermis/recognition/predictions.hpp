@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "dermis/core/result.hpp"
+#include "dermis/recognition/dataset.hpp"
+#include "dermis/recognition/learning.hpp"
+
+namespace dermis::recognition {
+
+/// Who may be named in an answer of predictions_of().
+enum class Answers {
+  classes,             ///< Always the likeliest class.
+  classes_or_unknown,  ///< Or "unknown"; the lines have the score of it, too.
+};
+
+/// What is answered for the labels that the splits ask for, each learned anew from what it teaches: a CSV with the
+/// columns split,id,class,probability and, with classes_or_unknown, unknown_score. `set`: of all labels of `data`.
+/// `progress` is told the share that is done. Errors name the split.
+[[nodiscard]] Result<std::string> predictions_of(const LabelledFrames& data, const LearningSet& set,
+                                                 std::span<const Split> splits, Answers answers,
+                                                 const std::function<void(double)>& progress = {});
+
+}  // namespace dermis::recognition

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/operation/force_tables.hpp"
+
+#include <utility>
+
+namespace dermis::operation {
+namespace {
+
+Status create_table(std::optional<files::ForcesCsvWriter>& table, const std::string& path,
+                    const ArrayDescription& array, files::ForceColumn column) {
+  if (path.empty()) return Done{};
+  Result<files::ForcesCsvWriter> created = files::ForcesCsvWriter::create(path, array.rows, array.cols, column);
+  if (!created) return created.error();
+  table.emplace(std::move(*created));
+  return Done{};
+}
+
+}  // namespace
+
+Result<ForceTables> ForceTables::create(const ForceTablePaths& paths, const pipeline::Model& model) {
+  const ArrayDescription& array = model.array;
+  ForceTables tables;
+  const Status forces = create_table(tables.forces_, paths.forces, array, files::ForceColumn::newtons);
+  if (!forces) return forces.error();
+  const Status sigmas = create_table(tables.sigmas_, paths.sigmas, array, files::ForceColumn::sigma_newtons);
+  if (!sigmas) return sigmas.error();
+  if (paths.contacts.empty()) return tables;
+  Result<files::ContactsCsvWriter> contacts = files::ContactsCsvWriter::create(paths.contacts);
+  if (!contacts) return contacts.error();
+  tables.contacts_.emplace(ContactTable{fusion::ContactTracker(array, {}, model.strip), *std::move(contacts)});
+  return tables;
+}
+
+Status ForceTables::write(const ForceFrame& force) {
+  return for_each([&](auto& table) { return table.write(force); });
+}
+
+Status ForceTables::commit() {
+  return for_each([](auto& table) { return table.commit(); });
+}
+
+/// Until one fails.
+template <typename Work>
+Status ForceTables::for_each(Work work) {
+  Status status = Done{};
+  if (forces_) status = work(*forces_);
+  if (status && sigmas_) status = work(*sigmas_);
+  if (status && contacts_) status = work(*contacts_);
+  return status;
+}
+
+Status ForceTables::ContactTable::write(const ForceFrame& force) {
+  tracker.process(force, report);
+  return table.write(report);
+}
+
+}  // namespace dermis::operation
