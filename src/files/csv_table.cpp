@@ -13,6 +13,11 @@
 #include "files/csv_reader.hpp"
 
 namespace dermis::files {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{256} << 20U;  // of all cells in memory
+
+}  // namespace
 
 Result<CsvTable> CsvTable::read(const std::string& path) {
   const Result<std::unique_ptr<std::istream>> in = open_input(path);
@@ -31,6 +36,7 @@ Result<CsvTable> CsvTable::read(std::istream& in, const std::string& name) {
   for (const std::string_view cell : split_cells(line)) table.columns_.emplace_back(cell);
   const std::set<std::string> names(table.columns_.begin(), table.columns_.end());
   if (names.size() != table.columns_.size()) return csv.error("names a column twice");
+  std::size_t bytes = 0;
   while (true) {
     more = csv.next_line(line);
     if (!more) return more.error();
@@ -39,6 +45,8 @@ Result<CsvTable> CsvTable::read(std::istream& in, const std::string& name) {
       return csv.error("has " + std::to_string(count_cells(line)) + " values, the header " +
                        std::to_string(table.columns_.size()));
     }
+    bytes += line.size() + table.columns_.size() * sizeof(std::string);
+    if (bytes > kMostBytes) return csv.error("is beyond 256 MiB of cells; divide the table");
     for (const std::string_view cell : split_cells(line)) table.cells_.emplace_back(cell);
     table.lines_.push_back(csv.line_number());
   }

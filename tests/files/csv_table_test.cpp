@@ -62,5 +62,17 @@ TEST(CsvTable, that_was_damaged_gives_a_table_or_one_line) {
                                                   });
 }
 
+TEST(CsvTable, refuses_more_cells_than_memory_is_bound_to) {
+  std::string text = "c0";
+  for (int column = 1; column < 4096; ++column) text += ",c" + std::to_string(column);
+  const std::string line = "\n" + std::string(4095, ',');
+  for (int row = 0; row < 2100; ++row) text += line;
+  std::istringstream in(text);
+  const Result<CsvTable> table = CsvTable::read(in, "labels.csv");
+  ASSERT_FALSE(table);
+  EXPECT_TRUE(table.error().message.starts_with("labels.csv:")) << table.error().message;
+  EXPECT_TRUE(table.error().message.ends_with("is beyond 256 MiB of cells; divide the table")) << table.error().message;
+}
+
 }  // namespace
 }  // namespace dermis::files

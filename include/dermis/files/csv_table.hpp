@@ -18,7 +18,7 @@ class CsvTable {
  public:
   [[nodiscard]] static Result<CsvTable> read(const std::string& path);
   /// The same from a stream; `name` stands for the path in messages. Fails on a column that stands twice, and on a line
-  /// that has not as many values as the header.
+  /// that has not as many values as the header, and on more than 256 MiB of cells in memory.
   [[nodiscard]] static Result<CsvTable> read(std::istream& in, const std::string& name);
 
   [[nodiscard]] std::size_t rows() const noexcept { return lines_.size(); }
