@@ -43,7 +43,7 @@ export class TeachPanel {
   readonly #name = element("input", { class: "field", "data-role": "teach-class", maxlength: 40, placeholder: "such as tap" });
   readonly #session = element("input", { class: "field", "data-role": "teach-session", maxlength: 20, value: "1" });
   readonly #listen = element("button", { class: "button primary", "data-role": "teach-listen", type: "submit" }, "Begin");
-  readonly #train = element("button", { class: "button", "data-role": "teach-train", onclick: () => void this.#learn() }, "Train");
+  readonly #train = element("button", { class: "button", "data-role": "teach-train", disabled: true, onclick: () => void this.#learn() }, "Train");
   readonly #saved = element("select", { class: "field", "data-role": "teach-saved" });
   readonly #before = element(
     "div",
