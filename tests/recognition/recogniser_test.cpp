@@ -50,7 +50,7 @@ TEST(Recogniser, names_poses_that_it_has_not_seen) {
 
 TEST(Recogniser, taught_by_ten_examples_each_calls_few_new_touches_unknown) {
   constexpr std::size_t kTaught = 10 * support::kPoses;
-  constexpr std::size_t kTeachers = 40;
+  constexpr std::size_t kTeachers = 15;
   std::size_t unknown_in_all = 0;
   std::size_t above_one_in_twenty = 0;
   for (std::uint64_t seed = 1; seed <= kTeachers; ++seed) {
