@@ -6,6 +6,8 @@ target_compile_features(dermis_build_flags INTERFACE cxx_std_20)
 target_compile_options(dermis_build_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Werror)
 # Every x86 processor since 2008 has at least SSE4: one instruction set less to compile each kernel for.
 target_compile_definitions(dermis_build_flags INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
+# __FILE__ begins at this folder: the same in every clone, which ccache needs to find what another has compiled.
+target_compile_options(dermis_build_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # g++ 12 reports std::string operator+ as overlapping (GCC bug 105651), and in sources that are compiled together every
   # member of a type of an unnamed namespace.
