@@ -26,7 +26,24 @@ struct SimulateOptions {
   std::string physics;
   std::uint64_t seed = 1;
   std::optional<std::size_t> frames;
+  std::optional<double> rate_hz;
+  std::optional<std::size_t> taxels;
+  std::string memory;
+  std::optional<double> creep_per_decade;
+  std::optional<double> touch_gain;
 };
+
+Status set_memory(const SimulateOptions& options, simulation::RubberOptions& rubber) {
+  if (!options.memory.empty()) {
+    Status chosen = simulation::choose_memory(options.memory, rubber);
+    if (!chosen) return bad_input("--" + chosen.error().message);
+  }
+  if (!options.creep_per_decade && !options.touch_gain) return Done{};
+  if (!rubber.memory) return bad_input("--creep-per-decade, --touch-gain: need --memory rubber");
+  rubber.memory->creep_per_decade = options.creep_per_decade.value_or(rubber.memory->creep_per_decade);
+  rubber.memory->touch_gain = options.touch_gain.value_or(rubber.memory->touch_gain);
+  return Done{};
+}
 
 Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOptions& options,
                                                                 const ArrayDescription& array) {
@@ -36,6 +53,8 @@ Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOp
     if (!read) return read.error();
     physics = *read;
   }
+  if (Status set = set_memory(options, physics.rubber); !set) return set.error();
+  physics.scene = {options.rate_hz, options.taxels};
   return simulation::Simulator::create(array, physics, options.scene, options.seed, options.frames);
 }
 
@@ -112,7 +131,14 @@ void add_simulate(Command& command) {
   command.option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise")
       .not_negative()
       .shows_default();
-  command.option("--frames", options->frames, "Length of the scenes multitouch, contacts and idle").not_negative();
+  command.option("--frames", options->frames, "Length of the scenes multitouch, contacts, idle and touches")
+      .not_negative();
+  command.option("--rate", options->rate_hz, "Frames a second of the scenes touches and two_weights, 10 to 1000");
+  command.option("--taxels", options->taxels, "How many taxels the scene two_weights presses").not_negative();
+  command.option("--memory", options->memory, "What the material remembers: simple (as physics.toml says) | rubber");
+  command.option("--creep-per-decade", options->creep_per_decade,
+                 "rubber: how a held reading grows in ten times the time, 0.02 to 0.30");
+  command.option("--touch-gain", options->touch_gain, "rubber: standard deviation from touch to touch, 0 to 0.3");
   command.option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command.action([options] { return simulate(*options); });
 }

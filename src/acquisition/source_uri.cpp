@@ -43,7 +43,7 @@ const std::array<Scheme, 9>& schemes() {
       {"udp", Transport::udp, {}, true, true},
       {"stdin", Transport::standard_input, {}, true, false},
       {"file", Transport::file, {"rate"}, true, false},
-      {"sim", Transport::simulation, {"rows", "cols", "rate", "seed", "array", "frames"}, true, false},
+      {"sim", Transport::simulation, {"rows", "cols", "rate", "seed", "array", "frames", "memory"}, true, false},
       {"pty", Transport::pseudo_terminal, {}, false, true},
       {"stdout", Transport::standard_output, {}, false, true},
   }};
@@ -264,6 +264,7 @@ class Parser {
     uri_.seed = read<std::uint64_t>("seed", 0, ~std::uint64_t{0}, "a whole number of 0 or more").value_or(1);
     uri_.frames = read<std::size_t>("frames", 1, 200'000, "1 to 200000");
     if (const auto found = parameters_.find("array"); found != parameters_.end()) uri_.array = found->second;
+    if (const auto found = parameters_.find("memory"); found != parameters_.end()) uri_.memory = found->second;
   }
 
   std::string_view text_;

@@ -19,6 +19,7 @@ constexpr double kReferenceCelsius = 20.0;
 constexpr double kReferenceForceN = 10.0;
 constexpr std::size_t kCreepElements = std::size(ConductiveRubber::kCreepSeconds);
 constexpr std::size_t kNoiseProcesses = std::size(ConductiveRubber::kNoiseCornersHz);
+constexpr std::uint64_t kTouchStream = 1;  // Of the noise seed.
 
 std::string taxel_message(const char* field, std::size_t taxel, std::size_t cols, const char* problem) {
   return std::string(field) + ": leaves taxel r" + std::to_string(taxel / cols) + "c" + std::to_string(taxel % cols) +
@@ -49,7 +50,11 @@ Status RubberOptions::validate() const {
   if (contact_ohm >= resistance_at_10n_ohm) {
     return bad_input("rubber.contact_ohm: must be less than rubber.resistance_at_10n_ohm");
   }
-  return Done{};
+  if (!memory) return Done{};
+  if (hysteresis > 0.0 || creep > 0.0) {
+    return bad_input("rubber.hysteresis, rubber.creep: are those of the memory \"simple\"; must be 0 for \"rubber\"");
+  }
+  return memory->validate();
 }
 
 Result<RubberOptions> rubber_grade(int carbon_percent) {
@@ -67,6 +72,13 @@ Result<RubberOptions> rubber_grade(int carbon_percent) {
   return options;
 }
 
+Status choose_memory(const std::string& name, RubberOptions& rubber) {
+  if (name != "simple" && name != "rubber") return bad_input("memory: must be simple or rubber, not '" + name + "'");
+  if (name == "simple") rubber.memory.reset();
+  if (name == "rubber" && !rubber.memory) rubber.memory.emplace();
+  return Done{};
+}
+
 ConductiveRubber::ConductiveRubber(const RubberOptions& options, std::size_t rows, std::size_t cols,
                                    std::uint64_t noise_seed)
     : options_(options),
@@ -81,6 +93,9 @@ ConductiveRubber::ConductiveRubber(const RubberOptions& options, std::size_t row
       random_(noise_seed) {
   const double sd = std::sqrt(options.pink_noise * std::numbers::ln10);
   for (double& state : noise_) state = sd * random_.normal();
+  if (options.memory) {
+    memory_.emplace(*options.memory, rows * cols, Random::stream(noise_seed, kTouchStream).bits());
+  }
 }
 
 Result<ConductiveRubber> ConductiveRubber::create(const RubberOptions& options, std::size_t rows, std::size_t cols,
@@ -117,6 +132,7 @@ void ConductiveRubber::press(std::span<const double> force_n, double seconds) {
   share_load(force_n);
   if (options_.hysteresis > 0.0) follow_loop();
   if (options_.creep > 0.0) creep_towards_load(seconds);
+  if (memory_) memory_->press(load_n_, seconds);
   unread_seconds_ += seconds;
 }
 
@@ -173,16 +189,22 @@ void ConductiveRubber::read(double temperature_celsius, std::span<double> siemen
   if (options_.pink_noise > 0.0 && unread_seconds_ > 0.0) advance_noise();
   unread_seconds_ = 0.0;
   for (std::size_t i = 0; i < taxels_.size(); ++i) {
-    siemens[i] = conductance_from_force(i, effective_force(i), temperature_celsius) * (1.0 + relative_noise(i));
+    siemens[i] =
+        conductance(i, unloaded_siemens(i), effective_force(i), temperature_celsius) * (1.0 + relative_noise(i));
   }
 }
 
 double ConductiveRubber::effective_force(std::size_t taxel) const {
+  if (memory_) return memory_->felt_force(taxel);
   double late_n = 0.0;
   for (std::size_t k = 0; k < kCreepElements; ++k) late_n += creep_n_[k * taxels_.size() + taxel];
   late_n /= static_cast<double>(kCreepElements);
   const double felt_n = load_n_[taxel] * (1.0 - options_.creep) + options_.creep * late_n;
   return felt_n * (1.0 - options_.hysteresis / 2.0 * loop_[taxel]);
+}
+
+double ConductiveRubber::unloaded_siemens(std::size_t taxel) const {
+  return memory_ ? memory_->unloaded_share(taxel) / options_.unloaded_ohm : 1.0 / options_.unloaded_ohm;
 }
 
 double ConductiveRubber::relative_noise(std::size_t taxel) const {
@@ -198,7 +220,12 @@ double ConductiveRubber::temperature_factor(std::size_t taxel, double temperatur
 }
 
 double ConductiveRubber::conductance_from_force(std::size_t taxel, double force_n, double temperature_celsius) const {
-  double siemens = 1.0 / options_.unloaded_ohm;
+  return conductance(taxel, 1.0 / options_.unloaded_ohm, force_n, temperature_celsius);
+}
+
+double ConductiveRubber::conductance(std::size_t taxel, double unloaded_siemens, double force_n,
+                                     double temperature_celsius) const {
+  double siemens = unloaded_siemens;
   if (force_n > 0.0) {
     const Taxel& law = taxels_[taxel];
     siemens += 1.0 / (options_.contact_ohm + law.scale_ohm * std::pow(force_n, -law.exponent));

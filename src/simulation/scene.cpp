@@ -11,14 +11,18 @@
 #include <numeric>
 
 #include "simulation/contact_script.hpp"
+#include "simulation/gaussian_patch.hpp"
 #include "simulation/option_range.hpp"
+#include "simulation/touch_script.hpp"
+#include "simulation/weight_script.hpp"
 
 namespace dermis::simulation {
 namespace {
 
 constexpr std::size_t kMostFrames = 200'000;
-constexpr std::array kNames = {"calibration", "uniform", "paper_calibration", "paper", "multitouch",
-                               "contacts",    "idle"};  // In the order of Scene::Kind.
+constexpr std::array kNames = {
+    "calibration", "uniform", "paper_calibration", "paper",      "multitouch",
+    "contacts",    "idle",    "touches",           "two_weights"};  // In the order of Scene::Kind.
 
 constexpr double kDefaultSupplyV = 5.0;
 constexpr double kRestS = 1.0;
@@ -51,9 +55,14 @@ constexpr std::size_t kDefaultFrames = 1000;
 constexpr std::uint64_t kMaxContacts = 4;
 constexpr double kSingleTaxelShare = 0.4;
 constexpr double kWeakestContactN = 1.0;
-constexpr double kNarrowestPitches = 0.7;
-constexpr double kWidestPitches = 2.5;
-constexpr double kContactEdgeN = 0.02;
+
+constexpr double kLowestRateHz = 10.0;
+constexpr double kHighestRateHz = 1000.0;
+constexpr double kTouchRateHz = 100.0;
+constexpr double kWeightRateHz = 50.0;
+constexpr std::size_t kDefaultTouchFrames = 6000;
+constexpr std::size_t kDefaultWeightTaxels = 4;
+constexpr double kRoomCelsius = 22.0;
 
 double step_in_equal_ratios(double first, double last, std::size_t level) {
   if (level + 1 == kLevels) return last;
@@ -70,6 +79,10 @@ std::string known_names() {
   return names;
 }
 
+std::string scene_message(std::string_view name, const std::string& problem) {
+  return "scene \"" + std::string(name) + "\": " + problem;
+}
+
 }  // namespace
 
 const char* to_string(PatchShape shape) noexcept {
@@ -78,6 +91,10 @@ const char* to_string(PatchShape shape) noexcept {
 
 std::vector<std::string> scene_names() {
   return {kNames.begin(), kNames.end()};
+}
+
+bool takes_rate(std::string_view scene) {
+  return scene == "touches" || scene == "two_weights";
 }
 
 Status EnvironmentOptions::validate() const {
@@ -91,26 +108,57 @@ Scene::Scene(Kind kind, const ArrayDescription& array, const EnvironmentOptions&
     : kind_(kind), array_(array), supply_variation_(environment.supply_variation), seed_(seed) {}
 
 Result<Scene> Scene::create(std::string_view name, const ArrayDescription& array, const EnvironmentOptions& environment,
-                            std::uint64_t seed, std::optional<std::size_t> frames) {
+                            std::uint64_t seed, std::optional<std::size_t> frames, const SceneOptions& options) {
   const auto* const found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) {
-    return bad_input("scene \"" + std::string(name) + "\": unknown; there are " + known_names());
+    return bad_input(scene_message(name, "unknown; there are " + known_names()));
   }
   if (Status valid = array.validate(); !valid) return valid.error();
   if (Status valid = environment.validate(); !valid) return valid.error();
-  const Kind kind = static_cast<Kind>(found - kNames.begin());
-  Scene scene(kind, array, environment, seed);
+  Scene scene(static_cast<Kind>(found - kNames.begin()), array, environment, seed);
   if (Status suits = scene.check_array(); !suits) return suits.error();
-  if (frames && kind != Kind::multitouch && kind != Kind::contacts && kind != Kind::idle) {
-    return bad_input("scene \"" + std::string(name) + "\": has a fixed number of frames");
-  }
-  if (frames && (*frames == 0 || *frames > kMostFrames)) {
-    return bad_input("scene \"" + std::string(name) + "\": needs 1 to " + std::to_string(kMostFrames) + " frames");
-  }
-  scene.frame_count_ = frames.value_or(scene.default_frame_count());
-  if (kind == Kind::paper) scene.choose_paper_taxels();
-  if (kind == Kind::contacts) scene.contacts_ = std::make_shared<ContactScript>(array, scene.frame_count_, seed);
+  if (Status set = scene.set_options(options); !set) return bad_input(scene_message(name, set.error().message));
+  if (Status set = scene.set_length(frames); !set) return bad_input(scene_message(name, set.error().message));
+  scene.write_script();
   return scene;
+}
+
+Status Scene::set_options(const SceneOptions& options) {
+  const bool is_continuous = takes_rate(kNames[static_cast<std::size_t>(kind_)]);
+  if (options.rate_hz && !is_continuous) return bad_input("has a rate of its own");
+  if (options.taxels && kind_ != Kind::two_weights) return bad_input("has taxels of its own");
+  rate_hz_ = options.rate_hz.value_or(kind_ == Kind::two_weights ? kWeightRateHz : kTouchRateHz);
+  if (!(rate_hz_ >= kLowestRateHz && rate_hz_ <= kHighestRateHz)) return bad_input("needs 10 to 1000 frames a second");
+  const std::size_t most = array_.taxel_count() - array_.absent.size();
+  weighed_taxels_ = options.taxels.value_or(std::min(kDefaultWeightTaxels, most));
+  if (kind_ == Kind::two_weights && (weighed_taxels_ < 1 || weighed_taxels_ > most)) {
+    return bad_input("needs 1 to " + std::to_string(most) + " taxels");
+  }
+  return Done{};
+}
+
+Status Scene::set_length(std::optional<std::size_t> frames) {
+  const bool is_of_any_length =
+      kind_ == Kind::multitouch || kind_ == Kind::contacts || kind_ == Kind::idle || kind_ == Kind::touches;
+  if (frames && !is_of_any_length) return bad_input("has a fixed number of frames");
+  if (frames && (*frames == 0 || *frames > kMostFrames)) {
+    return bad_input("needs 1 to " + std::to_string(kMostFrames) + " frames");
+  }
+  frame_count_ = frames.value_or(default_frame_count());
+  if (kind_ == Kind::two_weights && frame_count_ > kMostFrames) {
+    return bad_input("has " + std::to_string(frame_count_) + " frames, more than " + std::to_string(kMostFrames) +
+                     "; ask for fewer taxels or fewer frames a second");
+  }
+  return Done{};
+}
+
+void Scene::write_script() {
+  if (kind_ == Kind::paper) choose_paper_taxels();
+  if (kind_ == Kind::contacts) contacts_ = std::make_shared<ContactScript>(array_, frame_count_, seed_);
+  if (kind_ == Kind::touches) {
+    touches_ = std::make_shared<TouchScript>(array_, static_cast<double>(frame_count_) / rate_hz_, seed_);
+  }
+  if (kind_ == Kind::two_weights) weights_ = std::make_shared<WeightScript>(array_, weighed_taxels_, seed_);
 }
 
 Status Scene::check_array() const {
@@ -130,6 +178,9 @@ std::size_t Scene::default_frame_count() const {
     case Kind::paper_calibration: return kUnloadedFrames + kLevels * array_.taxel_count();
     case Kind::paper: return kPaperForcesN.size() * kPaperPoints;
     case Kind::contacts: return kDefaultContactFrames;
+    case Kind::touches: return kDefaultTouchFrames;
+    case Kind::two_weights:
+      return static_cast<std::size_t>(std::llround(WeightScript::seconds(weighed_taxels_) * rate_hz_));
     case Kind::multitouch:
     case Kind::idle: break;
   }
@@ -158,6 +209,7 @@ void Scene::frame(std::size_t index, SceneFrame& out) const {
   out.hold_s = kHoldS;
   const double nominal_v = array_.readout.supply_v.value_or(kDefaultSupplyV);
   out.supply_v = nominal_v * (1.0 + supply_variation_ * random.uniform(-1.0, 1.0));
+  bool is_known = true;
   switch (kind_) {
     case Kind::calibration:
     case Kind::paper_calibration: press_each_taxel(index, out); break;
@@ -166,8 +218,10 @@ void Scene::frame(std::size_t index, SceneFrame& out) const {
     case Kind::multitouch: touch(random, out); break;
     case Kind::contacts: move_contacts(index, out); break;
     case Kind::idle: leave_alone(index, out); break;
+    case Kind::touches: press_and_let_go(index, out); break;
+    case Kind::two_weights: is_known = lay_weights(index, out); break;
   }
-  if (out.loads.empty()) label_forces(index, out);
+  if (is_known && out.loads.empty()) label_forces(index, out);
 }
 
 void Scene::press_each_taxel(std::size_t index, SceneFrame& out) const {
@@ -223,23 +277,31 @@ void Scene::leave_alone(std::size_t index, SceneFrame& out) const {
   out.temperature_celsius = kHottestCelsius / 2.0 * (1.0 - std::cos(2.0 * std::numbers::pi * phase));
 }
 
+void Scene::press_and_let_go(std::size_t index, SceneFrame& out) const {
+  out.rest_s = 0.0;
+  out.hold_s = 1.0 / rate_hz_;
+  out.temperature_celsius = kRoomCelsius;
+  touches_->add_forces(static_cast<double>(index) / rate_hz_, out.force_n);
+  for (const std::size_t taxel : array_.absent) out.force_n[taxel] = 0.0;
+}
+
+/// False while a weight is put on or taken off.
+bool Scene::lay_weights(std::size_t index, SceneFrame& out) const {
+  out.rest_s = 0.0;
+  out.hold_s = 1.0 / rate_hz_;
+  out.temperature_celsius = kRoomCelsius;
+  const WeightScript::Moment now = weights_->at(static_cast<double>(index) / rate_hz_);
+  out.force_n[now.taxel] = now.force_n;
+  return now.is_known;
+}
+
 void Scene::add_contact(Random& random, std::vector<double>& force_n) const {
   const double peak_n = random.log_uniform(kWeakestContactN, kHeaviestN);
   if (random.uniform() < kSingleTaxelShare) {
     force_n[random.below(force_n.size())] += peak_n;
     return;
   }
-  const double sigma_pitches = random.uniform(kNarrowestPitches, kWidestPitches);
-  const double centre_row = random.uniform(-0.5, static_cast<double>(array_.rows) - 0.5);
-  const double centre_col = random.uniform(-0.5, static_cast<double>(array_.cols) - 0.5);
-  for (std::size_t row = 0; row < array_.rows; ++row) {
-    for (std::size_t col = 0; col < array_.cols; ++col) {
-      const double away_rows = (static_cast<double>(row) - centre_row) / sigma_pitches;
-      const double away_cols = (static_cast<double>(col) - centre_col) / sigma_pitches;
-      const double share_n = peak_n * std::exp(-0.5 * (away_rows * away_rows + away_cols * away_cols));
-      if (share_n >= kContactEdgeN) force_n[array_.index(row, col)] += share_n;
-    }
-  }
+  add_patch(array_, draw_patch(array_, random), peak_n, force_n);
 }
 
 void Scene::label_forces(std::size_t index, SceneFrame& out) const {

@@ -42,6 +42,21 @@ void read_rubber(files::ConfigFile& file, RubberOptions& rubber) {
   file.number("rubber.mechanical_spread", rubber.mechanical_spread);
 }
 
+void read_memory(files::ConfigFile& file, RubberOptions& rubber) {
+  std::size_t law = 0;
+  file.choice("rubber.memory", {"simple", "rubber"}, law);
+  RubberMemoryOptions memory;
+  const std::pair<const char*, double*> fields[] = {{"rubber.creep_per_decade", &memory.creep_per_decade},
+                                                    {"rubber.loop_gap", &memory.loop_gap},
+                                                    {"rubber.touch_gain", &memory.touch_gain},
+                                                    {"rubber.release_dip", &memory.release_dip}};
+  for (const auto& [key, value] : fields) {
+    if (law == 0 && file.contains(key)) file.fail(key, "needs memory = \"rubber\"");
+    file.number(key, *value);
+  }
+  if (law == 1) rubber.memory = memory;
+}
+
 void read_environment(files::ConfigFile& file, EnvironmentOptions& environment) {
   file.number("environment.supply_variation", environment.supply_variation);
   file.number("environment.temperature_noise_celsius", environment.temperature_noise_celsius);
@@ -61,6 +76,7 @@ Result<SimulationOptions> read_simulation_options(const std::string& path) {
   if (!file) return file.error();
   SimulationOptions options;
   read_rubber(*file, options.rubber);
+  read_memory(*file, options.rubber);
   read_environment(*file, options.environment);
   read_line_faults(*file, options.faults);
   if (Status complete = file->finish(); !complete) return complete.error();
@@ -85,7 +101,7 @@ Simulator::Simulator(ArrayDescription array, Scene scene, ConductiveRubber rubbe
 Result<std::unique_ptr<Simulator>> Simulator::create(const ArrayDescription& array, const SimulationOptions& options,
                                                      std::string_view scene, std::uint64_t seed,
                                                      std::optional<std::size_t> frames) {
-  Result<Scene> script = Scene::create(scene, array, options.environment, seed, frames);
+  Result<Scene> script = Scene::create(scene, array, options.environment, seed, frames, options.scene);
   if (!script) return script.error();
   const std::uint64_t noise_seed = Random::stream(seed, kRubberNoiseStream).bits();
   Result<ConductiveRubber> rubber = ConductiveRubber::create(options.rubber, array.rows, array.cols, noise_seed);

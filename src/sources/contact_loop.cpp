@@ -30,12 +30,13 @@ ContactLoop::ContactLoop(const Readout& readout, std::size_t taxels, std::uint64
 }
 
 Result<ContactLoop> ContactLoop::create(const ArrayDescription& array, std::uint64_t seed,
-                                        std::optional<std::size_t> frames) {
+                                        std::optional<std::size_t> frames, const simulation::RubberOptions& rubber) {
   ArrayDescription exact = array;
   exact.readout.adc_bits = kExactBits;
   exact.readout.adc_reference_v.reset();
   simulation::SimulationOptions options;
   options.environment.adc_noise_lsb = 0.0;
+  options.rubber = rubber;
   const std::size_t length =
       std::clamp<std::size_t>(kMaxTaxelFrames / array.taxel_count(), 1, frames.value_or(kFrames));
   Result<std::unique_ptr<simulation::Simulator>> simulator =

@@ -11,6 +11,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/simulation/rubber.hpp"
 
 namespace dermis::sources {
 
@@ -20,7 +21,8 @@ class ContactLoop {
  public:
   /// `frames`: length of the scene; by default 2000 (20 s), or fewer of more than 6000 taxels.
   [[nodiscard]] static Result<ContactLoop> create(const ArrayDescription& array, std::uint64_t seed,
-                                                  std::optional<std::size_t> frames);
+                                                  std::optional<std::size_t> frames,
+                                                  const simulation::RubberOptions& rubber = {});
 
   /// Counts, temperature and supply `seconds` >= 0 after the beginning of the first loop.
   void read(double seconds, RawFrame& frame);

@@ -34,14 +34,15 @@ Rehearsal::Rehearsal(const ArrayDescription& array, simulation::ConductiveRubber
       ratio_(array.taxel_count()) {}
 
 Result<Rehearsal> Rehearsal::create(const ArrayDescription& array, std::uint64_t seed, double rate_hz,
-                                    std::shared_ptr<GuideVoice> guide) {
-  Result<simulation::ConductiveRubber> rubber = simulation::ConductiveRubber::create({}, array.rows, array.cols, seed);
-  if (!rubber) return rubber.error();
+                                    std::shared_ptr<GuideVoice> guide, const simulation::RubberOptions& rubber) {
+  Result<simulation::ConductiveRubber> piece =
+      simulation::ConductiveRubber::create(rubber, array.rows, array.cols, seed);
+  if (!piece) return piece.error();
   Result<simulation::ReadoutCircuit> circuit = simulation::ReadoutCircuit::create(array);
   if (!circuit) return circuit.error();
   if (!guide) guide = std::make_shared<GuideVoice>();
   guide->listen();
-  return Rehearsal(array, *std::move(rubber), *std::move(circuit), seed, rate_hz, std::move(guide));
+  return Rehearsal(array, *std::move(piece), *std::move(circuit), seed, rate_hz, std::move(guide));
 }
 
 void Rehearsal::put_on(const GuideWords& words) {

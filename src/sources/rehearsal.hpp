@@ -26,7 +26,8 @@ class Rehearsal {
  public:
   /// `guide` null: nobody asks for anything.
   [[nodiscard]] static Result<Rehearsal> create(const ArrayDescription& array, std::uint64_t seed, double rate_hz,
-                                                std::shared_ptr<GuideVoice> guide);
+                                                std::shared_ptr<GuideVoice> guide,
+                                                const simulation::RubberOptions& rubber = {});
 
   /// Sets counts, temperature and supply of the frame of that number; numbers rise.
   void read(std::uint64_t number, RawFrame& frame);

@@ -5,6 +5,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -22,6 +24,7 @@ namespace {
 constexpr std::size_t kMaxFrames = 1000;
 constexpr std::size_t kMaxTaxelFrames = 4'000'000;  // a scene is simulated within seconds
 constexpr std::size_t kLeastFrames = 16;
+constexpr std::uint64_t kMostFramesToCatchUp = 100;
 constexpr std::string_view kRehearsal = "rehearsal";
 
 /// The array of examples/chest.
@@ -72,14 +75,66 @@ class UnpacedScene final : public FrameSource {
   const std::atomic<bool>* stop_;
 };
 
+Result<simulation::RubberOptions> rubber_of(const acquisition::SourceUri& uri) {
+  simulation::RubberOptions rubber;
+  if (uri.memory.empty()) return rubber;
+  if (Status chosen = simulation::choose_memory(uri.memory, rubber); !chosen) return chosen.error();
+  return rubber;
+}
+
 Result<std::unique_ptr<simulation::Simulator>> simulate_scene(const acquisition::SourceUri& uri,
-                                                              const ArrayDescription& array) {
-  return simulation::Simulator::create(array, {}, uri.path, uri.seed, uri.frames);
+                                                              const ArrayDescription& array,
+                                                              const simulation::RubberOptions& rubber) {
+  simulation::SimulationOptions options;
+  options.rubber = rubber;
+  if (simulation::takes_rate(uri.path)) options.scene.rate_hz = uri.rate_hz;
+  return simulation::Simulator::create(array, options, uri.path, uri.seed, uri.frames);
+}
+
+/// A scene that is continuous in time, simulated while it is read: frames that nobody fetches are history of the
+/// material all the same. After its last frame it begins again on rested rubber. Not thread-safe.
+class ContinuousScene {
+ public:
+  using Create = std::function<Result<std::unique_ptr<simulation::Simulator>>()>;
+
+  [[nodiscard]] static Result<ContinuousScene> create(const Create& create) {
+    Result<std::unique_ptr<simulation::Simulator>> simulator = create();
+    if (!simulator) return simulator.error();
+    return ContinuousScene(create, *std::move(simulator));
+  }
+
+  void read(std::uint64_t number, RawFrame& frame) {
+    // A machine that is too slow for the rate sees the scene slowed down, and does not fall ever further behind.
+    next_ = std::max(next_, number - std::min(number, kMostFramesToCatchUp));
+    for (; next_ <= number; ++next_) {
+      if (const Result<bool> more = simulator_->next(frame); more && *more) continue;
+      simulator_ = create_().value();
+      (void)simulator_->next(frame);
+    }
+  }
+
+ private:
+  ContinuousScene(Create create, std::shared_ptr<simulation::Simulator> simulator)
+      : create_(std::move(create)), simulator_(std::move(simulator)) {}
+
+  Create create_;
+  std::shared_ptr<simulation::Simulator> simulator_;
+  std::uint64_t next_ = 0;
+};
+
+Result<MakeFrame> continuous_scene(const acquisition::SourceUri& uri, const ArrayDescription& array,
+                                   const simulation::RubberOptions& rubber) {
+  Result<ContinuousScene> created =
+      ContinuousScene::create([uri, array, rubber] { return simulate_scene(uri, array, rubber); });
+  if (!created) return created.error();
+  return MakeFrame(
+      [scene = *std::move(created)](std::uint64_t number, RawFrame& frame) mutable { scene.read(number, frame); });
 }
 
 /// The first frames of a scene, over and over.
-Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescription& array) {
-  const Result<std::unique_ptr<simulation::Simulator>> simulator = simulate_scene(uri, array);
+Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescription& array,
+                             const simulation::RubberOptions& rubber) {
+  const Result<std::unique_ptr<simulation::Simulator>> simulator = simulate_scene(uri, array, rubber);
   if (!simulator) return simulator.error();
   const std::size_t most = std::clamp(kMaxTaxelFrames / array.taxel_count(), kLeastFrames, kMaxFrames);
   std::vector<RawFrame> frames;
@@ -98,8 +153,9 @@ Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescr
   });
 }
 
-Result<MakeFrame> contact_loop(const acquisition::SourceUri& uri, const ArrayDescription& array) {
-  Result<ContactLoop> created = ContactLoop::create(array, uri.seed, uri.frames);
+Result<MakeFrame> contact_loop(const acquisition::SourceUri& uri, const ArrayDescription& array,
+                               const simulation::RubberOptions& rubber) {
+  Result<ContactLoop> created = ContactLoop::create(array, uri.seed, uri.frames, rubber);
   if (!created) return created.error();
   return MakeFrame([loop = *std::move(created), rate_hz = *uri.rate_hz](std::uint64_t number, RawFrame& frame) mutable {
     loop.read(static_cast<double>(number) / rate_hz, frame);
@@ -107,8 +163,8 @@ Result<MakeFrame> contact_loop(const acquisition::SourceUri& uri, const ArrayDes
 }
 
 Result<MakeFrame> rehearsal(const acquisition::SourceUri& uri, const ArrayDescription& array,
-                            std::shared_ptr<GuideVoice> guide) {
-  Result<Rehearsal> created = Rehearsal::create(array, uri.seed, *uri.rate_hz, std::move(guide));
+                            std::shared_ptr<GuideVoice> guide, const simulation::RubberOptions& rubber) {
+  Result<Rehearsal> created = Rehearsal::create(array, uri.seed, *uri.rate_hz, std::move(guide), rubber);
   if (!created) return created.error();
   return MakeFrame([rehearsal = *std::move(created)](std::uint64_t number, RawFrame& frame) mutable {
     rehearsal.read(number, frame);
@@ -116,21 +172,24 @@ Result<MakeFrame> rehearsal(const acquisition::SourceUri& uri, const ArrayDescri
 }
 
 Result<MakeFrame> frames_of(const acquisition::SourceUri& uri, const ArrayDescription& array,
-                            const SourceOptions& options) {
-  if (uri.path == kRehearsal) return rehearsal(uri, array, options.guide);
-  return uri.path == "contacts" ? contact_loop(uri, array) : scene_loop(uri, array);
+                            const SourceOptions& options, const simulation::RubberOptions& rubber) {
+  if (uri.path == kRehearsal) return rehearsal(uri, array, options.guide, rubber);
+  if (simulation::takes_rate(uri.path)) return continuous_scene(uri, array, rubber);
+  return uri.path == "contacts" ? contact_loop(uri, array, rubber) : scene_loop(uri, array, rubber);
 }
 
 Result<std::unique_ptr<FrameSource>> open_scene(const acquisition::SourceUri& uri, const ArrayDescription& array,
                                                 const SourceOptions& options) {
+  const Result<simulation::RubberOptions> rubber = rubber_of(uri);
+  if (!rubber) return rubber.error();
   if (uri.rate_hz) {
-    Result<MakeFrame> frames = frames_of(uri, array, options);
+    Result<MakeFrame> frames = frames_of(uri, array, options, *rubber);
     if (!frames) return frames.error();
     return std::unique_ptr<FrameSource>(std::make_unique<SimulatedDevice>(
         *std::move(frames), FrameShape{array.rows, array.cols}, *uri.rate_hz, options.stop));
   }
   if (uri.path == kRehearsal) return bad_input("needs a rate, as in sim:rehearsal?rate=100");
-  Result<std::unique_ptr<simulation::Simulator>> simulator = simulate_scene(uri, array);
+  Result<std::unique_ptr<simulation::Simulator>> simulator = simulate_scene(uri, array, *rubber);
   if (!simulator) return simulator.error();
   return std::unique_ptr<FrameSource>(std::make_unique<UnpacedScene>(*std::move(simulator), options.stop));
 }

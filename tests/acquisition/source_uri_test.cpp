@@ -77,6 +77,8 @@ TEST(SourceUri, takes_a_simulation_apart) {
   EXPECT_EQ(uri.array, "/a/b.toml");
   EXPECT_EQ(uri.frames, 20U);
   EXPECT_FALSE(parsed("sim:idle").rate_hz);
+  EXPECT_EQ(parsed("sim:touches?memory=rubber").memory, "rubber");
+  EXPECT_EQ(parsed("sim:touches").memory, "");
 }
 
 TEST(SourceUri, names_what_is_wrong_and_the_mend) {

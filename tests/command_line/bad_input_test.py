@@ -48,6 +48,19 @@ class Usage(SmallArray):
         self.refuse(["simulate", "--array", self.array, "--scene", "party", "--out", self.work / "o"],
                     ["party", "multitouch"])
 
+    def test_options_of_other_scenes_and_memories(self):
+        simulate = ["simulate", "--array", self.array, "--out", self.work / "o", "--scene"]
+        self.refuse([*simulate, "idle", "--rate", 50], ["idle", "rate"])
+        self.refuse([*simulate, "touches", "--rate", 5], ["touches", "10 to 1000"])
+        self.refuse([*simulate, "touches", "--taxels", 3], ["touches", "taxels"])
+        self.refuse([*simulate, "two_weights", "--taxels", 21], ["two_weights", "1 to 20"])
+        self.refuse([*simulate, "touches", "--memory", "elephant"], ["--memory", "simple", "rubber", "elephant"])
+        self.refuse([*simulate, "touches", "--touch-gain", 0.1], ["--touch-gain", "--memory rubber"])
+        self.refuse([*simulate, "touches", "--memory", "rubber", "--creep-per-decade", 0.5],
+                    ["creep_per_decade", "0.02 to 0.3"])
+        physics = self.written("physics.toml", "[rubber]\ncreep = 0.1\n")
+        self.refuse([*simulate, "touches", "--memory", "rubber", "--physics", physics], ["rubber.creep", "simple"])
+
     def test_a_scene_of_fixed_length_with_another_length(self):
         self.refuse(["simulate", "--array", self.array, "--scene", "paper", "--frames", "3", "--out", self.work / "o"],
                     ["paper", "fixed"])

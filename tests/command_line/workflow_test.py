@@ -270,6 +270,37 @@ class Temperature(SmallArray):
             self.assertEqual({flag for flag in self.statuses(model, frames) if "temperature" in flag}, set())
 
 
+class Memory(SmallArray):
+    """Scenes that are continuous in time, on rubber that remembers."""
+
+    def simulated(self, name, scene, *options):
+        folder = self.work / name
+        self.succeed("simulate", "--array", self.array, "--scene", scene, "--seed", 3, *options, "--out", folder)
+        return rows_of(folder / "frames.csv")[1:], rows_of(folder / "loads.csv")[1:]
+
+    def test_touches_come_at_the_rate_asked(self):
+        frames, loads = self.simulated("touches", "touches", "--rate", 50, "--frames", 500, "--memory", "rubber")
+        self.assertEqual(len(frames), 500)
+        for k, frame in enumerate(frames):
+            self.assertAlmostEqual(float(frame[0]), 0.02 * (k + 1), places=6)
+        self.assertEqual({int(load[0]) for load in loads}, set(range(500)))
+
+    def test_two_weights_lie_on_the_taxels_asked(self):
+        frames, loads = self.simulated("weights", "two_weights", "--taxels", 2, "--rate", 20, "--memory", "rubber",
+                                       "--touch-gain", 0)
+        self.assertEqual(len(frames), 20 * (10 + 2 * 2 * 55))
+        self.assertEqual({float(load[3]) for load in loads}, {0.0, 5.0, 15.0})
+        self.assertEqual(len({load[2] for load in loads}), 3)  # two taxels and "all" that is unloaded
+
+    def test_the_memory_is_that_of_the_options(self):
+        seen = set()
+        for options in ((), ("--memory", "simple"), ("--memory", "rubber"), ("--memory", "rubber", "--touch-gain", 0),
+                        ("--memory", "rubber", "--creep-per-decade", 0.2)):
+            frames, _ = self.simulated("o" + str(len(options)) + str(options[-1:]), "touches", "--frames", 600, *options)
+            seen.add(str(frames))
+        self.assertEqual(len(seen), 4)  # simple is what it is without an option
+
+
 class Determinism(SmallArray):
     def simulated(self, name, *options, prefix=()):
         folder = self.work / name

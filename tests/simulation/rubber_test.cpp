@@ -270,6 +270,70 @@ TEST(Rubber, noise_has_the_density_k_over_f) {
   }
 }
 
+RubberOptions remembering_rubber() {
+  RubberOptions options = ideal_rubber();
+  options.memory.emplace().touch_gain = 0.0;
+  return options;
+}
+
+TEST(Rubber, with_memory_a_load_is_felt_as_rubber_memory_says) {
+  ConductiveRubber rubber = make_rubber(remembering_rubber());
+  RubberMemory memory(*remembering_rubber().memory, 1, 1);
+  for (const double force_n : {5.0, 15.0, 2.0}) {
+    press_one(rubber, force_n, 3.0);
+    memory.press(std::vector<double>{force_n}, 3.0);
+    EXPECT_NEAR(felt_force(rubber), memory.felt_force(0), 1e-9);
+  }
+}
+
+TEST(Rubber, with_memory_the_reading_after_a_release_is_below_the_earlier_one_and_comes_back) {
+  ConductiveRubber rubber = make_rubber(remembering_rubber());
+  const auto siemens_after = [&](double force_n, double seconds) {
+    press_one(rubber, force_n, seconds);
+    std::vector<double> siemens(1);
+    rubber.read(20.0, siemens);
+    return siemens[0];
+  };
+  const double rested = siemens_after(0.0, 1.0);
+  EXPECT_EQ(rested, 1.0 / 200e3);
+  EXPECT_GT(siemens_after(10.0, 2.0), 100.0 * rested);
+  const double released = siemens_after(0.0, 0.1) / rested;
+  EXPECT_GT(released, 0.6);
+  EXPECT_LT(released, 0.7);
+  const double recovering = siemens_after(0.0, 10.0) / rested;
+  EXPECT_GT(recovering, released);
+  EXPECT_LT(recovering, 0.8);
+  EXPECT_NEAR(siemens_after(0.0, 1e5) / rested, 1.0, 1e-9);
+}
+
+TEST(Rubber, gains_of_touches_do_not_depend_on_the_noise) {
+  RubberOptions quiet = ideal_rubber();
+  quiet.memory.emplace();
+  RubberOptions noisy = quiet;
+  noisy.pink_noise = 1e-12;
+  ConductiveRubber one = make_rubber(quiet);
+  ConductiveRubber other = make_rubber(noisy);
+  for (int touch = 0; touch < 5; ++touch) {
+    press_one(one, 10.0, 1.0);
+    press_one(other, 10.0, 1.0);
+    EXPECT_NEAR(felt_force(one) / felt_force(other), 1.0, 1e-4);
+    press_one(one, 0.0, 1.0);
+    press_one(other, 0.0, 1.0);
+  }
+}
+
+TEST(Rubber, memory_is_chosen_by_its_name) {
+  RubberOptions options;
+  ASSERT_TRUE(choose_memory("rubber", options));
+  ASSERT_TRUE(options.memory);
+  options.memory->touch_gain = 0.1;
+  ASSERT_TRUE(choose_memory("rubber", options));
+  EXPECT_EQ(options.memory->touch_gain, 0.1);
+  ASSERT_TRUE(choose_memory("simple", options));
+  EXPECT_FALSE(options.memory);
+  EXPECT_EQ(choose_memory("elephant", options).error().message, "memory: must be simple or rubber, not 'elephant'");
+}
+
 TEST(Rubber, neighbours_share_a_load_whose_sum_is_kept_inside) {
   RubberOptions options = ideal_rubber();
   options.mechanical_spread = 0.08;
@@ -312,6 +376,12 @@ TEST(Rubber, options_out_of_range_are_named) {
   options = {};
   options.contact_ohm = 900.0;
   EXPECT_EQ(ConductiveRubber::create(options, 2, 2, 1).error().message.find("rubber.contact_ohm:"), 0U);
+  options = {};
+  options.memory.emplace().touch_gain = 1.0;
+  EXPECT_EQ(options.validate().error().message.find("rubber.touch_gain:"), 0U);
+  options.memory->touch_gain = 0.0;
+  options.creep = 0.05;
+  EXPECT_EQ(options.validate().error().message.find("rubber.hysteresis, rubber.creep:"), 0U);
 }
 
 TEST(Rubber, scatter_that_leaves_a_taxel_below_the_contact_is_an_error) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -130,6 +131,36 @@ TEST(Simulator, creep_is_seen_in_the_conductance_of_a_press) {
   EXPECT_NEAR(felt_n, press.value * (0.9 + 0.1 * late), 1e-9);
 }
 
+TEST(Simulator, the_simple_memory_gives_the_counts_that_it_always_gave) {
+  SimulationOptions options;
+  options.rubber.hysteresis = 0.1;
+  options.rubber.creep = 0.06;
+  options.rubber.pink_noise = 1e-6;
+  options.rubber.mechanical_spread = 0.05;
+  const auto frames = record(*simulate(reference_array(3, 4), "multitouch", 5, 120, options));
+  // As printed by dermis before it had another memory.
+  EXPECT_EQ(frames[99].counts, (std::vector<float>{315, 366, 533, 1206, 308, 363, 495, 758, 283, 337, 410, 305}));
+  EXPECT_EQ(frames[119].counts, (std::vector<float>{169, 63, 77, 45, 215, 134, 99, 48, 371, 336, 94, 48}));
+}
+
+TEST(Simulator, touches_of_rubber_that_remembers_read_more_the_longer_they_last) {
+  SimulationOptions options;
+  options.rubber.memory.emplace().touch_gain = 0.0;
+  options.scene = {.rate_hz = 20.0, .taxels = 1};
+  const auto simulator = simulate(reference_array(4, 4), "two_weights", 6, {}, options);
+  std::vector<double> felt_n;
+  RawFrame frame;
+  while (*simulator->next(frame) && felt_n.size() < 240) {
+    const auto& force_n = simulator->truth().force_n;
+    const auto pressed = std::max_element(force_n.begin(), force_n.end());
+    if (*pressed != 5.0) continue;
+    const auto taxel = static_cast<std::size_t>(pressed - force_n.begin());
+    felt_n.push_back(simulator->rubber().force_from_conductance(taxel, simulator->true_siemens()[taxel], 22.0));
+  }
+  ASSERT_EQ(felt_n.size(), 240U);
+  EXPECT_NEAR(felt_n[200] / felt_n[20], 1.1, 0.01) << "10 s against 1 s";
+}
+
 TEST(Simulator, refuses_options_out_of_range) {
   SimulationOptions options;
   options.rubber.hysteresis = 2.0;
@@ -163,10 +194,26 @@ TEST(SimulationOptionsFile, grade_comes_before_the_other_keys) {
   EXPECT_EQ(options->rubber.resistance_at_10n_ohm, rubber_grade(15)->resistance_at_10n_ohm);
 }
 
+TEST(SimulationOptionsFile, sets_the_memory_of_rubber) {
+  EXPECT_FALSE(read_text("[rubber]\nmemory = \"simple\"\ncreep = 0.1\n")->rubber.memory);
+  const auto options = read_text("[rubber]\nmemory = \"rubber\"\ncreep_per_decade = 0.2\nrelease_dip = 0.1\n");
+  ASSERT_TRUE(options) << options.error().message;
+  ASSERT_TRUE(options->rubber.memory);
+  EXPECT_EQ(options->rubber.memory->creep_per_decade, 0.2);
+  EXPECT_EQ(options->rubber.memory->release_dip, 0.1);
+  EXPECT_EQ(options->rubber.memory->loop_gap, RubberMemoryOptions{}.loop_gap);
+  EXPECT_EQ(options->rubber.memory->touch_gain, RubberMemoryOptions{}.touch_gain);
+}
+
 TEST(SimulationOptionsFile, names_what_is_wrong) {
   EXPECT_NE(read_text("[rubber]\nhysterisis = 0.1\n").error().message.find("hysteresis"), std::string::npos);
   EXPECT_NE(read_text("[rubber]\ncreep = 3\n").error().message.find("rubber.creep"), std::string::npos);
   EXPECT_NE(read_text("[rubber]\ncarbon_percent = 7\n").error().message.find("5, 10 or 15"), std::string::npos);
+  EXPECT_NE(read_text("[rubber]\ntouch_gain = 0.1\n").error().message.find("needs memory = \"rubber\""),
+            std::string::npos);
+  EXPECT_NE(read_text("[rubber]\nmemory = \"rubber\"\ncreep = 0.1\n").error().message.find("must be 0 for"),
+            std::string::npos);
+  EXPECT_NE(read_text("[rubber]\nmemory = \"elephant\"\n").error().message.find("rubber.memory"), std::string::npos);
   EXPECT_EQ(read_simulation_options("/nonexistent/options.toml").error().kind, ErrorKind::bad_input);
 }
 

@@ -142,6 +142,57 @@ TEST(OpenSource, sends_the_frames_of_a_scene_over_and_over_at_a_rate) {
   }
 }
 
+/// The frames of a scene of touches on rubber that remembers, as the simulator gives them.
+std::vector<RawFrame> touches(const ArrayDescription& array, double rate_hz, std::size_t frames) {
+  simulation::SimulationOptions options;
+  options.rubber.memory.emplace();
+  options.scene.rate_hz = rate_hz;
+  const auto simulator = simulation::Simulator::create(array, options, "touches", 3, frames);
+  EXPECT_TRUE(simulator);
+  return *support::read_all(**simulator);
+}
+
+TEST(OpenSource, touches_are_simulated_at_the_rate_with_the_memory_asked) {
+  const ArrayDescription array = small_array();
+  const std::vector<RawFrame> scene = touches(array, 1000.0, 4000);
+  const auto source = opened("sim:touches?rate=1000&frames=4000&seed=3&memory=rubber", {.array = &array});
+  ASSERT_TRUE(source);
+  RawFrame frame;
+  for (int i = 0; i < 2200; ++i) {
+    ASSERT_TRUE(has_next(*source, frame));
+    const RawFrame& same = scene[*frame.acquisition.sequence % 4000];
+    ASSERT_EQ(frame.counts, same.counts) << "frame " << *frame.acquisition.sequence;
+    EXPECT_EQ(frame.supply_v, same.supply_v);
+  }
+}
+
+TEST(OpenSource, touches_begin_again_on_rested_rubber) {
+  const ArrayDescription array = small_array();
+  const std::vector<RawFrame> scene = touches(array, 1000.0, 3);
+  const auto source = opened("sim:touches?rate=1000&frames=3&seed=3&memory=rubber", {.array = &array});
+  ASSERT_TRUE(source);
+  RawFrame frame;
+  for (int i = 0; i < 8; ++i) {
+    ASSERT_TRUE(has_next(*source, frame));
+    EXPECT_EQ(frame.counts, scene[*frame.acquisition.sequence % 3].counts);
+  }
+}
+
+TEST(OpenSource, every_scene_takes_a_memory) {
+  const ArrayDescription array = small_array();
+  for (const char* scene : {"sim:multitouch?frames=20", "sim:touches?frames=600"}) {
+    const auto simple = support::read_all(*opened(scene, {.array = &array}));
+    const auto rubber = support::read_all(*opened(std::string(scene) + "&memory=rubber", {.array = &array}));
+    EXPECT_EQ(simple->front().supply_v, rubber->front().supply_v);
+    EXPECT_NE(simple->back().counts, rubber->back().counts) << scene;
+  }
+  for (const char* scene : {"sim:contacts?frames=100", "sim:rehearsal", "sim:idle"}) {
+    RawFrame frame;
+    const std::string uri = std::string(scene) + (std::string(scene).find('?') == std::string::npos ? "?" : "&");
+    EXPECT_TRUE(has_next(*opened(uri + "rate=1000&memory=rubber", {.array = &array}), frame)) << scene;
+  }
+}
+
 TEST(OpenSource, simulates_the_reference_array_where_none_is_named) {
   const auto source = opened("sim:idle?frames=1");
   ASSERT_TRUE(source);
@@ -240,7 +291,8 @@ TEST(OpenSource, refuses_what_cannot_be_simulated) {
   EXPECT_EQ(refusal("sim:rehearsal"), "'sim:rehearsal': needs a rate, as in sim:rehearsal?rate=100");
   EXPECT_EQ(refusal("sim:idle", {.array = &unknown}),
             "'sim:idle': a circuit that is to be fitted cannot be simulated; name it in array.toml");
-  for (const char* uri : {"sim:walk", "sim:walk?rate=10"}) {
+  for (const char* uri :
+       {"sim:walk", "sim:walk?rate=10", "sim:touches?rate=5", "sim:idle?memory=elephant", "sim:idle?rate=9&memory=x"}) {
     EXPECT_EQ(refusal(uri).find("'" + std::string(uri) + "': "), 0U) << refusal(uri);
   }
 }

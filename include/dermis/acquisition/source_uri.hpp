@@ -44,7 +44,8 @@ struct SourceUri {
   std::optional<double> rate_hz{};
   std::uint64_t seed = 1;               ///< simulation.
   std::string array{};                  ///< simulation: path of an array.toml.
-  std::optional<std::size_t> frames{};  ///< simulation: length of the scenes multitouch, contacts and idle.
+  std::optional<std::size_t> frames{};  ///< simulation: length of the scenes multitouch, contacts, idle and touches.
+  std::string memory{};                 ///< simulation: what the material remembers, by its name; empty: as usual.
 };
 
 /// True where `text` begins as a URI of a transport does, right or wrong; false: a path of a file.

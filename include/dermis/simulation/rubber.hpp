@@ -4,11 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "dermis/core/random.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/simulation/rubber_memory.hpp"
 
 namespace dermis::simulation {
 
@@ -33,8 +36,10 @@ struct RubberOptions {
   double temperature_coefficient_spread = 0.2;  ///< Relative sd of it over the taxels, 0 ... 2. Assumed.
   double temperature_curvature = 0.0;           ///< Quadratic term of ln R [1/C^2], -0.001 ... 0.001.
 
-  double hysteresis = 0.0;   ///< Gap between loading and unloading, relative to F, 0 ... 0.5. Interlink FSR: 0.10.
-  double creep = 0.0;        ///< Share of the force that is felt late, 0 ... 0.5. Assumed 0.05-0.10.
+  double hysteresis = 0.0;  ///< Gap between loading and unloading, relative to F, 0 ... 0.5. Interlink FSR: 0.10.
+  double creep = 0.0;       ///< Share of the force that is felt late, 0 ... 0.5. Assumed 0.05-0.10.
+  /// The memory of real rubber in the place of `hysteresis` and `creep`, which must then be 0.
+  std::optional<RubberMemoryOptions> memory;
   double pink_noise = 1e-9;  ///< K of the PSD K/f of the relative conductance noise, 0 ... 1e-4. Assumed 1e-9-1e-8.
   /// Share of a taxel's load that its 4 neighbours carry, a quarter each, 0 ... 0.5. A quarter that falls off the edge
   /// of the array is carried by the frame around it and lost.
@@ -50,6 +55,10 @@ struct RubberOptions {
 /// the resistance, and the exponent falls from 1.0 to 0.8 as the gauge factor of such rubbers falls with the content.
 [[nodiscard]] Result<RubberOptions> rubber_grade(int carbon_percent);
 
+/// Switches the memory by its name: "simple" (hysteresis and creep above) or "rubber" (RubberMemory; what is there of
+/// its options stays). Fails on other names.
+[[nodiscard]] Status choose_memory(const std::string& name, RubberOptions& rubber);
+
 /// The state of all taxels of one array. With T in C, F in N and per-taxel a, b, alpha:
 ///   G = (1 + n) [1/unloaded_ohm + 1/(contact_ohm + a F_eff^-b)] exp(-alpha (T - 20) - curvature (T - 20)^2)   [S]
 ///   contact_ohm + a 10^-b = resistance_at_10n_ohm exp(resistance_spread N(0,1))
@@ -57,15 +66,16 @@ struct RubberOptions {
 /// s: Kelvin-Voigt elements of 0.1, 3 and 100 s that follow F. m: a stop (elastic-plastic) operator on ln(1 + F/1 N)
 /// with reach 0.5, from 0 on a new piece to +1 after loading (reads low) and -1 after unloading (reads high).
 /// n: 1/f noise, one Ornstein-Uhlenbeck process a decade with corners at 1 mHz ... 10 Hz. F: the force on the taxel
-/// after mechanical_spread. Exact for any time step. Const members are thread-safe, the others are not.
+/// after mechanical_spread. With RubberOptions::memory, F_eff and the unloaded conductance are those of RubberMemory.
+/// Exact for any time step. Const members are thread-safe, the others are not.
 class ConductiveRubber {
  public:
   static constexpr double kCreepSeconds[3] = {0.1, 3.0, 100.0};  ///< Time constants of s_k [s].
   static constexpr double kHysteresisReach = 0.5;                ///< Change of ln(1 + F/1 N) that moves m by 1.
   static constexpr double kNoiseCornersHz[5] = {1e-3, 1e-2, 1e-1, 1e0, 1e1};  ///< Corner frequencies of n [Hz].
 
-  /// `noise_seed` drives the 1/f noise alone. Fails on options that are out of range, or where the scatter leaves a
-  /// taxel with a resistance below contact_ohm or an exponent that is not positive.
+  /// `noise_seed` drives the 1/f noise and the gains of touches. Fails on options that are out of range, or where the
+  /// scatter leaves a taxel with a resistance below contact_ohm or an exponent that is not positive.
   [[nodiscard]] static Result<ConductiveRubber> create(const RubberOptions& options, std::size_t rows, std::size_t cols,
                                                        std::uint64_t noise_seed);
 
@@ -98,6 +108,9 @@ class ConductiveRubber {
   void creep_towards_load(double seconds);
   void advance_noise();
   [[nodiscard]] double effective_force(std::size_t taxel) const;
+  [[nodiscard]] double unloaded_siemens(std::size_t taxel) const;
+  [[nodiscard]] double conductance(std::size_t taxel, double unloaded_siemens, double force_n,
+                                   double temperature_celsius) const;
   [[nodiscard]] double relative_noise(std::size_t taxel) const;
   [[nodiscard]] double temperature_factor(std::size_t taxel, double temperature_celsius) const;
 
@@ -109,8 +122,9 @@ class ConductiveRubber {
   std::vector<double> previous_n_;  // The same before the last press.
   std::vector<double> creep_n_;     // s_k, [3, taxels].
   std::vector<double> loop_;        // m.
-  std::vector<double> noise_;       // Ornstein-Uhlenbeck states, [5, taxels].
-  double unread_seconds_ = 0.0;     // Time by which the noise is behind.
+  std::optional<RubberMemory> memory_;
+  std::vector<double> noise_;    // Ornstein-Uhlenbeck states, [5, taxels].
+  double unread_seconds_ = 0.0;  // Time by which the noise is behind.
   Random random_;
 };
 

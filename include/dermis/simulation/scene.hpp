@@ -50,16 +50,25 @@ struct AppliedContact {
 
 /// What happens to the array until one frame is taken, and what is known about it. The frame is taken at the end.
 struct SceneFrame {
-  double rest_s = 0.0;                   ///< First unloaded for so long [s]; 0: the load changes at once.
-  double hold_s = 0.0;                   ///< Then under force_n for so long [s].
-  double temperature_celsius = 0.0;      ///< True temperature of the whole array [C].
-  double supply_v = 0.0;                 ///< True supply [V].
-  std::vector<double> force_n;           ///< True force applied to each taxel [N], [rows, cols].
-  std::vector<Load> loads;               ///< The labels of loads.csv; every frame has at least one.
+  double rest_s = 0.0;               ///< First unloaded for so long [s]; 0: the load changes at once.
+  double hold_s = 0.0;               ///< Then under force_n for so long [s].
+  double temperature_celsius = 0.0;  ///< True temperature of the whole array [C].
+  double supply_v = 0.0;             ///< True supply [V].
+  std::vector<double> force_n;       ///< True force applied to each taxel [N], [rows, cols].
+  /// The labels of loads.csv; at least one, but for the frames of two_weights in which a hand moves.
+  std::vector<Load> loads;
   std::vector<AppliedContact> contacts;  ///< Of the scene "contacts", by id; empty in all others.
 };
 
+/// What some scenes leave open.
+struct SceneOptions {
+  std::optional<double> rate_hz{};      ///< touches (100), two_weights (50): frames a second, 10 ... 1000.
+  std::optional<std::size_t> taxels{};  ///< two_weights (4, or all of fewer): how many are pressed, 1 ... all.
+};
+
 class ContactScript;
+class TouchScript;
+class WeightScript;
 
 /// A script of loads for an array. The supply is drawn anew each frame around Readout::supply_v (5 V where empty).
 ///
@@ -79,19 +88,29 @@ class ContactScript;
 ///                    come, rest or slide at human speed, and go; 100 frames/s; unloaded in the
 ///                    first and last 0.3 s; +- 5 C over the scene around 5-45 C by the seed
 /// idle               unloaded; 0 to 50 C and back over the scene, as a cosine                   1000 or as asked
+/// touches            up to 4 touches at once, each on one taxel (40 %) or a Gaussian as in      6000 or as asked
+///                    multitouch: up to 1-50 N (log-uniform) in 0.03-1 s, held for 0.2-5 s;
+///                    then up to three times up or down (60 %, to 20-80 %) and held again;
+///                    gone in 0.03-0.5 s; back at the same place after 0.05-0.5 s (35 %) or
+///                    elsewhere after 0.5-9 s; at most 50 N a taxel; 22 C; unloaded for 2 s
+/// two_weights        10 s unloaded; then 5, 5 + 10, 5 N for 15 s each and 10 s off on 4 taxels  (10 + 110 taxels)
+///                    or as asked, one after another, two rounds; 0.2 s, which have no label,    x rate
+///                    for each change; 22 C
 ///
 /// A press is 1 s of rest and 1 s of hold; uniform and multitouch change the load without rest, every 1 s; idle takes a
 /// frame every 10 s. The patches of contacts stay 2.5 pitches apart from centre to centre and a pitch from rim to rim;
 /// a taxel, a disc of taxel_area_m2 or of 0.7 pitches, carries the pressure on it. Each temperature of calibration,
-/// paper_calibration and uniform starts with 600 s of rest. Thread-safe: frame() only reads, and a frame depends on the
-/// seed and its index alone (contacts: also on the number of frames).
+/// paper_calibration and uniform starts with 600 s of rest. touches and two_weights are continuous in time at their
+/// rate: all their frames are history of one piece. Thread-safe: frame() only reads, and a frame depends on the seed
+/// and its index alone (contacts: also on the number of frames; touches and two_weights: on the options).
 class Scene {
  public:
-  /// Fails on an unknown name, options out of range, a frame count for a scene of fixed length (or one that is not 1
-  /// ... 200,000), and where the array does not suit: uniform needs taxel_area_m2, paper at least 16 taxels.
+  /// Fails on an unknown name, options out of range or of other scenes, a frame count for a scene of fixed length (or
+  /// one that is not 1 ... 200,000), and where the array does not suit: uniform needs taxel_area_m2, paper at least 16
+  /// taxels.
   [[nodiscard]] static Result<Scene> create(std::string_view name, const ArrayDescription& array,
                                             const EnvironmentOptions& environment, std::uint64_t seed,
-                                            std::optional<std::size_t> frames = {});
+                                            std::optional<std::size_t> frames = {}, const SceneOptions& options = {});
 
   [[nodiscard]] std::size_t frame_count() const noexcept { return frame_count_; }
 
@@ -99,10 +118,13 @@ class Scene {
   void frame(std::size_t index, SceneFrame& out) const;
 
  private:
-  enum class Kind { calibration, uniform, paper_calibration, paper, multitouch, contacts, idle };
+  enum class Kind { calibration, uniform, paper_calibration, paper, multitouch, contacts, idle, touches, two_weights };
 
   Scene(Kind kind, const ArrayDescription& array, const EnvironmentOptions& environment, std::uint64_t seed);
   [[nodiscard]] Status check_array() const;
+  [[nodiscard]] Status set_options(const SceneOptions& options);
+  [[nodiscard]] Status set_length(std::optional<std::size_t> frames);
+  void write_script();
   [[nodiscard]] std::size_t default_frame_count() const;
   void choose_paper_taxels();
   void press_each_taxel(std::size_t index, SceneFrame& out) const;
@@ -111,6 +133,8 @@ class Scene {
   void touch(Random& random, SceneFrame& out) const;
   void move_contacts(std::size_t index, SceneFrame& out) const;
   void leave_alone(std::size_t index, SceneFrame& out) const;
+  void press_and_let_go(std::size_t index, SceneFrame& out) const;
+  [[nodiscard]] bool lay_weights(std::size_t index, SceneFrame& out) const;
   void add_contact(Random& random, std::vector<double>& force_n) const;
   void label_forces(std::size_t index, SceneFrame& out) const;
 
@@ -119,13 +143,20 @@ class Scene {
   double supply_variation_;
   std::uint64_t seed_;
   std::size_t frame_count_ = 0;
+  double rate_hz_ = 0.0;                   // touches, two_weights
+  std::size_t weighed_taxels_ = 0;         // two_weights
   std::vector<std::size_t> paper_taxels_;  // [3 forces, 16]
   std::shared_ptr<const ContactScript> contacts_;
+  std::shared_ptr<const TouchScript> touches_;
+  std::shared_ptr<const WeightScript> weights_;
 };
 
 [[nodiscard]] const char* to_string(PatchShape shape) noexcept;
 
 /// All names that Scene::create knows.
 [[nodiscard]] std::vector<std::string> scene_names();
+
+/// True for the scenes that SceneOptions::rate_hz is for: those that are continuous in time at any rate.
+[[nodiscard]] bool takes_rate(std::string_view scene);
 
 }  // namespace dermis::simulation

@@ -27,6 +27,7 @@ struct SimulationOptions {
   RubberOptions rubber;
   EnvironmentOptions environment;
   LineFaults faults;
+  SceneOptions scene;
 
   [[nodiscard]] Status validate() const;
 };
@@ -40,8 +41,8 @@ struct SimulationOptions {
 /// drives contacts, supply, temperature and all noise. Not thread-safe: one reader.
 class Simulator final : public FrameSource {
  public:
-  /// `frames`: number of frames of the scenes "multitouch", "contacts" and "idle". Fails as Scene::create and
-  /// ConductiveRubber::create do.
+  /// `frames`: number of frames of the scenes "multitouch", "contacts", "idle" and "touches". Fails as Scene::create
+  /// and ConductiveRubber::create do.
   [[nodiscard]] static Result<std::unique_ptr<Simulator>> create(const ArrayDescription& array,
                                                                  const SimulationOptions& options,
                                                                  std::string_view scene, std::uint64_t seed,
