@@ -32,8 +32,8 @@ def alias_of(token):
 
 
 def own_names(text):
-    """What unnamed namespaces of a source declare, roughly, and its main(): names with what they are an alias of."""
-    names, unnamed, depth, brackets = {"main": ""} if "int main(" in text else {}, [], 0, 0
+    """What unnamed namespaces of a source declare, roughly: names with what they are an alias of."""
+    names, unnamed, depth, brackets = {}, [], 0, 0
     for token in TOKEN.findall(NOISE.sub(" ", text)):
         if re.match(r"namespace\s*\{", token):
             depth += 1

@@ -42,7 +42,7 @@ void pin_to_last_core() {
 
 /// An engine at one work: frame(k) is timed; deviation() says how far the result of the last frame is from the
 /// reference.
-struct Entry {
+struct Contestant {
   std::string engine;
   std::function<void(std::size_t)> frame;
   std::function<double(std::size_t)> deviation;
@@ -73,7 +73,7 @@ class Program {
 
  private:
   /// Engines in turn, round after round, each through all frames; the median over all frames of all rounds.
-  void measure(const std::string& work, const std::vector<Entry>& entries, std::size_t frames, double tolerance) {
+  void measure(const std::string& work, const std::vector<Contestant>& entries, std::size_t frames, double tolerance) {
     std::vector<std::vector<double>> times_us(entries.size());
     std::vector<double> deviation(entries.size(), 0.0);
     for (int round = 0; round <= rounds_; ++round) {
@@ -126,12 +126,12 @@ class Program {
     };
     std::vector<double> ours(array.taxel_count());
     auto inversion = compensation::make_crosstalk_inversion(array);
-    std::vector<Entry> entries = {{"dermis",
-                                   [&](std::size_t k) {
-                                     if (!warm) (*inversion)->forget();
-                                     (void)(*inversion)->invert(frames[k], ours);
-                                   },
-                                   [&](std::size_t k) { return misfit(k, ours); }}};
+    std::vector<Contestant> entries = {{"dermis",
+                                        [&](std::size_t k) {
+                                          if (!warm) (*inversion)->forget();
+                                          (void)(*inversion)->invert(frames[k], ours);
+                                        },
+                                        [&](std::size_t k) { return misfit(k, ours); }}};
     const auto eigen = eigen_peer(array);
     const auto scalar = scalar_peer(array);
     std::vector<std::vector<double>> theirs(2, std::vector<double>(array.taxel_count(), 0.0));

@@ -43,7 +43,7 @@ struct JudgedSample {
   double error_of_table = 0.0;  // relative
 };
 
-struct JudgedTaxel {
+struct ComparedTaxel {
   std::vector<JudgedPress> presses;
   std::vector<JudgedSample> samples;
 };
@@ -150,8 +150,8 @@ class TaxelComparison {
   TaxelComparison(std::size_t taxel, Points points, const NetworkErrors& errors, const TableMaker& maker)
       : taxel_(taxel), errors_(errors), maker_(maker), presses_(split_presses(points)) {}
 
-  [[nodiscard]] JudgedTaxel judge() const {
-    JudgedTaxel judged;
+  [[nodiscard]] ComparedTaxel judge() const {
+    ComparedTaxel judged;
     const std::size_t folds = std::min(kFolds, presses_.size());
     if (folds < 2) return judged;
     const std::vector<std::size_t> fold_of = draw_folds(presses_.size(), folds, taxel_);
@@ -179,7 +179,7 @@ class TaxelComparison {
     return found != errors_.end() && (*found)->sample == sample ? *found : nullptr;
   }
 
-  void judge_press(Points press, const fusion::ForceTables& table, JudgedTaxel& judged) const {
+  void judge_press(Points press, const fusion::ForceTables& table, ComparedTaxel& judged) const {
     JudgedPress result{press.front().press, 0.0, 0.0};
     const auto is_tested = [&](const TaxelPoint& point) { return tested(point.sample) != nullptr; };
     const auto samples = static_cast<std::size_t>(std::count_if(press.begin(), press.end(), is_tested));
@@ -206,7 +206,7 @@ class TaxelComparison {
 };
 
 /// The means over the presses of each moment.
-std::vector<JudgedPress> by_moment(const std::vector<std::size_t>& group, const std::vector<JudgedTaxel>& judged) {
+std::vector<JudgedPress> by_moment(const std::vector<std::size_t>& group, const std::vector<ComparedTaxel>& judged) {
   std::map<std::size_t, std::pair<JudgedPress, double>> moments;
   for (const std::size_t taxel : group) {
     for (const JudgedPress& press : judged[taxel].presses) {
@@ -243,7 +243,7 @@ bool is_table_clearly_better(const std::vector<JudgedPress>& presses) {
 
 /// Neighbours in reading order, each group with presses enough to be judged by.
 std::vector<std::vector<std::size_t>> make_groups(const std::vector<std::size_t>& taxels,
-                                                  const std::vector<JudgedTaxel>& judged) {
+                                                  const std::vector<ComparedTaxel>& judged) {
   std::size_t presses = 0;
   for (const std::size_t taxel : taxels) presses += judged[taxel].presses.size();
   const std::size_t most = std::min(kMostGroups, taxels.size());
@@ -255,7 +255,7 @@ std::vector<std::vector<std::size_t>> make_groups(const std::vector<std::size_t>
 
 /// Puts the tables of those `asked`, which are rising, that have one into the networks.
 void install(const std::vector<std::size_t>& asked, std::span<const std::vector<TaxelPoint>> points,
-             const TableMaker& maker, const std::vector<JudgedTaxel>& judged, ForceTraining& training) {
+             const TableMaker& maker, const std::vector<ComparedTaxel>& judged, ForceTraining& training) {
   std::vector<std::pair<std::vector<Knot>, double>> tables(asked.size());
   parallel_for(asked.size(), [&](std::size_t k) { tables[k] = maker.fit(by_force(points[asked[k]])); });
   std::vector<std::size_t> taxels;
@@ -287,10 +287,10 @@ void install(const std::vector<std::size_t>& asked, std::span<const std::vector<
   training.report.table_taxels = taxels;
 }
 
-std::vector<JudgedTaxel> judge_all(std::span<const std::vector<TaxelPoint>> points, const TableMaker& maker,
-                                   const ForceTraining& training) {
+std::vector<ComparedTaxel> judge_all(std::span<const std::vector<TaxelPoint>> points, const TableMaker& maker,
+                                     const ForceTraining& training) {
   const std::vector<NetworkErrors> errors = errors_by_taxel(training);
-  std::vector<JudgedTaxel> judged(points.size());
+  std::vector<ComparedTaxel> judged(points.size());
   parallel_for(points.size(), [&](std::size_t taxel) {
     if (errors[taxel].empty()) return;
     judged[taxel] = TaxelComparison(taxel, points[taxel], errors[taxel], maker).judge();
@@ -322,7 +322,7 @@ void number_presses(std::vector<TaxelPoint>& points) {
 void prefer_tables(std::span<const std::vector<TaxelPoint>> points, const SampleTemperatures& temperatures,
                    ForceTraining& training) {
   const TableMaker maker(temperatures);
-  const std::vector<JudgedTaxel> judged = judge_all(points, maker, training);
+  const std::vector<ComparedTaxel> judged = judge_all(points, maker, training);
   std::set<std::size_t> own;
   for (const TestedLoad& load : training.tested_own) own.insert(load.taxels.front());
   std::vector<std::vector<std::size_t>> better;  // groups

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "compensation/circuit_model/matrix.hpp"
 #include "compensation/matrix_product.hpp"
 #include "compensation/readout_parts.hpp"
 
@@ -25,10 +26,6 @@ constexpr double kMostApparentRatio = 0.999;
 constexpr double kLeastFactor = 1.0001;
 constexpr double kLeastCurrent = 1e-18;  // [A at 1 V]
 constexpr double kMostSiemens = 1e3;
-
-Index at(std::size_t index) {
-  return static_cast<Index>(index);
-}
 
 void multiply_into(const DenseInverse::Matrix& a, const DenseInverse::Matrix& b, DenseInverse::Matrix& out) noexcept {
   multiply({a.data(), static_cast<std::size_t>(a.cols()), 1}, b.data(), static_cast<std::size_t>(a.rows()),

@@ -16,7 +16,7 @@ namespace dermis::recordings {
 namespace {
 
 constexpr std::size_t kMaxDimensions = 8;
-constexpr hsize_t kMaxChunkBytes = hsize_t{64} << 20U;
+constexpr hsize_t kMaxDatasetChunkBytes = hsize_t{64} << 20U;
 constexpr std::size_t kMaxTextBytes = std::size_t{1} << 20U;
 constexpr unsigned kDeflateLevel = 1;
 constexpr hsize_t kDeflateRatio = 1032;  ///< The most that deflate can compress (zlib, "Technical Details").
@@ -69,7 +69,7 @@ Status read_layout(hid_t dataset, Hdf5Dataset& read) {
     return bad_input(read.place + ": " + hdf5_reason());
   }
   const hsize_t elements = product(read.chunk);
-  if (elements > kMaxChunkBytes / read.element_bytes) {
+  if (elements > kMaxDatasetChunkBytes / read.element_bytes) {
     return bad_input(read.place + " has chunks of more than 64 MiB; write smaller ones with h5repack");
   }
   return Done{};
@@ -80,7 +80,7 @@ std::size_t layer_bytes(const Hdf5Dataset& dataset) {
   hsize_t bytes = dataset.element_bytes * product(dataset.chunk);
   for (std::size_t i = 1; i < dataset.sizes.size(); ++i) {
     bytes *= (dataset.sizes[i] + dataset.chunk[i] - 1) / dataset.chunk[i];
-    if (bytes > kMaxChunkBytes) return kMaxChunkBytes;
+    if (bytes > kMaxDatasetChunkBytes) return kMaxDatasetChunkBytes;
   }
   return bytes;
 }
