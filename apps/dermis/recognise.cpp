@@ -94,8 +94,9 @@ void add_recognise(Command& command) {
   auto options = std::make_shared<RecogniseOptions>();
   command.option("--classes", options->in.classes, "Classes of 'dermis learn'").required();
   command.option("--in", options->in.loads.from, "A file of frames, a recording or the URI of a device").required();
-  command.option("--model", options->in.loads.model,
-                 "What computes the forces, where the classes were learned from forces");
+  command.option(
+      "--model", options->in.loads.model,
+      "What computes the forces, where the classes were learned from forces: a model, or suit.toml of several arrays");
   command.flag(
       "--tare", options->in.loads.tare,
       "Take the first second (at least 10 frames) for unloaded; else readings without --model are tared already");

@@ -20,16 +20,24 @@ namespace {
 using recognition::LabelledFrames;
 using recognition::Layout;
 using recognition::LoadRecording;
-using recognition::SensedArray;
 
 constexpr double kMostRateDifference = 0.1;  // of the first recording
 
 /// A recording, and what it says of its frames.
 struct ReadRecording {
   LoadRecording recording;
-  SensedArray array;
-  double rate_hz = 0.0;
+  Layout layout;
 };
+
+/// "2x3 taxels", or "chest 16x16, hand 4x5 taxels".
+std::string text_of(const Layout& layout) {
+  std::string text;
+  for (const recognition::SensedArray& array : layout.arrays) {
+    if (layout.arrays.size() > 1) text += (text.empty() ? "" : ", ") + array.name + " ";
+    text += fmt::format("{}x{}", array.rows, array.cols);
+  }
+  return text + " taxels";
+}
 
 /// As the column `recording` of labels.csv names it: without folder, with the array where it is one of several.
 std::string name_of(const std::string& from) {
@@ -47,13 +55,14 @@ double rate_of(const std::vector<Nanos>& times) {
   return recognition::is_rate(rate) ? rate : 0.0;
 }
 
+/// `arrays`: which of several; empty: all.
 Result<ReadRecording> read_recording(const ExampleOptions& options, const std::string& from,
-                                     const sources::SourceOptions& how) {
+                                     const std::vector<std::string>& arrays, const sources::SourceOptions& how) {
   Result<LoadSource> source =
-      LoadSource::open({.from = from, .model = options.model, .tare = options.tare, .source = how});
+      LoadSource::open({.from = from, .model = options.model, .tare = options.tare, .source = how, .arrays = arrays});
   if (!source) return source.error();
   if (source->is_live()) return sources::has_no_end(from);
-  ReadRecording read{.recording = {.name = name_of(from), .frames = {}}, .array = {}};
+  ReadRecording read{.recording = {.name = name_of(from), .frames = {}}, .layout = {}};
   std::vector<Nanos> times;
   for (;;) {
     const Result<bool> more = source->next();
@@ -66,12 +75,15 @@ Result<ReadRecording> read_recording(const ExampleOptions& options, const std::s
   if (read.recording.tare_frames == times.size()) {
     return bad_input(from + (times.empty() ? ": has no frame" : ": ends before it is tared, which takes 1 s"));
   }
-  read.array = source->array().value_or(SensedArray{});
-  read.rate_hz = options.data.rate_hz > 0.0 ? options.data.rate_hz : rate_of(times);
+  for (const std::string& line : source->describe_troubles()) {
+    if (how.notice) how.notice(line);
+  }
+  read.layout = source->layout().value_or(Layout{});
+  read.layout.rate_hz = options.data.rate_hz > 0.0 ? options.data.rate_hz : rate_of(times);
   return read;
 }
 
-/// Whether another recording is of the same array and rate as the first.
+/// Whether another recording is of the same arrays and rate as the first.
 Status check_alike(const ReadRecording& first, const ReadRecording& other) {
   const std::string& name = other.recording.name;
   const std::string& first_name = first.recording.name;
@@ -79,30 +91,31 @@ Status check_alike(const ReadRecording& first, const ReadRecording& other) {
     return bad_input("--in: two recordings are called " + name +
                      "; rename one, so that the labels can tell them apart");
   }
-  if (other.array.rows != first.array.rows || other.array.cols != first.array.cols) {
-    return bad_input(fmt::format("{}: has frames of {}x{} taxels, {} of {}x{}; learn from one array at a time", name,
-                                 other.array.rows, other.array.cols, first_name, first.array.rows, first.array.cols));
+  if (text_of(other.layout) != text_of(first.layout)) {
+    return bad_input(fmt::format("{}: has frames of {}, {} of {}; learn from recordings of the same arrays", name,
+                                 text_of(other.layout), first_name, text_of(first.layout)));
   }
-  if (std::abs(other.rate_hz - first.rate_hz) > kMostRateDifference * first.rate_hz) {
+  const double rate_hz = first.layout.rate_hz;
+  if (std::abs(other.layout.rate_hz - rate_hz) > kMostRateDifference * rate_hz) {
     return bad_input(fmt::format("{}: has {:.4g} frames a second, {} {:.4g}; learn from recordings of one rate", name,
-                                 other.rate_hz, first_name, first.rate_hz));
+                                 other.layout.rate_hz, first_name, rate_hz));
   }
   return Done{};
 }
 
 Result<LabelledFrames> read_recordings(const ExampleOptions& options, const sources::SourceOptions& how) {
   std::vector<ReadRecording> read;
+  std::vector<std::string> arrays = options.arrays;
   for (const std::string& from : options.in) {
-    Result<ReadRecording> next = read_recording(options, from, how);
+    Result<ReadRecording> next = read_recording(options, from, arrays, how);
     if (!next) return next.error();
     for (const ReadRecording& before : read) {
       if (Status alike = check_alike(before, *next); !alike) return alike.error();
     }
     read.push_back(*std::move(next));
+    arrays = recognition::names_of(read.front().layout.arrays);
   }
-  Layout layout{.arrays = {read.front().array}, .readings = read.front().array.taxel_count()};
-  layout.rate_hz = read.front().rate_hz;
-  if (!options.model.empty()) layout.least_reading = recognition::kLeastNewtons;
+  const Layout layout = read.front().layout;
   std::vector<LoadRecording> recordings;
   for (ReadRecording& one : read) recordings.push_back(std::move(one.recording));
   return recognition::label_recordings(layout, std::move(recordings), options.data.labels, options.data.label);
