@@ -5,10 +5,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "dermis/core/suit.hpp"
 #include "dermis/files/suit_toml.hpp"
+#include "dermis/recordings/recording.hpp"
 
 namespace dermis::operation {
 namespace {
@@ -76,6 +78,11 @@ Status check_loads(const Layout& examples, const std::string& classes, const std
   return Done{};
 }
 
+std::string recording_name(const std::string& from) {
+  const std::string array = recordings::recording_place(from).array;
+  return std::filesystem::path(sources::file_of(from)).filename().string() + (array.empty() ? "" : "#" + array);
+}
+
 LoadSource::LoadSource(ArrayLoads first, bool has_forces) : first_(std::move(first)), has_forces_(has_forces) {}
 
 Result<LoadSource> LoadSource::open(const LoadInput& input) {
@@ -90,6 +97,11 @@ Result<LoadSource> LoadSource::open(const LoadInput& input) {
     if (!other) return other.error();
     source.others_.push_back(*std::move(other));
   }
+  if (input.extra.empty()) return source;
+  if (source.is_live()) return bad_input("--extra: '" + input.from + "' is a device; 'dermis record' it first");
+  Result<FurtherReadings> further = FurtherReadings::read(input.extra, recording_name(input.from));
+  if (!further) return further.error();
+  source.further_ = *std::move(further);
   return source;
 }
 
@@ -101,6 +113,7 @@ Result<bool> LoadSource::next() {
     if (Status moved = other.move_to(first_.time()); !moved) return moved.error();
     loads_.insert(loads_.end(), other.loads().begin(), other.loads().end());
   }
+  if (further_) further_->move_to(first_.time());
   if (is_tare()) std::fill(loads_.begin(), loads_.end(), 0.0F);
   return true;
 }
@@ -108,6 +121,14 @@ Result<bool> LoadSource::next() {
 bool LoadSource::is_tare() const noexcept {
   return first_.is_tare() ||
          std::any_of(others_.begin(), others_.end(), [](const HeldLoads& other) { return other.is_tare(); });
+}
+
+std::span<const float> LoadSource::extras() const noexcept {
+  return further_ ? std::span<const float>(further_->values()) : std::span<const float>();
+}
+
+std::vector<std::string> LoadSource::extra_names() const {
+  return further_ ? further_->names() : std::vector<std::string>();
 }
 
 std::optional<Layout> LoadSource::layout() const {
@@ -120,6 +141,7 @@ std::optional<Layout> LoadSource::layout() const {
     layout.readings += array.taxel_count();
     layout.arrays.push_back(std::move(array));
   }
+  layout.extras = extras().size();
   if (has_forces_) layout.least_reading = recognition::kLeastNewtons;
   return layout;
 }
@@ -131,6 +153,7 @@ std::vector<std::string> LoadSource::describe_troubles() const {
     lines.push_back(fmt::format("{}: {} frames have none of '{}' in the half second before; it has no load there",
                                 from_, other.silent(), other.array().name));
   }
+  if (const auto missing = further_ ? further_->describe_missing() : std::nullopt) lines.push_back(*missing);
   return lines;
 }
 

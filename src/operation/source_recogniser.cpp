@@ -26,10 +26,9 @@ ArrayDescription array_of(const Layout& layout) {
 
 /// Whether these classes can name what comes from `input`.
 Status check_classes(const Classes& classes, const RecognitionInput& input) {
-  if (classes.layout.extras > 0) {
-    return bad_input(input.classes +
-                     ": its classes need further readings beside each frame, which a stream of frames has not; learn "
-                     "them without --extra");
+  if (classes.layout.extras > 0 && input.loads.extra.empty()) {
+    return bad_input(input.classes + ": its classes need " + std::to_string(classes.layout.extras) +
+                     " further readings beside each frame; name their table, --extra, or learn classes without");
   }
   if (Status checked = check_loads(classes.layout, input.classes, input.loads.model); !checked) return checked;
   if (classes.layout.rate_hz == 0.0 && input.rate_hz > 0.0) {
@@ -47,6 +46,7 @@ Layout layout_of(const LoadSource& source, const Classes& classes, double rate_h
     layout.arrays = found->arrays;
     layout.readings = found->readings;
   }
+  layout.extras = source.extra_names().size();
   if (rate_hz > 0.0) layout.rate_hz = rate_hz;
   return layout;
 }
@@ -90,7 +90,7 @@ Result<std::optional<SourceRecognition>> SourceRecogniser::next() {
     } else if (source_.is_tare()) {
       ++tare_frames_;
     } else {
-      found = recogniser_.next(source_.loads());
+      found = recogniser_.next(source_.loads(), source_.extras());
     }
   }
   if (!found) return std::optional<SourceRecognition>();

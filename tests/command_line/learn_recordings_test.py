@@ -241,6 +241,39 @@ class TaredReadings(unittest.TestCase):
         self.recording("taught", 1, touches=0, idle=RATE // 2)
         self.refuse(self.learn([(0, 1, "tap")]), ["taught.mcap", "1 s"])
 
+    def test_further_readings_tell_apart_what_feels_the_same(self):
+        def joints(name, happened):
+            """The elbow is bent in every second pair of touches, alike for taps and holds."""
+            lines = [f"{name}.mcap,{(first - 3) / RATE},{90 * (i % 4 >= 2)},{i % 3}"
+                     for i, (first, _, _) in enumerate(happened)]
+            lines += [f"{name}.mcap,{(last + first) / 2 / RATE},{90 * (i % 4 >= 2) + 1},{i % 3}"
+                      for i, (first, last, _) in enumerate(happened)]
+            return sorted(lines, key=lambda line: float(line.split(",")[1]))
+
+        def bent(happened):
+            return [(first, last, f"{kind}_{'bent' if i % 4 >= 2 else 'straight'}")
+                    for i, (first, last, kind) in enumerate(happened)]
+
+        taught, other = self.recording("taught", 1, touches=40), self.recording("other", 2)
+        header = ["recording,time_s,elbow,wrist"]
+        table = self.written("joints.csv", "\n".join(header + joints("taught", taught) + joints("other", other)) + "\n")
+        learned = dermis(*self.learn(bent(taught), "--extra", table))
+        self.assertEqual(learned.returncode, 0, learned.stderr)
+        # Between touches the table is silent.
+        self.assertRegex(learned.stderr, r"joints.csv: \d+ of \d+ frames of taught.mcap lack a reading")
+        recognise = ["recognise", "--classes", self.work / "c.safetensors", "--tare", "--in", self.work / "other.mcap"]
+        self.refuse(recognise, ["c.safetensors", "--extra"])
+        result = dermis(*recognise, "--extra", table)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        lines = list(csv.DictReader(io.StringIO(result.stdout)))
+        self.assertEqual(len(lines), len(other))
+        right = sum(line["likeliest"] == kind for line, (_, _, kind) in zip(lines, bent(other)))
+        self.assertGreaterEqual(right, 0.9 * len(other))
+        self.refuse([*self.learn(bent(taught)), "--extra", self.written("away.csv", "time_s,elbow\n99999,1\n")],
+                    ["away.csv", "'elbow'", "time_s"])
+        self.refuse([*self.learn(bent(taught)), "--extra", self.written("text.csv", "time_s,elbow\n0,bent\n")],
+                    ["text.csv:2", "'bent'"])
+
     def test_poses_without_a_rate_are_told_so(self):
         happened = self.recording("taught", 1)
         labels = "".join(f"{i},{first + 2},{first + 2},{'left' if i % 2 else 'right'}\n"

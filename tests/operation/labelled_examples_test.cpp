@@ -76,6 +76,28 @@ TEST(ReadExamples, of_several_arrays_stand_side_by_side_as_in_the_first_recordin
             "the same arrays");
 }
 
+TEST(ReadExamples, have_further_readings_and_their_mean_where_one_is_missing) {
+  const MatFiles mat;
+  std::vector<std::string> notices;
+  const auto read = [&](const ExampleOptions& options) {
+    return read_examples(options, {.notice = [&](const std::string& line) { notices.push_back(line); }});
+  };
+  ExampleOptions options;
+  options.in = {mat.write("a.csv", two_presses()), mat.write("b.csv", later(two_presses(), std::chrono::seconds(5)))};
+  options.data.labels = labels(mat, "b.csv");
+  options.data.extras = mat.file("joints.csv");
+  support::write_bytes(options.data.extras, "time_s,elbow\n1,10\n1.04,20\n6.04,30\n");
+  const auto data = read(options);
+  ASSERT_TRUE(data) << error_of(data);
+  EXPECT_EQ(data->layout.extras, 1U);
+  EXPECT_EQ(data->extras, (std::vector<float>{10, 10, 10, 10, 20, 20, 20, 20, 20, 20, 20, 20, 30, 30, 30, 30}));
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices[0].find("joints.csv: 4 of 8 frames of b.csv"), std::string::npos) << notices[0];
+  support::write_bytes(options.data.extras, "time_s,elbow\n3,10\n");
+  EXPECT_EQ(error_of(read(options)).find(options.data.extras + ": 'elbow' has no value at the times of the frames"),
+            0U);
+}
+
 TEST(ReadExamples, refuses_recordings_that_are_not_alike) {
   const MatFiles mat;
   ExampleOptions options;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 
 #include "force_mat.hpp"
 
@@ -144,6 +145,32 @@ TEST(LoadSource, says_where_an_array_was_silent) {
   EXPECT_EQ(source->describe_troubles(),
             (std::vector<std::string>{
                 recording + ": 49 frames have none of 'right' in the half second before; it has no load there"}));
+}
+
+TEST(LoadSource, has_further_readings_beside_its_frames) {
+  const MatFiles mat;
+  const std::string frames = mat.write("frames.csv", pressed({1.0F, 2.0F}));
+  support::write_bytes(mat.file("joints.csv"), "time_s,elbow,wrist\n0.995,7,\n1.01,8,9\n");
+  Result<LoadSource> source = LoadSource::open({.from = frames, .extra = mat.file("joints.csv")});
+  ASSERT_TRUE(source) << error_of(source);
+  EXPECT_EQ(source->extra_names(), (std::vector<std::string>{"elbow", "wrist"}));
+  EXPECT_EQ(source->layout()->extras, 2U);
+  ASSERT_TRUE(source->next().value());
+  EXPECT_EQ(source->extras()[0], 7.0F);
+  EXPECT_TRUE(std::isnan(source->extras()[1]));
+  ASSERT_TRUE(source->next().value());
+  EXPECT_EQ(std::vector<float>(source->extras().begin(), source->extras().end()), (std::vector<float>{8.0F, 9.0F}));
+  ASSERT_EQ(source->describe_troubles().size(), 1U);
+  EXPECT_NE(source->describe_troubles()[0].find("joints.csv: 1 of 2 frames of frames.csv"), std::string::npos);
+  const std::string device = "sim:idle?rate=10";
+  EXPECT_EQ(error_of(LoadSource::open({.from = device, .extra = mat.file("joints.csv")})),
+            "--extra: '" + device + "' is a device; 'dermis record' it first");
+}
+
+TEST(RecordingName, has_no_folder_but_the_array) {
+  EXPECT_EQ(recording_name("/run/rec.mcap"), "rec.mcap");
+  EXPECT_EQ(recording_name("/run/rec.mcap#chest"), "rec.mcap#chest");
+  EXPECT_EQ(recording_name("file:/run/frames.npy?rate=50"), "frames.npy");
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ namespace dermis::operation {
 /// Where labelled examples are: in recordings, or in plain files.
 struct ExampleOptions {
   recognition::DatasetFiles data;
-  std::vector<std::string> in;  ///< Recordings; then of `data` only the labels and the rate are used.
+  std::vector<std::string> in;  ///< Recordings; then `data` has no frames and arrays, and its extras are
+                                ///< as for FurtherReadings::read().
   std::string model;            ///< Of the recordings: as for LoadInput, like the next two.
   bool tare = false;
   std::vector<std::string> arrays;  ///< Empty: those of the first recording.
