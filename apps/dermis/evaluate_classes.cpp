@@ -42,13 +42,14 @@ void print_text(const Classes& classes, const ClassesEvaluation& evaluation) {
 
 }  // namespace
 
-Status evaluate_classes(const std::string& path, const operation::ExampleOptions& examples, bool json) {
+Status evaluate_classes(const std::string& path, operation::ExampleOptions examples, bool json) {
   const Result<Classes> classes = recognition::read_classes(path);
   if (!classes) return classes.error();
   if (examples.data.labels.empty()) return bad_input("--labels is required: which frames are of which class");
   if (!examples.in.empty()) {
     if (Status checked = operation::check_loads(classes->layout, path, examples.model); !checked) return checked;
   }
+  examples.arrays = recognition::names_of(classes->layout.arrays);
   Result<recognition::LabelledFrames> data = operation::read_examples(examples, {.notice = say});
   if (!data) return data.error();
   if (examples.data.rate_hz == 0.0) data->layout.rate_hz = classes->layout.rate_hz;

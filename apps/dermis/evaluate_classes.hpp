@@ -10,6 +10,6 @@
 namespace dermis::app {
 
 /// 'dermis evaluate --classes': prints what the classes of a file answer to labelled examples.
-[[nodiscard]] Status evaluate_classes(const std::string& classes, const operation::ExampleOptions& examples, bool json);
+[[nodiscard]] Status evaluate_classes(const std::string& classes, operation::ExampleOptions examples, bool json);
 
 }  // namespace dermis::app

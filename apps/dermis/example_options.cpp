@@ -9,7 +9,8 @@ Option add_example_options(Command& command, operation::ExampleOptions& examples
   command.option("--in", examples.in, "Recordings, or other files of frames, whose frames the labels count");
   command.flag("--tare", examples.tare, "Nothing touches in the first second of each --in: that is zero load");
   command.option("--arrays", data.arrays, "arrays.csv: where the readings of each array of --frames are");
-  command.option("--extra", data.extras, "extra.npy: further readings beside each of --frames, such as joint angles");
+  command.option("--extra", data.extras,
+                 "Further readings, such as joint angles: extra.npy beside --frames, CSV with time_s beside --in");
   command.option("--label", data.label, "Column of labels.csv that names the class").shows_default();
   return command.option("--labels", data.labels, "labels.csv: which frames are an example of which class");
 }

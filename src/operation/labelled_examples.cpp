@@ -7,12 +7,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "dermis/core/quantile.hpp"
 #include "dermis/operation/load_source.hpp"
-#include "dermis/recordings/recording.hpp"
 
 namespace dermis::operation {
 namespace {
@@ -20,21 +18,25 @@ namespace {
 using recognition::LabelledFrames;
 using recognition::Layout;
 using recognition::LoadRecording;
-using recognition::SensedArray;
 
 constexpr double kMostRateDifference = 0.1;  // of the first recording
 
 /// A recording, and what it says of its frames.
 struct ReadRecording {
   LoadRecording recording;
-  SensedArray array;
-  double rate_hz = 0.0;
+  Layout layout;
+  std::vector<std::string> extra_names{};
+  std::vector<std::string> troubles{};
 };
 
-/// As the column `recording` of labels.csv names it: without folder, with the array where it is one of several.
-std::string name_of(const std::string& from) {
-  const std::string array = recordings::recording_place(from).array;
-  return std::filesystem::path(sources::file_of(from)).filename().string() + (array.empty() ? "" : "#" + array);
+/// "2x3 taxels", or "chest 16x16, hand 4x5 taxels".
+std::string text_of(const Layout& layout) {
+  std::string text;
+  for (const recognition::SensedArray& array : layout.arrays) {
+    if (layout.arrays.size() > 1) text += (text.empty() ? "" : ", ") + array.name + " ";
+    text += fmt::format("{}x{}", array.rows, array.cols);
+  }
+  return text + " taxels";
 }
 
 /// By the median of the intervals; 0 where they tell nothing.
@@ -47,31 +49,39 @@ double rate_of(const std::vector<Nanos>& times) {
   return recognition::is_rate(rate) ? rate : 0.0;
 }
 
+/// `arrays`: which of several; empty: all.
 Result<ReadRecording> read_recording(const ExampleOptions& options, const std::string& from,
-                                     const sources::SourceOptions& how) {
-  Result<LoadSource> source =
-      LoadSource::open({.from = from, .model = options.model, .tare = options.tare, .source = how});
+                                     const std::vector<std::string>& arrays, const sources::SourceOptions& how) {
+  Result<LoadSource> source = LoadSource::open({.from = from,
+                                                .model = options.model,
+                                                .tare = options.tare,
+                                                .source = how,
+                                                .arrays = arrays,
+                                                .extra = options.data.extras});
   if (!source) return source.error();
   if (source->is_live()) return sources::has_no_end(from);
-  ReadRecording read{.recording = {.name = name_of(from), .frames = {}}, .array = {}};
+  ReadRecording read{.recording = {.name = recording_name(from), .frames = {}}, .layout = {}};
   std::vector<Nanos> times;
   for (;;) {
     const Result<bool> more = source->next();
     if (!more) return more.error();
     if (!*more) break;
     read.recording.frames.insert(read.recording.frames.end(), source->loads().begin(), source->loads().end());
+    read.recording.extras.insert(read.recording.extras.end(), source->extras().begin(), source->extras().end());
     read.recording.tare_frames += source->is_tare() ? 1 : 0;
     times.push_back(source->time());
   }
   if (read.recording.tare_frames == times.size()) {
     return bad_input(from + (times.empty() ? ": has no frame" : ": ends before it is tared, which takes 1 s"));
   }
-  read.array = source->array().value_or(SensedArray{});
-  read.rate_hz = options.data.rate_hz > 0.0 ? options.data.rate_hz : rate_of(times);
+  read.troubles = source->describe_troubles();
+  read.extra_names = source->extra_names();
+  read.layout = source->layout().value_or(Layout{});
+  read.layout.rate_hz = options.data.rate_hz > 0.0 ? options.data.rate_hz : rate_of(times);
   return read;
 }
 
-/// Whether another recording is of the same array and rate as the first.
+/// Whether another recording is of the same arrays and rate as the first.
 Status check_alike(const ReadRecording& first, const ReadRecording& other) {
   const std::string& name = other.recording.name;
   const std::string& first_name = first.recording.name;
@@ -79,30 +89,66 @@ Status check_alike(const ReadRecording& first, const ReadRecording& other) {
     return bad_input("--in: two recordings are called " + name +
                      "; rename one, so that the labels can tell them apart");
   }
-  if (other.array.rows != first.array.rows || other.array.cols != first.array.cols) {
-    return bad_input(fmt::format("{}: has frames of {}x{} taxels, {} of {}x{}; learn from one array at a time", name,
-                                 other.array.rows, other.array.cols, first_name, first.array.rows, first.array.cols));
+  if (text_of(other.layout) != text_of(first.layout)) {
+    return bad_input(fmt::format("{}: has frames of {}, {} of {}; learn from recordings of the same arrays", name,
+                                 text_of(other.layout), first_name, text_of(first.layout)));
   }
-  if (std::abs(other.rate_hz - first.rate_hz) > kMostRateDifference * first.rate_hz) {
+  const double rate_hz = first.layout.rate_hz;
+  if (std::abs(other.layout.rate_hz - rate_hz) > kMostRateDifference * rate_hz) {
     return bad_input(fmt::format("{}: has {:.4g} frames a second, {} {:.4g}; learn from recordings of one rate", name,
-                                 other.rate_hz, first_name, first.rate_hz));
+                                 other.layout.rate_hz, first_name, rate_hz));
+  }
+  return Done{};
+}
+
+/// Where a further reading is missing, the mean of all others of its column stands.
+Status fill_missing(const std::string& path, std::vector<ReadRecording>& read) {
+  const std::vector<std::string>& names = read.front().extra_names;
+  const auto for_each_of = [&](std::size_t column, const auto& work) {
+    for (ReadRecording& one : read) {
+      std::vector<float>& extras = one.recording.extras;
+      for (std::size_t place = column; place < extras.size(); place += names.size()) work(extras[place]);
+    }
+  };
+  for (std::size_t column = 0; column < names.size(); ++column) {
+    double sum = 0.0;
+    std::size_t count = 0;
+    for_each_of(column, [&](float value) {
+      if (std::isnan(value)) return;
+      sum += static_cast<double>(value);
+      ++count;
+    });
+    if (count == 0) {
+      return bad_input(
+          fmt::format("{}: '{}' has no value at the times of the frames; time_s must be that of their "
+                      "recording, as 'dermis convert' writes it into frames.csv",
+                      path, names[column]));
+    }
+    const auto mean = static_cast<float>(sum / static_cast<double>(count));
+    for_each_of(column, [&](float& value) { value = std::isnan(value) ? mean : value; });
   }
   return Done{};
 }
 
 Result<LabelledFrames> read_recordings(const ExampleOptions& options, const sources::SourceOptions& how) {
   std::vector<ReadRecording> read;
+  std::vector<std::string> arrays = options.arrays;
   for (const std::string& from : options.in) {
-    Result<ReadRecording> next = read_recording(options, from, how);
+    Result<ReadRecording> next = read_recording(options, from, arrays, how);
     if (!next) return next.error();
     for (const ReadRecording& before : read) {
       if (Status alike = check_alike(before, *next); !alike) return alike.error();
     }
     read.push_back(*std::move(next));
+    arrays = recognition::names_of(read.front().layout.arrays);
   }
-  Layout layout{.arrays = {read.front().array}, .readings = read.front().array.taxel_count()};
-  layout.rate_hz = read.front().rate_hz;
-  if (!options.model.empty()) layout.least_reading = recognition::kLeastNewtons;
+  if (Status filled = fill_missing(options.data.extras, read); !filled) return filled.error();
+  for (const ReadRecording& one : read) {
+    for (const std::string& line : one.troubles) {
+      if (how.notice) how.notice(line);
+    }
+  }
+  const Layout layout = read.front().layout;
   std::vector<LoadRecording> recordings;
   for (ReadRecording& one : read) recordings.push_back(std::move(one.recording));
   return recognition::label_recordings(layout, std::move(recordings), options.data.labels, options.data.label);
@@ -112,7 +158,7 @@ Result<LabelledFrames> read_recordings(const ExampleOptions& options, const sour
 
 Result<LabelledFrames> read_examples(const ExampleOptions& options, const sources::SourceOptions& source) {
   if (!recognition::is_rate(options.data.rate_hz)) return bad_input("--rate: must be 0.001 to 1e6");
-  const bool has_plain = !options.data.frames.empty() || !options.data.arrays.empty() || !options.data.extras.empty();
+  const bool has_plain = !options.data.frames.empty() || !options.data.arrays.empty();
   if (options.in.empty()) {
     if (!options.model.empty() || options.tare) {
       return bad_input("--model and --tare are for --in; the frames of --frames are loads already");
@@ -120,7 +166,7 @@ Result<LabelledFrames> read_examples(const ExampleOptions& options, const source
     if (!options.data.frames.empty() && !options.data.arrays.empty()) return recognition::read_dataset(options.data);
     return bad_input("name the examples: --in RECORDING..., or --frames FILE with --arrays FILE");
   }
-  if (has_plain) return bad_input("--in: excludes --frames, --arrays and --extra; name one kind of examples");
+  if (has_plain) return bad_input("--in: excludes --frames and --arrays; name one kind of examples");
   return read_recordings(options, source);
 }
 

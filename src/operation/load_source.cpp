@@ -2,21 +2,71 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/operation/load_source.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <chrono>
-#include <cmath>
+#include <filesystem>
 #include <utility>
+
+#include "dermis/core/suit.hpp"
+#include "dermis/files/suit_toml.hpp"
+#include "dermis/recordings/recording.hpp"
 
 namespace dermis::operation {
 namespace {
 
-constexpr std::size_t kTareFrames = 10;
-constexpr std::chrono::seconds kTareTime{1};
-constexpr std::chrono::seconds kMostTareTime{10};
+using recognition::Layout;
+
+/// The arrays of a recording that holds several, by the models of a suit.
+Result<std::vector<ArrayLoadInput>> arrays_of_suit(const LoadInput& input, const std::string& example) {
+  const Result<SuitDescription> suit = files::read_suit(input.model);
+  if (!suit) {
+    return bad_input(fmt::format(
+        "{}: holds several arrays; name one, as '{}#{}', or give the suit.toml with their models as --model: {}",
+        input.from, input.from, example, suit.error().message));
+  }
+  std::vector<std::string> names = input.arrays;
+  if (names.empty()) {
+    for (const SuitArray& array : suit->arrays) names.push_back(array.name);
+  }
+  std::vector<ArrayLoadInput> arrays;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(suit->arrays.begin(), suit->arrays.end(),
+                                    [&](const SuitArray& array) { return array.name == name; });
+    if (found == suit->arrays.end()) return bad_input(fmt::format("{}: has no array '{}'", input.model, name));
+    arrays.push_back({.from = input.from + "#" + name, .model = found->model, .source = {}, .name = name});
+  }
+  return arrays;
+}
+
+/// What is to be opened: what `from` names, or each array of a recording that holds several.
+Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input) {
+  std::vector<ArrayLoadInput> arrays = {ArrayLoadInput{input.from, input.model, input.tare, input.source, {}}};
+  if (input.arrays.size() == 1) return arrays;
+  const Result<std::vector<std::string>> held = sources::several_arrays(input.from);
+  if (!held) return held.error();
+  if (held->empty()) return arrays;
+  arrays.clear();
+  if (input.model.empty()) {
+    for (const std::string& name : input.arrays.empty() ? *held : input.arrays) {
+      arrays.push_back({.from = input.from + "#" + name, .source = {}, .name = name});
+    }
+  } else {
+    Result<std::vector<ArrayLoadInput>> of_suit = arrays_of_suit(input, held->front());
+    if (!of_suit) return of_suit.error();
+    arrays = *std::move(of_suit);
+  }
+  for (ArrayLoadInput& array : arrays) {
+    array.tare = input.tare;
+    array.source = input.source;
+    array.source.array = nullptr;
+  }
+  return arrays;
+}
 
 }  // namespace
 
-Status check_loads(const recognition::Layout& examples, const std::string& classes, const std::string& model) {
+Status check_loads(const Layout& examples, const std::string& classes, const std::string& model) {
   if (examples.has_forces() && model.empty()) {
     return bad_input(classes + ": its classes were learned from forces; name the --model of the array");
   }
@@ -28,74 +78,83 @@ Status check_loads(const recognition::Layout& examples, const std::string& class
   return Done{};
 }
 
-bool UnloadedReadings::add(const RawFrame& frame) {
-  if (is_done_) return false;
-  if (frames_ == 0) {
-    first_time_ = frame.time;
-    sum_.assign(frame.counts.size(), 0.0);
-    count_.assign(frame.counts.size(), 0.0);
-  }
-  const Nanos lasted = frame.time - first_time_;
-  is_done_ = frames_ > 0 && (lasted >= kMostTareTime || (lasted >= kTareTime && frames_ >= kTareFrames));
-  if (is_done_) return false;
-  ++frames_;
-  for (std::size_t taxel = 0; taxel < sum_.size(); ++taxel) {
-    if (!std::isfinite(frame.counts[taxel])) continue;
-    sum_[taxel] += static_cast<double>(frame.counts[taxel]);
-    count_[taxel] += 1.0;
-  }
-  return true;
+std::string recording_name(const std::string& from) {
+  const std::string array = recordings::recording_place(from).array;
+  return std::filesystem::path(sources::file_of(from)).filename().string() + (array.empty() ? "" : "#" + array);
 }
 
-void UnloadedReadings::subtract_from(std::vector<float>& readings) const {
-  for (std::size_t taxel = 0; taxel < sum_.size(); ++taxel) {
-    readings[taxel] -= static_cast<float>(sum_[taxel] / std::max(count_[taxel], 1.0));
-  }
-}
+LoadSource::LoadSource(ArrayLoads first, bool has_forces) : first_(std::move(first)), has_forces_(has_forces) {}
 
 Result<LoadSource> LoadSource::open(const LoadInput& input) {
-  LoadSource source;
-  sources::SourceOptions options = input.source;
-  if (!input.model.empty()) {
-    Result<ModelAtWork> work = ModelAtWork::read(input.model);
-    if (!work) return work.error();
-    source.work_.emplace(*std::move(work));
-    options.array = &source.work_->model.array;
-    if (input.tare) source.work_->pipeline.drift().tare();
-  } else if (input.tare) {
-    source.unloaded_.emplace();
+  const Result<std::vector<ArrayLoadInput>> arrays = arrays_of(input);
+  if (!arrays) return arrays.error();
+  Result<ArrayLoads> first = ArrayLoads::open(arrays->front());
+  if (!first) return first.error();
+  LoadSource source(*std::move(first), !input.model.empty());
+  source.from_ = input.from;
+  for (std::size_t i = 1; i < arrays->size(); ++i) {
+    Result<HeldLoads> other = HeldLoads::open((*arrays)[i]);
+    if (!other) return other.error();
+    source.others_.push_back(*std::move(other));
   }
-  Result<std::unique_ptr<FrameSource>> frames = sources::open_source(input.from, options);
-  if (!frames) return frames.error();
-  source.frames_ = *std::move(frames);
+  if (input.extra.empty()) return source;
+  if (source.is_live()) return bad_input("--extra: '" + input.from + "' is a device; 'dermis record' it first");
+  Result<FurtherReadings> further = FurtherReadings::read(input.extra, recording_name(input.from));
+  if (!further) return further.error();
+  source.further_ = *std::move(further);
   return source;
 }
 
 Result<bool> LoadSource::next() {
-  Result<bool> more = frames_->next(raw_);
+  Result<bool> more = first_.next();
   if (!more || !*more) return more;
-  work_ ? process_forces() : process_readings();
-  for (float& load : loads_) load = !is_tare_ && std::isfinite(load) ? std::max(load, 0.0F) : 0.0F;
+  loads_ = first_.loads();
+  for (HeldLoads& other : others_) {
+    if (Status moved = other.move_to(first_.time()); !moved) return moved.error();
+    loads_.insert(loads_.end(), other.loads().begin(), other.loads().end());
+  }
+  if (further_) further_->move_to(first_.time());
+  if (is_tare()) std::fill(loads_.begin(), loads_.end(), 0.0F);
   return true;
 }
 
-void LoadSource::process_forces() {
-  work_->pipeline.process(raw_, force_);
-  is_tare_ = work_->pipeline.drift().taring();
-  loads_ = force_.newtons;
+bool LoadSource::is_tare() const noexcept {
+  return first_.is_tare() ||
+         std::any_of(others_.begin(), others_.end(), [](const HeldLoads& other) { return other.is_tare(); });
 }
 
-void LoadSource::process_readings() {
-  loads_ = raw_.counts;
-  is_tare_ = unloaded_ && unloaded_->add(raw_);
-  if (unloaded_ && !is_tare_) unloaded_->subtract_from(loads_);
+std::span<const float> LoadSource::extras() const noexcept {
+  return further_ ? std::span<const float>(further_->values()) : std::span<const float>();
 }
 
-std::optional<recognition::SensedArray> LoadSource::array() const {
-  if (work_) return recognition::sensed_array(work_->model.array, work_->model.array.name);
-  const std::optional<FrameShape> shape = frames_->shape();
-  if (!shape) return std::nullopt;
-  return recognition::SensedArray{.name = "array", .rows = shape->rows, .cols = shape->cols};
+std::vector<std::string> LoadSource::extra_names() const {
+  return further_ ? further_->names() : std::vector<std::string>();
+}
+
+std::optional<Layout> LoadSource::layout() const {
+  const std::optional<recognition::SensedArray> first = first_.array();
+  if (!first) return std::nullopt;
+  Layout layout{.arrays = {*first}, .readings = first->taxel_count()};
+  for (const HeldLoads& other : others_) {
+    recognition::SensedArray array = other.array();
+    array.first_column = layout.readings;
+    layout.readings += array.taxel_count();
+    layout.arrays.push_back(std::move(array));
+  }
+  layout.extras = extras().size();
+  if (has_forces_) layout.least_reading = recognition::kLeastNewtons;
+  return layout;
+}
+
+std::vector<std::string> LoadSource::describe_troubles() const {
+  std::vector<std::string> lines;
+  for (const HeldLoads& other : others_) {
+    if (other.silent() == 0) continue;
+    lines.push_back(fmt::format("{}: {} frames have none of '{}' in the half second before; it has no load there",
+                                from_, other.silent(), other.array().name));
+  }
+  if (const auto missing = further_ ? further_->describe_missing() : std::nullopt) lines.push_back(*missing);
+  return lines;
 }
 
 }  // namespace dermis::operation

@@ -26,10 +26,9 @@ ArrayDescription array_of(const Layout& layout) {
 
 /// Whether these classes can name what comes from `input`.
 Status check_classes(const Classes& classes, const RecognitionInput& input) {
-  if (classes.layout.extras > 0) {
-    return bad_input(input.classes +
-                     ": its classes need further readings beside each frame, which a stream of frames has not; learn "
-                     "them without --extra");
+  if (classes.layout.extras > 0 && input.loads.extra.empty()) {
+    return bad_input(input.classes + ": its classes need " + std::to_string(classes.layout.extras) +
+                     " further readings beside each frame; name their table, --extra, or learn classes without");
   }
   if (Status checked = check_loads(classes.layout, input.classes, input.loads.model); !checked) return checked;
   if (classes.layout.rate_hz == 0.0 && input.rate_hz > 0.0) {
@@ -42,11 +41,12 @@ Status check_classes(const Classes& classes, const RecognitionInput& input) {
 /// What the frames of the source look like.
 Layout layout_of(const LoadSource& source, const Classes& classes, double rate_hz) {
   Layout layout = classes.layout;
-  const std::optional<recognition::SensedArray> array = source.array();
-  if (layout.has_forces() && array) {
-    layout.arrays = {*array};
-    layout.readings = array->taxel_count();
+  const std::optional<Layout> found = source.layout();
+  if (found && (found->arrays.size() > 1 || layout.has_forces())) {
+    layout.arrays = found->arrays;
+    layout.readings = found->readings;
   }
+  layout.extras = source.extra_names().size();
   if (rate_hz > 0.0) layout.rate_hz = rate_hz;
   return layout;
 }
@@ -61,17 +61,22 @@ Result<SourceRecogniser> SourceRecogniser::open(const RecognitionInput& input) {
   const ArrayDescription array = array_of(classes->layout);
   LoadInput loads = input.loads;
   loads.source.array = &array;
+  loads.arrays = recognition::names_of(classes->layout.arrays);
   Result<LoadSource> source = LoadSource::open(loads);
   if (!source) return source.error();
   const Layout layout = layout_of(*source, *classes, input.rate_hz);
   Result<StreamRecogniser> recogniser = StreamRecogniser::create(*std::move(classes), layout);
   if (!recogniser) return bad_input(input.classes + ": " + recogniser.error().message);
-  return SourceRecogniser(*std::move(source), *std::move(recogniser), layout.rate_hz > 0.0, input.loads.source.stop);
+  return SourceRecogniser(*std::move(source), *std::move(recogniser), layout.rate_hz > 0.0, input.loads.source);
 }
 
 SourceRecogniser::SourceRecogniser(LoadSource source, StreamRecogniser recogniser, bool knows_rate,
-                                   const std::atomic<bool>* stop)
-    : source_(std::move(source)), recogniser_(std::move(recogniser)), knows_rate_(knows_rate), stop_(stop) {}
+                                   const sources::SourceOptions& options)
+    : source_(std::move(source)),
+      recogniser_(std::move(recogniser)),
+      knows_rate_(knows_rate),
+      stop_(options.stop),
+      notice_(options.notice) {}
 
 Result<std::optional<SourceRecognition>> SourceRecogniser::next() {
   std::optional<Recognition> found;
@@ -80,11 +85,12 @@ Result<std::optional<SourceRecognition>> SourceRecogniser::next() {
     if (!more) return more.error();
     has_ended_ = !*more;
     if (has_ended_) {
+      tell_troubles();
       found = recogniser_.finish();
     } else if (source_.is_tare()) {
       ++tare_frames_;
     } else {
-      found = recogniser_.next(source_.loads());
+      found = recogniser_.next(source_.loads(), source_.extras());
     }
   }
   if (!found) return std::optional<SourceRecognition>();
@@ -94,6 +100,11 @@ Result<std::optional<SourceRecognition>> SourceRecogniser::next() {
 Result<bool> SourceRecogniser::next_frame() {
   if (stop_ != nullptr && stop_->load()) return false;
   return source_.next();
+}
+
+void SourceRecogniser::tell_troubles() const {
+  if (!notice_) return;
+  for (const std::string& line : source_.describe_troubles()) notice_(line);
 }
 
 SourceRecognition SourceRecogniser::of_source(Recognition recognition) const {

@@ -139,6 +139,7 @@ Status check_recording(const LabelledFrames& data, const LoadRecording& recordin
 void append(LabelledFrames& data, LabelledFrames part) {
   const std::size_t before = data.frame_count();
   data.frames.insert(data.frames.end(), part.frames.begin(), part.frames.end());
+  data.extras.insert(data.extras.end(), part.extras.begin(), part.extras.end());
   for (Label& label : part.labels) {
     label.first += before;
     label.last += before;
@@ -243,7 +244,7 @@ Result<LabelledFrames> label_recordings(const Layout& layout, std::vector<LoadRe
   LabelledFrames data{layout, {}, {}, {}};
   for (std::size_t place = 0; place < recordings.size(); ++place) {
     LoadRecording& recording = recordings[place];
-    LabelledFrames part{layout, std::move(recording.frames), {}, {}};
+    LabelledFrames part{layout, std::move(recording.frames), std::move(recording.extras), {}};
     for (std::size_t row = 0; row < read->size(); ++row) {
       if ((*places)[row] != place) continue;
       part.labels.push_back((*read)[row]);

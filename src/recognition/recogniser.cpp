@@ -91,6 +91,12 @@ Status check_rate(double examples_hz, double source_hz) {
                    "; classes move to a rate at most 1000 times higher or lower");
 }
 
+std::string list_of(const std::vector<SensedArray>& arrays) {
+  std::string names;
+  for (const SensedArray& array : arrays) names += (names.empty() ? "'" : ", '") + array.name + "'";
+  return names;
+}
+
 Status check_source(const Layout& examples, const Layout& source) {
   if (Status checked = source.validate(); !checked) return checked;
   if (Status checked = check_rate(examples.rate_hz, source.rate_hz); !checked) return checked;
@@ -101,6 +107,10 @@ Status check_source(const Layout& examples, const Layout& source) {
   if (source.extras != examples.extras) {
     return bad_input("there are " + std::to_string(source.extras) +
                      " further readings beside a frame, the examples had " + std::to_string(examples.extras));
+  }
+  if (source.arrays.size() > 1 && names_of(source.arrays) != names_of(examples.arrays)) {
+    return bad_input("its arrays are " + list_of(source.arrays) + ", the examples were of " + list_of(examples.arrays) +
+                     "; arrays of the same names must come, in the same order");
   }
   for (std::size_t i = 0; i < source.arrays.size(); ++i) {
     if (Status checked = check_array(examples.arrays[i], source.arrays[i]); !checked) return checked;

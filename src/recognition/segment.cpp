@@ -53,6 +53,12 @@ SensedArray sensed_array(const ArrayDescription& array, const std::string& name)
           .col_pitch_mm = kMillimetresPerMetre * array.col_pitch_m};
 }
 
+std::vector<std::string> names_of(const std::vector<SensedArray>& arrays) {
+  std::vector<std::string> names;
+  for (const SensedArray& array : arrays) names.push_back(array.name);
+  return names;
+}
+
 bool is_rate(double rate_hz) noexcept {
   return rate_hz == 0.0 || (rate_hz >= kLeastRate && rate_hz <= kMostRate);
 }

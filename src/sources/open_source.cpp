@@ -8,6 +8,7 @@
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/recording.hpp"
+#include "dermis/recordings/suit_recording.hpp"
 #include "sources/simulated_source.hpp"
 
 namespace dermis::sources {
@@ -67,6 +68,19 @@ Result<std::vector<RawFrame>> read_frames(const std::string& from, const SourceO
 
 Error has_no_end(const std::string& from) {
   return bad_input("'" + from + "': is a device, which has no end; 'dermis record' it first");
+}
+
+Result<std::vector<std::string>> several_arrays(const std::string& from) {
+  std::vector<std::string> names;
+  if (acquisition::is_source_uri(from)) return names;
+  const recordings::RecordingPlace place = recordings::recording_place(from);
+  const Result<recordings::FrameFormat> format = recordings::frame_format(place.path);
+  if (!place.array.empty() || !format || *format != recordings::FrameFormat::mcap) return names;
+  const auto recording = recordings::SuitRecordingReader::open(place.path);
+  if (!recording) return recording.error();
+  if ((*recording)->arrays().size() == 1) return names;
+  for (const recordings::RecordedArray& array : (*recording)->arrays()) names.push_back(array.name);
+  return names;
 }
 
 std::string file_of(const std::string& from) {

@@ -2,11 +2,15 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """`dermis learn --in`: recordings become classes, by the forces of a model or by tared readings, which `dermis recognise`
 names in other recordings."""
+import bisect
 import csv
 import io
 import json
 import random
 import re
+import signal
+import subprocess
+import time
 import unittest
 
 import support
@@ -237,6 +241,39 @@ class TaredReadings(unittest.TestCase):
         self.recording("taught", 1, touches=0, idle=RATE // 2)
         self.refuse(self.learn([(0, 1, "tap")]), ["taught.mcap", "1 s"])
 
+    def test_further_readings_tell_apart_what_feels_the_same(self):
+        def joints(name, happened):
+            """The elbow is bent in every second pair of touches, alike for taps and holds."""
+            lines = [f"{name}.mcap,{(first - 3) / RATE},{90 * (i % 4 >= 2)},{i % 3}"
+                     for i, (first, _, _) in enumerate(happened)]
+            lines += [f"{name}.mcap,{(last + first) / 2 / RATE},{90 * (i % 4 >= 2) + 1},{i % 3}"
+                      for i, (first, last, _) in enumerate(happened)]
+            return sorted(lines, key=lambda line: float(line.split(",")[1]))
+
+        def bent(happened):
+            return [(first, last, f"{kind}_{'bent' if i % 4 >= 2 else 'straight'}")
+                    for i, (first, last, kind) in enumerate(happened)]
+
+        taught, other = self.recording("taught", 1, touches=40), self.recording("other", 2)
+        header = ["recording,time_s,elbow,wrist"]
+        table = self.written("joints.csv", "\n".join(header + joints("taught", taught) + joints("other", other)) + "\n")
+        learned = dermis(*self.learn(bent(taught), "--extra", table))
+        self.assertEqual(learned.returncode, 0, learned.stderr)
+        # Between touches the table is silent.
+        self.assertRegex(learned.stderr, r"joints.csv: \d+ of \d+ frames of taught.mcap lack a reading")
+        recognise = ["recognise", "--classes", self.work / "c.safetensors", "--tare", "--in", self.work / "other.mcap"]
+        self.refuse(recognise, ["c.safetensors", "--extra"])
+        result = dermis(*recognise, "--extra", table)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        lines = list(csv.DictReader(io.StringIO(result.stdout)))
+        self.assertEqual(len(lines), len(other))
+        right = sum(line["likeliest"] == kind for line, (_, _, kind) in zip(lines, bent(other)))
+        self.assertGreaterEqual(right, 0.9 * len(other))
+        self.refuse([*self.learn(bent(taught)), "--extra", self.written("away.csv", "time_s,elbow\n99999,1\n")],
+                    ["away.csv", "'elbow'", "time_s"])
+        self.refuse([*self.learn(bent(taught)), "--extra", self.written("text.csv", "time_s,elbow\n0,bent\n")],
+                    ["text.csv:2", "'bent'"])
+
     def test_poses_without_a_rate_are_told_so(self):
         happened = self.recording("taught", 1)
         labels = "".join(f"{i},{first + 2},{first + 2},{'left' if i % 2 else 'right'}\n"
@@ -251,6 +288,100 @@ class TaredReadings(unittest.TestCase):
         self.assertEqual(len(support.error_lines(result)), 1)
         self.assertIn("does not know the rate", result.stderr)
         self.refuse([*recognise, "--rate", 10], ["--rate", "c.safetensors"])
+
+
+class Suit(SmallArray):
+    """Two arrays at once. Each frame of the scene "multitouch" has loads of its own: one array is pressed more than the
+    other."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.suit = cls.root / "suit.toml"
+        cls.suit.write_text("".join(
+            f'[[array]]\nname = "{name}"\nfrom = "sim:multitouch?rows=4&cols=5&rate=50&seed={seed}"\n'
+            f'model = "{cls.model}"\n' for seed, name in enumerate(("left", "right"), 5)))
+        cls.recordings = [cls.root / "monday.mcap", cls.root / "friday.mcap"]
+        for recording in cls.recordings:
+            cls.record(recording)
+
+    @classmethod
+    def record(cls, recording, patience=120):
+        """Serves the suit until 3 s of it are in the recording."""
+        process = subprocess.Popen([support.BINARY, "serve", "--port", "0", "--suit", cls.suit, "--record", recording],
+                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        process.stdout.close()
+        try:
+            for _ in range(10 * patience):
+                time.sleep(0.1)
+                info = dermis("info", recording, "--json") if recording.exists() else None
+                if info and info.returncode == 0 and json.loads(info.stdout)["frames"] >= 300:
+                    break
+            process.send_signal(signal.SIGINT)
+            if process.wait(patience) != 0:
+                raise AssertionError("the recording failed")
+        finally:
+            process.kill()
+
+    def totals(self, recording, array):
+        """Time and total force of each frame."""
+        forces = self.work / "forces.csv"
+        result = dermis("run", "--model", self.model, "--in", f"{recording}#{array}", "--out", forces)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        with open(forces) as lines:
+            return [(float(line["time_s"]), sum(float(line[f"r{r}c{c}"]) for r in range(4) for c in range(5)))
+                    for line in csv.DictReader(lines)]
+
+    def kinds(self, recording):
+        """Which array is pressed more, by the number of the frame of the first."""
+        left, right = self.totals(recording, "left"), self.totals(recording, "right")
+        times = [time for time, _ in right]
+        kinds = {}
+        for frame, (time, force) in enumerate(left):
+            last = bisect.bisect_right(times, time) - 1
+            other = right[last][1] if last >= 0 else 0.0
+            if max(force, other) > 3 * min(force, other):
+                kinds[frame] = "left" if force > other else "right"
+        return kinds
+
+    def labels(self, recording):
+        lines = [f"{frame},{frame},{frame},{kind}" for frame, kind in self.kinds(recording).items()]
+        return self.written(f"{recording.stem}.csv", "\n".join(["id,first,last,class", *lines]) + "\n")
+
+    def learn(self, *arguments):
+        """At one frame a second, so that no frame is looked at together with those before."""
+        monday = self.recordings[0]
+        return ["learn", "--in", monday, "--labels", self.labels(monday), "--rate", 1, "--out",
+                self.work / "c.safetensors", *arguments]
+
+    def test_what_was_learned_from_two_arrays_is_recognised_in_both(self):
+        monday, friday = self.recordings
+        for model in (["--model", self.suit], []):
+            with self.subTest(model=model):
+                self.succeed(*self.learn(*model))
+                classes = ["--classes", self.work / "c.safetensors", *model]
+                output = self.succeed("recognise", *classes, "--in", friday)
+                answers = {int(line["last"]): line["likeliest"] for line in csv.DictReader(io.StringIO(output))}
+                kinds = self.kinds(friday)
+                right = sum(answers[frame] == kind for frame, kind in kinds.items())
+                self.assertGreaterEqual(right / len(kinds), 0.9)
+                judged = json.loads(self.succeed("evaluate", *classes, "--in", friday, "--labels", self.labels(friday),
+                                                 "--json"))
+                self.assertGreaterEqual(judged["accuracy"], 0.9)
+
+    def test_arrays_and_models_that_do_not_fit(self):
+        monday, friday = self.recordings
+        self.refuse(self.learn("--model", self.model), [monday, f"{monday}#left", "suit.toml", "--model"])
+        other = self.written("other.toml", self.suit.read_text().replace('"right"', '"top"'))
+        self.refuse(self.learn("--model", other), [monday, "'top'", "'left', 'right'"])
+        self.succeed(*self.learn("--model", self.suit))
+        classes = ["--classes", self.work / "c.safetensors"]
+        self.refuse(["recognise", *classes, "--in", friday, "--model", other], ["other.toml", "'right'"])
+        self.refuse(["recognise", *classes, "--in", friday], [classes[1], "--model"])
+        self.refuse(["recognise", *classes, "--in", f"{friday}#left", "--model", self.model],
+                    [classes[1], "1 arrays", "had 2"])
+        self.succeed("learn", "--in", f"{monday}#left", "--labels", self.work / "monday.csv", "--out", classes[1])
+        self.refuse(["recognise", *classes, "--in", friday], [friday, "name one", "'left', 'right'"])
 
 
 if __name__ == "__main__":

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <string>
 #include <utility>
@@ -12,6 +14,7 @@
 #include "dermis/core/array_description.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/suit_recording.hpp"
 #include "support/random_frames.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -48,6 +51,12 @@ inline std::vector<RawFrame> pressed(const std::vector<float>& readings, const F
   return frames;
 }
 
+/// The same, so much later.
+inline std::vector<RawFrame> later(std::vector<RawFrame> frames, Nanos delay) {
+  for (RawFrame& frame : frames) frame.time += delay;
+  return frames;
+}
+
 /// array.toml of the mat, which is its model, and files of frames.
 class MatFiles {
  public:
@@ -63,6 +72,38 @@ class MatFiles {
     const auto sink = recordings::create_frames(file(name), shape, notes);
     EXPECT_TRUE(sink && support::write_all(**sink, frames)) << name;
     return file(name);
+  }
+
+  /// A recording of two mats, 'left' and 'right'. Returns its path.
+  std::string write_two(const std::string& name, const std::vector<RawFrame>& left,
+                        const std::vector<RawFrame>& right) const {
+    const std::array<const std::vector<RawFrame>*, 2> frames{&left, &right};
+    std::vector<std::pair<Nanos, std::pair<std::size_t, std::size_t>>> order;
+    for (std::size_t array = 0; array < frames.size(); ++array) {
+      for (std::size_t i = 0; i < frames[array]->size(); ++i) order.push_back({(*frames[array])[i].time, {array, i}});
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<recordings::RecordedArray> arrays(2);
+    arrays[0].name = "left";
+    arrays[1].name = "right";
+    for (recordings::RecordedArray& array : arrays) array.shape = kShape;
+    const auto writer = recordings::SuitRecordingWriter::create(file(name), arrays, {.live = false});
+    EXPECT_TRUE(writer) << name;
+    for (const auto& [time, place] : order) {
+      EXPECT_TRUE((*writer)->write(place.first, (*frames[place.first])[place.second])) << name;
+    }
+    EXPECT_TRUE((*writer)->commit()) << name;
+    return file(name);
+  }
+
+  /// suit.toml of the two, 'right' first.
+  [[nodiscard]] std::string suit() const {
+    std::string text;
+    for (const char* const name : {"right", "left"}) {
+      text += std::string("[[array]]\nname = \"") + name + "\"\nfrom = \"sim:idle?rate=10\"\nmodel = \"array.toml\"\n";
+    }
+    support::write_bytes(file("suit.toml"), text);
+    return file("suit.toml");
   }
 
  private:

@@ -54,6 +54,50 @@ TEST(ReadExamples, of_recordings_with_a_model_are_forces) {
   EXPECT_EQ(data->labels.front().first, 8U);
 }
 
+TEST(ReadExamples, of_several_arrays_stand_side_by_side_as_in_the_first_recording) {
+  const MatFiles mat;
+  std::vector<std::string> notices;
+  ExampleOptions options;
+  options.in = {mat.write_two("first.mcap", two_presses(), two_presses()),
+                mat.write_two("second.mcap", two_presses(), two_presses())};
+  options.data.labels = labels(mat, "second.mcap");
+  options.model = mat.suit();
+  const auto data = read_examples(options, {.notice = [&](const std::string& line) { notices.push_back(line); }});
+  ASSERT_TRUE(data) << error_of(data);
+  EXPECT_EQ(recognition::names_of(data->layout.arrays), (std::vector<std::string>{"right", "left"}));
+  EXPECT_TRUE(data->layout.has_forces());
+  EXPECT_EQ(data->frame_count(), 16U);
+  EXPECT_NEAR(data->frames[kShape.taxel_count() + kPressed], 1.0F, 1e-4F);
+  EXPECT_TRUE(notices.empty());
+  options.in.back() = mat.write("second.mcap", two_presses());
+  options.model.clear();
+  EXPECT_EQ(error_of(read_examples(options)),
+            "second.mcap: has frames of 3x4 taxels, first.mcap of left 3x4, right 3x4 taxels; learn from recordings of "
+            "the same arrays");
+}
+
+TEST(ReadExamples, have_further_readings_and_their_mean_where_one_is_missing) {
+  const MatFiles mat;
+  std::vector<std::string> notices;
+  const auto read = [&](const ExampleOptions& options) {
+    return read_examples(options, {.notice = [&](const std::string& line) { notices.push_back(line); }});
+  };
+  ExampleOptions options;
+  options.in = {mat.write("a.csv", two_presses()), mat.write("b.csv", later(two_presses(), std::chrono::seconds(5)))};
+  options.data.labels = labels(mat, "b.csv");
+  options.data.extras = mat.file("joints.csv");
+  support::write_bytes(options.data.extras, "time_s,elbow\n1,10\n1.04,20\n6.04,30\n");
+  const auto data = read(options);
+  ASSERT_TRUE(data) << error_of(data);
+  EXPECT_EQ(data->layout.extras, 1U);
+  EXPECT_EQ(data->extras, (std::vector<float>{10, 10, 10, 10, 20, 20, 20, 20, 20, 20, 20, 20, 30, 30, 30, 30}));
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices[0].find("joints.csv: 4 of 8 frames of b.csv"), std::string::npos) << notices[0];
+  support::write_bytes(options.data.extras, "time_s,elbow\n3,10\n");
+  EXPECT_EQ(error_of(read(options)).find(options.data.extras + ": 'elbow' has no value at the times of the frames"),
+            0U);
+}
+
 TEST(ReadExamples, refuses_recordings_that_are_not_alike) {
   const MatFiles mat;
   ExampleOptions options;
@@ -64,7 +108,7 @@ TEST(ReadExamples, refuses_recordings_that_are_not_alike) {
             "--in: two recordings are called rec.csv; rename one, so that the labels can tell them apart");
   options.in = {first, mat.write("other.csv", pressed({1.0F, 2.0F}, {2, 3}), {2, 3})};
   EXPECT_EQ(error_of(read_examples(options)),
-            "other.csv: has frames of 2x3 taxels, rec.csv of 3x4; learn from one array at a time");
+            "other.csv: has frames of 2x3 taxels, rec.csv of 3x4 taxels; learn from recordings of the same arrays");
   std::vector<RawFrame> slow = two_presses();
   for (RawFrame& frame : slow) frame.time *= 2;
   options.in = {first, mat.write("slow.csv", slow)};

@@ -5,22 +5,24 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <limits>
+#include <cmath>
 
 #include "force_mat.hpp"
 
 namespace dermis::operation {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr std::size_t kTaxels = kShape.rows * kShape.cols;
+using std::chrono::milliseconds;
 
-/// Loads of the pressed taxel, and whether the frame was one of the tare.
-std::vector<std::pair<float, bool>> loads_of(const LoadInput& input) {
-  std::vector<std::pair<float, bool>> loads;
-  Result<LoadSource> source = LoadSource::open(input);
-  EXPECT_TRUE(source) << error_of(source);
-  while (source && source->next().value()) loads.emplace_back(source->loads()[kPressed], source->is_tare());
-  return loads;
+/// Loads of the pressed taxels of two arrays in each frame.
+std::vector<std::pair<float, float>> pairs_of(LoadSource& source) {
+  std::vector<std::pair<float, float>> pairs;
+  while (source.next().value()) {
+    EXPECT_EQ(source.loads().size(), 2 * kTaxels);
+    pairs.emplace_back(source.loads()[kPressed], source.loads()[kTaxels + kPressed]);
+  }
+  return pairs;
 }
 
 recognition::Layout layout(double least_reading) {
@@ -40,61 +42,135 @@ TEST(CheckLoads, wants_forces_for_classes_of_forces_and_readings_for_those_of_re
   EXPECT_NE(with.error().message.find("leave --model out"), std::string::npos);
 }
 
-TEST(LoadSource, gives_readings_without_a_model_and_0_where_there_is_no_load) {
-  const MatFiles mat;
-  const auto loads = loads_of({.from = mat.write("frames.csv", pressed({3.0F, -2.0F, kNan}))});
-  EXPECT_EQ(loads, (std::vector<std::pair<float, bool>>{{3.0F, false}, {0.0F, false}, {0.0F, false}}));
-}
-
-TEST(LoadSource, gives_newtons_by_a_model_and_tells_its_array) {
+TEST(LoadSource, gives_the_frames_of_one_array) {
   const MatFiles mat;
   Result<LoadSource> source =
       LoadSource::open({.from = mat.write("frames.csv", pressed({3.0F})), .model = mat.model()});
   ASSERT_TRUE(source && source->next().value());
   EXPECT_NEAR(source->loads()[kPressed], 3.0F, 1e-4F);
   EXPECT_EQ(source->time(), std::chrono::seconds(1));
-  EXPECT_EQ(source->array(), (recognition::SensedArray{"mat", 3, 4, 0, 4.0, 10.0}));
-  EXPECT_FALSE(source->is_live());
+  const auto layout = source->layout();
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(layout->arrays, (std::vector<recognition::SensedArray>{{"mat", 3, 4, 0, 4.0, 10.0}}));
+  EXPECT_EQ(layout->readings, kTaxels);
+  EXPECT_TRUE(layout->has_forces());
+  EXPECT_FALSE(*source->next());
+  EXPECT_TRUE(source->describe_troubles().empty());
 }
 
-TEST(LoadSource, takes_the_mean_of_the_first_second_for_unloaded) {
+TEST(LoadSource, takes_all_arrays_of_a_recording_side_by_side_at_the_times_of_the_first) {
   const MatFiles mat;
-  std::vector<float> readings(100, 40.0F);
-  for (std::size_t i = 0; i < readings.size(); i += 2) readings[i] = 42.0F;
-  readings.insert(readings.end(), {50.0F, 41.5F, 20.0F});
-  const auto loads = loads_of({.from = mat.write("frames.csv", pressed(readings)), .tare = true});
-  ASSERT_EQ(loads.size(), 103U);
-  for (std::size_t i = 0; i < 100; ++i) EXPECT_EQ(loads[i], (std::pair(0.0F, true))) << i;
-  EXPECT_EQ(loads[100], (std::pair(9.0F, false)));
-  EXPECT_EQ(loads[101], (std::pair(0.5F, false)));
-  EXPECT_EQ(loads[102], (std::pair(0.0F, false)));
+  const std::string recording =
+      mat.write_two("two.mcap", pressed({1.0F, 2.0F, 3.0F}), later(pressed({5.0F, 6.0F}), milliseconds(5)));
+  Result<LoadSource> source = LoadSource::open({.from = recording});
+  ASSERT_TRUE(source) << error_of(source);
+  EXPECT_EQ(pairs_of(*source), (std::vector<std::pair<float, float>>{{1.0F, 0.0F}, {2.0F, 5.0F}, {3.0F, 6.0F}}));
+  const auto layout = source->layout();
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(layout->arrays, (std::vector<recognition::SensedArray>{{"left", 3, 4, 0}, {"right", 3, 4, kTaxels}}));
+  EXPECT_EQ(layout->readings, 2 * kTaxels);
+  EXPECT_FALSE(layout->has_forces());
 }
 
-TEST(LoadSource, tares_the_forces_of_a_model) {
+TEST(LoadSource, takes_of_several_arrays_those_that_are_asked_for) {
   const MatFiles mat;
-  std::vector<float> readings(110, 2.0F);
-  readings.insert(readings.end(), 5, 7.0F);
-  const auto loads = loads_of({.from = mat.write("frames.csv", pressed(readings)), .model = mat.model(), .tare = true});
-  ASSERT_EQ(loads.size(), 115U);
-  EXPECT_EQ(loads.front(), (std::pair(0.0F, true)));
-  EXPECT_FALSE(loads.back().second);
-  EXPECT_NEAR(loads.back().first, 5.0F, 1e-3F);
+  const std::string recording = mat.write_two("two.mcap", pressed({1.0F}), pressed({5.0F}));
+  Result<LoadSource> turned = LoadSource::open({.from = recording, .arrays = {"right", "left"}});
+  ASSERT_TRUE(turned) << error_of(turned);
+  EXPECT_EQ(pairs_of(*turned), (std::vector<std::pair<float, float>>{{5.0F, 1.0F}}));
+  Result<LoadSource> one = LoadSource::open({.from = recording + "#right"});
+  ASSERT_TRUE(one && one->next().value());
+  EXPECT_EQ(one->loads().size(), kTaxels);
+  EXPECT_EQ(one->loads()[kPressed], 5.0F);
+  EXPECT_NE(error_of(LoadSource::open({.from = recording, .arrays = {"left", "top"}})).find("has no array 'top'"),
+            std::string::npos);
+  EXPECT_NE(error_of(LoadSource::open({.from = recording, .arrays = {"skin"}})).find("name one"), std::string::npos);
 }
 
-TEST(UnloadedReadings, takes_ten_frames_of_a_slow_source_but_no_more_than_ten_seconds) {
-  const auto frames_taken = [](Nanos period) {
-    UnloadedReadings unloaded;
-    RawFrame frame;
-    frame.counts = {1.0F};
-    std::size_t taken = 0;
-    while (unloaded.add(frame)) {
-      ++taken;
-      frame.time += period;
-    }
-    return taken;
-  };
-  EXPECT_EQ(frames_taken(std::chrono::milliseconds(500)), 10U);
-  EXPECT_EQ(frames_taken(std::chrono::seconds(4)), 3U);
+TEST(LoadSource, gives_newtons_of_several_arrays_by_the_models_of_a_suit) {
+  const MatFiles mat;
+  const std::string recording = mat.write_two("two.mcap", pressed({1.0F, 2.0F}), pressed({5.0F, 6.0F}));
+  Result<LoadSource> source = LoadSource::open({.from = recording, .model = mat.suit()});
+  ASSERT_TRUE(source) << error_of(source);
+  const auto layout = source->layout();
+  ASSERT_TRUE(layout);
+  EXPECT_EQ(layout->arrays,
+            (std::vector<recognition::SensedArray>{{"right", 3, 4, 0, 4.0, 10.0}, {"left", 3, 4, kTaxels, 4.0, 10.0}}));
+  EXPECT_TRUE(layout->has_forces());
+  const auto pairs = pairs_of(*source);
+  ASSERT_EQ(pairs.size(), 2U);
+  EXPECT_NEAR(pairs[1].first, 6.0F, 1e-4F);
+  EXPECT_NEAR(pairs[1].second, 2.0F, 1e-4F);
+}
+
+TEST(LoadSource, of_several_arrays_wants_a_suit_that_has_them) {
+  const MatFiles mat;
+  const std::string recording = mat.write_two("two.mcap", pressed({1.0F}), pressed({5.0F}));
+  const std::string of_one = error_of(LoadSource::open({.from = recording, .model = mat.model()}));
+  EXPECT_EQ(of_one.find(recording + ": holds several arrays; name one, as '" + recording + "#left', or give the suit"),
+            0U)
+      << of_one;
+  EXPECT_EQ(error_of(LoadSource::open({.from = recording, .model = mat.suit(), .arrays = {"left", "top"}})),
+            mat.suit() + ": has no array 'top'");
+}
+
+TEST(LoadSource, is_tared_where_all_arrays_are) {
+  const MatFiles mat;
+  std::vector<float> left(150, 40.0F);
+  left.back() = 47.0F;
+  const std::vector<float> right(150, 30.0F);
+  const std::string recording = mat.write_two("two.mcap", pressed(left), later(pressed(right), milliseconds(200)));
+  Result<LoadSource> source = LoadSource::open({.from = recording, .tare = true});
+  ASSERT_TRUE(source) << error_of(source);
+  std::size_t tare_frames = 0;
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    ASSERT_TRUE(source->next().value());
+    EXPECT_EQ(source->is_tare(), tare_frames == i && i < 120) << i;
+    tare_frames += source->is_tare() ? 1 : 0;
+  }
+  EXPECT_EQ(tare_frames, 120U);
+  EXPECT_EQ(source->loads()[kPressed], 7.0F);
+  EXPECT_EQ(source->loads()[kTaxels + kPressed], 0.0F);
+}
+
+TEST(LoadSource, says_where_an_array_was_silent) {
+  const MatFiles mat;
+  const std::string recording = mat.write_two("two.mcap", pressed(std::vector<float>(100, 1.0F)), pressed({5.0F}));
+  Result<LoadSource> source = LoadSource::open({.from = recording});
+  ASSERT_TRUE(source) << error_of(source);
+  const auto pairs = pairs_of(*source);
+  ASSERT_EQ(pairs.size(), 100U);
+  EXPECT_EQ(pairs[50].second, 5.0F);
+  EXPECT_EQ(pairs[51].second, 0.0F);
+  EXPECT_EQ(source->describe_troubles(),
+            (std::vector<std::string>{
+                recording + ": 49 frames have none of 'right' in the half second before; it has no load there"}));
+}
+
+TEST(LoadSource, has_further_readings_beside_its_frames) {
+  const MatFiles mat;
+  const std::string frames = mat.write("frames.csv", pressed({1.0F, 2.0F}));
+  support::write_bytes(mat.file("joints.csv"), "time_s,elbow,wrist\n0.995,7,\n1.01,8,9\n");
+  Result<LoadSource> source = LoadSource::open({.from = frames, .extra = mat.file("joints.csv")});
+  ASSERT_TRUE(source) << error_of(source);
+  EXPECT_EQ(source->extra_names(), (std::vector<std::string>{"elbow", "wrist"}));
+  EXPECT_EQ(source->layout()->extras, 2U);
+  ASSERT_TRUE(source->next().value());
+  EXPECT_EQ(source->extras()[0], 7.0F);
+  EXPECT_TRUE(std::isnan(source->extras()[1]));
+  ASSERT_TRUE(source->next().value());
+  EXPECT_EQ(std::vector<float>(source->extras().begin(), source->extras().end()), (std::vector<float>{8.0F, 9.0F}));
+  ASSERT_EQ(source->describe_troubles().size(), 1U);
+  EXPECT_NE(source->describe_troubles()[0].find("joints.csv: 1 of 2 frames of frames.csv"), std::string::npos);
+  const std::string device = "sim:idle?rate=10";
+  EXPECT_EQ(error_of(LoadSource::open({.from = device, .extra = mat.file("joints.csv")})),
+            "--extra: '" + device + "' is a device; 'dermis record' it first");
+}
+
+TEST(RecordingName, has_no_folder_but_the_array) {
+  EXPECT_EQ(recording_name("/run/rec.mcap"), "rec.mcap");
+  EXPECT_EQ(recording_name("/run/rec.mcap#chest"), "rec.mcap#chest");
+  EXPECT_EQ(recording_name("file:/run/frames.npy?rate=50"), "frames.npy");
 }
 
 }  // namespace

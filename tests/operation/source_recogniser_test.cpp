@@ -84,6 +84,38 @@ TEST(SourceRecogniser, ends_where_it_is_stopped) {
   EXPECT_FALSE(*recogniser->next());
 }
 
+TEST(SourceRecogniser, needs_the_further_readings_that_the_classes_have) {
+  const Poses poses;
+  recognition::LabelledFrames data = recognition::support::poses(8, 3);
+  data.layout.extras = 1;
+  for (std::size_t i = 0; i < data.labels.size(); ++i) {
+    data.extras.push_back(static_cast<float>(i % recognition::support::kPoses) + 0.01F * static_cast<float>(i));
+  }
+  const auto set = recognition::LearningSet::create(data);
+  ASSERT_TRUE(set);
+  const auto learned = set->learn(recognition::support::all_labels(data));
+  ASSERT_TRUE(learned);
+  ASSERT_TRUE(recognition::write_classes(poses.mat.file("classes.safetensors"), learned->classes));
+  std::vector<std::string> notices;
+  RecognitionInput input = poses.input(poses.mat.write("poses.csv", poses.frames, kPoseShape));
+  EXPECT_NE(error_of(SourceRecogniser::open(input)).find("its classes need 1 further readings"), std::string::npos);
+  input.loads.extra = poses.mat.file("joints.csv");
+  input.loads.source.notice = [&](const std::string& line) { notices.push_back(line); };
+  support::write_bytes(input.loads.extra, "time_s,elbow\n0.01,1\n");
+  auto recogniser = SourceRecogniser::open(input);
+  ASSERT_TRUE(recogniser) << error_of(recogniser);
+  ASSERT_TRUE(recogniser->next().value());
+  const auto found = recogniser->next();
+  ASSERT_TRUE(found && *found);
+  EXPECT_EQ(recogniser->classes().names[(*found)->recognition.answer.likeliest], recognition::support::pose_name(1));
+  EXPECT_FALSE(*recogniser->next());
+  ASSERT_EQ(notices.size(), 1U);
+  EXPECT_NE(notices[0].find("1 of 2 frames of poses.csv"), std::string::npos) << notices[0];
+  support::write_bytes(input.loads.extra, "time_s,elbow,wrist\n0,1,2\n");
+  EXPECT_NE(error_of(SourceRecogniser::open(input)).find("there are 2 further readings beside a frame"),
+            std::string::npos);
+}
+
 TEST(SourceRecogniser, refuses_frames_and_rates_that_the_classes_cannot_be_seen_in) {
   const Poses poses;
   const std::string small = poses.mat.write("small.csv", pressed({1.0F}));

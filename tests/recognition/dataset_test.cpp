@@ -177,8 +177,8 @@ class Recordings : public testing::Test {
   }
   [[nodiscard]] Result<LabelledFrames> labelled() const {
     const Layout layout{.arrays = {{.name = "skin", .rows = 1, .cols = 2}}, .readings = 2};
-    return label_recordings(layout, {{"a.mcap", {1, 1, 2, 2, 3, 3}, 1}, {"b.mcap", {4, 4, 5, 5, 6, 6, 7, 7}, 0}},
-                            labels_, "class");
+    return label_recordings(
+        layout, {{"a.mcap", {1, 1, 2, 2, 3, 3}, 1, {}}, {"b.mcap", {4, 4, 5, 5, 6, 6, 7, 7}, 0, {}}}, labels_, "class");
   }
   [[nodiscard]] std::string error() const {
     const Result<LabelledFrames> data = labelled();
@@ -203,6 +203,16 @@ TEST_F(Recordings, stand_one_after_the_other_and_are_the_groups) {
   EXPECT_EQ(data->labels[1].last, 4U);
   EXPECT_EQ(data->labels[1].order, 3.0);
   EXPECT_EQ(data->labels[2].group, "b.mcap");
+}
+
+TEST_F(Recordings, have_further_readings_one_after_the_other) {
+  write_labels("x,1,1,cup,a.mcap\ny,0,0,pen,b.mcap\n");
+  const Layout layout{.arrays = {{.name = "skin", .rows = 1, .cols = 1}}, .readings = 1, .extras = 2};
+  const auto data = label_recordings(layout, {{"a.mcap", {1, 2}, 0, {10, 11, 20, 21}}, {"b.mcap", {3}, 0, {30, 31}}},
+                                     labels_, "class");
+  ASSERT_TRUE(data) << data.error().message;
+  EXPECT_EQ(data->extras, (std::vector<float>{10, 11, 20, 21, 30, 31}));
+  EXPECT_EQ(data->segment(data->labels[1]).extras[1], 31.0F);
 }
 
 TEST_F(Recordings, are_no_groups_where_the_labels_name_some) {

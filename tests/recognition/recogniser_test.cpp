@@ -248,5 +248,20 @@ TEST(Recogniser, refuses_frames_of_another_kind) {
   EXPECT_EQ(error_of(with_angles), "there are 7 further readings beside a frame, the examples had 0");
 }
 
+TEST(Recogniser, refuses_arrays_of_other_names) {
+  LabelledFrames data = support::poses(4, 16);
+  data.layout.arrays = {{.name = "thumb", .rows = 6, .cols = 10},
+                        {.name = "palm", .rows = 6, .cols = 10, .first_column = 60}};
+  const Classes classes = learned_from(data);
+  EXPECT_TRUE(Recogniser::create(classes, data.layout, 1));
+  Layout turned = data.layout;
+  std::swap(turned.arrays[0].name, turned.arrays[1].name);
+  const Result<Recogniser> recogniser = Recogniser::create(classes, turned, 1);
+  ASSERT_FALSE(recogniser);
+  EXPECT_EQ(recogniser.error().message,
+            "its arrays are 'palm', 'thumb', the examples were of 'thumb', 'palm'; arrays of the same names must come, "
+            "in the same order");
+}
+
 }  // namespace
 }  // namespace dermis::recognition

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <string>
+#include <vector>
 
 namespace dermis::recognition {
 namespace {
@@ -77,6 +79,11 @@ TEST(Layout, refuses_what_is_out_of_range) {
   EXPECT_NE(error_of(layout).find("least_reading"), std::string::npos);
   layout.arrays.clear();
   EXPECT_NE(error_of(layout).find("arrays"), std::string::npos);
+}
+
+TEST(NamesOf, arrays_are_in_their_order) {
+  EXPECT_EQ(names_of({{.name = "palm"}, {.name = "thumb"}}), (std::vector<std::string>{"palm", "thumb"}));
+  EXPECT_TRUE(names_of({}).empty());
 }
 
 }  // namespace

@@ -316,6 +316,26 @@ TEST(ReadFrames, gives_all_frames_of_a_file_and_none_of_a_device) {
   EXPECT_EQ(endless.error().message, "'sim:idle': is a device, which has no end; 'dermis record' it first");
 }
 
+TEST(SeveralArrays, are_those_of_a_recording_where_none_is_named) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("rec.mcap");
+  const auto writer = recordings::SuitRecordingWriter::create(
+      path, {{.name = "chest", .shape = kShape}, {.name = "back", .shape = {1, 2}}});
+  ASSERT_TRUE(writer);
+  ASSERT_TRUE((*writer)->commit());
+  const auto arrays = several_arrays(path);
+  ASSERT_TRUE(arrays) << arrays.error().message;
+  EXPECT_EQ(*arrays, (std::vector<std::string>{"chest", "back"}));
+  const std::string one = folder.file("one.mcap");
+  write_file(one, some_frames(1));
+  for (const std::string& from : {path + "#chest", one, folder.file("frames.csv"), std::string("sim:idle?rate=10")}) {
+    const auto none = several_arrays(from);
+    ASSERT_TRUE(none) << none.error().message;
+    EXPECT_TRUE(none->empty()) << from;
+  }
+  EXPECT_FALSE(several_arrays(folder.file("absent.mcap")));
+}
+
 TEST(FileOf, leaves_out_the_array_and_what_a_uri_says_of_the_file) {
   EXPECT_EQ(file_of("run/frames.csv"), "run/frames.csv");
   EXPECT_EQ(file_of("rec.mcap#chest"), "rec.mcap");

@@ -23,6 +23,7 @@ class CsvTable {
 
   [[nodiscard]] std::size_t rows() const noexcept { return lines_.size(); }
 
+  [[nodiscard]] const std::vector<std::string>& columns() const noexcept { return columns_; }
   /// Place of a column; empty where there is none of the name.
   [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
   /// Fails where there is none of the name, and names those that are there.

@@ -15,12 +15,15 @@ namespace dermis::operation {
 /// Where labelled examples are: in recordings, or in plain files.
 struct ExampleOptions {
   recognition::DatasetFiles data;
-  std::vector<std::string> in;  ///< Recordings; then of `data` only the labels and the rate are used.
-  std::string model;            ///< As for LoadInput.
-  bool tare = false;            ///< Of the recordings: as for LoadInput.
+  std::vector<std::string> in;  ///< Recordings; then `data` has no frames and arrays, and its extras are
+                                ///< as for FurtherReadings::read().
+  std::string model;            ///< Of the recordings: as for LoadInput, like the next two.
+  bool tare = false;
+  std::vector<std::string> arrays;  ///< Empty: those of the first recording.
 };
 
-/// Recordings must be of one array at one rate and have names of their own; `source`: how they are opened. Validates.
+/// Recordings must be of the same arrays at one rate and have names of their own; `source`: how they are opened.
+/// Validates.
 /// Errors name the file or, as the commands call it, the option.
 [[nodiscard]] Result<recognition::LabelledFrames> read_examples(const ExampleOptions& options,
                                                                 const sources::SourceOptions& source = {});

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
-#include "dermis/operation/operation.hpp"
+#include "dermis/operation/array_loads.hpp"
+#include "dermis/operation/further_readings.hpp"
 #include "dermis/recognition/segment.hpp"
 #include "dermis/sources/open_source.hpp"
 
@@ -17,10 +17,14 @@ namespace dermis::operation {
 
 /// What classes are learned from and recognised in; both must see the same loads in the same frames.
 struct LoadInput {
-  std::string from;                 ///< As for sources::open_source().
-  std::string model{};              ///< As for pipeline::read_model(); empty: the readings are the loads.
+  std::string from;                 ///< As for sources::open_source(), or a recording of several arrays.
+  std::string model{};              ///< As for pipeline::read_model(); of several arrays suit.toml, which names that
+                                    ///< of each. Empty: the readings are the loads.
   bool tare = false;                ///< The first second is unloaded.
-  sources::SourceOptions source{};  ///< With a model, the array is that of the model.
+  sources::SourceOptions source{};  ///< The array, which is that of the model where there is one, counts of one alone.
+  std::vector<std::string> arrays{};  ///< Which of several are taken, in this order; one: as `from` names it. Empty:
+                                      ///< all of suit.toml, else of the recording.
+  std::string extra{};                ///< As for FurtherReadings::read(); empty: none.
 };
 
 /// Whether loads by `model` (empty: readings) are what the classes of a file were learned from, whose layout is
@@ -28,51 +32,43 @@ struct LoadInput {
 [[nodiscard]] Status check_loads(const recognition::Layout& examples, const std::string& classes,
                                  const std::string& model);
 
-/// Mean of each reading over the first second, and at least 10 frames, but at most 10 s.
-class UnloadedReadings {
- public:
-  /// Whether the frame is one of those. Once one is not, none is any more.
-  bool add(const RawFrame& frame);
-  void subtract_from(std::vector<float>& readings) const;
+/// As the column `recording` of tables names it: without folder, with the array where it is one of several.
+[[nodiscard]] std::string recording_name(const std::string& from);
 
- private:
-  std::vector<double> sum_;
-  std::vector<double> count_;
-  std::size_t frames_ = 0;
-  Nanos first_time_{};
-  bool is_done_ = false;
-};
-
-/// Frames of a source as loads: newtons of a model, or readings, tared if asked. Where there is no load to tell, 0.
-/// Not thread-safe.
+/// Frames of a source as loads (ArrayLoads). Several arrays stand side by side in each frame of the first: their last
+/// frames until its time (HeldLoads). Not thread-safe.
 class LoadSource {
  public:
+  /// Fails on further readings beside a source that is live.
   [[nodiscard]] static Result<LoadSource> open(const LoadInput& input);
 
   /// Takes the next frame; false at the end of the source.
   [[nodiscard]] Result<bool> next();
 
-  /// Whether the frame belongs to the tare; its loads are 0.
-  [[nodiscard]] bool is_tare() const noexcept { return is_tare_; }
+  /// Whether the frame belongs to the tare of some array.
+  [[nodiscard]] bool is_tare() const noexcept;
   [[nodiscard]] const std::vector<float>& loads() const noexcept { return loads_; }
-  [[nodiscard]] Nanos time() const noexcept { return raw_.time; }
+  /// Further readings beside the frame; NaN where one is missing.
+  [[nodiscard]] std::span<const float> extras() const noexcept;
+  [[nodiscard]] Nanos time() const noexcept { return first_.time(); }
 
-  /// The array as far as it is known: with the pitch by a model, else from the first frame on.
-  [[nodiscard]] std::optional<recognition::SensedArray> array() const;
-  [[nodiscard]] bool is_live() const { return frames_->is_live(); }
+  /// Of the frames, without their rate; empty where only the first frame will tell.
+  [[nodiscard]] std::optional<recognition::Layout> layout() const;
+  [[nodiscard]] std::vector<std::string> extra_names() const;
+  [[nodiscard]] bool is_live() const { return first_.is_live(); }
+
+  /// A line for each kind of trouble that there was.
+  [[nodiscard]] std::vector<std::string> describe_troubles() const;
 
  private:
-  LoadSource() = default;
-  void process_forces();
-  void process_readings();
+  LoadSource(ArrayLoads first, bool has_forces);
 
-  std::unique_ptr<FrameSource> frames_;
-  std::optional<ModelAtWork> work_;
-  std::optional<UnloadedReadings> unloaded_;
-  RawFrame raw_;
-  ForceFrame force_;
+  ArrayLoads first_;
+  std::vector<HeldLoads> others_;
+  std::optional<FurtherReadings> further_;
+  bool has_forces_;
+  std::string from_;
   std::vector<float> loads_;
-  bool is_tare_ = false;
 };
 
 }  // namespace dermis::operation

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/operation/load_source.hpp"
 #include "dermis/recognition/stream_recogniser.hpp"
+#include "dermis/sources/open_source.hpp"
 
 namespace dermis::operation {
 
@@ -43,15 +45,17 @@ class SourceRecogniser {
 
  private:
   SourceRecogniser(LoadSource source, recognition::StreamRecogniser recogniser, bool knows_rate,
-                   const std::atomic<bool>* stop);
+                   const sources::SourceOptions& options);
 
   [[nodiscard]] Result<bool> next_frame();
+  void tell_troubles() const;
   [[nodiscard]] SourceRecognition of_source(recognition::Recognition recognition) const;
 
   LoadSource source_;
   recognition::StreamRecogniser recogniser_;
   bool knows_rate_;
   const std::atomic<bool>* stop_;  ///< May be null.
+  std::function<void(const std::string&)> notice_;
   std::size_t tare_frames_ = 0;
   bool has_ended_ = false;
 };

@@ -29,6 +29,7 @@ struct LoadRecording {
   std::string name;             ///< What the column `recording` of labels.csv calls it.
   std::vector<float> frames;    ///< [frames, readings]
   std::size_t tare_frames = 0;  ///< The first so many were taken for unloaded: they are no example.
+  std::vector<float> extras{};  ///< [frames, extras]
 };
 
 /// The recordings one after the other, with their labels: `id,first,last,class,recording`, where frames count from 0 in

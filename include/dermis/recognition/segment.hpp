@@ -32,6 +32,8 @@ struct SensedArray {
 /// An array whose taxels are the readings of a frame. `name`: that of the array, or the one it has in a suit.
 [[nodiscard]] SensedArray sensed_array(const ArrayDescription& array, const std::string& name);
 
+[[nodiscard]] std::vector<std::string> names_of(const std::vector<SensedArray>& arrays);
+
 /// Whether so many frames a second can be, or 0: not known.
 [[nodiscard]] bool is_rate(double rate_hz) noexcept;
 

@@ -49,6 +49,10 @@ struct SourceOptions {
 /// What is wrong with a source that has no end where one is needed; it names the mend.
 [[nodiscard]] Error has_no_end(const std::string& from);
 
+/// Names of the arrays of a recording that holds several where `from` names none of them; empty of every other source.
+/// Fails where the recording cannot be read.
+[[nodiscard]] Result<std::vector<std::string>> several_arrays(const std::string& from);
+
 /// The path of the file that `from` names: without the name of an array in it, and without what a URI says of it.
 [[nodiscard]] std::string file_of(const std::string& from);
 
