@@ -96,4 +96,5 @@ int main(int argc, char** argv) {
     fmt::print("{:<16} {:>6} {:>6} {:>6}  {}\n", fault.name, at(0.0), at(0.5), at(1.0), seeds - frames.size());
     std::fflush(stdout);
   }
+  return 0;
 }

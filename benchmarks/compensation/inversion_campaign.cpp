@@ -16,4 +16,5 @@ int main() {
       std::fflush(stdout);
     }
   }
+  return 0;
 }
