@@ -11,8 +11,8 @@
 #include <numeric>
 
 #include "simulation/contact_script.hpp"
-#include "simulation/gaussian_patch.hpp"
 #include "simulation/option_range.hpp"
+#include "simulation/touch_place.hpp"
 #include "simulation/touch_script.hpp"
 #include "simulation/weight_script.hpp"
 
@@ -53,7 +53,6 @@ constexpr double kSwingCelsius = 5.0;
 
 constexpr std::size_t kDefaultFrames = 1000;
 constexpr std::uint64_t kMaxContacts = 4;
-constexpr double kSingleTaxelShare = 0.4;
 constexpr double kWeakestContactN = 1.0;
 
 constexpr double kLowestRateHz = 10.0;
@@ -277,31 +276,29 @@ void Scene::leave_alone(std::size_t index, SceneFrame& out) const {
   out.temperature_celsius = kHottestCelsius / 2.0 * (1.0 - std::cos(2.0 * std::numbers::pi * phase));
 }
 
-void Scene::press_and_let_go(std::size_t index, SceneFrame& out) const {
+/// A frame later of a scene that is continuous in time; gives that time [s].
+double Scene::go_on(std::size_t index, SceneFrame& out) const {
   out.rest_s = 0.0;
   out.hold_s = 1.0 / rate_hz_;
   out.temperature_celsius = kRoomCelsius;
-  touches_->add_forces(static_cast<double>(index) / rate_hz_, out.force_n);
+  return static_cast<double>(index) / rate_hz_;
+}
+
+void Scene::press_and_let_go(std::size_t index, SceneFrame& out) const {
+  touches_->add_forces(go_on(index, out), out.force_n);
   for (const std::size_t taxel : array_.absent) out.force_n[taxel] = 0.0;
 }
 
 /// False while a weight is put on or taken off.
 bool Scene::lay_weights(std::size_t index, SceneFrame& out) const {
-  out.rest_s = 0.0;
-  out.hold_s = 1.0 / rate_hz_;
-  out.temperature_celsius = kRoomCelsius;
-  const WeightScript::Moment now = weights_->at(static_cast<double>(index) / rate_hz_);
+  const WeightScript::Moment now = weights_->at(go_on(index, out));
   out.force_n[now.taxel] = now.force_n;
   return now.is_known;
 }
 
 void Scene::add_contact(Random& random, std::vector<double>& force_n) const {
   const double peak_n = random.log_uniform(kWeakestContactN, kHeaviestN);
-  if (random.uniform() < kSingleTaxelShare) {
-    force_n[random.below(force_n.size())] += peak_n;
-    return;
-  }
-  add_patch(array_, draw_patch(array_, random), peak_n, force_n);
+  add_touch(array_, draw_place(array_, random), peak_n, force_n);
 }
 
 void Scene::label_forces(std::size_t index, SceneFrame& out) const {

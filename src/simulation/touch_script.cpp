@@ -15,7 +15,6 @@ constexpr double kUnloadedS = 2.0;                                              
 constexpr double kWeakestPeakN = 1.0;
 constexpr double kStrongestN = 50.0;
 constexpr double kWeakestHoldN = 0.5;
-constexpr double kSingleTaxelShare = 0.4;
 constexpr std::uint64_t kMostLevels = 4;
 constexpr double kGivingWayShare = 0.6;
 constexpr double kShortGapShare = 0.35;
@@ -42,8 +41,7 @@ std::vector<TouchScript::Touch> TouchScript::draw_slot(std::size_t slot, double 
   bool returns = false;
   while (time_s < seconds) {
     Touch touch;
-    if (returns) touch = touches.back();
-    if (!returns) draw_place(touch, random);
+    touch.place = returns ? touches.back().place : draw_place(array_, random);
     touch.corners = {{time_s, 0.0}};
     const auto go_to = [&](double level_n, double fastest_s, double slowest_s) {
       time_s += random.log_uniform(fastest_s, slowest_s);
@@ -64,15 +62,6 @@ std::vector<TouchScript::Touch> TouchScript::draw_slot(std::size_t slot, double 
   return touches;
 }
 
-void TouchScript::draw_place(Touch& touch, Random& random) const {
-  touch.taxel.reset();
-  if (random.uniform() < kSingleTaxelShare) {
-    touch.taxel = random.below(array_.taxel_count());
-  } else {
-    touch.patch = draw_patch(array_, random);
-  }
-}
-
 double TouchScript::Touch::force(double time_s) const {
   const auto is_before = [](double time, const Corner& corner) { return time < corner.time_s; };
   const auto next = std::upper_bound(corners.begin(), corners.end(), time_s, is_before);
@@ -88,12 +77,7 @@ void TouchScript::add_forces(double time_s, std::vector<double>& force_n) const 
     if (next == touches.begin()) continue;
     const Touch& touch = *(next - 1);
     const double now_n = touch.force(time_s);
-    if (now_n <= 0.0) continue;
-    if (touch.taxel) {
-      force_n[*touch.taxel] += now_n;
-    } else {
-      add_patch(array_, touch.patch, now_n, force_n);
-    }
+    if (now_n > 0.0) add_touch(array_, touch.place, now_n, force_n);
   }
   for (double& on_taxel_n : force_n) on_taxel_n = std::min(on_taxel_n, kStrongestN);
 }

@@ -4,12 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/random.hpp"
-#include "simulation/gaussian_patch.hpp"
+#include "simulation/touch_place.hpp"
 
 namespace dermis::simulation {
 
@@ -29,15 +28,13 @@ class TouchScript {
   };
 
   struct Touch {
-    std::optional<std::size_t> taxel{};  ///< Presses this one alone,
-    GaussianPatch patch{};               ///< or else here.
-    std::vector<Corner> corners{};       ///< Straight lines between them; the first and the last have no force.
+    TouchPlace place{};
+    std::vector<Corner> corners{};  ///< Straight lines between them; the first and the last have no force.
 
     [[nodiscard]] double force(double time_s) const;
   };
 
   [[nodiscard]] std::vector<Touch> draw_slot(std::size_t slot, double seconds, Random& random) const;
-  void draw_place(Touch& touch, Random& random) const;
 
   ArrayDescription array_;
   std::vector<std::vector<Touch>> slots_;  // One touch at a time in each, by their time.

@@ -133,6 +133,7 @@ class Scene {
   void touch(Random& random, SceneFrame& out) const;
   void move_contacts(std::size_t index, SceneFrame& out) const;
   void leave_alone(std::size_t index, SceneFrame& out) const;
+  double go_on(std::size_t index, SceneFrame& out) const;
   void press_and_let_go(std::size_t index, SceneFrame& out) const;
   [[nodiscard]] bool lay_weights(std::size_t index, SceneFrame& out) const;
   void add_contact(Random& random, std::vector<double>& force_n) const;
