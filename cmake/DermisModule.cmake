@@ -4,8 +4,13 @@
 add_library(dermis_build_flags INTERFACE)
 target_compile_features(dermis_build_flags INTERFACE cxx_std_20)
 target_compile_options(dermis_build_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Werror)
-# Every x86 processor since 2008 has at least SSE4: one instruction set less to compile each kernel for.
-target_compile_definitions(dermis_build_flags INTERFACE HWY_DISABLED_TARGETS=HWY_SSSE3)
+# Every x86 processor since 2008 has at least SSE4: one instruction set less to compile each kernel for. Under the
+# sanitizers the portable kernels have its four lanes, and AVX2 stands for what is wider.
+set(DERMIS_INSTRUCTION_SETS_LEFT_OUT HWY_SSSE3)
+if(DERMIS_SANITIZE)
+  set(DERMIS_INSTRUCTION_SETS_LEFT_OUT "(HWY_SSSE3|HWY_SSE4|HWY_AVX3)")
+endif()
+target_compile_definitions(dermis_build_flags INTERFACE HWY_DISABLED_TARGETS=${DERMIS_INSTRUCTION_SETS_LEFT_OUT})
 # __FILE__ begins at this folder: the same in every clone, which ccache needs to find what another has compiled.
 target_compile_options(dermis_build_flags INTERFACE -fmacro-prefix-map=${PROJECT_SOURCE_DIR}/=)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
