@@ -32,6 +32,7 @@ sanitize: setup
 lint: setup
 	scripts/setup lint
 	cmake --preset lint
+	cmake --build --preset lint
 	scripts/lint
 
 fuzz: setup
