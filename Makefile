@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live test lint sanitize fuzz bench docs clean
+.PHONY: build setup demo live test lint sanitize fuzz check-all bench docs clean
 
 build: setup
 	cmake --preset release
@@ -25,6 +25,8 @@ test: setup
 sanitize: setup
 	scripts/setup test
 	scripts/setup fuzz
+	cmake --preset release
+	cmake --build --preset numerics
 	cmake --preset asan
 	cmake --build --preset asan
 	ctest --preset asan
@@ -39,10 +41,13 @@ fuzz: setup
 	scripts/setup fuzz
 	scripts/fuzz
 
+check-all:
+	.ci/all
+
 bench: setup
 	scripts/setup test
 	scripts/setup bench
-	cmake --preset release
+	cmake --preset release -D DERMIS_BUILD_BENCHMARKS=ON
 	cmake --build --preset release
 	scripts/bench
 

@@ -22,47 +22,118 @@ if(DERMIS_SANITIZE)
   target_compile_options(dermis_build_flags INTERFACE -fsanitize=${DERMIS_SANITIZE} -fno-sanitize-recover=all
                                                       -fno-omit-frame-pointer)
   target_link_options(dermis_build_flags INTERFACE -fsanitize=${DERMIS_SANITIZE})
+  target_compile_definitions(dermis_build_flags INTERFACE _GLIBCXX_ASSERTIONS)
 endif()
 
-# Under the sanitizers, code is compiled three times as fast without optimisation. Tests wait for the modules, but for those
-# which only bring together what others have calculated.
-set(DERMIS_NEVER_AWAITED health live report serve stream)
-
-# compile_together(<target>): with DERMIS_UNITY_BUILD, its sources in batches.
+# compile_together(<target> [<sources that stay alone>]): with DERMIS_UNITY_BUILD, its sources in batches.
 function(compile_together target)
   if(NOT DERMIS_UNITY_BUILD)
     return()
   endif()
   get_target_property(sources ${target} SOURCES)
+  list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/ OUTPUT_VARIABLE apart)
+  list(REMOVE_ITEM sources ${apart})
   execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/batches.py ${sources}
                   WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR} OUTPUT_VARIABLE batches COMMAND_ERROR_IS_FATAL ANY)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   foreach(source batch IN ZIP_LISTS sources batches)
-    if(NOT batch STREQUAL alone)
+    if(NOT batch STREQUAL "alone")
       set_source_files_properties(${source} PROPERTIES UNITY_GROUP batch_${batch})
     endif()
   endforeach()
 endfunction()
 
-# dermis_module(<name> DEPENDS <modules> PRIVATE <third-party targets>): the static library dermis::<name> from all
-# sources of src/<name>, with the public headers of include/dermis/<name>.
+# checked_modules(<variable> <targets>): with those of checked libraries in the place of their modules.
+function(checked_modules variable)
+  set(targets)
+  foreach(target ${ARGN})
+    string(REPLACE :: _ name ${target})
+    if(TARGET ${name}_checked)
+      set(target ${name}_checked)
+    endif()
+    list(APPEND targets ${target})
+  endforeach()
+  set(${variable} ${targets} PARENT_SCOPE)
+endfunction()
+
+# dermis_module(<name> [NUMERICS [PARSERS <sources>]] DEPENDS <modules> PRIVATE <third-party targets>): the static library
+# dermis::<name> from all sources of src/<name>, with the public headers of include/dermis/<name>.
+#
+# NUMERICS read no byte from outside but in their PARSERS, and depend on each other, `files` and `core` alone.
+# With DERMIS_CHECK_NUMERICS, their tests run on dermis_<name>_checked: with assertions, which cost a release a quarter.
+# With DERMIS_NUMERICS_FROM, those libraries are taken from that tree, and of the module only the parsers are compiled.
 function(dermis_module name)
-  cmake_parse_arguments(MODULE "" "" "DEPENDS;PRIVATE" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
-  add_library(dermis_${name} STATIC ${sources})
-  compile_together(dermis_${name})
-  add_library(dermis::${name} ALIAS dermis_${name})
-  set_target_properties(dermis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
-  target_compile_features(dermis_${name} PUBLIC cxx_std_20)
-  if(DERMIS_SANITIZE AND NOT name IN_LIST DERMIS_NEVER_AWAITED)
-    target_compile_options(dermis_${name} PRIVATE -O1)
-  endif()
-  target_include_directories(dermis_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
-                                                   $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
-                                                   $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-                                            PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  cmake_parse_arguments(MODULE "NUMERICS" "" "PARSERS;DEPENDS;PRIVATE" ${ARGN})
   list(TRANSFORM MODULE_DEPENDS PREPEND dermis_)
-  target_link_libraries(dermis_${name} PUBLIC ${MODULE_DEPENDS}
-                        PRIVATE $<BUILD_INTERFACE:dermis_build_flags> ${MODULE_PRIVATE})
-  set_property(GLOBAL APPEND PROPERTY DERMIS_MODULES dermis_${name})
+  if(MODULE_NUMERICS)
+    set_property(GLOBAL APPEND PROPERTY DERMIS_NUMERICS ${name})
+    set_property(GLOBAL PROPERTY DERMIS_PARSERS_OF_${name} ${MODULE_PARSERS})
+  endif()
+
+  if(MODULE_NUMERICS AND DERMIS_NUMERICS_FROM)
+    borrow_library(dermis_${name})
+  else()
+    build_library(dermis_${name} ${MODULE_DEPENDS})
+    set_target_properties(dermis_${name} PROPERTIES EXPORT_NAME ${name})
+    set_property(GLOBAL APPEND PROPERTY DERMIS_MODULES dermis_${name})
+    if(CMAKE_BUILD_TYPE STREQUAL Release AND name IN_LIST DERMIS_CALCULATES_LITTLE)
+      target_compile_options(dermis_${name} PRIVATE -O1)
+    endif()
+    if(DERMIS_SANITIZE AND (MODULE_NUMERICS OR name IN_LIST DERMIS_AWAITED))
+      target_compile_options(dermis_${name} PRIVATE -O1)
+    endif()
+  endif()
+  add_library(dermis::${name} ALIAS dermis_${name})
+
+  if(MODULE_NUMERICS AND DERMIS_CHECK_NUMERICS)
+    checked_modules(depends ${MODULE_DEPENDS})
+    build_library(dermis_${name}_checked ${depends})
+    # The release warns; beside the assertions of the standard library, g++ 12 has false warnings.
+    target_compile_options(dermis_${name}_checked PRIVATE -w -O2 -UNDEBUG -D_GLIBCXX_ASSERTIONS)
+    add_dependencies(dermis_checked_numerics dermis_${name}_checked)
+  endif()
+endfunction()
+add_custom_target(dermis_checked_numerics)
+
+# A release spends its time in the other modules: these take a third less to compile so.
+set(DERMIS_CALCULATES_LITTLE health operation report serve)
+
+# Under the sanitizers, code is compiled twice as fast without optimisation; but the tests wait for numerics and for these.
+set(DERMIS_AWAITED core acquisition)
+
+# build_library(<target> <depends>) and borrow_library(<target>): what dermis_module() was asked for.
+function(build_library target)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS *.cpp)
+  add_library(${target} STATIC ${sources})
+  compile_together(${target} ${MODULE_PARSERS})
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  set_headers(${target} PUBLIC)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${target} PUBLIC ${ARGN} PRIVATE $<BUILD_INTERFACE:dermis_build_flags> ${MODULE_PRIVATE})
+endfunction()
+
+function(borrow_library target)
+  add_library(${target} STATIC IMPORTED GLOBAL)
+  set_target_properties(${target} PROPERTIES
+                        IMPORTED_LOCATION ${DERMIS_NUMERICS_FROM}/src/${name}/lib${target}_checked.a)
+  set_headers(${target} INTERFACE)
+  target_link_libraries(${target} INTERFACE ${MODULE_DEPENDS})
+  foreach(library ${MODULE_PRIVATE})
+    target_link_libraries(${target} INTERFACE $<LINK_ONLY:${library}>)
+  endforeach()
+  if(MODULE_PARSERS)
+    # Objects come before libraries, so nothing asks for the parsers of the borrowed one.
+    add_library(${target}_parsers OBJECT ${MODULE_PARSERS})
+    set_headers(${target}_parsers PUBLIC)
+    target_include_directories(${target}_parsers PRIVATE ${PROJECT_SOURCE_DIR}/src)
+    target_link_libraries(${target}_parsers PUBLIC ${MODULE_DEPENDS} PRIVATE dermis_build_flags ${MODULE_PRIVATE})
+    target_link_libraries(${target} INTERFACE $<TARGET_OBJECTS:${target}_parsers>)
+  endif()
+endfunction()
+
+function(set_headers target scope)
+  target_compile_features(${target} ${scope} cxx_std_20)
+  target_include_directories(${target} ${scope} $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                                $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+                                                $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 endfunction()

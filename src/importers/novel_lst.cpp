@@ -71,8 +71,9 @@ class Listing {
       }
       Result<bool> is_row = read_row(line, values);
       if (!is_row) return is_row;
+      if (!*is_row) continue;
       picture = *picture_;
-      if (*is_row) return true;
+      return true;
     }
   }
 

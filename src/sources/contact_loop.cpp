@@ -37,8 +37,8 @@ Result<ContactLoop> ContactLoop::create(const ArrayDescription& array, std::uint
   simulation::SimulationOptions options;
   options.environment.adc_noise_lsb = 0.0;
   options.rubber = rubber;
-  const std::size_t length =
-      std::clamp<std::size_t>(kMaxTaxelFrames / array.taxel_count(), 1, frames.value_or(kFrames));
+  const std::size_t most = std::max<std::size_t>(1, kMaxTaxelFrames / array.taxel_count());
+  const std::size_t length = std::min(frames.value_or(kFrames), most);
   Result<std::unique_ptr<simulation::Simulator>> simulator =
       simulation::Simulator::create(exact, options, "contacts", seed, length);
   if (!simulator) return simulator.error();

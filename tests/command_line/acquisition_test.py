@@ -336,7 +336,7 @@ class Refused(Devices):
                 break
             time.sleep(0.02)
         status, _, errors = finish(process)
-        self.assertEqual(status, 2)
+        self.assertEqual(status, 2, errors)
         errors = [line for line in errors if not line.startswith("0 frames, ")]  # every 5 s, on a slow machine
         self.assertEqual(len(errors), 1, errors)
         self.assertIn("check protocol=", errors[0])

@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""Every public header compiles alone, and twice: check_headers.py [--all] COMPILER BINARY_INCLUDES
+
+Without --all, those that have changed since the merge base with origin/main; where there is no such branch, since the
+last commit of twelve hours ago; where git knows neither, all."""
+import concurrent.futures
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+INCLUDE = ROOT / "include"
+FLAGS = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror", "-fsyntax-only", "-x", "c++", "-"]
+
+
+def git(*arguments):
+    return subprocess.run(["git", "-C", ROOT, *arguments], capture_output=True, text=True).stdout.strip()
+
+
+def changed_since_base():
+    """Paths below the project; None where there is nothing to compare with."""
+    base = git("merge-base", "HEAD", "origin/main") or git("rev-list", "-1", "--before=12 hours ago", "HEAD")
+    return git("diff", "--name-only", base, "--", "include").splitlines() if base else None
+
+
+def errors_of(header, compiler, folders):
+    include = f'#include "{header}"\n'
+    result = subprocess.run([compiler, *(f"-I{folder}" for folder in folders), *FLAGS], input=include * 2,
+                            capture_output=True, text=True)
+    return result.stderr if result.returncode else ""
+
+
+def main():
+    arguments = sys.argv[1:]
+    changed = None if "--all" in arguments else changed_since_base()
+    compiler, *folders = [argument for argument in arguments if argument != "--all"]
+    headers = sorted(str(path.relative_to(INCLUDE)) for path in INCLUDE.rglob("*.hpp")
+                     if changed is None or str(path.relative_to(ROOT)) in changed)
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        errors = [error for error in pool.map(lambda header: errors_of(header, compiler, [INCLUDE, *folders]), headers) if error]
+    print(*errors, f"{len(headers)} headers compiled alone, {len(errors)} do not", sep="\n")
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
