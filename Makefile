@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live test lint sanitize fuzz check-all bench docs clean
+.PHONY: build setup demo live test lint numerics sanitize fuzz check-all bench docs clean
 
 build: setup
 	cmake --preset release
@@ -22,11 +22,14 @@ test: setup
 	cmake --build --preset release
 	ctest --preset release
 
-sanitize: setup
-	scripts/setup test
-	scripts/setup fuzz
+# What the tree of the sanitizers takes from the release.
+numerics: setup
 	cmake --preset release
 	cmake --build --preset numerics
+
+sanitize: numerics
+	scripts/setup test
+	scripts/setup fuzz
 	cmake --preset asan
 	cmake --build --preset asan
 	ctest --preset asan
@@ -37,7 +40,7 @@ lint: setup
 	cmake --build --preset lint
 	scripts/lint
 
-fuzz: setup
+fuzz: numerics
 	scripts/setup fuzz
 	scripts/fuzz
 
