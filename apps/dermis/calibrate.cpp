@@ -19,6 +19,7 @@
 #include "dermis/paper/bank_training.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "interruption.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
@@ -255,7 +256,10 @@ void add_calibrate(Command& command) {
   command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
       .shows_default();
   command.flag("--json", options->json, "Print the report as JSON");
-  command.action([options] { return calibrate(*options); });
+  command.action([options] {
+    end_when_interrupted();
+    return calibrate(*options);
+  });
 }
 
 }  // namespace dermis::app

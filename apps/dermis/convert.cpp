@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,9 +13,9 @@
 #include "dermis/files/array_toml.hpp"
 #include "dermis/recordings/conversion.hpp"
 #include "dermis/recordings/recording.hpp"
+#include "interruption.hpp"
 #include "shape_options.hpp"
 #include "status_line.hpp"
-#include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
@@ -65,18 +64,14 @@ Result<std::optional<ArrayDescription>> read_array(const ConvertOptions& options
 }
 
 Status convert(const ConvertOptions& options) {
-  const std::atomic<bool>& stop = stop_flag();
   if (Status checked = check(options); !checked) return checked;
   const Result<std::optional<ArrayDescription>> array = read_array(options);
   if (!array) return array.error();
   const Result<std::optional<FrameShape>> shape = wanted_shape(options, *array);
   if (!shape) return shape.error();
-  const Result<std::vector<std::string>> left_out =
-      recordings::convert_frames(options.in, options.out,
-                                 {.input = {.shape = *shape, .rate_hz = options.rate_hz},
-                                  .array = *array ? &**array : nullptr,
-                                  .notice = say,
-                                  .stop = &stop});
+  const Result<std::vector<std::string>> left_out = recordings::convert_frames(
+      options.in, options.out,
+      {.input = {.shape = *shape, .rate_hz = options.rate_hz}, .array = *array ? &**array : nullptr, .notice = say});
   if (!left_out) return left_out.error();
   if (!left_out->empty()) say(fmt::format("{}: left out: {}", options.out, fmt::join(*left_out, ", ")));
   return Done{};
@@ -93,7 +88,10 @@ void add_convert(Command& command) {
   command.option("--rate", options->rate_hz,
                  "Frames a second of a file without times (.npy, .npz, .txt, .png, .packed10) [Hz]");
   options->shape.add(command);
-  command.action([options] { return convert(*options); });
+  command.action([options] {
+    end_when_interrupted();
+    return convert(*options);
+  });
 }
 
 }  // namespace dermis::app

@@ -13,6 +13,7 @@
 #include "dermis/report/evaluation_report.hpp"
 #include "evaluate_classes.hpp"
 #include "example_options.hpp"
+#include "interruption.hpp"
 #include "source_options.hpp"
 
 namespace dermis::app {
@@ -126,7 +127,10 @@ void add_evaluate(Command& command) {
   add_example_options(command, options->examples);
   command.option("--rate", options->examples.data.rate_hz,
                  "Frames a second, where they differ from those of the examples [Hz]");
-  command.action([options] { return evaluate(*options); });
+  command.action([options] {
+    end_when_interrupted();
+    return evaluate(*options);
+  });
 }
 
 }  // namespace dermis::app

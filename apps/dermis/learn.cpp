@@ -21,6 +21,7 @@
 #include "dermis/recognition/predictions.hpp"
 #include "dermis/report/recognition_report.hpp"
 #include "example_options.hpp"
+#include "interruption.hpp"
 #include "status_line.hpp"
 #include "writable.hpp"
 
@@ -172,7 +173,10 @@ void add_learn(Command& command) {
   command.option("--open-predictions", options->open_predictions, "What is answered for the labels of --open");
   command.option("--report", options->report,
                  "Folder for an HTML report with pictures, which compares with other estimators");
-  command.action([options] { return learn(*options); });
+  command.action([options] {
+    end_when_interrupted();
+    return learn(*options);
+  });
 }
 
 }  // namespace dermis::app

@@ -14,6 +14,7 @@
 #include "dermis/files/frames_csv.hpp"
 #include "dermis/files/loads_csv.hpp"
 #include "dermis/simulation/simulator.hpp"
+#include "interruption.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -140,7 +141,10 @@ void add_simulate(Command& command) {
                  "rubber: how a held reading grows in ten times the time, 0.02 to 0.30");
   command.option("--touch-gain", options->touch_gain, "rubber: standard deviation from touch to touch, 0 to 0.3");
   command.option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
-  command.action([options] { return simulate(*options); });
+  command.action([options] {
+    end_when_interrupted();
+    return simulate(*options);
+  });
 }
 
 }  // namespace dermis::app

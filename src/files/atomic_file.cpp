@@ -7,10 +7,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <utility>
 
-#include "dermis/files/output_place.hpp"
 #include "dermis/files/text.hpp"
 
 namespace dermis::files {
@@ -24,24 +22,23 @@ constexpr std::chrono::milliseconds kReaderWaits{50};
 Result<AtomicFile> AtomicFile::create(const std::string& path) {
   Result<OutputPlace> place = open_output(path);
   if (!place) return place.error();
-  return AtomicFile(std::move(place->target), std::move(place->temporary), place->descriptor);
+  return AtomicFile(*std::move(place));
 }
 
-AtomicFile::AtomicFile(std::string target, std::string temporary, int descriptor)
-    : target_(std::move(target)), temporary_(std::move(temporary)), descriptor_(descriptor) {
+AtomicFile::AtomicFile(OutputPlace place)
+    : target_(std::move(place.target)), unfinished_(std::move(place.unfinished)), descriptor_(place.descriptor) {
   buffer_.reserve(kBufferBytes);
 }
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : target_(std::move(other.target_)),
-      temporary_(std::exchange(other.temporary_, {})),
+      unfinished_(std::move(other.unfinished_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       buffer_(std::move(other.buffer_)),
       first_error_(std::move(other.first_error_)) {}
 
 AtomicFile::~AtomicFile() {
   close();
-  if (!temporary_.empty()) std::remove(temporary_.c_str());
 }
 
 void AtomicFile::write(std::string_view bytes) {
@@ -51,7 +48,7 @@ void AtomicFile::write(std::string_view bytes) {
     bytes.remove_prefix(taken);
     if (buffer_.size() == kBufferBytes) flush();
   }
-  if (temporary_.empty()) flush_for_reader();
+  if (!unfinished_.exists()) flush_for_reader();
 }
 
 /// Who reads a pipe sees what was written while more is to come.
@@ -64,7 +61,7 @@ void AtomicFile::flush_for_reader() {
 
 void AtomicFile::write_at(std::uint64_t offset, std::string_view bytes) {
   flush();
-  if (temporary_.empty() && !first_error_) {
+  if (!unfinished_.exists() && !first_error_) {
     first_error_ = bad_input("cannot write " + in_quotes(target_) + ": this format needs a regular file");
   }
   if (first_error_) return;
@@ -96,13 +93,12 @@ Status AtomicFile::status() const {
 
 Status AtomicFile::commit() {
   flush();
-  if (!temporary_.empty() && !first_error_ && ::fsync(descriptor_) != 0) keep_error(errno);
+  if (unfinished_.exists() && !first_error_ && ::fsync(descriptor_) != 0) keep_error(errno);
   close();
   if (first_error_) return *first_error_;
-  if (temporary_.empty()) return Done{};
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) return cannot_write(target_, errno);
+  if (!unfinished_.exists()) return Done{};
+  if (Status placed = unfinished_.take_place_of(target_); !placed) return placed;
   synchronise_folder_of(target_);
-  temporary_.clear();
   return Done{};
 }
 

@@ -8,8 +8,11 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <mutex>
+#include <set>
 
 #include "dermis/files/text.hpp"
 
@@ -36,7 +39,52 @@ std::string temporary_name(const std::string& target) {
   return target + "." + std::to_string(::getpid()) + "." + std::to_string(counter++) + ".tmp";
 }
 
+/// Those of the process.
+struct UnfinishedFiles {
+  std::mutex mutex;
+  std::set<std::string> paths;
+};
+
+UnfinishedFiles& unfinished_files() {
+  static UnfinishedFiles files;
+  return files;
+}
+
 }  // namespace
+
+UnfinishedFile::UnfinishedFile(std::string path) : path_(std::move(path)) {
+  UnfinishedFiles& files = unfinished_files();
+  const std::lock_guard lock(files.mutex);
+  files.paths.insert(path_);
+}
+
+UnfinishedFile& UnfinishedFile::operator=(UnfinishedFile&& other) noexcept {
+  std::swap(path_, other.path_);
+  return *this;
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  if (!exists()) return;
+  UnfinishedFiles& files = unfinished_files();
+  const std::lock_guard lock(files.mutex);
+  std::remove(path_.c_str());
+  files.paths.erase(path_);
+}
+
+Status UnfinishedFile::take_place_of(const std::string& target) {
+  UnfinishedFiles& files = unfinished_files();
+  const std::lock_guard lock(files.mutex);
+  if (std::rename(path_.c_str(), target.c_str()) != 0) return cannot_write(target, errno);
+  files.paths.erase(path_);
+  path_.clear();
+  return Done{};
+}
+
+void remove_unfinished_files() {
+  UnfinishedFiles& files = unfinished_files();
+  files.mutex.lock();
+  for (const std::string& path : files.paths) std::remove(path.c_str());
+}
 
 Error cannot_write(const std::string& path, int error_number) {
   return failed("cannot write " + in_quotes(path) + ": " + std::strerror(error_number));
@@ -46,7 +94,7 @@ Result<OutputPlace> open_output(const std::string& path) {
   if (is_written_directly(path)) {
     const int descriptor = open_directly(path);
     if (descriptor < 0) return cannot_write(path, errno);
-    return OutputPlace{path, "", descriptor};
+    return OutputPlace{path, UnfinishedFile(), descriptor};
   }
   const std::string target = resolve(path);
   std::string temporary;
@@ -56,7 +104,7 @@ Result<OutputPlace> open_output(const std::string& path) {
     descriptor = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (descriptor < 0 && errno == EEXIST);
   if (descriptor < 0) return cannot_write(path, errno);
-  return OutputPlace{target, temporary, descriptor};
+  return OutputPlace{target, UnfinishedFile(std::move(temporary)), descriptor};
 }
 
 int write_all(int descriptor, std::span<const std::byte> bytes, std::optional<std::uint64_t> offset) {

@@ -5,31 +5,27 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <utility>
-
-#include "dermis/files/output_place.hpp"
 
 namespace dermis::recordings {
 
 Result<GrowingFile> GrowingFile::create(const std::string& path) {
   Result<files::OutputPlace> place = files::open_output(path);
   if (!place) return place.error();
-  return GrowingFile(std::move(place->target), std::move(place->temporary), place->descriptor);
+  return GrowingFile(*std::move(place));
 }
 
-GrowingFile::GrowingFile(std::string target, std::string temporary, int descriptor)
-    : target_(std::move(target)), temporary_(std::move(temporary)), descriptor_(descriptor) {}
+GrowingFile::GrowingFile(files::OutputPlace place)
+    : target_(std::move(place.target)), unfinished_(std::move(place.unfinished)), descriptor_(place.descriptor) {}
 
 GrowingFile::GrowingFile(GrowingFile&& other) noexcept
     : target_(std::move(other.target_)),
-      temporary_(std::exchange(other.temporary_, {})),
+      unfinished_(std::move(other.unfinished_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       size_(other.size_) {}
 
 GrowingFile::~GrowingFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  if (!temporary_.empty()) std::remove(temporary_.c_str());
 }
 
 Status GrowingFile::append(std::span<const std::uint8_t> bytes) {
@@ -52,9 +48,7 @@ Status GrowingFile::appear() {
   // Else a power failure can leave neither the earlier file nor this one.
   const bool replaces = ::access(target_.c_str(), F_OK) == 0;
   if (replaces && ::fdatasync(descriptor_) != 0) return files::cannot_write(target_, errno);
-  if (std::rename(temporary_.c_str(), target_.c_str()) != 0) return files::cannot_write(target_, errno);
-  temporary_.clear();
-  return Done{};
+  return unfinished_.take_place_of(target_);
 }
 
 Status GrowingFile::synchronise() const {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "dermis/core/result.hpp"
+#include "dermis/files/output_place.hpp"
 
 namespace dermis::recordings {
 
@@ -27,7 +28,7 @@ class GrowingFile {
   /// Puts the file in its place; nothing where it is there already. A file that it replaces is gone only when the bytes
   /// of this one are on the disk.
   [[nodiscard]] Status appear();
-  [[nodiscard]] bool has_appeared() const noexcept { return temporary_.empty(); }
+  [[nodiscard]] bool has_appeared() const noexcept { return !unfinished_.exists(); }
 
   /// Waits until the bytes appended so far, and the name of the file, are on the disk. May be called while another
   /// thread appends.
@@ -36,11 +37,11 @@ class GrowingFile {
   [[nodiscard]] Status close();
 
  private:
-  GrowingFile(std::string target, std::string temporary, int descriptor);
+  explicit GrowingFile(files::OutputPlace place);
   void cut_back() const;
 
   std::string target_;
-  std::string temporary_;  ///< Empty where the file is in its place.
+  files::UnfinishedFile unfinished_;  ///< None where the file is in its place.
   int descriptor_;
   std::uint64_t size_ = 0;
 };

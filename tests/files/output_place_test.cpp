@@ -24,8 +24,9 @@ TEST(OutputPlace, a_new_file_stands_beside_its_target) {
   EXPECT_EQ(write_all(place->descriptor, bytes_of("new")), 0);
   EXPECT_EQ(write_all(place->descriptor, bytes_of("N"), 0), 0);
   ::close(place->descriptor);
-  EXPECT_EQ(std::filesystem::path(place->temporary).parent_path(), std::filesystem::path(place->target).parent_path());
-  EXPECT_EQ(support::read_bytes(place->temporary), "New");
+  EXPECT_EQ(std::filesystem::path(place->unfinished.path()).parent_path(),
+            std::filesystem::path(place->target).parent_path());
+  EXPECT_EQ(support::read_bytes(place->unfinished.path()), "New");
   EXPECT_EQ(support::read_bytes(folder.file("out")), "old");
 }
 
@@ -39,10 +40,34 @@ TEST(OutputPlace, behind_a_link_is_the_file_and_not_the_link) {
   EXPECT_EQ(place->target, std::filesystem::canonical(folder.file("real")).string());
 }
 
+TEST(OutputPlace, an_unfinished_file_goes_or_takes_its_place) {
+  const support::TemporaryFolder folder;
+  const std::string target = folder.file("new");
+  { const Result<OutputPlace> dropped = open_output(target); }
+  EXPECT_EQ(folder.file_count(), 0U);
+  Result<OutputPlace> place = open_output(target);
+  ASSERT_TRUE(place);
+  ASSERT_TRUE(place->unfinished.take_place_of(target));
+  EXPECT_FALSE(place->unfinished.exists());
+  ::close(place->descriptor);
+  EXPECT_EQ(folder.file_count(), 1U);
+  EXPECT_TRUE(std::filesystem::exists(target));
+}
+
+TEST(OutputPlaceDeathTest, unfinished_files_are_removed_before_the_process_ends) {
+  const support::TemporaryFolder folder;
+  const auto end_at_once = [&] {
+    const Result<OutputPlace> begun = open_output(folder.file("new"));
+    remove_unfinished_files();
+    ::_exit(begun && folder.file_count() == 0 ? 0 : 1);
+  };
+  EXPECT_EXIT(end_at_once(), testing::ExitedWithCode(0), "");
+}
+
 TEST(OutputPlace, what_is_no_regular_file_is_written_directly) {
   const Result<OutputPlace> place = open_output("/dev/null");
   ASSERT_TRUE(place);
-  EXPECT_EQ(place->temporary, "");
+  EXPECT_FALSE(place->unfinished.exists());
   EXPECT_EQ(write_all(place->descriptor, bytes_of("gone")), 0);
   ::close(place->descriptor);
 }

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "dermis/core/result.hpp"
+#include "dermis/files/output_place.hpp"
 
 namespace dermis::files {
 
@@ -39,14 +40,14 @@ class AtomicFile {
   [[nodiscard]] Status commit();
 
  private:
-  AtomicFile(std::string target, std::string temporary, int descriptor);
+  explicit AtomicFile(OutputPlace place);
   void flush();
   void flush_for_reader();
   void keep_error(int error_number);
   void close();
 
   std::string target_;
-  std::string temporary_;  ///< Empty where the target is written directly.
+  UnfinishedFile unfinished_;
   int descriptor_ = -1;
   std::string buffer_;
   std::chrono::steady_clock::time_point last_flush_{};

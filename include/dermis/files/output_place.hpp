@@ -7,15 +7,43 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include "dermis/core/result.hpp"
 
 namespace dermis::files {
 
+/// The file beside its target that an output is written to. It goes with this, but where it has taken the target's
+/// place.
+class UnfinishedFile {
+ public:
+  UnfinishedFile() = default;  ///< None: the target is written directly.
+  explicit UnfinishedFile(std::string path);
+  UnfinishedFile(UnfinishedFile&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+  UnfinishedFile& operator=(UnfinishedFile&& other) noexcept;
+  ~UnfinishedFile();
+
+  /// Whether there is one, and it has not taken its place.
+  [[nodiscard]] bool exists() const noexcept { return !path_.empty(); }
+
+  /// Empty where there is none.
+  [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+  /// Becomes the target, at once. Fails where the system refuses it.
+  [[nodiscard]] Status take_place_of(const std::string& target);
+
+ private:
+  std::string path_;
+};
+
+/// Removes all unfinished files of the process, which must end then: who begins or finishes one from now on waits for
+/// ever. Thread-safe.
+void remove_unfinished_files();
+
 /// Where the bytes of an output file go until it is complete.
 struct OutputPlace {
-  std::string target;     ///< The file behind a symbolic link, so that a rename replaces the file and not the link.
-  std::string temporary;  ///< In the folder of the target; empty where the target is written directly.
+  std::string target;  ///< The file behind a symbolic link, so that a rename replaces the file and not the link.
+  UnfinishedFile unfinished;
   int descriptor = -1;
 };
 

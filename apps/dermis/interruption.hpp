@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+namespace dermis::app {
+
+/// From here on, SIGINT, SIGTERM and SIGHUP end the process at once, with nothing half-written and the status that a
+/// shell gives it: 128 and the signal. For work of which a half is worth nothing, before it starts threads; live
+/// commands look at stop_flag().
+void end_when_interrupted();
+
+}  // namespace dermis::app
