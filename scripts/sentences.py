@@ -21,7 +21,7 @@ LIMIT, LONG, LONG_SHARE, MEAN = 40, 30, 0.03, 17
 
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 FENCE = re.compile(r"\s*(`{3,}|~{3,})")
-ITEM = re.compile(r"\s*(?:[-*+]|\d+[.)])\s+")
+ITEM = re.compile(r"\s*(?:[-*+]|(\d+)[.)])\s+")
 NO_PROSE = re.compile(r"\s*(\||#{1,6} |</?[a-z]+[ >/]|\[[^\]]+\]: |[-=*_ ]{3,}$)")
 IMAGE = re.compile(r"!\[[^\]]*\]\([^)]*\)")
 LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
@@ -41,6 +41,8 @@ def paragraphs(text):
             row = row[1:].removeprefix(" ")
         indent = len(row) - len(row.lstrip())
         mark, item = FENCE.match(row), ITEM.match(row)
+        if item and rows and indent >= content_indent and item.group(1) not in (None, "1"):
+            item = None  # a number that ends a sentence
         if row.strip() and not item and not rows and indent < content_indent:
             content_indent = indent  # the list has ended
         is_fence = bool(fence or mark)
@@ -98,7 +100,7 @@ def main():
             if options.over and words > options.over:
                 print(f"{page}:{line}: {words} words: {sentence}")
         if found:
-            summary(str(page.resolve().relative_to(ROOT)), [words for _, _, words in found])
+            summary(str(page.relative_to(ROOT) if page.is_relative_to(ROOT) else page), [words for _, _, words in found])
     return 0 if summary("all", everything) else 1
 
 
