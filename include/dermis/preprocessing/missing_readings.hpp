@@ -17,7 +17,7 @@ class MissingReadings {
  public:
   explicit MissingReadings(ArrayDescription array) : array_(std::move(array)), missing_(array_.taxel_count()) {}
 
-  /// A frame of the array; of rejected frames nothing is counted. Allocates nothing.
+  /// Adds a frame of the array; rejected frames are not counted. Allocates nothing.
   void add(const ConditionedFrame& conditioned) noexcept;
 
   [[nodiscard]] bool any() const noexcept;
