@@ -253,8 +253,7 @@ void add_calibrate(Command& command) {
   command.option("--out", options->out, "Model file to write (safetensors)").required();
   command.option("--bank", options->bank,
                  "Also train the paper's bank of N-N-N-1 networks and write it here (16x16: minutes, 135 MB)");
-  command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
-      .shows_default();
+  command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag("--json", options->json, "Print the report as JSON");
   command.action([options] {
     end_when_interrupted();

@@ -117,7 +117,7 @@ void add_evaluate(Command& command) {
   command.option("--model", options->model,
                  "Model file of 'dermis calibrate', or array.toml where readings are forces");
   command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames");
-  command.option("--loads", options->loads, "loads.csv: the truth");
+  command.option("--loads", options->loads, "loads.csv: the true loads");
   command.option("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
   command.flag("--json", options->json, "Print the result as JSON");
   command.option("--report", options->report, "Folder for an HTML report with pictures");
@@ -126,7 +126,7 @@ void add_evaluate(Command& command) {
       "Judge the classes of 'dermis learn', not forces, on labelled examples: --in, or --frames of tared frames.npy");
   add_example_options(command, options->examples);
   command.option("--rate", options->examples.data.rate_hz,
-                 "Frames a second, where they differ from those of the examples [Hz]");
+                 "Frames a second, if they differ from those of the examples [Hz]");
   command.action([options] {
     end_when_interrupted();
     return evaluate(*options);

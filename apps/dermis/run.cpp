@@ -106,10 +106,9 @@ void add_run(Command& command) {
   command.option("--sigma", options->tables.sigmas, "Also write the standard deviation of every force [N] to this CSV");
   command.option("--contacts", options->tables.contacts,
                  "contacts.csv to write: what touches the array, where and how hard");
-  command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
-      .shows_default();
+  command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag("--tare", options->tare,
-               "Take the first second (at least 10 frames) for unloaded, as tare in 'dermis serve' does");
+               "Take the first second (at least 10 frames) as unloaded, like the tare of 'dermis serve'");
   command.flag("--follow-drift", options->follow_drift,
                "Follow the offsets of idle taxels slowly, as in 'dermis serve'");
   command.action([options] { return run(*options); });

@@ -138,7 +138,7 @@ void add_simulate(Command& command) {
   command.option("--taxels", options->taxels, "How many taxels the scene two_weights presses").not_negative();
   command.option("--memory", options->memory, "What the material remembers: simple (as physics.toml says) | rubber");
   command.option("--creep-per-decade", options->creep_per_decade,
-                 "rubber: how a held reading grows in ten times the time, 0.02 to 0.30");
+                 "rubber: growth of a held reading in ten times the time, 0.02 to 0.30");
   command.option("--touch-gain", options->touch_gain, "rubber: standard deviation from touch to touch, 0 to 0.3");
   command.option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command.action([options] {
