@@ -37,8 +37,6 @@ def paragraphs(text):
     text = COMMENT.sub(lambda match: "\n" * match.group().count("\n"), text)
     for number, row in enumerate(text.split("\n") + [""], start=1):
         row = row.expandtabs(4)
-        while row.startswith(">"):
-            row = row[1:].removeprefix(" ")
         indent = len(row) - len(row.lstrip())
         mark, item = FENCE.match(row), ITEM.match(row)
         if item and rows and indent >= content_indent and item.group(1) not in (None, "1"):
