@@ -99,7 +99,7 @@ void add_image(Command& command) {
   command.option("--model", options->model,
                  "Model file, or array.toml where readings are forces: draws newtons and contacts instead of counts");
   command.option("--out", options->out, "Picture to write: .png or .svg").required();
-  const Option frame = command.option("--frame", options->frame, "Number of the frame, from 0").not_negative();
+  const Option frame = command.option("--frame", options->frame, "Number of the frame, from 0");
   const Option at = command.option("--at", options->at_s, "The frame at this time after the first [s]").excludes(frame);
   const Option from = command.option("--from", options->from_s, "Begin of an animation after the first frame [s]")
                           .excludes(frame)

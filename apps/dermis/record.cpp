@@ -110,7 +110,7 @@ void add_record(Command& command) {
   command.option("--array", options->array, "array.toml, to keep with the frames");
   command.option("--model", options->model,
                  "Record the forces, too: of this model, or array.toml where readings are forces");
-  const Option frames = command.option("--frames", options->frames, "Stop after so many frames").not_negative();
+  const Option frames = command.option("--frames", options->frames, "Stop after so many frames");
   command
       .option("--seconds", options->seconds,
               "Stop so long after the first frame, or after the start where none comes [s]")
