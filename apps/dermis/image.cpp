@@ -88,7 +88,8 @@ Status image(const ImageOptions& options) {
   Result<files::AtomicFile> file = files::AtomicFile::create(options.out);
   if (!file) return file.error();
   file->write(bytes_of(options, *pictures));
-  return file->commit();
+  if (Status committed = file->commit(); !committed) return committed;
+  return (*view)->verdict();
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,10 +14,9 @@
 namespace dermis::recordings {
 
 struct ConversionOptions {
-  FrameFileInput input{};                            ///< What must be known of the file that is read.
-  const ArrayDescription* array = nullptr;           ///< Kept with the frames, where the format has a place for it.
-  std::function<void(const std::string&)> notice{};  ///< What a user should know: a recording that is incomplete.
-  const std::atomic<bool>* stop = nullptr;           ///< Ends the conversion, without a file.
+  FrameFileInput input{};                   ///< Of the file that is read; no rate where neither file has times.
+  const ArrayDescription* array = nullptr;  ///< Kept with the frames, where the format has a place for it.
+  const std::atomic<bool>* stop = nullptr;  ///< Ends the conversion, without a file.
 };
 
 /// Writes the frames of the file `in` to the file `out`, in the formats of their names; `out` appears complete or not

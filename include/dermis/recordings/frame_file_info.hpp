@@ -36,8 +36,8 @@ struct FrameFileInfo {
   [[nodiscard]] std::optional<double> rate_hz() const;
 };
 
-/// Of a recording from its summary, where it has one; of other files by reading all frames. `shape`: that the frames
-/// must have, needed where the file does not tell it.
+/// Of a recording from its summary, where it has one; of other files by reading all frames: one without any is bad
+/// input. `shape`: that the frames must have, needed where the file does not tell it.
 [[nodiscard]] Result<FrameFileInfo> frame_file_info(const std::string& path,
                                                     const std::optional<FrameShape>& shape = std::nullopt);
 

@@ -54,10 +54,12 @@ enum class FrameFormat {
 struct FrameFileInput {
   std::optional<FrameShape> shape{};  ///< That the frames must have; empty: what the file says. 1x1 ... 1024x1024.
   std::optional<double> rate_hz{};    ///< Frames a second of a file without times (has_times). > 0
-  std::function<void(const std::string&)> notice{};  ///< Told in one line what was left out: a frame that is cut.
+  std::function<void(const std::string&)> notice{};  ///< Told in one line what a user should know of the frames.
+  std::function<void(const std::string&)> loss{};    ///< Told in one line, at the end, that the file is cut off there.
 };
 
-/// The frames of a file, read one by one.
+/// The frames of a file, read one by one. Of a file that is cut off, all whole frames are given, then `loss` is told. A
+/// file without a frame is bad input: next() says so.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_frames(const std::string& path,
                                                                const FrameFileInput& input = {});
 
