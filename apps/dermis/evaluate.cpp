@@ -96,7 +96,8 @@ Status evaluate_forces(const EvaluateOptions& options) {
     if (Status written = report::write_evaluation_report(options.report, *evaluation, *model); !written) return written;
   }
   options.json ? fmt::print("{}\n", calibration::to_json(*evaluation)) : print_text(*evaluation);
-  return Done{};
+  if (evaluation->most_have_forces) return Done{};
+  return failed(options.frames + ": " + evaluation->most_have_forces.error().message);
 }
 
 Status evaluate(const EvaluateOptions& options) {

@@ -22,6 +22,7 @@
 #include "dermis/report/recognition_report.hpp"
 #include "example_options.hpp"
 #include "interruption.hpp"
+#include "source_options.hpp"
 #include "status_line.hpp"
 #include "writable.hpp"
 
@@ -123,7 +124,7 @@ Status write_model(const LearnOptions& options, const LabelledFrames& data, cons
 
 Status learn(const LearnOptions& options) {
   if (Status checked = check_options(options); !checked) return checked;
-  const Result<LabelledFrames> data = operation::read_examples(options.examples, {.notice = say});
+  const Result<LabelledFrames> data = operation::read_examples(options.examples, source_options());
   if (!data) return data.error();
   std::vector<Split> splits;
   std::vector<Split> open_splits;

@@ -11,6 +11,7 @@
 #include <exception>
 
 #include "commands.hpp"
+#include "lost_input.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -67,7 +68,10 @@ int run(int argc, char** argv) {
   if (!action) return exit_status(action.error());
   if (!*action) return 0;
   const Result<int> status = perform(*action);
-  return status ? *status : exit_status(status.error());
+  const std::vector<std::string> lost = losses();
+  for (const std::string& line : lost) say(fmt::format("dermis: {}", line));
+  if (!status) return exit_status(status.error());
+  return *status == 0 && !lost.empty() ? kExitFailed : *status;
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ void add_serve(Command& command) {
   command.option("--record", options->session.record, "Record from the beginning, .mcap");
   command.option("--host", options->session.server.host, "Address to serve at; all but loopback need a token")
       .shows_default();
-  command.option("--port", options->session.server.port, "Port; 0: any that is free").not_negative().shows_default();
+  command.option("--port", options->session.server.port, "Port; 0: any that is free").shows_default();
   command.option("--token", options->session.server.token, "Every client must present it");
   command.action([options] { return serve_suit(*options); });
 }

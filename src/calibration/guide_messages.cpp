@@ -96,7 +96,8 @@ std::string describe_result(const Calibration& calibration, const GuideState& st
     text += fmt::format(" The circuit is not certain: {}, add these frames to the saved ones and calibrate again.",
                         describe(telling, calibration.model.array));
   }
-  text += fmt::format(" Forces above {:g} N are not extrapolated.", training.heaviest_newtons);
+  text += fmt::format(" Forces above {:g} N are extrapolated, less and less surely, to eight times as much.",
+                      training.heaviest_newtons);
   return text + describe_temperature(training, presses);
 }
 

@@ -72,7 +72,7 @@ Result<ReadRecording> read_recording(const ExampleOptions& options, const std::s
     times.push_back(source->time());
   }
   if (read.recording.tare_frames == times.size()) {
-    return bad_input(from + (times.empty() ? ": has no frame" : ": ends before it is tared, which takes 1 s"));
+    return bad_input(from + ": ends before it is tared, which takes 1 s");
   }
   read.troubles = source->describe_troubles();
   read.extra_names = source->extra_names();

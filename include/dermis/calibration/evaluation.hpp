@@ -118,7 +118,8 @@ struct Evaluation {
   ArrayDescription array;
   std::size_t frames = 0;  ///< Labelled frames judged.
   std::size_t frames_rejected = 0;
-  double judged_from_n = 0.0;  ///< True force from which on taxels are judged [N]: kJudgedShare.
+  Status most_have_forces = Done{};  ///< Else what is wrong with the frames: pipeline::FrameTroubles::verdict().
+  double judged_from_n = 0.0;        ///< True force from which on taxels are judged [N]: kJudgedShare.
   std::vector<EstimatorResult> estimators;
   Coverage coverage;  ///< Of dermis, over all judged taxels.
   BoundComparison bound;

@@ -86,9 +86,9 @@ struct ArrayDescription {
   std::string name = "array";
   std::size_t rows = 0;                 ///< 1 ... kMaxLines.
   std::size_t cols = 0;                 ///< 1 ... kMaxLines.
-  double row_pitch_m = 0.010;           ///< Distance between neighbouring rows [m], > 0.
-  double col_pitch_m = 0.010;           ///< Distance between neighbouring columns [m], > 0.
-  std::optional<double> taxel_area_m2;  ///< Pressed area of a taxel [m2], > 0; needed for loads given as pressure.
+  double row_pitch_m = 0.010;           ///< Distance between neighbouring rows [m], 0.05 mm ... 1 m.
+  double col_pitch_m = 0.010;           ///< Distance between neighbouring columns [m], 0.05 mm ... 1 m.
+  std::optional<double> taxel_area_m2;  ///< Pressed area of a taxel [m2], 0.0025 mm2 ... 1 m2; needed for pressures.
   /// Crossings of lines where the sheet has no taxel, as row-major indices, rising: they conduct nothing, their
   /// readings are not looked at and they have no force. Not all taxels.
   std::vector<std::size_t> absent;

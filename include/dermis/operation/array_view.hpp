@@ -12,6 +12,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/contact.hpp"
 #include "dermis/operation/operation.hpp"
+#include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/sources/open_source.hpp"
 
 namespace dermis::operation {
@@ -30,6 +31,9 @@ class ArrayView {
 
   /// Takes the next frame. Returns false at the end.
   [[nodiscard]] Result<bool> next();
+
+  /// Of the frames so far: failed where most have no force (pipeline::FrameTroubles::verdict()).
+  [[nodiscard]] Status verdict() const { return troubles_ ? troubles_->verdict() : Status(Done{}); }
 
   // Of the last frame.
   [[nodiscard]] const RawFrame& raw() const noexcept { return raw_; }
@@ -59,6 +63,7 @@ class ArrayView {
   std::unique_ptr<FrameSource> source_;
   std::optional<ModelAtWork> work_;
   std::optional<fusion::ContactTracker> tracker_;
+  std::optional<pipeline::FrameTroubles> troubles_;  ///< Of the forces.
   std::string from_;
   std::string name_;
   double row_pitch_m_ = ArrayDescription{}.row_pitch_m;

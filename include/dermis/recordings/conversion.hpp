@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,10 +14,8 @@
 namespace dermis::recordings {
 
 struct ConversionOptions {
-  FrameFileInput input{};                   ///< Shape and rate of the input, where its file lacks them.
+  FrameFileInput input{};                   ///< Shape of the input, and its rate where only its own file lacks times.
   const ArrayDescription* array = nullptr;  ///< Stored with the frames, if the format has a place for it.
-  /// Receives messages for the user, such as an incomplete recording.
-  std::function<void(const std::string&)> notice{};
   const std::atomic<bool>* stop = nullptr;  ///< Ends the conversion, without a file.
 };
 

@@ -54,11 +54,12 @@ enum class FrameFormat {
 struct FrameFileInput {
   std::optional<FrameShape> shape{};  ///< Required shape of the frames; empty: that of the file. 1x1 ... 1024x1024.
   std::optional<double> rate_hz{};    ///< Frames a second of a file without times (has_times). > 0
-  /// Receives one line on what was left out: a frame that is cut off.
-  std::function<void(const std::string&)> notice{};
+  std::function<void(const std::string&)> notice{};  ///< Receives one line on what a user should know of the frames.
+  std::function<void(const std::string&)> loss{};    ///< Receives one line at the end, if the file is cut off there.
 };
 
-/// The frames of a file, read one by one.
+/// The frames of a file, read one by one. Of a file that is cut off, all whole frames are given, then `loss` is told. A
+/// file without a frame is bad input: next() says so.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_frames(const std::string& path,
                                                                const FrameFileInput& input = {});
 

@@ -23,6 +23,7 @@ struct SourceOptions {
   /// Set: a live source gives what was received, then next() returns false within 100 ms. A file is read on.
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string&)> notice{};  ///< Told what a user should know while it goes on; one line.
+  std::function<void(const std::string&)> loss{};    ///< Told in one line, at its end, that a file is cut off there.
   std::shared_ptr<GuideVoice> guide{};  ///< Whom the hand of sim:rehearsal obeys. Null: nobody, it presses nothing.
 };
 
