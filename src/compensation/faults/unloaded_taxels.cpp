@@ -10,8 +10,8 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr double kMostCutOff = 0.05;    // of full scale: what readouts send as 0
-constexpr double kAboveSmallest = 1.5;  // times the smallest reading: an unloaded one that cannot have been cut off
+constexpr double kMostCutOff = 0.05;  // of full scale: what readouts send as 0
+constexpr double kOneCount = 1.5;     // less is no more than one: nothing is cut off below it
 
 }  // namespace
 
@@ -60,8 +60,11 @@ void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio, cons
 }
 
 void UnloadedTaxels::forget_what_may_be_cut_off(double sigma_ratio) noexcept {
-  const auto cut_off = static_cast<float>(kUnloadedShare * kAboveSmallest * smallest_reading_ / sigma_ratio);
-  for (float& least : least_reading_) least = least > cut_off ? least : 0.0F;
+  const Readout& readout = array_.readout;
+  const double smallest_counts = smallest_reading_ / sigma_ratio * readout.adc_noise_counts;
+  if (readout.quantity == Quantity::counts && smallest_counts < kOneCount) return;
+  const auto smallest = static_cast<float>(smallest_reading_ / sigma_ratio);
+  for (float& least : least_reading_) least = least > smallest ? least : 0.0F;
 }
 
 /// Pressed taxels on the sensed line of an unloaded one take the share of the supply that they read themselves, those
