@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from dermis import circuit as circuit
 
-Path: TypeAlias = str | os.PathLike[str]
+_Path: TypeAlias = str | os.PathLike[str]
 
 __version__: str
 
@@ -75,10 +75,10 @@ class Model:
     def array(self) -> ArrayDescription: ...
     @property
     def provenance(self) -> dict[str, str]: ...
-    def write(self, path: Path) -> None: ...
+    def write(self, path: _Path) -> None: ...
 
-def read_array(path: Path) -> ArrayDescription: ...
-def read_model(path: Path) -> Model: ...
+def read_array(path: _Path) -> ArrayDescription: ...
+def read_model(path: _Path) -> Model: ...
 
 class RawFrame:
     """Counts of one frame. `counts` is a view (rows, cols); it keeps the frame alive."""
@@ -127,11 +127,11 @@ class Recording:
         rate_hz: float | None = None,
         temperature_celsius: ArrayLike | None = None,
         supply_v: ArrayLike | None = None,
-        array: ArrayDescription | Path | None = None,
+        array: ArrayDescription | _Path | None = None,
     ) -> None: ...
     @staticmethod
-    def read(path: Path, *, rate_hz: float | None = None) -> Recording: ...
-    def write(self, path: Path) -> None: ...
+    def read(path: _Path, *, rate_hz: float | None = None) -> Recording: ...
+    def write(self, path: _Path) -> None: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> RawFrame: ...
     @property
@@ -180,7 +180,7 @@ class Pipeline:
         time_ns: int | None = None,
     ) -> ForceFrame:
         """counts (rows, cols); temperature [C]; supply [V]; time_ns: now, by the host's clock, where it is None."""
-    def run(self, frames: Recording | Path) -> Forces:
+    def run(self, frames: Recording | _Path) -> Forces:
         """All frames. Other threads run meanwhile."""
     def tare(self) -> None:
         """Takes the next second, at least 10 frames, for unloaded."""
@@ -228,7 +228,7 @@ class ContactTracker:
 
     def __init__(
         self,
-        model: Model | ArrayDescription | Path,
+        model: Model | ArrayDescription | _Path,
         *,
         onset_sigma: float = 5.0,
         onset_force_n: float = 0.1,
@@ -281,20 +281,20 @@ class CalibrationReport:
     @property
     def heaviest_newtons(self) -> float: ...
 
-def read_loads(path: Path, array: ArrayDescription | Path, frames: int) -> list[Load]:
+def read_loads(path: _Path, array: ArrayDescription | _Path, frames: int) -> list[Load]:
     """The loads of a loads.csv; `frames`: of the recording that it labels."""
 
 def calibrate(
-    array: ArrayDescription | Path,
-    frames: Recording | Path,
-    loads: Iterable[Load] | Path,
+    array: ArrayDescription | _Path,
+    frames: Recording | _Path,
+    loads: Iterable[Load] | _Path,
     *,
     settle_s: float = 0.0,
     progress: Callable[[str, float], Any] | None = None,
 ) -> tuple[Model, CalibrationReport]:
     """`dermis calibrate`. Frames that no load names are not labelled; progress(stage, share) hears how far it is."""
 
-def evaluate(model: Model, frames: Recording | Path, loads: Iterable[Load] | Path) -> dict[str, Any]:
+def evaluate(model: Model, frames: Recording | _Path, loads: Iterable[Load] | _Path) -> dict[str, Any]:
     """What `dermis evaluate --json` prints."""
 
 class Source:
@@ -316,7 +316,7 @@ class Source:
     def notices(self) -> Sequence[str]:
         """What a user should know, since the last call."""
 
-def open(uri: Path, array: ArrayDescription | Path | None = None) -> Source:
+def open(uri: _Path, array: ArrayDescription | _Path | None = None) -> Source:
     """A device or the simulator by its URI (docs/devices.md), or a file of frames by its path."""
 
 class Server:
@@ -331,13 +331,13 @@ class Server:
     def __exit__(self, *error: type[BaseException] | BaseException | TracebackType | None) -> None: ...
 
 def serve(
-    uri: Path | None = None,
-    model: Path | None = None,
+    uri: _Path | None = None,
+    model: _Path | None = None,
     *,
-    suit: Path | None = None,
-    classes: Path | None = None,
-    threats: Path | None = None,
-    record: Path | None = None,
+    suit: _Path | None = None,
+    classes: _Path | None = None,
+    threats: _Path | None = None,
+    record: _Path | None = None,
     host: str = "127.0.0.1",
     port: int = 8080,
     token: str = "",

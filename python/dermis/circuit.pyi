@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from dermis import ArrayDescription, Path
+from dermis import ArrayDescription, _Path
 
 class Inversion:
     """siemens (rows, cols): conductances [S]; solved: the readings have a solution in this circuit; residual_ratio: no reading
@@ -14,8 +14,8 @@ class Inversion:
     residual_ratio: float
     def __init__(self, siemens: NDArray[np.float64], solved: bool, residual_ratio: float) -> None: ...
 
-def forward(array: ArrayDescription | Path, siemens: ArrayLike) -> NDArray[np.float64]:
+def forward(array: ArrayDescription | _Path, siemens: ArrayLike) -> NDArray[np.float64]:
     """Readings over the supply (rows, cols) for conductances (rows, cols) [S]."""
 
-def invert(array: ArrayDescription | Path, ratio: ArrayLike) -> Inversion:
+def invert(array: ArrayDescription | _Path, ratio: ArrayLike) -> Inversion:
     """Conductances of readings over the supply (rows, cols)."""

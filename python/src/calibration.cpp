@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+#include <chrono>
+#include <exception>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -62,11 +65,17 @@ py::tuple calibrate(const py::object& array, const py::object& frames, const py:
   const std::vector<Load> labels = loads_of(loads, description, recording.size());
   if (!(settle_s >= 0.0 && settle_s <= 1e9)) throw py::value_error("settle_s: must be 0 to 1e9");
   const auto settle = std::chrono::duration_cast<Nanos>(std::chrono::duration<double>(settle_s));
+  std::exception_ptr thrown;  // by `progress`; the calibration itself knows no exceptions
   calibration::Progress report;
   if (!progress.is_none()) {
-    report = [&progress](const std::string& stage, double share) {
+    report = [&](const std::string& stage, double share) {
       const py::gil_scoped_acquire acquire;
-      progress(stage, share);
+      if (thrown) return;
+      try {
+        progress(stage, share);
+      } catch (py::error_already_set&) {
+        thrown = std::current_exception();
+      }
     };
   }
   const std::vector<RawFrame> raw = recording.frames();
@@ -74,6 +83,7 @@ py::tuple calibrate(const py::object& array, const py::object& frames, const py:
     const py::gil_scoped_release release;
     return calibration::calibrate(description, raw, labels, settle, report);
   }();
+  if (thrown) std::rethrow_exception(thrown);
   calibration::Calibration calibration = value_or_raise(std::move(made));
   return py::make_tuple(std::make_shared<pipeline::Model>(std::move(calibration.model)), std::move(calibration.report));
 }

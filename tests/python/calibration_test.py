@@ -30,6 +30,13 @@ class Calibration(workspace.CalibratedArray):
             with self.assertRaises(ValueError):
                 dermis.Load(0, (0, 0), **wrong)
 
+    def test_what_the_progress_raises_is_raised(self):
+        def progress(stage, share):
+            raise KeyError(stage)
+        with self.assertRaises(KeyError):
+            dermis.calibrate(self.array, self.folder / "calibration/frames.csv", self.folder / "calibration/loads.csv",
+                             progress=progress)
+
 
 if __name__ == "__main__":
     workspace.main()
