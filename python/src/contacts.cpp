@@ -36,13 +36,33 @@ PlaneVector vector_of(const py::handle& pair) {
   return {x, y};
 }
 
-std::unique_ptr<fusion::ContactTracker> make_tracker(const py::object& of, const fusion::ContactOptions& options) {
+/// A tracker that refuses the forces of another array.
+class Tracker {
+ public:
+  Tracker(const ArrayDescription& array, const fusion::ContactOptions& options, std::optional<fusion::StripTable> strip)
+      : shape_{array.rows, array.cols}, tracker_(array, options, std::move(strip)) {}
+
+  std::vector<Contact> process(const ShapedForce& force) {
+    if (force.shape != shape_) throw py::value_error("force: has another shape than the array of the tracker");
+    tracker_.process(force.frame, report_);
+    return report_.contacts;
+  }
+
+  void forget() { tracker_.forget(); }
+
+ private:
+  FrameShape shape_;
+  fusion::ContactTracker tracker_;
+  ContactReport report_;
+};
+
+std::unique_ptr<Tracker> make_tracker(const py::object& of, const fusion::ContactOptions& options) {
   raise_where_failed(options.validate());
   if (py::isinstance<pipeline::Model>(of)) {
     const auto& model = of.cast<const pipeline::Model&>();
-    return std::make_unique<fusion::ContactTracker>(model.array, options, model.strip);
+    return std::make_unique<Tracker>(model.array, options, model.strip);
   }
-  return std::make_unique<fusion::ContactTracker>(array_of(of), options);
+  return std::make_unique<Tracker>(array_of(of), options, std::nullopt);
 }
 
 py::tuple state_of(const Contact& c) {
@@ -96,7 +116,7 @@ void bind_contacts(py::module_& module) {
           "__eq__", [](const Contact& a, const Contact& b) { return a == b; }, py::is_operator())
       .def(py::pickle(&state_of, &contact_from));
 
-  py::class_<fusion::ContactTracker>(module, "ContactTracker")
+  py::class_<Tracker>(module, "ContactTracker")
       .def(py::init([](const py::object& of, double onset_sigma, double onset_force_n, double release_share,
                        std::size_t most_contacts) {
              return make_tracker(of, {onset_sigma, onset_force_n, release_share, most_contacts});
@@ -104,15 +124,8 @@ void bind_contacts(py::module_& module) {
            py::arg("model"), py::kw_only(), py::arg("onset_sigma") = defaults.onset_sigma,
            py::arg("onset_force_n") = defaults.onset_force_n, py::arg("release_share") = defaults.release_share,
            py::arg("most_contacts") = defaults.most_contacts)
-      .def(
-          "process",
-          [](fusion::ContactTracker& tracker, const ShapedForce& force) {
-            ContactReport report;
-            tracker.process(force.frame, report);
-            return std::move(report.contacts);
-          },
-          py::arg("force"))
-      .def("forget", &fusion::ContactTracker::forget);
+      .def("process", &Tracker::process, py::arg("force"))
+      .def("forget", &Tracker::forget);
 }
 
 }  // namespace dermis::python

@@ -90,6 +90,12 @@ class Pipeline(workspace.CalibratedArray):
         self.assertGreater(refused, 0)
         self.assertGreater(turns, 1)
 
+    def test_a_tracker_refuses_the_forces_of_another_array(self):
+        force = dermis.Pipeline(self.loaded).process(self.recording[5])
+        other = dermis.ArrayDescription.from_toml(workspace.ARRAY.replace("rows = 5", "rows = 9"))
+        with self.assertRaisesRegex(ValueError, "another shape"):
+            dermis.ContactTracker(other).process(force)
+
     def test_results_can_be_pickled(self):
         pipeline = dermis.Pipeline(self.loaded)
         force = pipeline.process(self.recording[5])
