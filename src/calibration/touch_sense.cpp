@@ -14,7 +14,6 @@ constexpr double kStepSigmas = 6.0;
 constexpr double kLeastTouchCounts = 5.0;
 constexpr double kTouchSigmas = 8.0;
 constexpr double kLeastNoiseCounts = 1.0 / 3.0;  // rounding
-constexpr double kBesideShare = 0.5;
 constexpr double kFollowSeconds = 10.0;
 
 /// Standard deviation of a reading from its steps from frame to frame, which drift does not enter.
@@ -94,30 +93,8 @@ double TouchSense::threshold(std::size_t taxel) const noexcept {
   return std::max(kTouchSigmas * noise_[taxel], kLeastTouchCounts * ratio_per_count_);
 }
 
-double TouchSense::relative(std::span<const double> ratio, std::size_t taxel) const noexcept {
-  return 1.0 + excess(ratio, taxel) / std::max(level_[taxel], ratio_per_count_);
-}
-
-Touch TouchSense::feel(std::span<const double> ratio, std::size_t expected) const {
-  Touch touch;
-  double strongest = 0.0;
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-    if (excess(ratio, taxel) <= std::max(strongest, threshold(taxel))) continue;
-    strongest = excess(ratio, taxel);
-    touch.strongest = taxel;
-  }
-  if (!touch.strongest) return touch;
-  const double here = excess(ratio, expected);
-  if (*touch.strongest != expected && here > std::max(kBesideShare * strongest, threshold(expected))) {
-    return {expected, touch.strongest};
-  }
-  double second = kBesideShare * strongest;
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-    if (taxel == *touch.strongest || excess(ratio, taxel) <= std::max(second, threshold(taxel))) continue;
-    second = excess(ratio, taxel);
-    touch.beside = taxel;
-  }
-  return touch;
+double TouchSense::relative(std::size_t taxel, double excess) const noexcept {
+  return 1.0 + excess / std::max(level_[taxel], ratio_per_count_);
 }
 
 void TouchSense::follow(std::span<const double> ratio, double seconds) {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -48,20 +49,22 @@ class QuietWindow {
   bool is_disturbed_ = false;
 };
 
-/// What the array feels.
-struct Touch {
-  /// The taxel that rises most, if one stands out of the noise; the expected one from half as much on.
-  std::optional<std::size_t> strongest;
-  std::optional<std::size_t> beside;  ///< The strongest other one, from half as much on.
-};
-
 /// Compares readings with those of the unloaded array. Idle readings are followed slowly, so that drift of the array
 /// over an hour is not taken for a touch.
 class TouchSense {
  public:
   TouchSense(const FrameMean& unloaded, double ratio_per_count);
 
-  [[nodiscard]] Touch feel(std::span<const double> ratio, std::size_t expected) const;
+  /// The taxel that rises most of those that `counts` is true for, if one of them stands out of the noise.
+  template <typename Counts>
+  [[nodiscard]] std::optional<std::size_t> strongest(std::span<const double> ratio, const Counts& counts) const {
+    std::optional<std::size_t> strongest;
+    for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+      const double least = strongest ? std::max(excess(ratio, *strongest), threshold(taxel)) : threshold(taxel);
+      if (excess(ratio, taxel) > least && counts(taxel)) strongest = taxel;
+    }
+    return strongest;
+  }
   /// Of an array that nothing touches, `seconds` after the last one.
   void follow(std::span<const double> ratio, double seconds);
 
@@ -71,8 +74,8 @@ class TouchSense {
   [[nodiscard]] double noise(std::size_t taxel) const noexcept { return noise_[taxel]; }
   /// Excess that stands out of the noise.
   [[nodiscard]] double threshold(std::size_t taxel) const noexcept;
-  /// Reading over that of the unloaded taxel.
-  [[nodiscard]] double relative(std::span<const double> ratio, std::size_t taxel) const noexcept;
+  /// The reading with this excess over that of the unloaded taxel.
+  [[nodiscard]] double relative(std::size_t taxel, double excess) const noexcept;
 
  private:
   double ratio_per_count_;

@@ -86,7 +86,7 @@ void encode_statistics(const Statistics& statistics, std::string_view frame_id, 
 /// dermis_msgs/msg/CalibrationState.
 struct CalibrationState {
   enum class Stage : std::uint8_t { none, unloaded, pressing, fitting, done, failed };
-  enum class Hint : std::uint8_t { none, press, hold, release, other_taxel, unsteady, too_short, several };
+  enum class Hint : std::uint8_t { none, press, hold, release, other_taxel, unsteady, too_short, several, one_of_two };
   Nanos time{};
   std::string array;
   Stage stage = Stage::none;
@@ -102,6 +102,9 @@ struct CalibrationState {
   Hint hint = Hint::none;
   std::optional<std::uint32_t> pressed_taxel{};
   double unpressed_relative_error = std::numeric_limits<double>::quiet_NaN();
+  std::optional<std::uint32_t> together_with{};
+  double together_reading = std::numeric_limits<double>::quiet_NaN();
+  std::optional<std::uint32_t> missing_taxel{};
 };
 void encode_calibration_state(const CalibrationState& state, std::string_view frame_id,
                               std::vector<std::uint8_t>& message);
