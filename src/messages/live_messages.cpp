@@ -141,6 +141,7 @@ void encode_statistics(const Statistics& statistics, std::string_view frame_id, 
   writer.write(statistics.recording_frames);
   writer.write(statistics.clients);
   writer.write(statistics.client_drops);
+  writer.write(statistics.recording_left_out);
 }
 
 void encode_calibration_state(const CalibrationState& state, std::string_view frame_id,

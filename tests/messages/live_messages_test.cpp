@@ -197,6 +197,7 @@ TEST(LiveMessages, statistics_have_all_of_their_fields) {
   statistics.recording_frames = 1ULL << 40U;
   statistics.clients = 3;
   statistics.client_drops = 5;
+  statistics.recording_left_out = 6;
   std::vector<std::uint8_t> message;
   encode_statistics(statistics, "suit", message);
   EXPECT_EQ(read_by_definition(statistics_type(), message), json({{"header", header()},
@@ -218,7 +219,8 @@ TEST(LiveMessages, statistics_have_all_of_their_fields) {
                                                                   {"recording_file", "r.mcap"},
                                                                   {"recording_frames", 1ULL << 40U},
                                                                   {"clients", 3},
-                                                                  {"client_drops", 5}}));
+                                                                  {"client_drops", 5},
+                                                                  {"recording_left_out", 6}}));
 }
 
 TEST(LiveMessages, diagnoses_and_transforms_read_back) {

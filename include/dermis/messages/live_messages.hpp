@@ -80,6 +80,7 @@ struct Statistics {
   std::uint64_t recording_frames = 0;
   std::uint32_t clients = 0;
   std::uint64_t client_drops = 0;
+  std::uint64_t recording_left_out = 0;
 };
 void encode_statistics(const Statistics& statistics, std::string_view frame_id, std::vector<std::uint8_t>& message);
 

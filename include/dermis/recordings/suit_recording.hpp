@@ -55,11 +55,15 @@ class SuitRecordingWriter {
   /// Without commit(), what was written of a live recording stays, without index.
   ~SuitRecordingWriter();
 
-  /// `array` is its place in the list of create().
+  /// `array` is its place in the list of create(). Waits where 64 MB wait for a disk that stalls.
   [[nodiscard]] Status write(std::size_t array, const RawFrame& frame);
   /// A frame with its forces.
   [[nodiscard]] Status write(std::size_t array, const RawFrame& frame, const ForceFrame& force);
   [[nodiscard]] Status write(const RecordedEvent& event);
+  /// As write(), but never waits: false where it would. Then the frame is not in the recording, and the next one of its
+  /// array says how many before it are lost. Events have as much room again, so that frames do not take it.
+  [[nodiscard]] Result<bool> try_write(std::size_t array, const RawFrame& frame);
+  [[nodiscard]] Result<bool> try_write(const RecordedEvent& event);
   /// To be called once, when no write() is under way or follows.
   [[nodiscard]] Status commit();
 
