@@ -300,9 +300,9 @@ template <typename Written>
 Result<bool> SuitRecordingWriter::Implementation::try_to_add(Written& written, std::size_t most_chunks) {
   const std::scoped_lock lock(mutex_);
   if (!status_) return status_.error();
-  const bool added = waiting_chunks_ < most_chunks;
-  if (added) add_to_chunk(written);
-  return added;
+  if (waiting_chunks_ >= most_chunks) return false;
+  add_to_chunk(written);
+  return true;
 }
 
 template <typename Written>
