@@ -14,8 +14,6 @@ constexpr double kFeltShare = 0.5;           // of the excess of the taxel that 
 constexpr double kTogetherShare = 0.25;      // the same of two with the same weight
 constexpr double kWrongTouchSeconds = 0.15;  // while a weight is put on
 
-constexpr auto kAnyTaxel = [](std::size_t) { return true; };
-
 }  // namespace
 
 PressRecogniser::PressRecogniser(TouchSense sense, Nanos hold_time) : sense_(std::move(sense)), hold_(hold_time) {}
@@ -25,6 +23,7 @@ void PressRecogniser::expect(std::vector<std::size_t> taxels) {
   hint_ = GuideHint::press;
   asked_ = std::move(taxels);
   readings_.clear();
+  relative_.assign(asked_.size(), 1.0);
   for (const std::size_t taxel : asked_) readings_.push_back({0.0, sense_.noise(taxel)});
 }
 
@@ -36,22 +35,21 @@ void PressRecogniser::rest() {
 }
 
 PressRecogniser::Event PressRecogniser::feed(const RawFrame& raw, std::span<const double> ratio, double seconds) {
+  sense_.fade(ratio);
   touch_ = feel(ratio);
-  for (std::size_t k = 0; k < asked_.size(); ++k) readings_[k].excess = sense_.excess(ratio, asked_[k]);
-  if (!sense_.strongest(ratio, kAnyTaxel)) sense_.follow(ratio, seconds);
-  if (hint_ == GuideHint::release) {
-    const bool is_off =
-        std::all_of(last_.begin(), last_.end(), [&](const Memory& press) { return is_released(ratio, press); });
-    return is_off ? Event::released : Event::none;
+  for (std::size_t k = 0; k < asked_.size(); ++k) {
+    readings_[k].excess = sense_.excess(ratio, asked_[k]);
+    relative_[k] = sense_.relative(ratio, asked_[k]);
   }
+  if (!touch_.strongest) sense_.follow(ratio, seconds);
+  if (hint_ == GuideHint::release) return wait_for_release(ratio);
   hold_.has_begun() ? follow_hold(raw, ratio) : wait_for_press(raw, ratio, seconds);
   return hold_.is_done() ? Event::held : Event::none;
 }
 
 PressRecogniser::Touch PressRecogniser::feel(std::span<const double> ratio) const {
   Touch touch;
-  touch.strongest =
-      sense_.strongest(ratio, [&](std::size_t taxel) { return is_asked(taxel) || !is_memory(ratio, taxel); });
+  touch.strongest = sense_.strongest(ratio, [](std::size_t) { return true; });
   if (!touch.strongest) return touch;
   const double most = sense_.excess(ratio, *touch.strongest);
   const double share = asked_.size() > 1 ? kTogetherShare : kFeltShare;
@@ -59,29 +57,17 @@ PressRecogniser::Touch PressRecogniser::feel(std::span<const double> ratio) cons
     const bool is_felt = sense_.excess(ratio, taxel) > std::max(share * most, sense_.threshold(taxel));
     is_felt ? void(++touch.felt) : void(touch.missing = taxel);
   }
-  touch.foreign =
-      sense_.strongest(ratio, [&](std::size_t taxel) { return !is_asked(taxel) && !is_memory(ratio, taxel); });
+  touch.foreign = sense_.strongest(ratio, [&](std::size_t taxel) { return !is_asked(taxel); });
   if (touch.foreign && sense_.excess(ratio, *touch.foreign) <= kFeltShare * most) touch.foreign.reset();
-  // What is felt less than what the last press left is left by one before it.
-  const bool is_memory_alone = is_memory(ratio, *sense_.strongest(ratio, kAnyTaxel));
-  return is_memory_alone && !is_as_asked(touch) ? Touch{} : touch;
+  return touch;
 }
 
 bool PressRecogniser::is_asked(std::size_t taxel) const {
   return std::find(asked_.begin(), asked_.end(), taxel) != asked_.end();
 }
 
-bool PressRecogniser::is_released(std::span<const double> ratio, const Memory& press) const {
-  return sense_.excess(ratio, press.taxel) < std::max(kReleasedShare * press.excess, sense_.threshold(press.taxel));
-}
-
-bool PressRecogniser::is_memory(std::span<const double> ratio, std::size_t taxel) const {
-  return std::any_of(last_.begin(), last_.end(),
-                     [&](const Memory& press) { return press.taxel == taxel && is_released(ratio, press); });
-}
-
-bool PressRecogniser::is_as_asked(const Touch& touch) const {
-  return touch.felt == asked_.size() && !touch.foreign;
+bool PressRecogniser::is_as_asked() const {
+  return touch_.felt == asked_.size() && !touch_.foreign;
 }
 
 /// Of what is not pressed as asked.
@@ -91,7 +77,7 @@ GuideHint PressRecogniser::mistake() const {
 }
 
 void PressRecogniser::wait_for_press(const RawFrame& raw, std::span<const double> ratio, double seconds) {
-  if (is_as_asked(touch_)) {
+  if (is_as_asked()) {
     hold_.feed(raw, ratio, readings_);
     wrong_seconds_ = 0.0;
     hint_ = GuideHint::hold;
@@ -106,33 +92,49 @@ void PressRecogniser::wait_for_press(const RawFrame& raw, std::span<const double
 }
 
 void PressRecogniser::follow_hold(const RawFrame& raw, std::span<const double> ratio) {
-  if (!is_as_asked(touch_) || is_lost()) {
+  bool is_any_lost = false;
+  for (std::size_t k = 0; k < asked_.size(); ++k) {
+    if (!is_lost(k)) continue;
+    is_any_lost = true;
+    sense_.leave(ratio, asked_[k]);
+  }
+  if (is_any_lost || !is_as_asked()) {
     hold_.clear();
-    hint_ = touch_.strongest ? GuideHint::hold : GuideHint::too_short;
+    hint_ = is_any_lost ? GuideHint::too_short : GuideHint::hold;
     return;
   }
   hold_.feed(raw, ratio, readings_);
   hint_ = hold_.was_unsteady() ? GuideHint::unsteady : GuideHint::hold;
 }
 
-bool PressRecogniser::is_lost() const {
-  for (std::size_t k = 0; k < readings_.size(); ++k) {
-    if (readings_[k].excess < kLostShare * hold_.mean_excess(k)) return true;
+bool PressRecogniser::is_lost(std::size_t asked) const {
+  return readings_[asked].excess < kLostShare * hold_.mean_excess(asked);
+}
+
+PressRecogniser::Event PressRecogniser::wait_for_release(std::span<const double> ratio) {
+  if (!is_released()) return Event::none;
+  for (const std::size_t taxel : asked_) sense_.leave(ratio, taxel);
+  return Event::released;
+}
+
+bool PressRecogniser::is_released() const {
+  for (std::size_t k = 0; k < asked_.size(); ++k) {
+    if (readings_[k].excess >= std::max(kReleasedShare * kept_excess_[k], sense_.threshold(asked_[k]))) return false;
   }
-  return false;
+  return true;
 }
 
 std::vector<RawFrame> PressRecogniser::keep_hold(std::size_t count) {
   std::vector<RawFrame> frames = hold_.frames(count);
-  last_.clear();
-  for (std::size_t k = 0; k < asked_.size(); ++k) last_.push_back({asked_[k], hold_.mean_excess(k)});
+  kept_excess_.clear();
+  for (std::size_t k = 0; k < asked_.size(); ++k) kept_excess_.push_back(hold_.mean_excess(k));
   hold_.clear();
   hint_ = GuideHint::release;
   return frames;
 }
 
 double PressRecogniser::reading(std::size_t asked) const {
-  return sense_.relative(asked_[asked], readings_[asked].excess);
+  return relative_[asked];
 }
 
 double PressRecogniser::share(Nanos now) const noexcept {

@@ -52,28 +52,23 @@ class PressRecogniser {
     std::optional<std::size_t> missing;  // that is asked for and is not felt
     std::size_t felt = 0;                // of those that are asked for
   };
-  /// What the material may still show of the last press.
-  struct Memory {
-    std::size_t taxel = 0;
-    double excess = 0.0;  // while it was held
-  };
-
   [[nodiscard]] Touch feel(std::span<const double> ratio) const;
   [[nodiscard]] bool is_asked(std::size_t taxel) const;
-  [[nodiscard]] bool is_released(std::span<const double> ratio, const Memory& press) const;
-  [[nodiscard]] bool is_memory(std::span<const double> ratio, std::size_t taxel) const;
-  [[nodiscard]] bool is_as_asked(const Touch& touch) const;
-  [[nodiscard]] bool is_lost() const;
+  [[nodiscard]] bool is_as_asked() const;
+  [[nodiscard]] bool is_lost(std::size_t asked) const;
+  [[nodiscard]] bool is_released() const;
   [[nodiscard]] GuideHint mistake() const;
   void wait_for_press(const RawFrame& raw, std::span<const double> ratio, double seconds);
   void follow_hold(const RawFrame& raw, std::span<const double> ratio);
+  Event wait_for_release(std::span<const double> ratio);
 
   TouchSense sense_;
   PressHold hold_;
   GuideHint hint_ = GuideHint::none;
   std::vector<std::size_t> asked_;
   std::vector<PressHold::Reading> readings_;  // of those that are asked for
-  std::vector<Memory> last_;
+  std::vector<double> relative_;              // the same, over the unloaded taxel
+  std::vector<double> kept_excess_;           // the same, of the last hold that was kept
   Touch touch_;
   double wrong_seconds_ = 0.0;  // that something else is pressed
 };

@@ -82,7 +82,8 @@ FrameMean QuietWindow::mean() const {
   return mean;
 }
 
-TouchSense::TouchSense(const FrameMean& unloaded, double ratio_per_count) : ratio_per_count_(ratio_per_count) {
+TouchSense::TouchSense(const FrameMean& unloaded, double ratio_per_count)
+    : ratio_per_count_(ratio_per_count), left_(unloaded.taxel_count()) {
   for (std::size_t taxel = 0; taxel < unloaded.taxel_count(); ++taxel) {
     level_.push_back(unloaded.mean_ratio(taxel));
     noise_.push_back(std::max(step_noise(unloaded, taxel), kLeastNoiseCounts * ratio_per_count));
@@ -93,13 +94,19 @@ double TouchSense::threshold(std::size_t taxel) const noexcept {
   return std::max(kTouchSigmas * noise_[taxel], kLeastTouchCounts * ratio_per_count_);
 }
 
-double TouchSense::relative(std::size_t taxel, double excess) const noexcept {
-  return 1.0 + excess / std::max(level_[taxel], ratio_per_count_);
+double TouchSense::relative(std::span<const double> ratio, std::size_t taxel) const noexcept {
+  return 1.0 + (ratio[taxel] - level_[taxel]) / std::max(level_[taxel], ratio_per_count_);
 }
 
 void TouchSense::follow(std::span<const double> ratio, double seconds) {
   const double share = -std::expm1(-seconds / kFollowSeconds);
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) level_[taxel] += share * excess(ratio, taxel);
+}
+
+void TouchSense::fade(std::span<const double> ratio) {
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    left_[taxel] = std::clamp(ratio[taxel] - level_[taxel], 0.0, left_[taxel]);
+  }
 }
 
 }  // namespace dermis::calibration

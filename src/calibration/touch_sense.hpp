@@ -50,7 +50,7 @@ class QuietWindow {
 };
 
 /// Compares readings with those of the unloaded array. Idle readings are followed slowly, so that drift of the array
-/// over an hour is not taken for a touch.
+/// over an hour is not taken for a touch, nor is what the material remembers of a press.
 class TouchSense {
  public:
   TouchSense(const FrameMean& unloaded, double ratio_per_count);
@@ -67,19 +67,27 @@ class TouchSense {
   }
   /// Of an array that nothing touches, `seconds` after the last one.
   void follow(std::span<const double> ratio, double seconds);
+  /// A weight is taken off the taxel: what it still reads is memory of the material, from now on.
+  void leave(std::span<const double> ratio, std::size_t taxel) {
+    left_[taxel] = std::max(0.0, ratio[taxel] - level_[taxel]);
+  }
+  /// Memory that has faded does not come back. For every frame.
+  void fade(std::span<const double> ratio);
 
+  /// Over the unloaded reading and over what the material remembers.
   [[nodiscard]] double excess(std::span<const double> ratio, std::size_t taxel) const noexcept {
-    return ratio[taxel] - level_[taxel];
+    return ratio[taxel] - level_[taxel] - left_[taxel];
   }
   [[nodiscard]] double noise(std::size_t taxel) const noexcept { return noise_[taxel]; }
   /// Excess that stands out of the noise.
   [[nodiscard]] double threshold(std::size_t taxel) const noexcept;
-  /// The reading with this excess over that of the unloaded taxel.
-  [[nodiscard]] double relative(std::size_t taxel, double excess) const noexcept;
+  /// Reading over that of the unloaded taxel.
+  [[nodiscard]] double relative(std::span<const double> ratio, std::size_t taxel) const noexcept;
 
  private:
   double ratio_per_count_;
   std::vector<double> level_;
+  std::vector<double> left_;  // by presses, in the material
   std::vector<double> noise_;
 };
 

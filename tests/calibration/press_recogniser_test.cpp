@@ -154,6 +154,29 @@ TEST_F(Recogniser, what_the_material_remembers_is_no_mistake) {
   }
 }
 
+TEST_F(Recogniser, holds_nothing_that_a_press_has_left_on_the_taxel_that_is_asked_for) {
+  const double memory = 0.14 * kPress;
+  recogniser_.expect({kFirst});
+  feel({{kFirst, kPress}}, 0.5);
+  EXPECT_EQ(feel({{kFirst, memory}}, 5.0), Event::none) << "after a press that was too short";
+  EXPECT_EQ(recogniser_.hint(), GuideHint::too_short);
+  press_and_keep({{kFirst, kPress}});
+  ASSERT_EQ(feel({{kFirst, memory}}, 0.1), Event::released);
+  recogniser_.expect({kFirst});
+  EXPECT_EQ(feel({{kFirst, memory}}, 5.0), Event::none) << "when the press is repeated";
+  EXPECT_EQ(recogniser_.hint(), GuideHint::press);
+  EXPECT_EQ(feel({{kFirst, memory + 0.05 * kPress}}, 3.0), Event::held) << "a lighter weight";
+}
+
+TEST_F(Recogniser, what_fades_in_the_material_leaves_room_for_a_lighter_weight) {
+  recogniser_.expect({kFirst});
+  press_and_keep({{kFirst, kPress}});
+  ASSERT_EQ(feel({{kFirst, 0.14 * kPress}}, 0.1), Event::released);
+  recogniser_.expect({kFirst});
+  feel({}, 0.1);
+  EXPECT_EQ(feel({{kFirst, 0.1 * kPress}}, 3.0), Event::held);
+}
+
 TEST_F(Recogniser, tells_single_taxels_that_are_pressed_instead_or_too) {
   recogniser_.expect({kFirst});
   feel({{kForeign, kPress}}, 0.5);

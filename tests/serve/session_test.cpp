@@ -289,9 +289,12 @@ TEST(Session, tells_a_threat_while_the_disk_of_its_recording_stands_still) {
   const auto has_no_room = [](const json& statistics) { return statistics["recording_left_out"] > 0; };
   static_cast<void>(await(client, "/statistics", messages::statistics_type(), has_no_room));
 
+  const auto pressed = std::chrono::steady_clock::now();
   is_pressed = true;
   const auto begins = [](const json& threat) { return threat["changed"] == true && threat["state"] == 2; };
   EXPECT_EQ(await(client, "/threat", messages::threat_type(), begins)["name"], "pushed");
+  const std::chrono::duration<double, std::milli> delay = std::chrono::steady_clock::now() - pressed;
+  RecordProperty("ms_to_threat", std::to_string(delay.count()));
 
   disk.flow_into(folder.file("flown.mcap"));
   ASSERT_TRUE(work.end());
