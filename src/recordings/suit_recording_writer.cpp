@@ -276,7 +276,7 @@ Result<bool> SuitRecordingWriter::Implementation::try_write(std::size_t index, c
   } else {
     encode(array, frame, nullptr);
   }
-  const Result<bool> added = try_to_add(array, most_chunks());
+  Result<bool> added = try_to_add(array, most_chunks());
   const bool is_left_out = added && !*added;
   array.lost += frame.acquisition.lost_before + (is_left_out ? 1 : 0);
   array.left_out = is_left_out ? array.left_out + frame.acquisition.lost_before + 1 : 0;
