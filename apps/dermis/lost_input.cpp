@@ -2,8 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "lost_input.hpp"
 
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <mutex>
+#include <vector>
 
 namespace dermis::app {
 namespace {
@@ -13,14 +17,14 @@ std::vector<std::string> noted;
 
 }  // namespace
 
-void note_loss(const std::string& line) {
+void note_loss(const std::string& text) {
   const std::lock_guard lock(mutex);
-  if (std::find(noted.begin(), noted.end(), line) == noted.end()) noted.push_back(line);
+  if (std::find(noted.begin(), noted.end(), text) == noted.end()) noted.push_back(text);
 }
 
-std::vector<std::string> losses() {
+std::string losses() {
   const std::lock_guard lock(mutex);
-  return noted;
+  return fmt::format("{}", fmt::join(noted, "; "));
 }
 
 }  // namespace dermis::app

@@ -68,10 +68,11 @@ int run(int argc, char** argv) {
   if (!action) return exit_status(action.error());
   if (!*action) return 0;
   const Result<int> status = perform(*action);
-  const std::vector<std::string> lost = losses();
-  for (const std::string& line : lost) say(fmt::format("dermis: {}", line));
-  if (!status) return exit_status(status.error());
-  return *status == 0 && !lost.empty() ? kExitFailed : *status;
+  const std::string lost = losses();
+  if (lost.empty()) return status ? *status : exit_status(status.error());
+  if (!status) return exit_status({status.error().kind, lost + "; " + status.error().message});
+  const int lossy = exit_status(failed(lost));
+  return *status == 0 ? lossy : *status;
 }
 
 }  // namespace

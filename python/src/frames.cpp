@@ -79,7 +79,9 @@ Recording read_recording(const std::string& path, std::optional<double> rate_hz)
     py::gil_scoped_acquire acquire;
     raise(error);
   };
-  Result<std::unique_ptr<FrameSource>> source = recordings::open_frames(path, {.rate_hz = rate_hz});
+  std::string lost;
+  Result<std::unique_ptr<FrameSource>> source =
+      recordings::open_frames(path, {.rate_hz = rate_hz, .loss = [&](const std::string& line) { lost = line; }});
   if (!source) raise_here(source.error());
   Recording recording;
   RawFrame frame;
@@ -88,6 +90,10 @@ Recording read_recording(const std::string& path, std::optional<double> rate_hz)
     if (!more) raise_here(more.error());
     if (!*more) break;
     recording.append(frame);
+  }
+  if (!lost.empty()) {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_WarnEx(PyExc_UserWarning, lost.c_str(), 1) != 0) throw py::error_already_set();
   }
   if (const std::optional<FrameShape> shape = (*source)->shape()) recording.shape = *shape;
   const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(path);

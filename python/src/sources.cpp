@@ -28,7 +28,7 @@ class Source {
     sources::SourceOptions options;
     options.stop = &stop_;
     if (array_) options.array = &*array_;
-    options.notice = [this](const std::string& line) {
+    options.notice = options.loss = [this](const std::string& line) {
       const std::lock_guard lock(mutex_);
       notices_.push_back(line);
     };

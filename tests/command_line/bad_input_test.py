@@ -274,6 +274,7 @@ class EveryCommand(SmallArray):
         self.end_with(self.run_arguments(self.work / "f.csv", **{"in": cut}), self.work / "f.csv", [f"{cut}:201", "cut off"])
         self.end_with(self.evaluate_arguments(frames=cut, loads=loads), None, [f"{cut}:201", "cut off"])
         self.end_with(("info", cut), None, [cut, "cut off"])
+        self.refuse(self.evaluate_arguments(frames=cut), [f"{cut}:201", "cut off", "loads.csv", "frame 199"])
 
     def scaled(self, factor):
         """The frames with all counts times `factor`."""

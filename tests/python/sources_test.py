@@ -73,6 +73,16 @@ class Recordings(workspace.CalibratedArray):
         back = dermis.Recording.read(self.folder / "a.mcap")
         self.assertEqual((back.name, back.array.rows, back.array.circuit), ("pad", 5, "divider"))
 
+    def test_a_file_that_is_cut_is_read_as_far_as_it_goes_with_a_warning(self):
+        cut = self.folder / "cut.csv"
+        cut.write_text(self.frames.read_text()[:-20])
+        whole = dermis.Recording.read(self.frames)
+        with self.assertWarnsRegex(UserWarning, "cut off"):
+            self.assertEqual(len(dermis.Recording.read(cut)), len(whole) - 1)
+        with dermis.open(cut) as source:
+            self.assertEqual(len(list(source)), len(whole) - 1)
+            self.assertIn("cut off", source.notices()[0])
+
     def test_times_are_given_or_follow_from_the_rate(self):
         counts = np.zeros((3, 5, 4))
         np.testing.assert_array_equal(dermis.Recording(counts, rate_hz=200.0).time_ns, [0, 5_000_000, 10_000_000])
