@@ -30,7 +30,6 @@ constexpr std::size_t kLeastPoints = 8;  // for a network of its own
 constexpr std::size_t kMostPoints =
     4000;  // more would lower the error of its two dozen numbers by less than 1 % of noise
 constexpr std::size_t kFirstNetworks = 16;  // trained from random starts, and the others from these
-constexpr std::size_t kLeastForceLevels = 3;
 constexpr double kLeastTemperatureShare = 0.5;
 constexpr float kUnknownRelativeSigma = 0.01F;  // until fit_uncertainty()
 constexpr double kDetectable = 3.0;             // in standard deviations of the unloaded reading
@@ -112,25 +111,33 @@ Evidence gather_evidence(const SampleDatabase& database) {
   return evidence;
 }
 
+std::vector<double> rising_newtons(const std::vector<TaxelPoint>& points) {
+  std::vector<double> newtons;
+  for (const TaxelPoint& point : points) newtons.push_back(point.newtons);
+  std::sort(newtons.begin(), newtons.end());
+  return newtons;
+}
+
 bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_temperature) {
   if (points.size() < kLeastPoints) return false;
-  std::vector<double> newtons;
   double coldest = 1.0;
   double hottest = -1.0;
   for (const TaxelPoint& point : points) {
-    newtons.push_back(point.newtons);
     coldest = std::min(coldest, point.temperature);
     hottest = std::max(hottest, point.temperature);
   }
-  std::sort(newtons.begin(), newtons.end());
-  return count_levels(newtons) >= kLeastForceLevels && newtons.back() >= kLeastForceRange * newtons.front() &&
+  const std::vector<double> newtons = rising_newtons(points);
+  return count_levels(newtons) >= kLeastLevelsOfBend && newtons.back() >= kLeastForceRange * newtons.front() &&
          (!uses_temperature || hottest - coldest >= 2.0 * kLeastTemperatureShare);
 }
 
-/// Hidden units that the given number of points can hold.
-std::size_t hidden_units(std::size_t points, bool uses_temperature) {
+/// Hidden units that the points can hold. Each bends the law between forces: many samples under few forces tell nothing
+/// of that, and where the material remembers, their scatter would make the law a stair.
+std::size_t hidden_units(const std::vector<TaxelPoint>& points, bool uses_temperature) {
   const std::size_t parameters_of_unit = force_shape(uses_temperature, 1).inputs + 2;
-  return std::min(points / (kPointsPerParameterOfUnit * parameters_of_unit), kMostHiddenUnits);
+  const std::size_t levels = count_levels(rising_newtons(points));
+  return std::min({points.size() / (kPointsPerParameterOfUnit * parameters_of_unit), levels - kLeastLevelsOfBend,
+                   kMostHiddenUnits});
 }
 
 fusion::ForceNetworks make_networks(const network::PerceptronShape& shape, const Evidence& evidence) {
@@ -252,7 +259,7 @@ std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& di
   const auto train = [&](std::size_t k, std::span<const ForceNetwork> others) {
     const std::vector<TaxelPoint>& points = evidence.points[division.own[k]];
     const bool uses_temperature = evidence.temperatures.is_input;
-    const auto shape = force_shape(uses_temperature, hidden_units(points.size(), uses_temperature));
+    const auto shape = force_shape(uses_temperature, hidden_units(points, uses_temperature));
     std::optional<ForceNetwork> like = train_taxel_like(others, shape, points);
     networks[k] = like ? *std::move(like) : train_taxel(shape, points, division.own[k]);
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(division.own.size()));
@@ -368,8 +375,11 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   training.tested_own = tested_presses(division.own, trained.own, evidence);
   training.tested_shared = std::move(trained.shared.tested);
   training.tested_unpressed = std::move(trained.shared.tested_unpressed);
-  const auto choose = report.is_one_load ? take_lines : prefer_tables;
-  choose(evidence.points, evidence.temperatures, training);
+  if (report.is_one_load) {
+    take_lines(evidence.points, evidence.temperatures, training);
+  } else {
+    prefer_tables(database, evidence.points, evidence.temperatures, training);
+  }
   report.choice = describe(report, trained.shared.has_gains);
   return training;
 }

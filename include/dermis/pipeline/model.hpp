@@ -11,6 +11,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/force_fusion.hpp"
 #include "dermis/fusion/look_up.hpp"
+#include "dermis/fusion/material_memory.hpp"
 #include "dermis/fusion/strip_table.hpp"
 
 namespace dermis::pipeline {
@@ -21,6 +22,7 @@ struct Model {
   ArrayDescription array;
   fusion::ForceNetworks networks;
   std::vector<fusion::LookUpTables> baselines;
+  std::optional<fusion::MemoryLaw> memory{};      ///< Of the material, where the calibration learned one.
   std::optional<fusion::StripTable> strip{};      ///< Learned positions on a strip, where the calibration had some.
   std::map<std::string, std::string> provenance;  ///< Hashes, counts and statistics of the calibration, as text.
 };
