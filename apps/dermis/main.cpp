@@ -59,7 +59,7 @@ Result<int> perform(const Action& action) {
 }
 
 int exit_status(const Error& error) {
-  say(fmt::format("dermis: {}", error.message));
+  say(fmt::format("dermis: {}{}", error.field.empty() ? "" : "--", error.message));
   return error.kind == ErrorKind::bad_input ? kExitBadInput : kExitFailed;
 }
 
@@ -70,7 +70,7 @@ int run(int argc, char** argv) {
   const Result<int> status = perform(*action);
   const std::string lost = losses();
   if (lost.empty()) return status ? *status : exit_status(status.error());
-  if (!status) return exit_status({status.error().kind, lost + "; " + status.error().message});
+  if (!status) return exit_status({.kind = status.error().kind, .message = lost + "; " + status.error().message});
   const int lossy = exit_status(failed(lost));
   return *status == 0 ? lossy : *status;
 }

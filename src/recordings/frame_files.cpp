@@ -97,7 +97,7 @@ Result<std::unique_ptr<FrameSource>> open_import(const std::string& path, FrameF
 Status check_rate(const std::string& path, FrameFormat format, const std::optional<double>& rate_hz) {
   if (has_times(format) || rate_hz) return Done{};
   const std::string nor = format == FrameFormat::text_matrix ? ", nor a header time_s,r0c0,..." : "";
-  return bad_input(path + ": has no times" + nor + ": give a rate, to 'dermis convert --rate HZ' or as 'file:" + path +
+  return bad_input(path + ": has no times" + nor + ": give a rate, to 'dermis convert' or as 'file:" + path +
                    "?rate=HZ'");
 }
 

@@ -87,7 +87,7 @@ class MissingFiles(SmallArray):
     def test_a_bank(self):
         absent = self.work / "absent"
         self.refuse([*self.evaluate_arguments(), "--bank", absent], [absent])
-        self.refuse([*self.evaluate_arguments(), "--bank", self.model], [self.model, "calibrate --bank"])
+        self.refuse([*self.evaluate_arguments(), "--bank", self.model], [self.model, "not a bank of the paper", "dermis calibrate"])
 
     def test_a_folder_instead_of_a_file(self):
         self.refuse(self.run_arguments(self.work / "f.csv", **{"in": self.root}), [self.root])

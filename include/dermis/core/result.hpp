@@ -19,10 +19,15 @@ enum class ErrorKind {
 struct Error {
   ErrorKind kind = ErrorKind::failed;
   std::string message;
+  std::string
+      field{};  ///< The message begins with the field that is wrong, and ": "; empty: it is about something else.
 };
 
 /// An error whose message stays on one line: control characters of file names or files become '?'.
 [[nodiscard]] Error bad_input(std::string message);
+/// bad_input() about a field of options, as "rate: must be 0.001 to 1e6". Callers know the field by a name of their
+/// own.
+[[nodiscard]] Error bad_field(const std::string& field, const std::string& message);
 [[nodiscard]] Error failed(std::string message);
 
 /// A value or an Error. Reading the wrong one is a programmer error (assert).

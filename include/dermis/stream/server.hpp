@@ -40,7 +40,7 @@ struct ServerOptions {
   std::size_t client_queue_bytes = 2U << 20U;
   std::function<void(const std::string&)> notice{};  ///< One line for the log; called on the server's thread.
 
-  /// Names the first field that is out of its range, as "--host: ...".
+  /// Names the first field that is out of its range, as "host: ...".
   [[nodiscard]] Status validate() const;
 };
 
