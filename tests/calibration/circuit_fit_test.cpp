@@ -342,8 +342,8 @@ TEST(CircuitFit, does_not_depend_on_the_number_of_threads) {
   }
 }
 
-// What the recordings of a real hand show of crosstalk (docs/accuracy.md). A contact: readings above 50 counts; remote:
-// at least three taxels from it; shared: in a row or column of the contact.
+// What the recordings of a real hand show of crosstalk (docs/notes/ghosts.md). A contact: readings above 50 counts;
+// remote: at least three taxels from it; shared: in a row or column of the contact.
 constexpr float kContactCounts = 50.0F;
 constexpr std::size_t kHandRows = 13;
 constexpr std::size_t kHandCols = 6;
