@@ -16,8 +16,8 @@
 #include "dermis/core/surface.hpp"
 #include "dermis/messages/ros_messages.hpp"
 
-/// What is made of frames while they come, as ROS 2 messages in CDR (docs/stream.md). encode_...() replace what is in
-/// `message`, and allocate nothing once it has its size.
+/// Live results of frames as ROS 2 messages in CDR (docs/stream.md). encode_...() replace the content of `message`, and
+/// allocate nothing once it has its size.
 namespace dermis::messages {
 
 [[nodiscard]] const MessageType& point_cloud_type();
@@ -47,7 +47,7 @@ struct TaxelPoint {
 void encode_points(std::span<const TaxelPoint> points, Nanos time, std::string_view frame_id,
                    std::vector<std::uint8_t>& message);
 
-/// dermis_msgs/msg/Contacts: what touches one array in one frame.
+/// dermis_msgs/msg/Contacts: the contacts of one array in one frame.
 struct ArrayContacts {
   std::string_view array;
   const ContactReport& report;
@@ -138,7 +138,7 @@ struct Hypothesis {
 void encode_classification(std::span<const Hypothesis> results, Nanos time, std::string_view frame_id,
                            std::vector<std::uint8_t>& message);
 
-/// dermis_msgs/msg/Threat: how one limit stands in one array.
+/// dermis_msgs/msg/Threat: the state of one limit in one array.
 struct Threat {
   enum class State : std::uint8_t { clear, crossed, active, latched };
   Nanos time{};
