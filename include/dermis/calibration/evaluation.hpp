@@ -15,8 +15,8 @@
 
 namespace dermis::calibration {
 
-/// Taxels are judged by relative error from this share on of the most that one taxel carried in the calibration; where
-/// readings are forces already, of the most that a taxel carries in the evaluation.
+/// Taxels are judged by relative error from this share of the heaviest load of a taxel in the calibration. If readings
+/// are forces already, it is the heaviest in the evaluation.
 inline constexpr double kJudgedShare = 0.02;
 
 /// An estimator from outside that is judged beside dermis and the baselines.

@@ -32,8 +32,8 @@ struct ThreatEvent {
   [[nodiscard]] bool begins() const noexcept { return state.phase == threats::ThreatPhase::standing; }
 };
 
-/// Holds the forces of a source against limits on a thread of its own, so that silence and the end of the program are
-/// seen while no frame comes. Not a safety function.
+/// Compares the forces of a source with limits on a thread of its own. So it notices silence and the end of the program
+/// while no frame comes. Not a safety function.
 class ThreatWatch {
  public:
   /// Told of the threats that begin or end with one frame, on the thread of the watch; valid during the call. A failure

@@ -16,8 +16,8 @@
 
 namespace dermis::pipeline {
 
-/// Everything that turns the counts of one array into newtons: what is known (the array and its circuit), what was
-/// learned (the networks), and what the networks are judged against (the baselines of the same calibration).
+/// Everything that turns the counts of one array into newtons. It holds what is known (the array and its circuit) and
+/// what was learned (the networks). It also holds the baselines of the same calibration, to compare the networks with.
 struct Model {
   ArrayDescription array;
   fusion::ForceNetworks networks;
