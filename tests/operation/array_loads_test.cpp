@@ -44,7 +44,7 @@ TEST(ArrayLoads, gives_newtons_by_a_model_and_tells_its_array) {
 TEST(ArrayLoads, tell_at_the_end_that_most_frames_had_no_force) {
   const MatFiles mat;
   std::vector<RawFrame> frames = pressed({1.0F, 1.0F, 1.0F});
-  for (const std::size_t lost : {0, 2}) frames[lost].counts.assign(kShape.taxel_count(), NAN);
+  for (const std::size_t lost : {0U, 2U}) frames[lost].counts.assign(kShape.taxel_count(), NAN);
   std::vector<std::string> losses;
   ArrayLoadInput input{.from = mat.write("frames.csv", frames), .model = mat.model()};
   input.source.loss = [&](const std::string& line) { losses.push_back(line); };
