@@ -32,7 +32,7 @@ namespace dermis::compensation {
 /// drifting drivers            unloaded taxels that fall from one frame to the next when the current of their line
 ///                             rises, and rise when it falls; reported, but neither masked nor corrected
 ///
-/// What it cannot see: a line whose unloaded taxels read below about 1.5 standard deviations each, 16 of them
+/// What it cannot see: a line whose unloaded taxels read below about 1.7 counts and 1.5 deviations each, 16 of them
 /// (sees_silent_*); a short between lines that nothing presses; a taxel that stands at an end of the ADC, or is stuck
 /// at what unloaded ones read. With `circuit = "none"` silent lines and taxels are judged where nothing is pressed,
 /// shorts and drivers not at all. Not thread-safe: one per stream.
