@@ -26,7 +26,7 @@ class Watch {
       : array_(array),
         compensator_(Compensator::create(array).value()),
         monitor_(array, std::vector<double>(array.taxel_count(), unloaded_siemens)) {
-    conditioned_.sigma_ratio = array.readout.adc_noise_counts / array.readout.full_scale_counts();
+    conditioned_.sigma_ratio = 1.0 / array.readout.full_scale_counts();
   }
 
   /// The faults found so far, as text.
@@ -139,22 +139,22 @@ TEST(FalseFaults, readings_cut_at_a_threshold_are_no_silence) {
   }
 }
 
-/// An array of 8x8 taxels, column 5 of which reads half as much as the others, and what it reads unloaded.
+/// An array of 16x8 taxels, column 5 of which reads half as much as the others, and what it reads unloaded.
 class WeakColumn {
  public:
+  static constexpr std::size_t kRows = 16;
   static constexpr std::size_t kColumn = 5;
 
-  WeakColumn(int adc_bits, double noise_counts, double weak_counts) : array_(reference_circuit(8, 8)) {
+  WeakColumn(int adc_bits, double weak_counts) : array_(reference_circuit(kRows, 8)) {
     Readout& readout = array_.readout;
     readout.adc_bits = adc_bits;
-    readout.adc_noise_counts = noise_counts;
-    readout.drive_ohm.assign(8, 0.0);
+    readout.drive_ohm.assign(kRows, 0.0);
     readout.load_ohm[kColumn] = 0.5 * readout.load_ohm[0];
     const double weak = weak_counts / readout.full_scale_counts();
-    siemens_ = weak / (1.0 - 8.0 * weak) / readout.load_ohm[kColumn];
+    siemens_ = weak / (1.0 - kRows * weak) / readout.load_ohm[kColumn];
     for (std::size_t col = 0; col < 8; ++col) {
       const double taken = siemens_ * readout.load_ohm[col];
-      counts_.push_back(readout.full_scale_counts() * taken / (1.0 + 8.0 * taken));
+      counts_.push_back(readout.full_scale_counts() * taken / (1.0 + kRows * taken));
     }
   }
 
@@ -179,7 +179,7 @@ class WeakColumn {
 /// Rubber that forgets, ages or warms up takes a weak column below the threshold of the readout before the others.
 TEST(FalseFaults, a_line_that_fades_below_the_threshold_is_not_silent) {
   constexpr double kThreshold = 20.0;
-  const WeakColumn array(12, 1.0, 2.0 * kThreshold);
+  const WeakColumn array(16, 2.0 * kThreshold);
   Watch watch = array.watch();
   for (int frame = 0; frame < 300; ++frame) {
     const double share = std::max(1.0 - 0.02 * frame, 0.45);
@@ -190,19 +190,19 @@ TEST(FalseFaults, a_line_that_fades_below_the_threshold_is_not_silent) {
 /// It read five thresholds: rubber that fades would leave more than one.
 TEST(FalseFaults, a_line_that_no_threshold_hides_is_silent) {
   constexpr double kThreshold = 20.0;
-  const WeakColumn array(12, 1.0, 5.0 * kThreshold);
+  const WeakColumn array(16, 5.0 * kThreshold);
   Watch watch = array.watch();
   for (int frame = 0; frame < 10; ++frame) ASSERT_EQ(watch.observe(array.faded(0.25, kThreshold)), "");
   std::vector<double> open = array.faded(1.0, kThreshold);
-  for (std::size_t row = 0; row < 8; ++row) open[row * 8 + WeakColumn::kColumn] = 0.0;
+  for (std::size_t row = 0; row < WeakColumn::kRows; ++row) open[row * 8 + WeakColumn::kColumn] = 0.0;
   std::string found;
   for (int frame = 0; frame < 10; ++frame) found = watch.observe(open);
   EXPECT_EQ(found, "column 5; ");
 }
 
-/// An ADC that hardly has noise rounds a weak column down to 0 in every frame, and the next one up to 1.
+/// An ADC that has less noise than is said rounds a weak column down to 0 in every frame, and the others up to 1.
 TEST(FalseFaults, a_line_that_is_rounded_to_0_is_not_silent) {
-  const WeakColumn array(8, 0.3, 1.6);
+  const WeakColumn array(8, 1.6);
   Watch watch = array.watch();
   for (int frame = 0; frame < 300; ++frame) {
     const double share = std::max(1.0 - 0.02 * frame, 0.31);

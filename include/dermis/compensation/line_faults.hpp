@@ -32,8 +32,8 @@ namespace dermis::compensation {
 /// drifting drivers            unloaded taxels that fall from one frame to the next when the current of their line
 ///                             rises, and rise when it falls; reported, but neither masked nor corrected
 ///
-/// It cannot find a silent line of 16 whose unloaded taxels read below about 1.5 standard deviations each
-/// (sees_silent_*). Nor can it find a short between lines that nothing presses. A taxel at an end of the ADC, or stuck
+/// It cannot find a silent line of 16 whose unloaded taxels read below about 1.7 counts and 1.5 standard
+/// deviations each (sees_silent_*). Nor can it find a short between lines that nothing presses. A taxel at an end of the ADC, or stuck
 /// at an unloaded reading, is not found either. With `circuit = "none"` silent lines and taxels are judged where
 /// nothing is pressed, shorts and drivers not at all. Not thread-safe: one per stream.
 class LineFaultMonitor {
