@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -60,12 +61,13 @@ std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size
   const double unloaded_sigma = unloaded_sigma_siemens(database, taxel);
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
     const Sample& sample = database.samples[k];
-    const double newtons = sample.known_newtons[taxel];
-    if (!(newtons > 0.0)) continue;
+    const double load_newtons = sample.known_newtons[taxel];
+    const double share = sample.felt_share.empty() ? 1.0 : static_cast<double>(sample.felt_share[taxel]);
+    if (!(load_newtons > 0.0) || std::isnan(share)) continue;
     double noise = evidence.unloaded.noise_siemens[taxel];
     if (unloaded_sigma > 0.0) noise *= static_cast<double>(sample.sigma_siemens[taxel]) / unloaded_sigma;
     points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.temperatures), noise,
-                      normalised_temperature(sample, evidence.temperatures), newtons, k});
+                      normalised_temperature(sample, evidence.temperatures), share * load_newtons, load_newtons, k});
   }
   number_presses(points);
   return points;
@@ -111,11 +113,15 @@ Evidence gather_evidence(const SampleDatabase& database) {
   return evidence;
 }
 
-std::vector<double> rising_newtons(const std::vector<TaxelPoint>& points) {
-  std::vector<double> newtons;
-  for (const TaxelPoint& point : points) newtons.push_back(point.newtons);
-  std::sort(newtons.begin(), newtons.end());
-  return newtons;
+/// The lightest and the heaviest of two loads were each put on more than once: one press may be an accident.
+bool repeats_two_loads(const std::vector<TaxelPoint>& points, double lightest_newtons, double heaviest_newtons) {
+  std::set<std::size_t> light;
+  std::set<std::size_t> heavy;
+  for (const TaxelPoint& point : points) {
+    const bool is_light = point.load_newtons / lightest_newtons < heaviest_newtons / point.load_newtons;
+    (is_light ? light : heavy).insert(point.press);
+  }
+  return std::min(light.size(), heavy.size()) > 1;
 }
 
 bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_temperature) {
@@ -126,8 +132,10 @@ bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_tempe
     coldest = std::min(coldest, point.temperature);
     hottest = std::max(hottest, point.temperature);
   }
-  const std::vector<double> newtons = rising_newtons(points);
-  return count_levels(newtons) >= kLeastLevelsOfBend && newtons.back() >= kLeastForceRange * newtons.front() &&
+  const std::vector<double> newtons = rising_loads(points);
+  const bool tells_a_law =
+      count_levels(newtons) >= kLeastLevelsOfBend || repeats_two_loads(points, newtons.front(), newtons.back());
+  return tells_a_law && newtons.back() >= kLeastForceRange * newtons.front() &&
          (!uses_temperature || hottest - coldest >= 2.0 * kLeastTemperatureShare);
 }
 
@@ -135,9 +143,9 @@ bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_tempe
 /// of that, and where the material remembers, their scatter would make the law a stair.
 std::size_t hidden_units(const std::vector<TaxelPoint>& points, bool uses_temperature) {
   const std::size_t parameters_of_unit = force_shape(uses_temperature, 1).inputs + 2;
-  const std::size_t levels = count_levels(rising_newtons(points));
-  return std::min({points.size() / (kPointsPerParameterOfUnit * parameters_of_unit), levels - kLeastLevelsOfBend,
-                   kMostHiddenUnits});
+  const std::size_t levels = count_levels(rising_loads(points));
+  return std::min({points.size() / (kPointsPerParameterOfUnit * parameters_of_unit),
+                   std::max(levels, kLeastLevelsOfBend) - kLeastLevelsOfBend, kMostHiddenUnits});
 }
 
 fusion::ForceNetworks make_networks(const network::PerceptronShape& shape, const Evidence& evidence) {

@@ -49,7 +49,7 @@ struct SharedLoad {
 std::size_t levels_of(const std::vector<MeasuredLoad>& loads) {
   std::vector<double> single;
   for (const MeasuredLoad& load : loads) {
-    if (load.excess.size() == 1) single.push_back(load.newtons);
+    if (load.excess.size() == 1) single.push_back(load.load_newtons);
   }
   std::sort(single.begin(), single.end());
   return loads.size() - single.size() + count_levels(single);
@@ -58,8 +58,8 @@ std::size_t levels_of(const std::vector<MeasuredLoad>& loads) {
 /// Single taxels under about the same force: that they differ is their scatter, and says nothing of their law.
 bool are_one_load(const std::vector<MeasuredLoad>& loads) {
   const auto [lightest, heaviest] = std::minmax_element(
-      loads.begin(), loads.end(), [](const auto& a, const auto& b) { return a.newtons < b.newtons; });
-  return heaviest->newtons < kLeastForceRange * lightest->newtons &&
+      loads.begin(), loads.end(), [](const auto& a, const auto& b) { return a.load_newtons < b.load_newtons; });
+  return heaviest->load_newtons < kLeastForceRange * lightest->load_newtons &&
          std::all_of(loads.begin(), loads.end(), [](const MeasuredLoad& load) { return load.excess.size() == 1; });
 }
 

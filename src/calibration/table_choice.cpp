@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "calibration/even_choice.hpp"
+#include "calibration/force_levels.hpp"
 #include "calibration/level_table.hpp"
 #include "calibration/unloaded_fit.hpp"
 #include "dermis/core/parallel.hpp"
@@ -153,6 +154,16 @@ std::vector<std::size_t> draw_folds(std::size_t count, std::size_t folds, std::u
   return fold_of;
 }
 
+/// The lighter of two loads and the heavier.
+std::vector<std::size_t> folds_of_loads(const std::vector<Points>& presses, const std::vector<double>& rising_loads) {
+  std::vector<std::size_t> fold_of;
+  for (const Points press : presses) {
+    const double newtons = press.front().load_newtons;
+    fold_of.push_back(newtons / rising_loads.front() < rising_loads.back() / newtons ? 0 : 1);
+  }
+  return fold_of;
+}
+
 /// What a fit without the press would make of a sample of it: the samples of a press are alike, so that each pulls at
 /// the fit as all of them do that the fit has seen.
 double left_out_error(const TestedLoad& load, std::size_t samples_of_press) {
@@ -163,13 +174,15 @@ double left_out_error(const TestedLoad& load, std::size_t samples_of_press) {
 class TaxelComparison {
  public:
   TaxelComparison(std::size_t taxel, Points points, const NetworkErrors& errors, const TableMaker& maker)
-      : taxel_(taxel), errors_(errors), maker_(maker), presses_(split_presses(points)) {}
+      : taxel_(taxel), errors_(errors), maker_(maker), presses_(split_presses(points)), loads_(rising_loads(points)) {}
 
   [[nodiscard]] ComparedTaxel judge() const {
     ComparedTaxel judged;
     const std::size_t folds = std::min(kFolds, presses_.size());
     if (folds < 2) return judged;
-    const std::vector<std::size_t> fold_of = draw_folds(presses_.size(), folds, taxel_);
+    const bool are_two = count_levels(loads_) == 2 && loads_.back() >= kLeastForceRange * loads_.front();
+    const std::vector<std::size_t> fold_of =
+        are_two ? folds_of_loads(presses_, loads_) : draw_folds(presses_.size(), folds, taxel_);
     for (std::size_t fold = 0; fold < folds; ++fold) {
       std::vector<TaxelPoint> kept;
       for (std::size_t k = 0; k < presses_.size(); ++k) {
@@ -177,7 +190,7 @@ class TaxelComparison {
       }
       kept = by_force(kept);
       const auto fitted = maker_.fit(kept);
-      if (fitted.first.empty()) continue;
+      if (kept.empty() || fitted.first.empty()) continue;
       const fusion::ForceTables table = TableMaker::assemble({fitted}, {taxel_});
       for (std::size_t k = 0; k < presses_.size(); ++k) {
         const bool is_within = presses_[k].front().newtons <= kSameForce * kept.back().newtons;
@@ -218,6 +231,7 @@ class TaxelComparison {
   const NetworkErrors& errors_;
   const TableMaker& maker_;
   std::vector<Points> presses_;
+  std::vector<double> loads_;
 };
 
 /// The means over the presses of each moment.
@@ -405,7 +419,7 @@ void number_presses(std::vector<TaxelPoint>& points) {
   const TaxelPoint* first = nullptr;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto goes_on = [&] {
-      const auto [least, most] = std::minmax(points[k].newtons, first->newtons);
+      const auto [least, most] = std::minmax(points[k].load_newtons, first->load_newtons);
       return points[k].sample == points[k - 1].sample + 1 && most <= kSameForce * least;
     };
     if (first == nullptr || !goes_on()) first = &points[k];
