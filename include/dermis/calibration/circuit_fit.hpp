@@ -47,6 +47,7 @@ struct CircuitFit {
   std::size_t frames = 0;           ///< Frames the fit used, after repeated ones were averaged.
   std::vector<CircuitCandidate> candidates;  ///< Of `auto`; empty otherwise.
   std::vector<PressPair> telling_presses;    ///< Would tell the circuits apart that these frames do not; at most 5.
+  std::vector<PressPair> driver_presses;     ///< Would tell the drivers that these frames leave uncertain; at most 5.
   std::vector<std::string> statements;       ///< What was found and what the data cannot determine, in plain words.
 };
 
