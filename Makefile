@@ -62,6 +62,7 @@ bench: setup
 docs:
 	scripts/setup test
 	/usr/bin/python3 scripts/check_docs.py
+	/usr/bin/python3 scripts/sentences.py >/dev/null
 
 clean:
 	rm -rf build demo
