@@ -15,7 +15,7 @@ struct TwoClasses {
 };
 
 TwoClasses choose_two(const ConfusedPair& pair, const TrainingTable& table, const Folds& folds) {
-  TwoClasses two{{table.features, {}, {}, 2}, {folds.kind, {}, folds.count}};
+  TwoClasses two{{table.features, table.raised, {}, {}, 2}, {folds.kind, {}, folds.count}};
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (table.classes[i] != pair.first && table.classes[i] != pair.second) continue;
     two.table.rows.push_back(table.rows[i]);
@@ -57,7 +57,7 @@ std::optional<ConfusedPair> find_confused_pair(const LearningReport& report, con
   const Judged judged = judged_by(two.folds, two.table.classes, 2);
   for (const ExpertColumns& aspect : aspects) {
     if (standardisation_of(table.features, two.table.rows, aspect.columns).columns.empty()) continue;
-    const Matrix scores = choose_expert(two.table, aspect, two.folds, judged).scores;
+    const Matrix scores = choose_expert(two.table, aspect, two.folds, judged, false).scores;
     if (const auto share = share_told_apart(scores, judged)) pair.aspects.push_back({aspect.name, *share});
   }
   std::stable_sort(pair.aspects.begin(), pair.aspects.end(),

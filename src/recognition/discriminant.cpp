@@ -12,25 +12,30 @@ namespace {
 constexpr double kNegligible = 1e-10;  // of the largest eigenvalue
 
 /// [classes, columns]; 0 for classes without an example.
-Matrix class_means(const Matrix& examples, const std::vector<std::size_t>& classes, std::size_t class_count) {
-  Matrix means = Matrix::Zero(index(class_count), examples.cols());
-  Vector counts = Vector::Zero(index(class_count));
-  for (std::size_t row = 0; row < classes.size(); ++row) {
-    means.row(index(classes[row])) += examples.row(index(row));
-    counts(index(classes[row])) += 1.0;
+Matrix class_means(const Teaching& teaching) {
+  Matrix means = Matrix::Zero(index(teaching.class_count), teaching.examples.cols());
+  Vector counts = Vector::Zero(index(teaching.class_count));
+  for (std::size_t row = 0; row < teaching.classes.size(); ++row) {
+    means.row(index(teaching.classes[row])) += teaching.examples.row(index(row));
+    counts(index(teaching.classes[row])) += 1.0;
   }
   for (Eigen::Index label = 0; label < means.rows(); ++label) means.row(label) /= std::max(counts(label), 1.0);
   return means;
 }
 
-/// The examples without the means of their classes, scaled so that W is transposed() * itself.
-Matrix within_classes(const Matrix& examples, const std::vector<std::size_t>& classes, const Matrix& means) {
-  Matrix within = examples;
-  for (std::size_t row = 0; row < classes.size(); ++row) within.row(index(row)) -= means.row(index(classes[row]));
-  std::vector<std::size_t> present = classes;
+/// The examples without the means of their classes, and the strays, scaled so that W is transposed() * itself.
+Matrix within_classes(const Teaching& teaching, const Matrix& means) {
+  const Eigen::Index examples = teaching.examples.rows();
+  Matrix within(examples + teaching.strays.rows(), teaching.examples.cols());
+  within.topRows(examples) = teaching.examples;
+  for (std::size_t row = 0; row < teaching.classes.size(); ++row) {
+    within.row(index(row)) -= means.row(index(teaching.classes[row]));
+  }
+  if (teaching.strays.rows() > 0) within.bottomRows(teaching.strays.rows()) = teaching.strays;
+  std::vector<std::size_t> present = teaching.classes;
   std::sort(present.begin(), present.end());
   const auto kinds = std::unique(present.begin(), present.end()) - present.begin();
-  const Eigen::Index freedom = std::max<Eigen::Index>(examples.rows() - static_cast<Eigen::Index>(kinds), 1);
+  const Eigen::Index freedom = std::max<Eigen::Index>(examples - static_cast<Eigen::Index>(kinds), 1);
   return within / std::sqrt(static_cast<double>(freedom));
 }
 
@@ -122,10 +127,9 @@ Discriminant spanned(const Eigen::LLT<Eigen::MatrixXd>& cholesky, const Matrix& 
 
 }  // namespace
 
-std::array<Matrix, kShrinkages.size()> score_others(const Matrix& examples, const std::vector<std::size_t>& classes,
-                                                    std::size_t class_count, const Matrix& others) {
-  const Matrix means = class_means(examples, classes, class_count);
-  const Matrix within = within_classes(examples, classes, means);
+std::array<Matrix, kShrinkages.size()> score_others(const Teaching& teaching, const Matrix& others) {
+  const Matrix means = class_means(teaching);
+  const Matrix within = within_classes(teaching, means);
   const Basis basis = basis_of(within);
   const Projections points = project(basis, others, means);
   const double variance = mean_variance(within);
@@ -144,11 +148,10 @@ Matrix Discriminant::distances(const Matrix& others) const {
   return squares.cwiseMax(0.0).cwiseSqrt();
 }
 
-Discriminant train_discriminant(const Matrix& examples, const std::vector<std::size_t>& classes,
-                                std::size_t class_count, double shrinkage) {
-  const Matrix means = class_means(examples, classes, class_count);
-  const Matrix within = within_classes(examples, classes, means);
-  Eigen::MatrixXd covariance(examples.cols(), examples.cols());
+Discriminant train_discriminant(const Teaching& teaching, double shrinkage) {
+  const Matrix means = class_means(teaching);
+  const Matrix within = within_classes(teaching, means);
+  Eigen::MatrixXd covariance(within.cols(), within.cols());
   covariance.noalias() = (1.0 - shrinkage) * within.transpose() * within;
   covariance.diagonal().array() += shrinkage * mean_variance(within);
   return spanned(Eigen::LLT<Eigen::MatrixXd>(covariance), means);

@@ -11,13 +11,20 @@
 /// The linear discriminant with a shrunken covariance: docs/recognition.md, eqs. (1) to (3).
 namespace dermis::recognition {
 
-inline constexpr std::array kShrinkages{0.003, 0.01, 0.03, 0.1, 0.3, 0.6};
+inline constexpr std::array kShrinkages{0.003, 0.01, 0.03, 0.1, 0.3, 0.6, 0.8, 0.9, 0.97};
+
+/// What a discriminant learns from.
+struct Teaching {
+  Matrix examples;                   ///< [examples, columns]
+  std::vector<std::size_t> classes;  ///< Of each, below `class_count`.
+  std::size_t class_count = 0;
+  /// [any, columns]: differences that do not tell classes apart. Their squares are added to those within the classes.
+  Matrix strays{};
+};
 
 /// Scores that examples give to others, [others, classes], for every shrinkage from one eigendecomposition; 0 for
-/// classes without an example. `classes`: of each row of `examples`, below `class_count`.
-[[nodiscard]] std::array<Matrix, kShrinkages.size()> score_others(const Matrix& examples,
-                                                                  const std::vector<std::size_t>& classes,
-                                                                  std::size_t class_count, const Matrix& others);
+/// classes without an example.
+[[nodiscard]] std::array<Matrix, kShrinkages.size()> score_others(const Teaching& teaching, const Matrix& others);
 
 /// The space that the means of the classes span, in which the covariance is 1: y = axes z.
 struct Discriminant {
@@ -27,7 +34,6 @@ struct Discriminant {
   /// [others, classes]: to the means of the classes.
   [[nodiscard]] Matrix distances(const Matrix& others) const;
 };
-[[nodiscard]] Discriminant train_discriminant(const Matrix& examples, const std::vector<std::size_t>& classes,
-                                              std::size_t class_count, double shrinkage);
+[[nodiscard]] Discriminant train_discriminant(const Teaching& teaching, double shrinkage);
 
 }  // namespace dermis::recognition

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "recognition/expert_choice.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -13,40 +14,40 @@ namespace {
 using Path = std::array<Matrix, kShrinkages.size()>;
 
 /// The examples of one fold, and the others.
-struct Lesson {
+struct Parted {
   std::vector<std::size_t> taught;   ///< Rows of the features.
   std::vector<std::size_t> classes;  ///< Of those.
   std::vector<std::size_t> asked;    ///< Rows of the features.
   std::vector<std::size_t> places;   ///< Of those among the examples.
 };
 
-Lesson lesson_of(const TrainingTable& table, const Folds& folds, std::size_t fold) {
-  Lesson lesson;
+Parted part(const TrainingTable& table, const Folds& folds, std::size_t fold) {
+  Parted parted;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     if (folds.fold_of[i] == fold) {
-      lesson.asked.push_back(table.rows[i]);
-      lesson.places.push_back(i);
+      parted.asked.push_back(table.rows[i]);
+      parted.places.push_back(i);
     } else {
-      lesson.taught.push_back(table.rows[i]);
-      lesson.classes.push_back(table.classes[i]);
+      parted.taught.push_back(table.rows[i]);
+      parted.classes.push_back(table.classes[i]);
     }
   }
-  return lesson;
+  return parted;
 }
 
 /// Scores of all examples, each by what the other folds taught.
-Path score_out_of_fold(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds) {
+Path score_out_of_fold(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds, bool strays) {
   Path all;
   all.fill(Matrix::Zero(index(table.rows.size()), index(table.class_count)));
   for (std::size_t fold = 0; fold < folds.count; ++fold) {
-    const Lesson lesson = lesson_of(table, folds, fold);
-    const Standardisation standardisation = standardisation_of(table.features, lesson.taught, expert.columns);
-    if (lesson.asked.empty() || standardisation.columns.empty()) continue;
-    const Path path = score_others(standardised(table.features, lesson.taught, standardisation), lesson.classes,
-                                   table.class_count, standardised(table.features, lesson.asked, standardisation));
+    const Parted parted = part(table, folds, fold);
+    const Standardisation standardisation = standardisation_of(table.features, parted.taught, expert.columns);
+    if (parted.asked.empty() || standardisation.columns.empty()) continue;
+    const Path path = score_others(teaching_of(table, parted.taught, parted.classes, standardisation, strays),
+                                   standardised(table.features, parted.asked, standardisation));
     for (std::size_t i = 0; i < path.size(); ++i) {
-      for (std::size_t place = 0; place < lesson.places.size(); ++place) {
-        all[i].row(index(lesson.places[place])) = path[i].row(index(place));
+      for (std::size_t place = 0; place < parted.places.size(); ++place) {
+        all[i].row(index(parted.places[place])) = path[i].row(index(place));
       }
     }
   }
@@ -54,6 +55,20 @@ Path score_out_of_fold(const TrainingTable& table, const ExpertColumns& expert, 
 }
 
 }  // namespace
+
+Teaching teaching_of(const TrainingTable& table, const std::vector<std::size_t>& rows, std::vector<std::size_t> classes,
+                     const Standardisation& standardisation, bool strays) {
+  Teaching teaching{standardised(table.features, rows, standardisation), std::move(classes), table.class_count};
+  if (!strays) return teaching;
+  const Eigen::Index count = teaching.examples.rows();
+  teaching.strays.resize(index(table.raised.size()) * count, teaching.examples.cols());
+  const double share = 1.0 / std::sqrt(static_cast<double>(std::max<std::size_t>(table.raised.size(), 1)));
+  for (std::size_t i = 0; i < table.raised.size(); ++i) {
+    teaching.strays.middleRows(index(i) * count, count) =
+        share * (standardised(table.raised[i], rows, standardisation) - teaching.examples);
+  }
+  return teaching;
+}
 
 Judged judged_by(const Folds& folds, const std::vector<std::size_t>& classes, std::size_t class_count) {
   Judged judged{classes, folds.fold_of, {}};
@@ -67,8 +82,8 @@ Judged judged_by(const Folds& folds, const std::vector<std::size_t>& classes, st
 }
 
 ExpertChoice choose_expert(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds,
-                           const Judged& judged) {
-  const Path path = score_out_of_fold(table, expert, folds);
+                           const Judged& judged, bool strays) {
+  const Path path = score_out_of_fold(table, expert, folds, strays);
   ExpertChoice choice;
   double least = std::numeric_limits<double>::infinity();
   std::size_t best = 0;
@@ -80,23 +95,23 @@ ExpertChoice choose_expert(const TrainingTable& table, const ExpertColumns& expe
     best = i;
     choice.sharpness = sharpness;
   }
-  choice.shrinkage = kShrinkages[best];
+  choice.way = {strays, kShrinkages[best]};
   choice.scores = choice.sharpness * path[best];
   return choice;
 }
 
 Matrix distances_out_of_fold(const TrainingTable& table, const ExpertColumns& expert, const Folds& folds,
-                             double shrinkage) {
+                             const LearningWay& way) {
   Matrix all = Matrix::Zero(index(table.rows.size()), index(table.class_count));
   for (std::size_t fold = 0; fold < folds.count; ++fold) {
-    const Lesson lesson = lesson_of(table, folds, fold);
-    const Standardisation standardisation = standardisation_of(table.features, lesson.taught, expert.columns);
-    if (lesson.asked.empty() || standardisation.columns.empty()) continue;
-    const Discriminant discriminant = train_discriminant(standardised(table.features, lesson.taught, standardisation),
-                                                         lesson.classes, table.class_count, shrinkage);
-    const Matrix distances = discriminant.distances(standardised(table.features, lesson.asked, standardisation));
-    for (std::size_t place = 0; place < lesson.places.size(); ++place) {
-      all.row(index(lesson.places[place])) = distances.row(index(place));
+    const Parted parted = part(table, folds, fold);
+    const Standardisation standardisation = standardisation_of(table.features, parted.taught, expert.columns);
+    if (parted.asked.empty() || standardisation.columns.empty()) continue;
+    const Discriminant discriminant = train_discriminant(
+        teaching_of(table, parted.taught, parted.classes, standardisation, way.strays), way.shrinkage);
+    const Matrix distances = discriminant.distances(standardised(table.features, parted.asked, standardisation));
+    for (std::size_t place = 0; place < parted.places.size(); ++place) {
+      all.row(index(parted.places[place])) = distances.row(index(place));
     }
   }
   return all;

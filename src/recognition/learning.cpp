@@ -3,6 +3,7 @@
 #include "dermis/recognition/learning.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <iterator>
 #include <map>
@@ -17,6 +18,7 @@
 #include "recognition/feature_columns.hpp"
 #include "recognition/folds.hpp"
 #include "recognition/learning_judgement.hpp"
+#include "recognition/load.hpp"
 #include "recognition/names.hpp"
 #include "recognition/segment_features.hpp"
 #include "recognition/unknown_learning.hpp"
@@ -24,17 +26,46 @@
 namespace dermis::recognition {
 namespace {
 
-/// [labels, features]
-Matrix compute_features(const LabelledFrames& data, bool moving, const std::function<void(double)>& progress) {
-  SegmentFeatures features(data.layout, data.layout, moving, data.longest());
-  Matrix table(static_cast<Eigen::Index>(data.labels.size()),
-               static_cast<Eigen::Index>(feature_columns(data.layout, moving).count));
-  for (std::size_t row = 0; row < data.labels.size(); ++row) {
-    const std::span<const double> values = features.compute(data.segment(data.labels[row]));
-    std::copy(values.begin(), values.end(), table.row(static_cast<Eigen::Index>(row)).begin());
-    if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(data.labels.size()));
+/// What an array calls zero is not the same on another day. So much higher it lies in copies of the examples, as shares
+/// of the largest reading of each: by how they differ from the examples, classes are not told apart.
+constexpr std::array kRaisedZeros{0.03, 0.08};
+
+/// The loads of a segment above a level that is a share of its largest.
+void raise_zero(std::span<const float> frames, double share, std::vector<float>& raised) {
+  double largest = 0.0;
+  for (const float reading : frames) largest = std::max(largest, load_of(reading));
+  raised.clear();
+  for (const float reading : frames) {
+    raised.push_back(static_cast<float>(std::max(load_of(reading) - share * largest, 0.0)));
   }
-  return table;
+}
+
+/// Features of each label.
+struct Features {
+  Matrix seen;                 ///< [labels, features]
+  std::vector<Matrix> raised;  ///< Of each of kRaisedZeros.
+};
+
+Features compute_features(const LabelledFrames& data, bool moving, const std::function<void(double)>& progress) {
+  SegmentFeatures features(data.layout, data.layout, moving, data.longest());
+  const auto labels = static_cast<Eigen::Index>(data.labels.size());
+  const Matrix empty(labels, static_cast<Eigen::Index>(feature_columns(data.layout, moving).count));
+  Features tables{empty, std::vector<Matrix>(kRaisedZeros.size(), empty)};
+  std::vector<float> raised;
+  for (Eigen::Index row = 0; row < labels; ++row) {
+    const auto put = [&](const Segment& segment, Matrix& table) {
+      const std::span<const double> values = features.compute(segment);
+      std::copy(values.begin(), values.end(), table.row(row).begin());
+    };
+    const Segment segment = data.segment(data.labels[static_cast<std::size_t>(row)]);
+    put(segment, tables.seen);
+    for (std::size_t i = 0; i < kRaisedZeros.size(); ++i) {
+      raise_zero(segment.frames, kRaisedZeros[i], raised);
+      put({raised, segment.extras}, tables.raised[i]);
+    }
+    if (progress) progress(static_cast<double>(row + 1) / static_cast<double>(labels));
+  }
+  return tables;
 }
 
 std::vector<Touch> touches_of(const std::vector<Label>& labels) {
@@ -84,14 +115,14 @@ std::vector<To> converted(const From& values) {
   return result;
 }
 
-Expert train_expert(const TrainingTable& table, const ExpertColumns& columns, double shrinkage) {
+Expert train_expert(const TrainingTable& table, const ExpertColumns& columns, const LearningWay& way) {
   const Standardisation standardisation = standardisation_of(table.features, table.rows, columns.columns);
   Expert expert{.name = columns.name,
                 .columns = converted<std::int64_t>(standardisation.columns),
                 .mean = converted<float>(standardisation.mean),
                 .scale = converted<float>(standardisation.scale)};
-  const Discriminant discriminant = train_discriminant(standardised(table.features, table.rows, standardisation),
-                                                       table.classes, table.class_count, shrinkage);
+  const Discriminant discriminant =
+      train_discriminant(teaching_of(table, table.rows, table.classes, standardisation, way.strays), way.shrinkage);
   expert.rank = static_cast<std::size_t>(discriminant.axes.rows());
   expert.axes = converted<float>(discriminant.axes.reshaped<Eigen::RowMajor>());
   expert.class_means = converted<float>(discriminant.means.reshaped<Eigen::RowMajor>());
@@ -104,13 +135,13 @@ struct Panel {
   std::vector<ExpertChoice> choices;
 };
 
-Panel choose_panel(const TrainingTable& table, const std::vector<ExpertColumns>& experts, const Folds& folds,
-                   const Judged& judged) {
+Panel panel_of(const TrainingTable& table, const std::vector<ExpertColumns>& experts, const Folds& folds,
+               const Judged& judged, bool strays) {
   Panel panel;
   for (const ExpertColumns& expert : experts) {
     if (standardisation_of(table.features, table.rows, expert.columns).columns.empty()) continue;
     panel.columns.push_back(expert);
-    panel.choices.push_back(choose_expert(table, expert, folds, judged));
+    panel.choices.push_back(choose_expert(table, expert, folds, judged, strays));
   }
   return panel;
 }
@@ -121,10 +152,25 @@ std::vector<Matrix> scores_of(const Panel& panel) {
   return scores;
 }
 
+double log_loss_of(const Panel& panel, const Judged& judged) {
+  const std::vector<Matrix> scores = scores_of(panel);
+  return log_loss(judged, fused_scores(scores, fuse(judged, scores)), 1.0);
+}
+
+/// With strays where the log likelihood gains 1 by them: Akaike's criterion for one more parameter.
+Panel choose_panel(const TrainingTable& table, const std::vector<ExpertColumns>& experts, const Folds& folds,
+                   const Judged& judged) {
+  Panel plain = panel_of(table, experts, folds, judged, false);
+  if (plain.choices.empty()) return plain;
+  Panel steady = panel_of(table, experts, folds, judged, true);
+  const double least_gain = 1.0 / static_cast<double>(table.rows.size());
+  return log_loss_of(steady, judged) < log_loss_of(plain, judged) - least_gain ? steady : plain;
+}
+
 std::vector<Matrix> distances_of(const TrainingTable& table, const Panel& panel, const Folds& folds) {
   std::vector<Matrix> distances;
   for (std::size_t i = 0; i < panel.choices.size(); ++i) {
-    distances.push_back(distances_out_of_fold(table, panel.columns[i], folds, panel.choices[i].shrinkage));
+    distances.push_back(distances_out_of_fold(table, panel.columns[i], folds, panel.choices[i].way));
   }
   return distances;
 }
@@ -149,7 +195,7 @@ struct LearningSet::State {
   Layout layout;
   bool moving = false;
   std::vector<Label> labels;
-  Matrix features;
+  Features features;
 };
 
 Result<LearningSet> LearningSet::create(const LabelledFrames& data, const std::function<void(double)>& progress) {
@@ -166,7 +212,8 @@ LearningSet& LearningSet::operator=(LearningSet&&) noexcept = default;
 LearningSet::~LearningSet() = default;
 
 std::span<const double> LearningSet::features() const noexcept {
-  return {state_->features.data(), static_cast<std::size_t>(state_->features.size())};
+  const Matrix& seen = state_->features.seen;
+  return {seen.data(), static_cast<std::size_t>(seen.size())};
 }
 
 Result<Learned> LearningSet::learn(std::span<const std::size_t> chosen) const {
@@ -183,7 +230,8 @@ Result<Learned> LearningSet::learn(std::span<const std::size_t> chosen) const {
     classes.names.push_back(name);
     classes.examples.push_back(count);
   }
-  TrainingTable table{state_->features, {chosen.begin(), chosen.end()}, {}, counts.size()};
+  TrainingTable table{
+      state_->features.seen, state_->features.raised, {chosen.begin(), chosen.end()}, {}, counts.size()};
   for (const Label& label : labels) {
     table.classes.push_back(static_cast<std::size_t>(std::distance(counts.begin(), counts.find(label.name))));
   }
@@ -196,7 +244,7 @@ Result<Learned> LearningSet::learn(std::span<const std::size_t> chosen) const {
   const std::vector<Matrix> scores = scores_of(panel);
   const std::vector<double> weights = fuse(judged, scores);
   for (std::size_t i = 0; i < panel.choices.size(); ++i) {
-    classes.experts.push_back(train_expert(table, panel.columns[i], panel.choices[i].shrinkage));
+    classes.experts.push_back(train_expert(table, panel.columns[i], panel.choices[i].way));
     classes.experts.back().weight = weights[i] * panel.choices[i].sharpness;
   }
   learn_unknown(classes, judged, fused_out_of_fold(judged, scores), distances_of(table, panel, folds));

@@ -14,6 +14,9 @@ namespace {
 struct Sample {
   Matrix points;
   std::vector<std::size_t> classes;
+  Matrix strays{};
+
+  [[nodiscard]] Teaching teaching() const { return {points, classes, 3, strays}; }
 };
 
 /// Three classes in turns, whose means differ in the first columns.
@@ -29,7 +32,8 @@ Sample sample_of(std::size_t count, std::size_t columns, std::uint64_t seed) {
   return sample;
 }
 
-/// Squared distances to the means by the definition: C = (1 - a) W + a tr(W)/p I, inverted as it stands.
+/// Squared distances to the means by the definition: C = (1 - a) W + a tr(W)/p I, inverted as it stands. The strays are
+/// part of W.
 Matrix distances_by_definition(const Sample& sample, const Matrix& others, double shrinkage) {
   Matrix means = Matrix::Zero(3, others.cols());
   Vector counts = Vector::Zero(3);
@@ -44,6 +48,9 @@ Matrix distances_by_definition(const Sample& sample, const Matrix& others, doubl
         (sample.points.row(static_cast<Eigen::Index>(i)) - means.row(static_cast<Eigen::Index>(sample.classes[i])))
             .transpose();
     covariance += apart * apart.transpose() / (static_cast<double>(sample.classes.size()) - 3.0);
+  }
+  if (sample.strays.rows() > 0) {
+    covariance += sample.strays.transpose() * sample.strays / (static_cast<double>(sample.classes.size()) - 3.0);
   }
   const double variance = covariance.trace() / static_cast<double>(others.cols());
   covariance *= 1.0 - shrinkage;
@@ -60,13 +67,13 @@ Matrix distances_by_definition(const Sample& sample, const Matrix& others, doubl
 }
 
 /// Distances in the space of the means differ from those in all of it by the same for all classes.
-void expect_the_definition(std::size_t count, std::size_t columns) {
-  const Sample sample = sample_of(count, columns, 1);
-  const Matrix others = sample_of(7, columns, 2).points;
-  const auto path = score_others(sample.points, sample.classes, 3, others);
+void expect_the_definition(const Sample& sample) {
+  const Eigen::Index columns = sample.points.cols();
+  const Matrix others = sample_of(7, static_cast<std::size_t>(columns), 2).points;
+  const auto path = score_others(sample.teaching(), others);
   for (std::size_t i = 0; i < kShrinkages.size(); ++i) {
     const Matrix expected = distances_by_definition(sample, others, kShrinkages[i]);
-    const Discriminant trained = train_discriminant(sample.points, sample.classes, 3, kShrinkages[i]);
+    const Discriminant trained = train_discriminant(sample.teaching(), kShrinkages[i]);
     EXPECT_EQ(trained.axes.rows(), 3);
     const Matrix squares = trained.distances(others).cwiseAbs2();
     for (Eigen::Index label = 1; label < 3; ++label) {
@@ -80,17 +87,25 @@ void expect_the_definition(std::size_t count, std::size_t columns) {
 }
 
 TEST(Discriminant, measures_distances_by_its_covariance) {
-  expect_the_definition(60, 12);
+  expect_the_definition(sample_of(60, 12, 1));
+}
+
+TEST(Discriminant, looks_less_where_examples_stray) {
+  for (const std::size_t columns : {12U, 60U}) {
+    Sample sample = sample_of(30, columns, 1);
+    sample.strays = 3.0 * sample_of(20, columns, 5).points;
+    expect_the_definition(sample);
+  }
 }
 
 TEST(Discriminant, does_so_with_more_features_than_examples) {
-  expect_the_definition(15, 40);
+  expect_the_definition(sample_of(15, 40, 1));
 }
 
 TEST(Discriminant, takes_the_whole_space_where_there_are_more_classes_than_features) {
   const Sample sample = sample_of(60, 3, 3);
   const Matrix others = sample_of(7, 3, 4).points;
-  const Discriminant trained = train_discriminant(sample.points, sample.classes, 3, 0.1);
+  const Discriminant trained = train_discriminant(sample.teaching(), 0.1);
   const Matrix expected = distances_by_definition(sample, others, 0.1);
   EXPECT_LT((trained.distances(others).cwiseAbs2() - expected).norm(), 1e-6 * expected.norm());
 }
@@ -98,10 +113,10 @@ TEST(Discriminant, takes_the_whole_space_where_there_are_more_classes_than_featu
 TEST(Discriminant, stays_finite_where_all_examples_of_a_class_are_the_same) {
   Sample sample = sample_of(6, 4, 4);
   for (Eigen::Index row = 3; row < 6; ++row) sample.points.row(row) = sample.points.row(row - 3);
-  for (const Matrix& scores : score_others(sample.points, sample.classes, 3, sample.points)) {
+  for (const Matrix& scores : score_others(sample.teaching(), sample.points)) {
     EXPECT_TRUE(scores.allFinite());
   }
-  EXPECT_TRUE(train_discriminant(sample.points, sample.classes, 3, 0.003).distances(sample.points).allFinite());
+  EXPECT_TRUE(train_discriminant(sample.teaching(), 0.003).distances(sample.points).allFinite());
 }
 
 }  // namespace
