@@ -123,10 +123,13 @@ Recording calibration_of(const HealthyArray& healthy, Random& random) {
 
 /// As dermis::support::found_faults(), with what a calibration makes of the array.
 std::string found_faults_after_calibration(const HealthyArray& healthy, const dermis::ArrayDescription& known,
-                                           Random& random, std::size_t frames) {
+                                           Random& random, std::size_t frames, std::string& refusal) {
   const Recording recording = calibration_of(healthy, random);
   const auto calibration = dermis::calibration::calibrate(known, recording.frames, recording.loads);
-  if (!calibration) return "not calibrated: " + calibration.error().message;
+  if (!calibration) {
+    refusal = calibration.error().message;
+    return {};
+  }
   auto pipeline = dermis::pipeline::Pipeline::create(calibration->model).value();
   dermis::ForceFrame force;
   std::string text;
@@ -141,6 +144,7 @@ struct Outcome {
   Knowledge knowledge = Knowledge::circuit_given;
   std::string words;
   std::string found;
+  std::string refusal;  // of the calibration
 };
 
 Outcome watch(std::uint64_t seed, std::size_t most_frames) {
@@ -148,7 +152,7 @@ Outcome watch(std::uint64_t seed, std::size_t most_frames) {
   const std::size_t frames = std::min(most_frames, healthy.scene == "touches" ? kTenMinutes : kOtherFrames);
   const Knowledge knowledge = knowledge_of(seed);
   if (knowledge == Knowledge::circuit_given) {
-    return {knowledge, healthy.words, dermis::support::found_faults(healthy, frames)};
+    return {knowledge, healthy.words, dermis::support::found_faults(healthy, frames), {}};
   }
   Random random = Random::stream(seed, 2);
   give_circuit_to_be_found(random, healthy);
@@ -158,7 +162,9 @@ Outcome watch(std::uint64_t seed, std::size_t most_frames) {
     known.readout.circuit = Circuit::automatic;
     known.readout.adc_bits = healthy.array.readout.adc_bits;
   }
-  return {knowledge, healthy.words, found_faults_after_calibration(healthy, known, random, frames)};
+  Outcome outcome{knowledge, healthy.words, {}, {}};
+  outcome.found = found_faults_after_calibration(healthy, known, random, frames, outcome.refusal);
+  return outcome;
 }
 
 }  // namespace
@@ -179,6 +185,10 @@ int main(int argc, char** argv) {
                          [&](std::size_t k) { outcomes[k] = watch(first_seed + first + k, most_frames); });
     for (std::size_t k = 0; k < outcomes.size(); ++k) {
       const auto knowledge = static_cast<std::size_t>(outcomes[k].knowledge);
+      if (!outcomes[k].refusal.empty()) {
+        fmt::print("seed {}, {}: not calibrated: {}\n", first_seed + first + k, outcomes[k].words, outcomes[k].refusal);
+        continue;
+      }
       ++watched[knowledge];
       if (outcomes[k].found.empty()) continue;
       ++masked[knowledge];

@@ -11,6 +11,7 @@
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/compensation/line_faults.hpp"
 #include "dermis/core/random.hpp"
+#include "dermis/simulation/readout_circuit.hpp"
 #include "support/healthy_arrays.hpp"
 #include "support/reference_array.hpp"
 
@@ -207,6 +208,52 @@ TEST(FalseFaults, a_line_that_is_rounded_to_0_is_not_silent) {
   for (int frame = 0; frame < 300; ++frame) {
     const double share = std::max(1.0 - 0.02 * frame, 0.31);
     ASSERT_EQ(watch.observe(array.faded(share)), "") << "frame " << frame;
+  }
+}
+
+/// An amplifier's offset takes away as much of a faded reading as of a fresh one: a column may read 0 and work.
+TEST(FalseFaults, a_line_whose_amplifier_takes_its_faded_readings_is_not_silent) {
+  ArrayDescription array = reference_circuit(8, 8, Circuit::transimpedance);
+  array.readout.adc_bits = 16;
+  array.readout.supply_v = 5.0;
+  array.readout.amplifier_offset_v.assign(8, 0.0);
+  array.readout.amplifier_offset_v[5] = 3e-3;
+  const double siemens = 1e-3 / array.readout.load_ohm[5];
+  const auto circuit = simulation::ReadoutCircuit::create(array).value();
+  Watch watch(array, siemens);
+  for (int frame = 0; frame < 300; ++frame) {
+    const std::vector<double> faded(array.taxel_count(), std::max(1.0 - 0.01 * frame, 0.5) * siemens);
+    std::vector<double> ratio(array.taxel_count());
+    circuit.ratios(faded, ratio);
+    for (double& reading : ratio) reading = std::max(std::round(reading * 65535.0), 0.0) / 65535.0;
+    if (frame == 0) ratio[0] = 1.0 / 65535.0;  // nothing is cut off
+    ASSERT_EQ(watch.observe(ratio), "") << "frame " << frame;
+  }
+}
+
+/// Where all lines float, a press lifts the readings of all rows over a threshold that hides unloaded taxels, alike
+/// where these are: none is supplied.
+TEST(FalseFaults, a_press_that_ghosts_in_all_rows_is_no_supplied_row) {
+  ArrayDescription array = reference_circuit(10, 8);
+  array.readout.idle_rows = IdleRows::floating;
+  array.readout.idle_columns = IdleColumns::floating;
+  array.readout.load_ohm.assign(8, 8000.0);
+  constexpr double kThreshold = 85.0;
+  const double siemens = 5e-7;
+  const auto circuit = simulation::ReadoutCircuit::create(array).value();
+  Watch watch(array, 0.0);
+  std::vector<double> ratio(array.taxel_count());
+  for (std::size_t press = 0; press < 60; ++press) {
+    for (const bool is_pressed : {true, false}) {
+      std::vector<double> pressed(array.taxel_count(), siemens);
+      if (is_pressed) pressed[array.index(1 + press % 8, 3 * press % 8)] = 2e-3;
+      circuit.ratios(pressed, ratio);
+      for (double& reading : ratio) {
+        const double counts = std::round(reading * 4095.0);
+        reading = counts < kThreshold ? 0.0 : counts / 4095.0;
+      }
+      ASSERT_EQ(watch.observe(ratio), "") << "press " << press;
+    }
   }
 }
 

@@ -28,6 +28,11 @@ struct Observation {
   [[nodiscard]] bool is_pressed(std::size_t taxel) const noexcept {
     return conditioned.ratio[taxel] > touched_above(unloaded.ratio()[taxel], conditioned.sigma_ratio, kPressedSigmas);
   }
+
+  /// It is the taxel's own conductance that is surely more: where rows float, a press reads like that on all of them.
+  [[nodiscard]] bool conducts_more(std::size_t taxel) const noexcept {
+    return solved && conductance.siemens[taxel] > unloaded.most_siemens(taxel, conductance.sigma_siemens[taxel]);
+  }
 };
 
 }  // namespace dermis::compensation

@@ -17,6 +17,7 @@ constexpr double kMostOfPress = 6.0;             // where taxels may all be the 
 constexpr double kMostWhereTaxelsScatter = 9.0;  // 2 presses decide
 constexpr int kDecisiveFrames = 2;               // one bad frame is none
 constexpr double kBelow = 1.3;                   // times the readings of the row are those of all others
+constexpr double kGhostShare = 0.1;              // of the press that makes it
 constexpr double kMostTolerance = 0.2;           // of a reading: beyond, equality means nothing
 constexpr double kCloseTolerance = 0.12;  // as equal as the places of a press are taken to be; full scale makes equal
 
@@ -114,6 +115,7 @@ double SuppliedRowDetector::evidence_of_press(const Comparison& compared) const 
 
 SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observation& seen, std::size_t row,
                                                                  const FaultList& faults) const noexcept {
+  const bool rows_float = array_.readout.idle_rows == IdleRows::floating;
   Comparison found;
   std::size_t judged = 0;
   std::size_t pressed = 0;
@@ -125,7 +127,7 @@ SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observati
     ++pressed;
     const ColumnComparison press = compare_in_column(seen, row, col, faults);
     found.fails += press.fails;
-    if (!press.shows) continue;
+    if (!press.shows || (rows_float && is_ghost(seen, own))) continue;
     const double reading = seen.conditioned.ratio[own];
     found.least = found.place ? std::min(found.least, reading) : reading;
     found.most = std::max(found.most, reading);
@@ -137,6 +139,15 @@ SuppliedRowDetector::Comparison SuppliedRowDetector::compare_row(const Observati
   }
   if (pressed == judged) found.place.reset();
   return found;
+}
+
+/// Where rows float, a press reads on all of them, but conducts far more than they do.
+bool SuppliedRowDetector::is_ghost(const Observation& seen, std::size_t taxel) const noexcept {
+  double most = 0.0;
+  for (std::size_t row = 0; row < array_.rows; ++row) {
+    most = std::max(most, seen.conductance.siemens[array_.index(row, taxel % array_.cols)]);
+  }
+  return !seen.conducts_more(taxel) || seen.conductance.siemens[taxel] < kGhostShare * most;
 }
 
 SuppliedRowDetector::ColumnComparison SuppliedRowDetector::compare_in_column(const Observation& seen, std::size_t row,

@@ -57,6 +57,7 @@ class SuppliedRowDetector {
                                        const FaultList& faults) const noexcept;
   [[nodiscard]] ColumnComparison compare_in_column(const Observation& seen, std::size_t row, std::size_t col,
                                                    const FaultList& faults) const noexcept;
+  [[nodiscard]] bool is_ghost(const Observation& seen, std::size_t taxel) const noexcept;
   [[nodiscard]] bool another_row_is_pressed(const Observation& seen, std::size_t row,
                                             const FaultList& faults) const noexcept;
 

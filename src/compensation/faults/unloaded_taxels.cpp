@@ -33,12 +33,20 @@ UnloadedTaxels::UnloadedTaxels(const ArrayDescription& array, std::span<const do
   }
 }
 
+/// An input at an offset drives current through all taxels of its column, the touched ones too.
 void UnloadedTaxels::subtract_amplifier_offsets() {
   const Readout& readout = array_.readout;
   if (readout.amplifier_offset_v.empty()) return;
-  for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {
-    const double offset = readout.amplifier_offset_v[taxel % array_.cols] / *readout.supply_v;
-    ratio_[taxel] = std::max(ratio_[taxel] - offset, 0.0);
+  taken_off_.resize(array_.cols);
+  for (std::size_t col = 0; col < array_.cols; ++col) {
+    const double offset = readout.amplifier_offset_v[col] / *readout.supply_v;
+    double of_column = 0.0;
+    for (std::size_t row = 0; row < array_.rows; ++row) {
+      double& reading = ratio_[array_.index(row, col)];
+      of_column += reading;
+      reading = std::max(reading - offset, 0.0);
+    }
+    taken_off_[col] = std::max(offset, 0.0) * (1.0 + kTouchedShare * of_column);
   }
 }
 
@@ -48,6 +56,7 @@ void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums&
     expect_beside_no_press(conditioned);
   } else {
     expect_beside_presses(sums, conditioned.sigma_ratio, solved);
+    if (!taken_off_.empty()) take_off(conditioned.sigma_ratio);
   }
   follow_smallest_reading(conditioned.ratio, TaxelBlock::of_frame(frame, ratio_.size()));
   forget_what_may_be_cut_off(conditioned.sigma_ratio);
@@ -56,6 +65,13 @@ void UnloadedTaxels::expect(const ConditionedFrame& conditioned, const LineSums&
 void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio, const TaxelBlock& block) noexcept {
   for (std::size_t taxel = block.from; taxel < block.to; ++taxel) {
     if (ratio[taxel] > 0.0) smallest_reading_ = std::min(smallest_reading_, ratio[taxel]);
+  }
+}
+
+/// Of a conductance that has faded an offset takes as much as of one that has not.
+void UnloadedTaxels::take_off(double sigma_ratio) noexcept {
+  for (std::size_t taxel = 0; taxel < least_reading_.size(); ++taxel) {
+    least_reading_[taxel] -= static_cast<float>(taken_off(taxel) / sigma_ratio);
   }
 }
 

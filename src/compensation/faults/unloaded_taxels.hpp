@@ -33,6 +33,11 @@ class UnloadedTaxels {
   /// Readings while nothing is pressed.
   [[nodiscard]] std::span<const double> ratio() const noexcept { return ratio_; }
 
+  /// Least reading of an unloaded taxel while nothing is pressed.
+  [[nodiscard]] double least_ratio(std::size_t taxel) const noexcept {
+    return kUnloadedShare * ratio_[taxel] - taken_off(taxel);
+  }
+
   /// Least reading of every unloaded taxel among the loads of this frame [standard deviations]; 0 where none can be
   /// expected, as the readout has never sent so small a reading: it may cut them off.
   [[nodiscard]] std::span<const float> least_reading() const noexcept { return least_reading_; }
@@ -49,6 +54,10 @@ class UnloadedTaxels {
   static constexpr double kMostSigmas = 5.0;
 
   void subtract_amplifier_offsets();
+  [[nodiscard]] double taken_off(std::size_t taxel) const noexcept {
+    return taken_off_.empty() ? 0.0 : taken_off_[taxel % array_.cols];
+  }
+  void take_off(double sigma_ratio) noexcept;
   void follow_smallest_reading(std::span<const double> ratio, const TaxelBlock& block) noexcept;
   void forget_what_may_be_cut_off(double sigma_ratio) noexcept;
   void expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept;
@@ -59,6 +68,7 @@ class UnloadedTaxels {
   double smallest_reading_;                           // > 0, of all frames
   std::vector<double> siemens_;                       // [taxels]
   std::vector<double> ratio_;                         // [taxels]
+  std::vector<double> taken_off_;                     // by offsets of the amplifiers [cols]; empty without
   std::vector<float> least_reading_;                  // [taxels]
   std::vector<double> left_;                          // share of the supply that is left on a sensed line
   PerAxis<std::vector<std::uint8_t>> pressed_lines_;  // in an unknown circuit
