@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live test lint numerics sanitize fuzz check-all bench docs clean
+.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench docs clean
 
 build: setup
 	cmake --preset release
@@ -15,6 +15,11 @@ demo: build
 
 live: build
 	scripts/live
+
+# build/release/python, for PYTHONPATH; "pip install ." makes a wheel of it.
+python: setup
+	cmake --preset release
+	cmake --build --preset release --target dermis_python
 
 test: setup
 	scripts/setup test
@@ -57,6 +62,7 @@ bench: setup
 docs:
 	scripts/setup test
 	/usr/bin/python3 scripts/check_docs.py
+	/usr/bin/python3 scripts/sentences.py >/dev/null
 
 clean:
 	rm -rf build demo

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -193,6 +194,9 @@ std::vector<Load> labels(const Recording& recording, std::size_t left_out) {
 struct Outcome {
   Estimate estimate;
   std::size_t masked_frames = 0;
+  std::size_t unsolved_frames = 0;
+  std::set<std::string> faults;
+  std::string circuit;
   double seconds = 0.0;
   std::string networks;
 };
@@ -204,6 +208,7 @@ Outcome calibrate(const ArrayDescription& array, const Recording& recording, std
   Outcome outcome;
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   outcome.networks = calibration.report.training.choice;
+  for (const std::string& found : calibration.report.circuit) outcome.circuit += "\n    " + found;
   outcome.estimate.kpa = recording.kpa[left_out];
   auto pipeline = need(pipeline::Pipeline::create(calibration.model));
   ForceFrame force;
@@ -213,6 +218,13 @@ Outcome calibrate(const ArrayDescription& array, const Recording& recording, std
       return status == TaxelStatus::line_fault || status == TaxelStatus::invalid;
     });
     outcome.masked_frames += is_masked ? 1 : 0;
+    if (has(force.status, FrameStatus::not_converged)) {
+      ++outcome.unsolved_frames;
+      outcome.faults.insert(fmt::format("frame {} of {:.1f} kPa cannot be solved", k, recording.kpa[k]));
+    }
+    for (const compensation::LineFault& fault : pipeline.line_faults().faults()) {
+      outcome.faults.insert(std::string(to_string(fault.kind)) + ' ' + place_name(fault, calibration.model.array));
+    }
     if (k != left_out) continue;
     for (const float newtons : force.newtons) {
       outcome.estimate.newtons.push_back(std::isfinite(newtons) ? static_cast<double>(newtons) : 0.0);
@@ -243,18 +255,23 @@ int run(std::uint64_t seed, std::size_t every) {
     array.readout.circuit = circuit;
     std::vector<Estimate> estimates;
     std::size_t masked = 0;
+    std::size_t unsolved = 0;
     double seconds = 0.0;
     std::string networks;
     for (const std::size_t frame : left_out) {
       Outcome outcome = calibrate(array, recording, frame);
       estimates.push_back(std::move(outcome.estimate));
       masked += outcome.masked_frames;
+      unsolved += outcome.unsolved_frames;
+      for (const std::string& fault : outcome.faults) fmt::print("  without frame {}: {}\n", frame, fault);
+      if (outcome.masked_frames > 0) fmt::print("  without frame {}:{}\n", frame, outcome.circuit);
       seconds += outcome.seconds;
       networks = std::move(outcome.networks);
     }
     print(to_string(circuit), score(estimates), by_hand);
-    fmt::print("  {} masked frames of {}; {:.1f} s a calibration; {}\n", masked,
-               left_out.size() * recording.frames.size(), seconds / static_cast<double>(left_out.size()), networks);
+    fmt::print("  {} masked frames of {}, {} of them unsolved; {:.1f} s a calibration; {}\n", masked,
+               left_out.size() * recording.frames.size(), unsolved, seconds / static_cast<double>(left_out.size()),
+               networks);
     std::fflush(stdout);
   }
   return 0;

@@ -17,7 +17,7 @@ namespace dermis::fuzz {
 /// Reads all frames that an importer finds in the bytes.
 template <typename Open>
 int import_frames(Open open, std::span<const std::uint8_t> data, importers::ImportOptions options = {}) {
-  options.notice = [](const std::string& line) {
+  options.notice = options.loss = [](const std::string& line) {
     if (line.find('\n') != std::string::npos) std::abort();
   };
   auto bytes = std::make_unique<std::istringstream>(std::string(data.begin(), data.end()));

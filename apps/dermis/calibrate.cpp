@@ -83,6 +83,7 @@ void print_text(const CalibrationReport& report, const std::optional<BankTrainin
   for (const std::string& remark : report.remarks) fmt::print("{}\n", remark);
   for (const std::string& statement : report.circuit) fmt::print("{}\n", statement);
   fmt::print("{}\n", training.choice);
+  if (!report.memory.empty()) fmt::print("{}\n", report.memory);
   fmt::print("loads {:.3g} to {:.3g} N", training.lightest_newtons, training.heaviest_newtons);
   if (training.uses_temperature) fmt::print(", {:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius);
   fmt::print("\nfit: {}\n", calibration::describe_fit(training, array));
@@ -163,6 +164,7 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
   if (uncertainty.relative_sigma_of_shared) {
     json["relative_sigma_of_shared"] = *uncertainty.relative_sigma_of_shared;
   }
+  if (!report.memory.empty()) json["memory"] = report.memory;
   if (uncertainty.relative_sigma_of_tables) {
     json["relative_sigma_of_tables"] = *uncertainty.relative_sigma_of_tables;
   }
@@ -215,8 +217,8 @@ Status calibrate(const CalibrateOptions& options) {
   if (!options.bank.empty()) {
     if (Status checked = paper::check_bank_samples(*database); !checked) return checked;
   }
-  Result<Calibration> calibration =
-      calibration::calibrate(*database, [&](const std::string& stage, double share) { progress.show(stage, share); });
+  Result<Calibration> calibration = calibration::calibrate(
+      *database, *frames, [&](const std::string& stage, double share) { progress.show(stage, share); });
   if (!calibration) return calibration.error();
   if (!positions->empty()) {
     Result<fusion::StripTable> strip = calibration::train_strip(calibration->model, *frames, *positions);
@@ -253,8 +255,7 @@ void add_calibrate(Command& command) {
   command.option("--out", options->out, "Model file to write (safetensors)").required();
   command.option("--bank", options->bank,
                  "Also train the paper's bank of N-N-N-1 networks and write it here (16x16: minutes, 135 MB)");
-  command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
-      .shows_default();
+  command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag("--json", options->json, "Print the report as JSON");
   command.action([options] {
     end_when_interrupted();

@@ -178,14 +178,14 @@ Status circuit_advise(const AdviseOptions& options) {
 
 void add_circuit(Command& command) {
   auto forward_options = std::make_shared<ForwardOptions>();
-  Command forward = command.subcommand("forward", "Conductances (siemens) -> readings over the supply");
+  Command forward = command.subcommand("forward", "Compute readings over the supply from conductances (siemens)");
   forward.option("--array", forward_options->array, "array.toml: size and readout circuit").required();
   forward.option("--conductance", forward_options->conductance, "CSV of siemens, rows x columns").required();
   forward.option("--out", forward_options->out, "CSV of readings to write").required();
   forward.action([forward_options] { return circuit_forward(*forward_options); });
 
   auto invert_options = std::make_shared<InvertOptions>();
-  Command invert = command.subcommand("invert", "Readings over the supply -> conductances (siemens)");
+  Command invert = command.subcommand("invert", "Compute conductances (siemens) from readings over the supply");
   invert.option("--array", invert_options->array, "array.toml: size and readout circuit").required();
   invert.option("--readings", invert_options->readings, "CSV of readings, rows x columns").required();
   invert.option("--out", invert_options->out, "CSV of siemens to write").required();
@@ -195,7 +195,7 @@ void add_circuit(Command& command) {
   invert.action([invert_options] { return circuit_invert(*invert_options); });
 
   auto advise_options = std::make_shared<AdviseOptions>();
-  Command advise = command.subcommand("advise", "Load and drive resistances that give the smallest error");
+  Command advise = command.subcommand("advise", "Find the load and drive resistances with the smallest error");
   advise.option("--array", advise_options->array, "array.toml: size, readout circuit and ADC").required();
   advise.option("--range", advise_options->range_ohm, "Least and greatest resistance of a taxel [ohm]")
       .takes(2)

@@ -7,8 +7,12 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <charconv>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -16,6 +20,26 @@
 
 namespace dermis::app {
 namespace {
+
+/// CLI11 would wrap a negative count round, and names no range.
+template <typename Number>
+std::string check_count(const std::string& text) {
+  if (text.starts_with('-')) return "must not be negative";
+  Number number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc::result_out_of_range) return "";
+  return fmt::format("must be 0 to {}", std::numeric_limits<Number>::max());
+}
+
+template <typename Value>
+void check_whole_number(CLI::Option& option, const Value& /*value*/) {
+  if constexpr (std::is_unsigned_v<Value>) option.check(check_count<Value>);
+}
+
+template <typename Value>
+void check_whole_number(CLI::Option& option, const std::optional<Value>& /*value*/) {
+  check_whole_number(option, Value());
+}
 
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
@@ -34,12 +58,6 @@ std::string names_of(std::span<const CommandEntry> commands) {
 
 Option Option::required() const {
   option_->required();
-  return *this;
-}
-
-Option Option::not_negative() const {
-  option_->check(
-      [](const std::string& text) -> std::string { return text.starts_with('-') ? "must not be negative" : ""; });
   return *this;
 }
 
@@ -65,7 +83,9 @@ Option Option::needs(Option other) const {
 
 template <typename Value>
 Option Command::option(const std::string& name, Value& value, const std::string& help) {
-  return Option(app_.add_option(name, value, help));
+  CLI::Option* const option = app_.add_option(name, value, help);
+  check_whole_number(*option, value);
+  return Option(option);
 }
 
 template Option Command::option(const std::string&, std::string&, const std::string&);

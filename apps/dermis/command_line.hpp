@@ -25,7 +25,6 @@ class Option {
   explicit Option(CLI::Option* option) : option_(option) {}
 
   Option required() const;
-  Option not_negative() const;     ///< CLI11 would wrap a negative count round.
   Option shows_default() const;    ///< The help names the value that it has without the option.
   Option takes(int values) const;  ///< So many values, not one.
   Option excludes(Option other) const;

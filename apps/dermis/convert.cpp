@@ -14,6 +14,7 @@
 #include "dermis/recordings/conversion.hpp"
 #include "dermis/recordings/recording.hpp"
 #include "interruption.hpp"
+#include "lost_input.hpp"
 #include "shape_options.hpp"
 #include "status_line.hpp"
 
@@ -71,7 +72,8 @@ Status convert(const ConvertOptions& options) {
   if (!shape) return shape.error();
   const Result<std::vector<std::string>> left_out = recordings::convert_frames(
       options.in, options.out,
-      {.input = {.shape = *shape, .rate_hz = options.rate_hz}, .array = *array ? &**array : nullptr, .notice = say});
+      {.input = {.shape = *shape, .rate_hz = options.rate_hz, .notice = say, .loss = note_loss},
+       .array = *array ? &**array : nullptr});
   if (!left_out) return left_out.error();
   if (!left_out->empty()) say(fmt::format("{}: left out: {}", options.out, fmt::join(*left_out, ", ")));
   return Done{};

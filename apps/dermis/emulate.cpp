@@ -82,7 +82,7 @@ void add_emulate(Command& command) {
   command.option("--to", options->to, "pty: | tcp-listen://HOST:PORT | tcp:// | udp:// | serial:// | stdout:")
       .shows_default();
   command.option("--rate", options->rate_hz, "Frames a second instead of the recorded pace");
-  command.flag("--loop", options->loop, "Begin again at the end");
+  command.flag("--loop", options->loop, "Start again at the end");
   command.action([options] { return emulate(*options); });
 }
 

@@ -96,7 +96,8 @@ Status evaluate_forces(const EvaluateOptions& options) {
     if (Status written = report::write_evaluation_report(options.report, *evaluation, *model); !written) return written;
   }
   options.json ? fmt::print("{}\n", calibration::to_json(*evaluation)) : print_text(*evaluation);
-  return Done{};
+  if (evaluation->most_have_forces) return Done{};
+  return failed(options.frames + ": " + evaluation->most_have_forces.error().message);
 }
 
 Status evaluate(const EvaluateOptions& options) {
@@ -117,7 +118,7 @@ void add_evaluate(Command& command) {
   command.option("--model", options->model,
                  "Model file of 'dermis calibrate', or array.toml where readings are forces");
   command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames");
-  command.option("--loads", options->loads, "loads.csv: the truth");
+  command.option("--loads", options->loads, "loads.csv: the true loads");
   command.option("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
   command.flag("--json", options->json, "Print the result as JSON");
   command.option("--report", options->report, "Folder for an HTML report with pictures");
@@ -126,7 +127,7 @@ void add_evaluate(Command& command) {
       "Judge the classes of 'dermis learn', not forces, on labelled examples: --in, or --frames of tared frames.npy");
   add_example_options(command, options->examples);
   command.option("--rate", options->examples.data.rate_hz,
-                 "Frames a second, where they differ from those of the examples [Hz]");
+                 "Frames a second, if they differ from those of the examples [Hz]");
   command.action([options] {
     end_when_interrupted();
     return evaluate(*options);

@@ -10,7 +10,7 @@
 #include "dermis/operation/load_source.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recognition/evaluation.hpp"
-#include "status_line.hpp"
+#include "source_options.hpp"
 
 namespace dermis::app {
 namespace {
@@ -50,7 +50,7 @@ Status evaluate_classes(const std::string& path, operation::ExampleOptions examp
     if (Status checked = operation::check_loads(classes->layout, path, examples.model); !checked) return checked;
   }
   examples.arrays = recognition::names_of(classes->layout.arrays);
-  Result<recognition::LabelledFrames> data = operation::read_examples(examples, {.notice = say});
+  Result<recognition::LabelledFrames> data = operation::read_examples(examples, source_options());
   if (!data) return data.error();
   if (examples.data.rate_hz == 0.0) data->layout.rate_hz = classes->layout.rate_hz;
   const Result<ClassesEvaluation> evaluation = recognition::evaluate_classes(*classes, *data);

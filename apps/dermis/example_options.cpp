@@ -7,7 +7,7 @@ namespace dermis::app {
 Option add_example_options(Command& command, operation::ExampleOptions& examples) {
   recognition::DatasetFiles& data = examples.data;
   command.option("--in", examples.in, "Recordings, or other files of frames, whose frames the labels count");
-  command.flag("--tare", examples.tare, "Nothing touches in the first second of each --in: that is zero load");
+  command.flag("--tare", examples.tare, "Take the first second of each --in as zero load: nothing may touch then");
   command.option("--arrays", data.arrays, "arrays.csv: where the readings of each array of --frames are");
   command.option("--extra", data.extras,
                  "Further readings, such as joint angles: extra.npy beside --frames, CSV with time_s beside --in");

@@ -88,7 +88,8 @@ Status image(const ImageOptions& options) {
   Result<files::AtomicFile> file = files::AtomicFile::create(options.out);
   if (!file) return file.error();
   file->write(bytes_of(options, *pictures));
-  return file->commit();
+  if (Status committed = file->commit(); !committed) return committed;
+  return (*view)->verdict();
 }
 
 }  // namespace
@@ -99,17 +100,16 @@ void add_image(Command& command) {
   command.option("--model", options->model,
                  "Model file, or array.toml where readings are forces: draws newtons and contacts instead of counts");
   command.option("--out", options->out, "Picture to write: .png or .svg").required();
-  const Option frame = command.option("--frame", options->frame, "Number of the frame, from 0").not_negative();
+  const Option frame = command.option("--frame", options->frame, "Number of the frame, from 0");
   const Option at = command.option("--at", options->at_s, "The frame at this time after the first [s]").excludes(frame);
-  const Option from = command.option("--from", options->from_s, "Begin of an animation after the first frame [s]")
+  const Option from = command.option("--from", options->from_s, "Start of an animation, after the first frame [s]")
                           .excludes(frame)
                           .excludes(at);
   const Option to = command.option("--to", options->to_s, "Its end [s]").excludes(frame).excludes(at);
   from.needs(to);
   command.option(
       "--high", options->high,
-      "End of the colour scale [N, or counts]; without it, 1, 2, 5, 10, ... N that cover what is drawn, or all "
-      "counts of the ADC");
+      "End of the colour scale [N, or counts]; by default the next of 1, 2, 5, 10, ... N, or all counts of the ADC");
   command.action([options] { return image(*options); });
 }
 

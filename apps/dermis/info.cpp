@@ -84,6 +84,11 @@ void print_json(const std::string& file, const FrameFileInfo& info) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+std::string mend_of(const FrameFileInfo& info) {
+  const bool is_recording = info.format == recordings::FrameFormat::mcap;
+  return is_recording ? "'dermis recover' makes it so" : "its last frame is cut off";
+}
+
 void print_line(const char* what, const std::string& value) {
   if (!value.empty()) fmt::print("{:<14}{}\n", what, value);
 }
@@ -107,7 +112,7 @@ void print_text(const FrameFileInfo& info) {
   if (const std::optional<double> rate = info.rate_hz()) print_line("rate", fmt::format("{:.3f} Hz", *rate));
   if (info.start_utc) print_line("start", utc_text(*info.start_utc));
   if (info.lost) print_line("lost", fmt::format("{} frames", *info.lost));
-  print_line("complete", info.complete ? "yes" : "no: 'dermis recover' makes it so");
+  print_line("complete", info.complete ? "yes" : "no: " + mend_of(info));
   if (info.temperature_celsius) {
     print_line("temperature",
                fmt::format("{:.2f} to {:.2f} C", info.temperature_celsius->first, info.temperature_celsius->second));
@@ -131,6 +136,8 @@ Status print_info(const InfoOptions& options) {
   } else {
     print_text(*info);
   }
+  if (info->frames == 0) return bad_input(options.file + ": has no frame");
+  if (!info->complete) return failed(options.file + ": is not complete: " + mend_of(*info));
   return Done{};
 }
 

@@ -22,6 +22,7 @@
 #include "dermis/report/recognition_report.hpp"
 #include "example_options.hpp"
 #include "interruption.hpp"
+#include "source_options.hpp"
 #include "status_line.hpp"
 #include "writable.hpp"
 
@@ -123,7 +124,7 @@ Status write_model(const LearnOptions& options, const LabelledFrames& data, cons
 
 Status learn(const LearnOptions& options) {
   if (Status checked = check_options(options); !checked) return checked;
-  const Result<LabelledFrames> data = operation::read_examples(options.examples, {.notice = say});
+  const Result<LabelledFrames> data = operation::read_examples(options.examples, source_options());
   if (!data) return data.error();
   std::vector<Split> splits;
   std::vector<Split> open_splits;
@@ -165,14 +166,15 @@ void add_learn(Command& command) {
   command.option("--frames", options->examples.data.frames,
                  "frames.npy: tared frames, the readings of all arrays side by side");
   command.option("--rate", options->examples.data.rate_hz,
-                 "Frames a second [Hz]; of --in, by default, as the times of its frames have it");
+                 "Frames a second [Hz]; default with --in: by the times of its frames");
   command.option("--out", options->out, "Classes to write (safetensors)");
-  command.option("--splits", options->splits, "splits.csv: learn once for each split from all that it does not name");
-  command.option("--predictions", options->predictions, "What is answered for the labels that --splits names");
+  command.option("--splits", options->splits,
+                 "splits.csv: for each split, learn from all labels that it does not name");
+  command.option("--predictions", options->predictions, "File to write: the answers for the labels of --splits");
   command.option("--open", options->open, "open.csv: splits with classes that are not learned");
-  command.option("--open-predictions", options->open_predictions, "What is answered for the labels of --open");
-  command.option("--report", options->report,
-                 "Folder for an HTML report with pictures, which compares with other estimators");
+  command.option("--open-predictions", options->open_predictions,
+                 "File to write: the answers for the labels of --open");
+  command.option("--report", options->report, "Folder for an HTML report with pictures and a comparison of estimators");
   command.action([options] {
     end_when_interrupted();
     return learn(*options);

@@ -11,6 +11,7 @@
 #include <exception>
 
 #include "commands.hpp"
+#include "lost_input.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
@@ -20,26 +21,24 @@ constexpr int kExitFailed = 1;
 constexpr int kExitBadInput = 2;
 
 constexpr std::array kCommands{
-    CommandEntry{"simulate",
-                 "Simulate an array: frames.csv and loads.csv (the truth); contacts.csv of the scene contacts",
-                 add_simulate},
-    CommandEntry{"calibrate", "Frames with known loads -> a model", add_calibrate},
-    CommandEntry{"run", "Raw counts -> newtons per taxel, and contacts", add_run},
-    CommandEntry{"evaluate", "Accuracy against known loads, beside the baseline estimators", add_evaluate},
-    CommandEntry{"learn", "Examples of poses or gestures -> classes that are recognised", add_learn},
-    CommandEntry{"recognise", "Name the poses or gestures of a stream, or say that they are unknown", add_recognise},
-    CommandEntry{"circuit", "Compute a readout circuit: for people who design one", add_circuit},
-    CommandEntry{"doctor", "Health of an array, in plain words: line faults, noise, drift", add_doctor},
+    CommandEntry{"simulate", "Simulate an array: frames.csv and loads.csv (the true loads)", add_simulate},
+    CommandEntry{"calibrate", "Learn a model from frames with known loads", add_calibrate},
+    CommandEntry{"run", "Turn raw counts into newtons per taxel, and into contacts", add_run},
+    CommandEntry{"evaluate", "Measure accuracy on known loads, and compare with look-up tables", add_evaluate},
+    CommandEntry{"learn", "Learn classes from examples of poses or gestures", add_learn},
+    CommandEntry{"recognise", "Name the poses or gestures of a stream, or answer \"unknown\"", add_recognise},
+    CommandEntry{"circuit", "Compute a readout circuit, for people who design one", add_circuit},
+    CommandEntry{"doctor", "Check the health of an array: line faults, noise, drift", add_doctor},
     CommandEntry{"paper", "Reproduce the equations, figures and claims of the paper", add_paper},
-    CommandEntry{"record", "Record a device, or anything else that gives frames", add_record},
+    CommandEntry{"record", "Record a device, or any other source of frames", add_record},
     CommandEntry{"replay", "Play a recording at the pace of its frames, as counts or newtons", add_replay},
     CommandEntry{"emulate", "Play a device from a recording, to develop without hardware", add_emulate},
-    CommandEntry{"convert", "Frames from one file format to another, by the ending of the name", add_convert},
-    CommandEntry{"info", "What a recording or another file of frames holds", add_info},
-    CommandEntry{"recover", "Make a cut or damaged recording complete, and tell what is lost", add_recover},
-    CommandEntry{"image", "A frame as PNG or SVG, or some seconds as an animated PNG", add_image},
-    CommandEntry{"top", "A live heat map in the terminal, until Ctrl-C", add_top},
-    CommandEntry{"watch", "Hold forces against limits, and stop a program where one is crossed", add_watch},
+    CommandEntry{"convert", "Convert frames to another file format, by the ending of the name", add_convert},
+    CommandEntry{"info", "Show what a recording or another file of frames holds", add_info},
+    CommandEntry{"recover", "Repair a cut or damaged recording, and say what is lost", add_recover},
+    CommandEntry{"image", "Draw a frame as PNG or SVG, or some seconds as an animated PNG", add_image},
+    CommandEntry{"top", "Show a live heat map in the terminal, until Ctrl-C", add_top},
+    CommandEntry{"watch", "Compare forces with limits, and stop a program if one is crossed", add_watch},
     CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", add_serve},
 };
 
@@ -60,7 +59,7 @@ Result<int> perform(const Action& action) {
 }
 
 int exit_status(const Error& error) {
-  say(fmt::format("dermis: {}", error.message));
+  say(fmt::format("dermis: {}{}", error.field.empty() ? "" : "--", error.message));
   return error.kind == ErrorKind::bad_input ? kExitBadInput : kExitFailed;
 }
 
@@ -69,7 +68,11 @@ int run(int argc, char** argv) {
   if (!action) return exit_status(action.error());
   if (!*action) return 0;
   const Result<int> status = perform(*action);
-  return status ? *status : exit_status(status.error());
+  const std::string lost = losses();
+  if (lost.empty()) return status ? *status : exit_status(status.error());
+  if (!status) return exit_status({.kind = status.error().kind, .message = lost + "; " + status.error().message});
+  const int lossy = exit_status(failed(lost));
+  return *status == 0 ? lossy : *status;
 }
 
 }  // namespace

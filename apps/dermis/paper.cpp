@@ -145,7 +145,7 @@ void add_paper(Command& command) {
   command.option("--report", options->report, "Folder for an HTML report with pictures");
   command.flag("--json", options->json, "Print the result as JSON");
   command.flag("--quick", options->quick,
-               "A 4x4 array and few steps: shows that everything works, not what the paper says");
+               "A 4x4 array and few steps: it shows that everything works, not what the paper says");
   command.action([options] { return paper(*options); });
 }
 

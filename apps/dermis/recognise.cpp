@@ -94,17 +94,17 @@ void add_recognise(Command& command) {
   auto options = std::make_shared<RecogniseOptions>();
   command.option("--classes", options->in.classes, "Classes of 'dermis learn'").required();
   command.option("--in", options->in.loads.from, "A file of frames, a recording or the URI of a device").required();
-  command.option(
-      "--model", options->in.loads.model,
-      "What computes the forces, where the classes were learned from forces: a model, or suit.toml of several arrays");
+  command.option("--model", options->in.loads.model,
+                 "Model for classes that were learned from forces, or suit.toml of several arrays");
   command.flag(
       "--tare", options->in.loads.tare,
-      "Take the first second (at least 10 frames) for unloaded; else readings without --model are tared already");
+      "Take the first second (at least 10 frames) as unloaded; without it and --model, readings must be tared");
   command.option("--extra", options->in.loads.extra,
                  "CSV of further readings beside the frames, where the classes were learned with some");
-  command.option("--out", options->out, "Where to write what is recognised").shows_default();
-  command.option("--rate", options->in.rate_hz, "Frames a second, where they differ from those of the examples [Hz]");
-  command.flag("--json", options->json, "Write a line of JSON each, with the probabilities of all classes");
+  command.option("--out", options->out, "File to write the answers to").shows_default();
+  command.option("--rate", options->in.rate_hz, "Frames a second, if they differ from those of the examples [Hz]");
+  command.flag("--json", options->json,
+               "Write one line of JSON for each answer, with the probabilities of all classes");
   command.action([options] { return recognise(*options); });
 }
 

@@ -110,10 +110,10 @@ void add_record(Command& command) {
   command.option("--array", options->array, "array.toml, to keep with the frames");
   command.option("--model", options->model,
                  "Record the forces, too: of this model, or array.toml where readings are forces");
-  const Option frames = command.option("--frames", options->frames, "Stop after so many frames").not_negative();
+  const Option frames = command.option("--frames", options->frames, "Stop after this many frames");
   command
       .option("--seconds", options->seconds,
-              "Stop so long after the first frame, or after the start where none comes [s]")
+              "Stop this long after the first frame, or after the start if none comes [s]")
       .excludes(frames);
   command.action([options] { return record(*options); });
 }

@@ -9,8 +9,8 @@
 #include "commands.hpp"
 #include "dermis/compensation/offset_drift.hpp"
 #include "dermis/operation/force_tables.hpp"
-#include "dermis/operation/frame_troubles.hpp"
 #include "dermis/operation/operation.hpp"
+#include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/preprocessing/phase.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
@@ -21,8 +21,8 @@ namespace dermis::app {
 namespace {
 
 using operation::ForceTables;
-using operation::FrameTroubles;
 using operation::Operation;
+using pipeline::FrameTroubles;
 
 constexpr std::size_t kFramesPerLook = 32;  // at the statistics
 
@@ -54,14 +54,17 @@ Status solve(Operation& operation, preprocessing::PhaseSelector& phase, ForceTab
   if (is_live) line.emplace();
   RawFrame raw;
   ForceFrame force;
-  for (std::size_t read = 1; is_live || !stop_flag().load(); ++read) {
+  while (is_live || !stop_flag().load()) {
     const Result<bool> more = operation.frames->next(raw);
     if (!more) source_status = more.error();
     if (!more || !*more) break;
-    if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) continue;
+    if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) {
+      troubles.skip();
+      continue;
+    }
     operation.pipeline.process(raw, force);
     if (Status written = tables.write(force); !written) return written;
-    troubles.add(force, read);
+    troubles.add(raw, force, operation.pipeline, operation.frames.get());
     if (line && troubles.frames() % kFramesPerLook == 0) {
       line->show(summary(troubles.frames(), operation.frames->statistics()));
     }
@@ -82,12 +85,18 @@ Status run(const RunOptions& options) {
   drift.set_options({.track = options.follow_drift});
   if (options.tare) drift.tare();
   preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
-  FrameTroubles troubles(**operation, options.in);
+  FrameTroubles troubles((*operation)->model.array, (*operation)->from);
   Status status = Done{};
   if (Status solved = solve(**operation, phase, *tables, troubles, status); !solved) return solved;
   // What a device gave until it failed is worth having; a file that is wrong is to be mended.
   if (!status && !(*operation)->frames->is_live()) return status;
+  if (status && troubles.frames() == 0) {
+    const char* const when = options.settle_s > 0.0 ? " after settling" : "";
+    return failed(fmt::format("{}: no frame came{}: nothing is written", options.in, when));
+  }
   if (Status committed = tables->commit(); !committed) return committed;
+  if (status) status = troubles.verdict();
+  if (!status) return status;
   for (const std::string& line : troubles.describe()) say(line);
   return status;
 }
@@ -106,10 +115,9 @@ void add_run(Command& command) {
   command.option("--sigma", options->tables.sigmas, "Also write the standard deviation of every force [N] to this CSV");
   command.option("--contacts", options->tables.contacts,
                  "contacts.csv to write: what touches the array, where and how hard");
-  command.option("--settle", options->settle_s, "Leave out the first seconds, while the array warms up [s]")
-      .shows_default();
+  command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag("--tare", options->tare,
-               "Take the first second (at least 10 frames) for unloaded, as tare in 'dermis serve' does");
+               "Take the first second (at least 10 frames) as unloaded, like the tare of 'dermis serve'");
   command.flag("--follow-drift", options->follow_drift,
                "Follow the offsets of idle taxels slowly, as in 'dermis serve'");
   command.action([options] { return run(*options); });

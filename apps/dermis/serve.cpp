@@ -63,13 +63,14 @@ void add_serve(Command& command) {
   command.option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
   command.option("--model", options->place.model, "Its model, or the array.toml of an array to be calibrated");
   command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
-  command.option("--classes", options->place.classes, "Classes of 'dermis learn', from newtons: names what touches it");
-  command.option("--threats", options->place.threats, "threats.toml: forces that must not be exceeded");
+  command.option("--classes", options->place.classes,
+                 "Classes of 'dermis learn', from newtons: name what touches the array");
+  command.option("--threats", options->place.threats, "threats.toml: limits for the forces");
   command.option("--record", options->session.record, "Record from the beginning, .mcap");
   command.option("--host", options->session.server.host, "Address to serve at; all but loopback need a token")
       .shows_default();
-  command.option("--port", options->session.server.port, "Port; 0: any that is free").not_negative().shows_default();
-  command.option("--token", options->session.server.token, "Asked of every client");
+  command.option("--port", options->session.server.port, "Port; 0: any that is free").shows_default();
+  command.option("--token", options->session.server.token, "Every client must present it");
   command.action([options] { return serve_suit(*options); });
 }
 

@@ -10,9 +10,8 @@ namespace dermis::app {
 
 void ShapeOptions::add(Command& command) {
   const Option rows_option =
-      command.option("--rows", rows, "Rows of the frames: checked, and needed where the file does not tell them")
-          .not_negative();
-  rows_option.needs(command.option("--cols", cols, "Columns of the frames").not_negative().needs(rows_option));
+      command.option("--rows", rows, "Rows of the frames: checked, and needed if the file does not contain them");
+  rows_option.needs(command.option("--cols", cols, "Columns of the frames").needs(rows_option));
 }
 
 Result<std::optional<FrameShape>> ShapeOptions::shape() const {

@@ -2,13 +2,14 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "source_options.hpp"
 
+#include "lost_input.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 
 namespace dermis::app {
 
 sources::SourceOptions source_options(const ArrayDescription* array) {
-  return {.array = array, .stop = &stop_flag(), .notice = say};
+  return {.array = array, .stop = &stop_flag(), .notice = say, .loss = note_loss};
 }
 
 }  // namespace dermis::app

@@ -105,8 +105,7 @@ void add_top(Command& command) {
   command.option("--from", options->from, "URI of a device or of the simulator, or a recording").required();
   command.option("--model", options->model,
                  "Model file, or array.toml where readings are forces: shows newtons and contacts instead of counts");
-  command.option("--high", options->high,
-                 "End of the colour scale [N, or counts]; without it, one that has covered all so far");
+  command.option("--high", options->high, "End of the colour scale [N, or counts]; by default it grows when needed");
   command.action([options] { return top(*options); });
 }
 

@@ -136,14 +136,15 @@ Result<int> watch(const WatchOptions& options) {
 
 void add_watch(Command& command) {
   auto options = std::make_shared<WatchOptions>();
-  command.option("--threats", options->threats, "threats.toml: what must not be exceeded").required();
+  command.option("--threats", options->threats, "threats.toml: the limits").required();
   command.option("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
       .required();
   command.option("--in", options->in, "Raw counts: the URI of a device; a file is read to its end").required();
   command.flag("--json", options->json, "Write threats as JSON lines");
-  command.option("command", options->command,
-                 "After --: a program that runs while no threat stands; SIGTERM stops it. The exit status is 3 after a "
-                 "threat, 1 where frames fail or stay away for 1 s, else that of the program. No safety function");
+  command.option(
+      "command", options->command,
+      "After --: a program that runs until a threat begins; SIGTERM stops it. The exit status is 3 after a threat, "
+      "1 if frames fail or stop coming for 1 s, else that of the program. No safety function");
   command.action_with_exit_status([options] { return watch(*options); });
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 
@@ -15,6 +16,10 @@ struct Stamp {
   Nanos steady{};
   Nanos utc{};
 };
+
+[[nodiscard]] inline Stamp now() {
+  return {std::chrono::steady_clock::now().time_since_epoch(), std::chrono::system_clock::now().time_since_epoch()};
+}
 
 /// Remembers when the bytes of a stream came that no frame has used up yet.
 class ChunkStamps {

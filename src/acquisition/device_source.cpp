@@ -2,17 +2,15 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/acquisition/device_source.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include "acquisition/arrival_meter.hpp"
-#include "acquisition/chunk_stamps.hpp"
+#include "acquisition/device_connection.hpp"
+#include "acquisition/frame_clock.hpp"
+#include "acquisition/undecoded_bytes.hpp"
 #include "dermis/acquisition/byte_stream.hpp"
-#include "dermis/acquisition/clock_mapping.hpp"
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/acquisition/source_uri.hpp"
 
@@ -20,36 +18,12 @@ namespace dermis::acquisition {
 namespace {
 
 using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace): the literals only
+using State = DeviceConnection::State;
 
-constexpr Nanos kTick = 50ms;  // so often the stop flag is looked at
-constexpr Nanos kReopenPeriod = 100ms;
 constexpr Nanos kConnectTimeout = 5s;
 constexpr Nanos kPause = 100ms;  // then the decoder is told
 constexpr Nanos kSilence = 2s;   // then the user is told
 constexpr Nanos kRepeatRequest = 1s;
-constexpr Nanos kUndecodable = 5s;  // then the protocol is not the one that was named
-constexpr std::size_t kMaxSample = std::size_t{256} << 10U;
-constexpr std::size_t kUnknownFrameBytes = 4096;
-constexpr std::size_t kMostBytesPerTaxel = 6;  // "65535 "
-
-Nanos steady_now() {
-  return std::chrono::steady_clock::now().time_since_epoch();
-}
-
-Stamp now() {
-  return {steady_now(), std::chrono::system_clock::now().time_since_epoch()};
-}
-
-std::string seconds_text(Nanos time) {
-  std::string text = std::to_string(std::chrono::duration<double>(time).count());
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text + " s";
-}
-
-std::string shape_text(const FrameShape& shape) {
-  return std::to_string(shape.rows) + "x" + std::to_string(shape.cols);
-}
 
 class DeviceSource final : public FrameSource {
  public:
@@ -57,29 +31,18 @@ class DeviceSource final : public FrameSource {
                std::unique_ptr<Decoder> decoder)
       : uri_(std::move(uri)),
         options_(options),
-        stream_(std::move(stream)),
+        connection_(uri_, std::move(stream), [this](const std::string& text) { notify(text); }),
         decoder_(std::move(decoder)),
-        buffer_(Decoder::kMaxPush),
-        utc_minus_steady_([] {
-          const Stamp stamp = now();
-          return stamp.utc - stamp.steady;
-        }()) {}
+        buffer_(Decoder::kMaxPush) {}
 
   /// Opens the stream; a listener waits for its device in next().
   Status open() {
-    const Nanos begin = steady_now();
+    const Nanos begin = now().steady;
     for (;;) {
-      const Result<bool> opened = stream_->open(kTick);
-      if (!opened) return opened.error();
-      if (*opened) {
-        start();
-        return Done{};
-      }
-      state_ = State::waiting;
-      last_activity_ = begin;
-      if (uri_.transport == Transport::tcp_listen || is_stopped()) return Done{};
-      if (steady_now() - begin > kConnectTimeout) {
-        return failed(stream_->name() + " does not answer: check the address, and that the device is on");
+      if (Status tried = try_open(); !tried) return tried;
+      if (connection_.state() == State::open || uri_.transport == Transport::tcp_listen || is_stopped()) return Done{};
+      if (now().steady - begin > kConnectTimeout) {
+        return failed(connection_.name() + " does not answer: check the address, and that the device is on");
       }
     }
   }
@@ -88,13 +51,8 @@ class DeviceSource final : public FrameSource {
     for (;;) {
       if (decoder_->next(frame)) return deliver(frame);
       if (is_stopped()) return false;
-      Status step = Done{};
-      switch (state_) {
-        case State::open: step = receive(); break;
-        case State::waiting: step = wait_for_first(); break;
-        case State::away: step = wait_for_return(); break;
-        case State::over: return finished();
-      }
+      if (connection_.state() == State::over) return finished();
+      const Status step = connection_.state() == State::open ? receive() : try_open();
       if (!step) return step.error();
     }
   }
@@ -114,40 +72,36 @@ class DeviceSource final : public FrameSource {
     statistics.lost_frames = counts.lost_frames;
     statistics.damaged_frames = counts.damaged_frames;
     statistics.skipped_bytes = counts.skipped_bytes;
-    statistics.reconnections = reconnections_;
-    statistics.rate_hz = meter_.rate_hz();
-    statistics.jitter = meter_.jitter();
-    statistics.clock_drift_ppm = clock_.drift_ppm();
+    statistics.reconnections = connection_.reconnections();
+    clock_.describe(statistics);
     return statistics;
   }
 
  private:
-  enum class State {
-    waiting,  ///< Nobody has connected yet.
-    open,
-    away,  ///< Unplugged or closed: it may come back.
-    over,
-  };
-
   [[nodiscard]] bool is_stopped() const { return options_.stop != nullptr && options_.stop->load(); }
 
   [[nodiscard]] Result<bool> finished() const {
     const bool never_comes_back = uri_.transport == Transport::file || uri_.transport == Transport::standard_input;
     if (frames_ > 0 || !never_comes_back) return false;
-    if (position_ == 0) return bad_input("'" + uri_.text + "': there is not a single byte");
-    return undecodable();
+    if (clock_.received_bytes() == 0) return bad_input("'" + uri_.text + "': there is not a single byte");
+    return undecoded_.error(uri_);
   }
 
   void notify(const std::string& text) const {
     if (options_.notice) options_.notice(text);
   }
 
+  Status try_open() {
+    if (Status tried = connection_.try_open(); !tried) return tried;
+    if (connection_.state() == State::open) start();
+    return Done{};
+  }
+
   void start() {
-    state_ = State::open;
-    last_activity_ = steady_now();
+    last_activity_ = now().steady;
     silence_noticed_ = false;
     clock_.restart();
-    forget_sample();
+    undecoded_.clear();
     request();
   }
 
@@ -155,8 +109,8 @@ class DeviceSource final : public FrameSource {
     const std::string_view text = decoder_->request();
     if (text.empty()) return;
     request_.assign(text.begin(), text.end());
-    (void)stream_->write(request_, kTick);  // one that is lost is repeated
-    last_request_ = steady_now();
+    connection_.write(request_);
+    last_request_ = now().steady;
   }
 
   Result<bool> deliver(RawFrame& frame) {
@@ -165,17 +119,10 @@ class DeviceSource final : public FrameSource {
       return bad_input("'" + uri_.text + "': the device sends frames of " + shape_text(*is) + " taxels, expected are " +
                        shape_text(*options_.shape));
     }
-    const Stamp arrival = stamps_.of(decoder_->frame_end());
-    frame.acquisition.arrival_steady = arrival.steady;
-    frame.acquisition.arrival_utc = arrival.utc;
-    const std::optional<Nanos> device_time = frame.acquisition.device_time;
-    const Nanos taken = device_time ? clock_.map(*device_time, arrival.steady) : arrival.steady;
-    // Frames that came together, and a clock that was found to run slower, must not bring time to stand or go back.
-    last_taken_ = std::max(taken, last_taken_ + 1ns);
-    frame.time = uri_.rate_hz ? time_in_file() : last_taken_ + utc_minus_steady_;
-    meter_.add(arrival.steady);
-    if (frames_++ == 0) tell_what_was_recognised();
-    forget_sample();
+    clock_.stamp(decoder_->frame_end(), frame);
+    if (uri_.rate_hz) frame.time = time_in_file();
+    if (frames_++ == 0) tell_recognised_protocol();
+    undecoded_.clear();
     if (!decoder_->request().empty()) request();
     return true;
   }
@@ -184,7 +131,7 @@ class DeviceSource final : public FrameSource {
     return Nanos(std::llround(1e9 * static_cast<double>(frames_) / *uri_.rate_hz));
   }
 
-  void tell_what_was_recognised() const {
+  void tell_recognised_protocol() const {
     const std::string_view protocol = decoder_->recognised();
     if (!protocol.empty()) notify("these bytes are " + std::string(protocol) + ", " + shape_text(*decoder_->shape()));
   }
@@ -197,25 +144,24 @@ class DeviceSource final : public FrameSource {
 
   Status receive() {
     request_after_damage();
-    const ByteStream::Transferred read = stream_->read(buffer_, kTick);
+    const Result<std::size_t> read = connection_.read(buffer_, frames_ > 0);
     const Stamp stamp = now();
-    if (read.bytes > 0) decode(std::span(buffer_).first(read.bytes), stamp);
-    if (read.bytes == 0) wait_on(stamp.steady);
-    if (read.end != ByteStream::End::none) return end(read.end);
-    return check_decodable(stamp.steady);
+    if (read && *read > 0) decode(std::span(buffer_).first(*read), stamp);
+    if (!read || connection_.state() != State::open) {
+      decoder_->finish();
+      return read ? Status(Done{}) : Status(read.error());
+    }
+    if (*read == 0) wait_on(stamp.steady);
+    if (undecoded_.are_too_many(shape(), stamp.steady)) return undecoded_.error(uri_);
+    return Done{};
   }
 
   void decode(std::span<const std::uint8_t> bytes, const Stamp& stamp) {
-    position_ += bytes.size();
-    stamps_.add(position_, stamp);
+    clock_.add(bytes.size(), stamp);
     decoder_->push(bytes);
+    undecoded_.add(bytes, stamp.steady);
     last_activity_ = stamp.steady;
     pause_noticed_ = silence_noticed_ = false;
-    if (sample_.empty()) sample_begin_ = stamp.steady;
-    undecoded_bytes_ += bytes.size();
-    const std::size_t room = kMaxSample - sample_.size();
-    sample_.insert(sample_.end(), bytes.begin(),
-                   bytes.begin() + static_cast<std::ptrdiff_t>(std::min(room, bytes.size())));
   }
 
   void wait_on(Nanos at) {
@@ -227,136 +173,24 @@ class DeviceSource final : public FrameSource {
     if (silence_noticed_ || at - last_activity_ < kSilence) return;
     silence_noticed_ = true;
     const bool is_serial = uri_.transport == Transport::serial;
-    notify("no bytes from " + stream_->name() + " for 2 s: is the device powered and sending" +
+    notify("no bytes from " + connection_.name() + " for 2 s: is the device powered and sending" +
            (is_serial ? ", and is baud=" + std::to_string(uri_.baud) + " its baud?" : "?"));
-  }
-
-  // ------------------------------------------------------------------------------------------- undecodable bytes
-
-  void forget_sample() {
-    sample_.clear();
-    undecoded_bytes_ = 0;
-  }
-
-  Status check_decodable(Nanos at) const {
-    const std::optional<FrameShape> known = shape();
-    const std::size_t frame = known ? known->taxel_count() * kMostBytesPerTaxel : kUnknownFrameBytes;
-    const std::size_t enough = std::min(4 * frame, kMaxSample);
-    if (undecoded_bytes_ < enough || at - sample_begin_ < kUndecodable) return Done{};
-    return undecodable();
-  }
-
-  [[nodiscard]] Error undecodable() const {
-    const ProtocolOptions& protocol = uri_.protocol;
-    std::string text = "'" + uri_.text + "': these bytes are not " + protocol.name;
-    if (protocol.name == "auto") text = "'" + uri_.text + "': these bytes are of no known protocol";
-    if (protocol.shape) text += " " + shape_text(*protocol.shape);
-    const std::string looks_like = recognise_protocol(sample_);
-    if (looks_like.empty()) {
-      return bad_input(text + (uri_.transport == Transport::serial
-                                   ? ": check protocol= and baud=" + std::to_string(uri_.baud)
-                                   : ": check protocol="));
-    }
-    if (looks_like != protocol.name)
-      return bad_input(text + "; they look like " + looks_like + ": protocol=" + looks_like);
-    return bad_input(text + "; they look like " + looks_like + " of another size: check rows and cols");
-  }
-
-  // ------------------------------------------------------------------------------------------- ends and returns
-
-  Status end(ByteStream::End how) {
-    decoder_->finish();
-    const bool may_return = uri_.transport == Transport::serial || uri_.transport == Transport::tcp ||
-                            uri_.transport == Transport::tcp_listen;
-    if (!may_return) {
-      state_ = State::over;
-      if (how == ByteStream::End::lost) return failed("cannot read " + stream_->name());
-      return Done{};
-    }
-    if (uri_.transport == Transport::tcp_listen && frames_ == 0) {  // somebody, but not the device
-      state_ = State::waiting;
-      last_activity_ = steady_now();
-      return Done{};
-    }
-    how_it_ended_ = how;
-    state_ = State::away;
-    left_at_ = steady_now();
-    if (uri_.reconnect > Nanos{}) {
-      notify(stream_->name() + what_happened() + ": waiting up to " + seconds_text(uri_.reconnect) +
-             " for it to come back");
-    }
-    return Done{};
-  }
-
-  [[nodiscard]] std::string what_happened() const {
-    if (uri_.transport == Transport::serial) return " is unplugged";
-    return how_it_ended_ == ByteStream::End::closed ? " has closed the connection" : " is cut off";
-  }
-
-  Status wait_for_first() {
-    const Result<bool> opened = stream_->open(kTick);
-    if (!opened) return opened.error();
-    if (*opened) {
-      start();
-      return Done{};
-    }
-    if (!silence_noticed_ && steady_now() - last_activity_ >= kSilence) {
-      silence_noticed_ = true;
-      notify("listening on " + stream_->name() + ": no device has connected yet");
-    }
-    return Done{};
-  }
-
-  Status wait_for_return() {
-    if (steady_now() - left_at_ >= uri_.reconnect) return give_up();
-    std::this_thread::sleep_for(kReopenPeriod / 2);
-    if (is_stopped()) return Done{};
-    const Result<bool> opened = stream_->open(kTick);
-    if (!opened || !*opened) return Done{};
-    ++reconnections_;
-    notify(stream_->name() + " is back");
-    start();
-    return Done{};
-  }
-
-  Status give_up() {
-    state_ = State::over;
-    if (how_it_ended_ == ByteStream::End::closed) return Done{};
-    const std::string place = stream_->name() + what_happened();
-    if (uri_.reconnect == Nanos{}) return failed(place + ": reconnect_s=10 would wait for it");
-    return failed(place + " and did not come back within " + seconds_text(uri_.reconnect) +
-                  ": check cable and power, and begin again");
   }
 
   SourceUri uri_;
   DeviceOptions options_;
-  std::unique_ptr<ByteStream> stream_;
+  DeviceConnection connection_;
   std::unique_ptr<Decoder> decoder_;
-  State state_ = State::open;
-
   std::vector<std::uint8_t> buffer_;
-  std::uint64_t position_ = 0;  // bytes received
-  ChunkStamps stamps_;
-  ClockMapping clock_;
-  ArrivalMeter meter_;
-  Nanos utc_minus_steady_;
-  Nanos last_taken_{};  // host's steady clock
-  std::uint64_t frames_ = 0;
-  std::uint64_t reconnections_ = 0;
-  std::uint64_t damaged_frames_ = 0;  // when last asked for
-
-  Nanos last_activity_{};
   std::vector<std::uint8_t> request_;
+  FrameClock clock_;
+  UndecodedBytes undecoded_;
+  std::uint64_t frames_ = 0;
+  std::uint64_t damaged_frames_ = 0;  // when last asked for
+  Nanos last_activity_{};
   Nanos last_request_{};
   bool pause_noticed_ = false;  // since the last byte
   bool silence_noticed_ = false;
-
-  std::vector<std::uint8_t> sample_;  // the first bytes since the last frame
-  Nanos sample_begin_{};
-  std::uint64_t undecoded_bytes_ = 0;
-
-  ByteStream::End how_it_ended_ = ByteStream::End::none;
-  Nanos left_at_{};
 };
 
 }  // namespace

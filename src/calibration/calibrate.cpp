@@ -7,8 +7,10 @@
 
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <utility>
 
+#include "calibration/memory_training.hpp"
 #include "dermis/calibration/baselines.hpp"
 
 namespace dermis::calibration {
@@ -42,6 +44,7 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
   facts["temperature"] = training.uses_temperature
                              ? fmt::format("{:.1f} to {:.1f} C", training.lowest_celsius, training.highest_celsius)
                              : "not an input (less than 3 C apart, or missing in many frames)";
+  if (!report.memory.empty()) facts["memory"] = report.memory;
   if (!report.remarks.empty()) facts["remarks"] = fmt::format("{}", fmt::join(report.remarks, "; "));
   if (!report.circuit.empty()) facts["circuit"] = fmt::format("{}", fmt::join(report.circuit, "; "));
   return facts;
@@ -57,7 +60,7 @@ Result<Calibration> calibrate(const ArrayDescription& array, std::span<const Raw
       timed(circuit, "circuit", [&] { return build_sample_database(array, frames, loads, settle_time); });
   if (!database) return database.error();
   if (progress) progress("circuit", 1.0);
-  Result<Calibration> calibration = calibrate(*database, progress);
+  Result<Calibration> calibration = calibrate(*database, frames, progress);
   if (calibration) {
     std::vector<StageTime>& stages = calibration->report.stages;
     stages.insert(stages.begin(), circuit.stages.begin(), circuit.stages.end());
@@ -66,6 +69,11 @@ Result<Calibration> calibrate(const ArrayDescription& array, std::span<const Raw
 }
 
 Result<Calibration> calibrate(const SampleDatabase& database, const Progress& progress) {
+  return calibrate(database, {}, progress);
+}
+
+Result<Calibration> calibrate(const SampleDatabase& database, std::span<const RawFrame> frames,
+                              const Progress& progress) {
   std::mutex progress_mutex;
   const auto tell_networks = [&](double share) {
     if (!progress) return;
@@ -78,6 +86,14 @@ Result<Calibration> calibrate(const SampleDatabase& database, const Progress& pr
   Result<ForceTraining> training =
       timed(report, "networks", [&] { return train_force_networks(database, tell_networks); });
   if (!training) return with_remarks(training.error(), database.remarks);
+  std::optional<LearnedMemory> memory;
+  if (is_continuous(frames))
+    memory = timed(report, "memory", [&] { return learn_memory(database, frames, *training); });
+  if (memory) {
+    calibration.model.memory = memory->law;
+    report.memory = describe(*memory);
+    training = std::move(memory->training);
+  }
   calibration.model.baselines = timed(report, "baselines", [&] { return make_baselines(database); });
 
   report.frames = database.samples.size();
@@ -86,8 +102,9 @@ Result<Calibration> calibrate(const SampleDatabase& database, const Progress& pr
   report.remarks = database.remarks;
   calibration.model.array = database.array;
   calibration.model.networks = training->networks;
-  Result<UncertaintyReport> uncertainty =
-      timed(report, "uncertainty", [&] { return fit_uncertainty(database, *training, calibration.model); });
+  Result<UncertaintyReport> uncertainty = timed(report, "uncertainty", [&] {
+    return fit_uncertainty(memory ? memory->felt : database, *training, calibration.model);
+  });
   if (!uncertainty) return uncertainty.error();
   report.uncertainty = *uncertainty;
   report.training = std::move(training->report);

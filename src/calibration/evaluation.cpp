@@ -15,6 +15,7 @@
 #include "calibration/judgement.hpp"
 #include "calibration/labels.hpp"
 #include "dermis/calibration/sample_database.hpp"
+#include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
@@ -64,8 +65,10 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   std::size_t labelled = 0;
   for (std::size_t frame = 0; frame < frames.size(); ++frame) labelled += loads_of[frame].empty() ? 0 : 1;
   BoundCollector bound(model, labelled);
+  pipeline::FrameTroubles troubles(model.array, "");
   for (std::size_t frame = 0; frame < frames.size(); ++frame) {
     const bool accepted = row.run(frames[frame]);
+    troubles.add(frames[frame], row.force(), row.pipeline());
     if (loads_of[frame].empty()) continue;
     if (!accepted) {
       ++evaluation.frames_rejected;
@@ -78,7 +81,11 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
     examples.offer(frame, truth, row);
     bound.offer(truth, row);
   }
-  if (evaluation.frames == 0) return bad_input("no labelled frame fits the model's array");
+  evaluation.most_have_forces = troubles.verdict();
+  if (evaluation.frames == 0) {
+    if (!evaluation.most_have_forces) return evaluation.most_have_forces.error();
+    return bad_input("no labelled frame fits the model's array");
+  }
   for (std::size_t k = 0; k < row.names().size(); ++k) {
     evaluation.estimators.push_back(judgement.result(k, row.names()[k]));
   }

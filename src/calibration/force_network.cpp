@@ -59,8 +59,10 @@ void prior_residuals(const ForceNetwork& network, double scale, std::span<double
   const network::PerceptronShape& shape = network.shape;
   for (std::size_t k = 0; k < shape.parameter_count(); ++k) {
     const bool is_level = k == shape.output_bias();
-    const double centre = k == shape.direct_weight(0) ? 1.0 : 0.0;
-    const bool is_held = power == PowerPrior::held && k >= shape.direct_weight(0) && k < shape.direct_weight(2);
+    const bool is_exponent = k == shape.direct_weight(0);
+    const bool is_bend = k == shape.direct_weight(1);
+    const double centre = is_exponent ? 1.0 : 0.0;
+    const bool is_held = (is_exponent && power == PowerPrior::held) || (is_bend && power != PowerPrior::free);
     const double of_direct = is_held ? kHeldDeviation : kDirectDeviation;
     const double deviation = k >= shape.direct_weight(0) ? of_direct : kHiddenDeviation;
     const double weight = is_level ? 0.0 : scale / deviation;

@@ -40,12 +40,16 @@ struct ForceNetwork {
 [[nodiscard]] std::vector<double> random_start(const network::PerceptronShape& shape, double newtons_at_reference,
                                                Random& random);
 
-/// How sure the power of conductance is before the data say: hardly at all, or held at 1 where they cannot tell it.
-enum class PowerPrior { free, held };
+/// What the data can tell of the power law of conductance.
+enum class PowerPrior {
+  free,      ///< All of it.
+  straight,  ///< Its exponent, but not how that changes with the load: forces on two levels.
+  held,      ///< Nothing: the exponent is 1.
+};
 
 /// A Gaussian prior on the parameters, as residuals that are appended to those of the data: hidden weights are about 0,
-/// the power of conductance about 1. `scale`: standard deviation of a data residual.
-/// Fills residuals [parameter_count] and, where it is not empty, jacobian [parameter_count, columns].
+/// the power of conductance about 1, and what `power` calls unknown hardly leaves that. `scale`: standard deviation of
+/// a data residual. Fills residuals [parameter_count] and, where it is not empty, jacobian [parameter_count, columns].
 void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals, std::span<double> jacobian,
                      std::size_t columns, PowerPrior power = PowerPrior::free) noexcept;
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -30,7 +31,6 @@ constexpr std::size_t kLeastPoints = 8;  // for a network of its own
 constexpr std::size_t kMostPoints =
     4000;  // more would lower the error of its two dozen numbers by less than 1 % of noise
 constexpr std::size_t kFirstNetworks = 16;  // trained from random starts, and the others from these
-constexpr std::size_t kLeastForceLevels = 3;
 constexpr double kLeastTemperatureShare = 0.5;
 constexpr float kUnknownRelativeSigma = 0.01F;  // until fit_uncertainty()
 constexpr double kDetectable = 3.0;             // in standard deviations of the unloaded reading
@@ -61,12 +61,13 @@ std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size
   const double unloaded_sigma = unloaded_sigma_siemens(database, taxel);
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
     const Sample& sample = database.samples[k];
-    const double newtons = sample.known_newtons[taxel];
-    if (!(newtons > 0.0)) continue;
+    const double load_newtons = sample.known_newtons[taxel];
+    const double share = sample.felt_share.empty() ? 1.0 : static_cast<double>(sample.felt_share[taxel]);
+    if (!(load_newtons > 0.0) || std::isnan(share)) continue;
     double noise = evidence.unloaded.noise_siemens[taxel];
     if (unloaded_sigma > 0.0) noise *= static_cast<double>(sample.sigma_siemens[taxel]) / unloaded_sigma;
     points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.temperatures), noise,
-                      normalised_temperature(sample, evidence.temperatures), newtons, k});
+                      normalised_temperature(sample, evidence.temperatures), share * load_newtons, load_newtons, k});
   }
   number_presses(points);
   return points;
@@ -112,25 +113,39 @@ Evidence gather_evidence(const SampleDatabase& database) {
   return evidence;
 }
 
+/// The lightest and the heaviest of two loads were each put on more than once: one press may be an accident.
+bool repeats_two_loads(const std::vector<TaxelPoint>& points, double lightest_newtons, double heaviest_newtons) {
+  std::set<std::size_t> light;
+  std::set<std::size_t> heavy;
+  for (const TaxelPoint& point : points) {
+    const bool is_light = point.load_newtons / lightest_newtons < heaviest_newtons / point.load_newtons;
+    (is_light ? light : heavy).insert(point.press);
+  }
+  return std::min(light.size(), heavy.size()) > 1;
+}
+
 bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_temperature) {
   if (points.size() < kLeastPoints) return false;
-  std::vector<double> newtons;
   double coldest = 1.0;
   double hottest = -1.0;
   for (const TaxelPoint& point : points) {
-    newtons.push_back(point.newtons);
     coldest = std::min(coldest, point.temperature);
     hottest = std::max(hottest, point.temperature);
   }
-  std::sort(newtons.begin(), newtons.end());
-  return count_levels(newtons) >= kLeastForceLevels && newtons.back() >= kLeastForceRange * newtons.front() &&
+  const std::vector<double> newtons = rising_loads(points);
+  const bool tells_a_law =
+      count_levels(newtons) >= kLeastLevelsOfBend || repeats_two_loads(points, newtons.front(), newtons.back());
+  return tells_a_law && newtons.back() >= kLeastForceRange * newtons.front() &&
          (!uses_temperature || hottest - coldest >= 2.0 * kLeastTemperatureShare);
 }
 
-/// Hidden units that the given number of points can hold.
-std::size_t hidden_units(std::size_t points, bool uses_temperature) {
+/// Hidden units that the points can hold. Each bends the law between forces: many samples under few forces tell nothing
+/// of that, and where the material remembers, their scatter would make the law a stair.
+std::size_t hidden_units(const std::vector<TaxelPoint>& points, bool uses_temperature) {
   const std::size_t parameters_of_unit = force_shape(uses_temperature, 1).inputs + 2;
-  return std::min(points / (kPointsPerParameterOfUnit * parameters_of_unit), kMostHiddenUnits);
+  const std::size_t levels = count_levels(rising_loads(points));
+  return std::min({points.size() / (kPointsPerParameterOfUnit * parameters_of_unit),
+                   std::max(levels, kLeastLevelsOfBend) - kLeastLevelsOfBend, kMostHiddenUnits});
 }
 
 fusion::ForceNetworks make_networks(const network::PerceptronShape& shape, const Evidence& evidence) {
@@ -252,7 +267,7 @@ std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& di
   const auto train = [&](std::size_t k, std::span<const ForceNetwork> others) {
     const std::vector<TaxelPoint>& points = evidence.points[division.own[k]];
     const bool uses_temperature = evidence.temperatures.is_input;
-    const auto shape = force_shape(uses_temperature, hidden_units(points.size(), uses_temperature));
+    const auto shape = force_shape(uses_temperature, hidden_units(points, uses_temperature));
     std::optional<ForceNetwork> like = train_taxel_like(others, shape, points);
     networks[k] = like ? *std::move(like) : train_taxel(shape, points, division.own[k]);
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(division.own.size()));
@@ -368,8 +383,11 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   training.tested_own = tested_presses(division.own, trained.own, evidence);
   training.tested_shared = std::move(trained.shared.tested);
   training.tested_unpressed = std::move(trained.shared.tested_unpressed);
-  const auto choose = report.is_one_load ? take_lines : prefer_tables;
-  choose(evidence.points, evidence.temperatures, training);
+  if (report.is_one_load) {
+    take_lines(evidence.points, evidence.temperatures, training);
+  } else {
+    prefer_tables(database, evidence.points, evidence.temperatures, training);
+  }
   report.choice = describe(report, trained.shared.has_gains);
   return training;
 }

@@ -45,6 +45,18 @@ std::string describe_temperature(const TrainingReport& training, const GuidedPre
   return fmt::format(" It holds for about {:.0f} C, and other temperatures are not corrected.", sum / count);
 }
 
+std::string name_of(std::optional<std::size_t> taxel, const ArrayDescription& array) {
+  return taxel ? array.taxel_name(*taxel) : "another taxel";
+}
+
+/// Of two taxels that are asked for, one is pressed, and another one in the place of the other.
+std::string describe_misplaced(const GuideState& state, const ArrayDescription& array) {
+  const bool is_first_missing = state.missing_taxel == state.taxel;
+  return fmt::format("That is {}: put {} on {} instead. {} is right.", name_of(state.pressed_taxel, array),
+                     describe_weight(state.weight_n), name_of(state.missing_taxel, array),
+                     name_of(is_first_missing ? state.together_with : state.taxel, array));
+}
+
 }  // namespace
 
 std::string describe_weight(double newtons) {
@@ -59,22 +71,25 @@ std::string describe_quiet(bool is_disturbed) {
 }
 
 std::string describe_press(const GuideState& state, const ArrayDescription& array) {
-  std::string here = array.taxel_name(state.taxel);
-  if (state.together_with) here += " and as much on " + array.taxel_name(*state.together_with);
-  const std::string there = state.pressed_taxel ? array.taxel_name(*state.pressed_taxel) : "another taxel";
+  const bool is_pair = state.together_with.has_value();
+  const std::string first = array.taxel_name(state.taxel);
+  const std::string second = name_of(state.together_with, array);
+  const std::string here = is_pair ? first + " and " + second : first;
+  const std::string there = name_of(state.pressed_taxel, array);
   const std::string weight = describe_weight(state.weight_n);
+  const std::string press = fmt::format("{} on {}", weight, is_pair ? first + " and as much on " + second : first);
   switch (state.hint) {
     case GuideHint::none:
-    case GuideHint::press:
-      return fmt::format("{}Put {} on {}.", state.together_with ? "The circuit is not certain yet. " : "", weight,
-                         here);
-    case GuideHint::hold: return "Hold still.";
-    case GuideHint::release:
-      return state.together_with ? "Done. Take both off." : fmt::format("{} is done. Take it off.", here);
-    case GuideHint::other_taxel: return fmt::format("That is {}: put {} on {}.", there, weight, here);
-    case GuideHint::unsteady: return "Not steady yet: hold still.";
-    case GuideHint::too_short: return fmt::format("Too short: put {} on {} again and wait.", weight, here);
+    case GuideHint::press: return (is_pair ? "The circuit is not certain yet. Put " : "Put ") + press + ".";
+    case GuideHint::hold: return is_pair ? "Hold both still." : "Hold still.";
+    case GuideHint::release: return here + (is_pair ? " are done. Take both off." : " is done. Take it off.");
+    case GuideHint::other_taxel:
+      return state.missing_taxel ? describe_misplaced(state, array) : fmt::format("That is {}: put {}.", there, press);
+    case GuideHint::unsteady: return is_pair ? "Not steady yet: hold both still." : "Not steady yet: hold still.";
+    case GuideHint::too_short: return fmt::format("Too short: put {} again and wait.", press);
     case GuideHint::several: return fmt::format("{} is pressed, too: press {} alone.", there, here);
+    case GuideHint::one_of_two:
+      return fmt::format("Only {} is pressed: put {} on {}, too.", there, weight, name_of(state.missing_taxel, array));
   }
   return {};
 }
@@ -96,7 +111,8 @@ std::string describe_result(const Calibration& calibration, const GuideState& st
     text += fmt::format(" The circuit is not certain: {}, add these frames to the saved ones and calibrate again.",
                         describe(telling, calibration.model.array));
   }
-  text += fmt::format(" Forces above {:g} N are not extrapolated.", training.heaviest_newtons);
+  text += fmt::format(" Forces above {:g} N are extrapolated, less and less surely, to eight times as much.",
+                      training.heaviest_newtons);
   return text + describe_temperature(training, presses);
 }
 

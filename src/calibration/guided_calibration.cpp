@@ -54,7 +54,6 @@ class GuidedCalibration::Implementation {
   void follow_press(const RawFrame& raw, double seconds);
   void keep_press();
   void ask_for_next();
-  void expect_press();
   void start_fit(bool is_last);
   void start_last_fit();
   void fail(std::string why);
@@ -100,7 +99,7 @@ void GuidedCalibration::Implementation::wait_for_quiet(const RawFrame& raw) {
   if (!quiet_.is_done()) return;
   unloaded_ = std::make_shared<const std::vector<RawFrame>>(quiet_.frames());
   recogniser_.emplace(TouchSense(quiet_.mean(), ratio_per_count(array_)), plan_.hold_time);
-  expect_press();
+  recogniser_->expect(presses_.taxels());
   stage_ = GuideStage::pressing;
 }
 
@@ -120,13 +119,7 @@ void GuidedCalibration::Implementation::keep_press() {
 
 void GuidedCalibration::Implementation::ask_for_next() {
   if (!presses_.advance()) return start_last_fit();
-  expect_press();
-}
-
-void GuidedCalibration::Implementation::expect_press() {
-  std::optional<TaxelsOfPress> last;
-  if (!presses_.kept().empty()) last = {presses_.kept().back()->taxel, presses_.kept().back()->together_with};
-  recogniser_->expect({presses_.taxel(), presses_.together_with()}, last);
+  recogniser_->expect(presses_.taxels());
 }
 
 void GuidedCalibration::Implementation::start_last_fit() {
@@ -178,7 +171,7 @@ Status GuidedCalibration::Implementation::repeat() {
   presses_.repeat();
   fit_.presses = std::min(fit_.presses, presses_.kept().size());
   stage_ = GuideStage::pressing;
-  expect_press();
+  recogniser_->expect(presses_.taxels());
   return Done{};
 }
 
@@ -200,12 +193,16 @@ GuideState GuidedCalibration::Implementation::state() const {
   state.together_with = presses_.together_with();
   if (recogniser_) {
     state.hint = recogniser_->hint();
-    state.reading = recogniser_->reading();
+    state.reading = recogniser_->reading(0);
+    if (state.together_with) state.together_reading = recogniser_->reading(1);
     state.hold_share = recogniser_->share(*last_time_);
   } else if (last_time_) {
     state.hold_share = quiet_.share(*last_time_);
   }
-  if (stage_ == GuideStage::pressing) state.pressed_taxel = recogniser_->pressed_taxel();
+  if (stage_ == GuideStage::pressing) {
+    state.pressed_taxel = recogniser_->pressed_taxel();
+    state.missing_taxel = recogniser_->missing_taxel();
+  }
   state.presses_done = presses_.kept().size();
   state.presses_total = presses_.count();
   state.median_relative_error = fit_.error;

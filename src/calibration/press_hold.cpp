@@ -18,25 +18,33 @@ void PressHold::clear() {
   *this = PressHold(part_length_ * kParts);
 }
 
-void PressHold::feed(const RawFrame& raw, std::span<const double> ratio, double excess, double noise) {
-  if (has_begun() && raw.time - current_.mean.begin() >= part_length_) close_part(noise);
+void PressHold::feed(const RawFrame& raw, std::span<const double> ratio, std::span<const Reading> pressed) {
+  if (has_begun() && raw.time - current_.mean.begin() >= part_length_) close_part(pressed);
   current_.mean.add(raw, ratio);
-  current_.excess += excess;
+  current_.excess.resize(pressed.size());
+  for (std::size_t k = 0; k < pressed.size(); ++k) current_.excess[k] += pressed[k].excess;
 }
 
-void PressHold::close_part(double noise) {
+void PressHold::close_part(std::span<const Reading> pressed) {
   Part part = std::exchange(current_, {});
   if (!is_settled_) {
     is_settled_ = true;
     return;
   }
   if (!parts_.empty()) {
-    const double scatter = kSteadySigmas * noise / std::sqrt(static_cast<double>(part.mean.count()));
-    const double moved = std::abs(part.mean_excess() - mean_excess());
-    was_unsteady_ = moved > kSteadyShare * mean_excess() + scatter;
+    was_unsteady_ = has_moved(part, pressed);
     if (was_unsteady_) return parts_.clear();
   }
   parts_.push_back(std::move(part));
+}
+
+bool PressHold::has_moved(const Part& part, std::span<const Reading> pressed) const {
+  for (std::size_t k = 0; k < pressed.size(); ++k) {
+    const double scatter = kSteadySigmas * pressed[k].noise / std::sqrt(static_cast<double>(part.mean.count()));
+    const double moved = std::abs(part.mean_excess(k) - mean_excess(k));
+    if (moved > kSteadyShare * mean_excess(k) + scatter) return true;
+  }
+  return false;
 }
 
 double PressHold::share(Nanos now) const noexcept {
@@ -47,10 +55,10 @@ double PressHold::share(Nanos now) const noexcept {
   return std::min(1.0, done / static_cast<double>(kParts + 1));
 }
 
-double PressHold::mean_excess() const noexcept {
-  if (parts_.empty()) return has_begun() ? current_.mean_excess() : 0.0;
+double PressHold::mean_excess(std::size_t pressed) const noexcept {
+  if (parts_.empty()) return has_begun() ? current_.mean_excess(pressed) : 0.0;
   double sum = 0.0;
-  for (const Part& part : parts_) sum += part.mean_excess();
+  for (const Part& part : parts_) sum += part.mean_excess(pressed);
   return sum / static_cast<double>(parts_.size());
 }
 

@@ -15,24 +15,16 @@
 
 namespace dermis::calibration {
 
-/// What a press is on: one taxel, or two at the same time.
-struct TaxelsOfPress {
-  std::size_t taxel = 0;
-  std::optional<std::size_t> together_with = {};
-
-  [[nodiscard]] bool has(std::size_t other) const { return other == taxel || other == together_with; }
-};
-
-/// Recognises in the frames of an array that the taxel which is asked for is pressed, held and released, and hints at
-/// what the person does instead.
+/// Recognises in the frames of an array that the taxels which are asked for are pressed, held and released, and hints
+/// at what the person does instead.
 class PressRecogniser {
  public:
   enum class Event : std::uint8_t { none, held, released };
 
   PressRecogniser(TouchSense sense, Nanos hold_time);
 
-  /// A press is asked for. The material may still show the `last` one for a while.
-  void expect(const TaxelsOfPress& asked, const std::optional<TaxelsOfPress>& last);
+  /// A press is asked for: on one taxel, or on two at the same time.
+  void expect(std::vector<std::size_t> taxels);
   /// Nothing is asked for.
   void rest();
 
@@ -43,30 +35,42 @@ class PressRecogniser {
   std::vector<RawFrame> keep_hold(std::size_t count);
 
   [[nodiscard]] GuideHint hint() const noexcept { return hint_; }
-  /// Of the taxel that is asked for (of two, the first), over that of the unloaded taxel.
-  [[nodiscard]] double reading() const noexcept { return reading_; }
+  /// Of one of the taxels that are asked for, over that of the unloaded taxel.
+  [[nodiscard]] double reading(std::size_t asked) const;
   /// Of the hold that is done.
   [[nodiscard]] double share(Nanos now) const noexcept;
   /// As GuideState::pressed_taxel.
-  [[nodiscard]] std::optional<std::size_t> pressed_taxel() const noexcept;
+  [[nodiscard]] std::optional<std::size_t> pressed_taxel() const;
+  /// As GuideState::missing_taxel.
+  [[nodiscard]] std::optional<std::size_t> missing_taxel() const;
 
  private:
-  [[nodiscard]] bool is_foreign(std::optional<std::size_t> taxel) const;
-  [[nodiscard]] bool is_pressed_as_asked(std::span<const double> ratio) const;
+  /// What the array feels.
+  struct Touch {
+    std::optional<std::size_t> strongest;
+    std::optional<std::size_t> foreign;  // the strongest one that is not asked for, if it is no mere crosstalk
+    std::optional<std::size_t> missing;  // that is asked for and is not felt
+    std::size_t felt = 0;                // of those that are asked for
+  };
+  [[nodiscard]] Touch feel(std::span<const double> ratio) const;
+  [[nodiscard]] bool is_asked(std::size_t taxel) const;
+  [[nodiscard]] bool is_as_asked() const;
+  [[nodiscard]] bool is_lost(std::size_t asked) const;
+  [[nodiscard]] bool is_released() const;
+  [[nodiscard]] GuideHint mistake() const;
   void wait_for_press(const RawFrame& raw, std::span<const double> ratio, double seconds);
   void follow_hold(const RawFrame& raw, std::span<const double> ratio);
-  [[nodiscard]] bool is_released(std::span<const double> ratio, std::size_t taxel) const;
-  [[nodiscard]] bool is_memory(std::span<const double> ratio) const;
+  Event wait_for_release(std::span<const double> ratio);
 
   TouchSense sense_;
   PressHold hold_;
   GuideHint hint_ = GuideHint::none;
-  TaxelsOfPress asked_;
-  std::optional<TaxelsOfPress> last_;
-  double kept_excess_ = 0.0;  // of the last hold that was kept
+  std::vector<std::size_t> asked_;
+  std::vector<PressHold::Reading> readings_;  // of those that are asked for
+  std::vector<double> relative_;              // the same, over the unloaded taxel
+  std::vector<double> kept_excess_;           // the same, of the last hold that was kept
   Touch touch_;
-  double reading_ = 1.0;
-  double other_seconds_ = 0.0;  // that another taxel is pressed
+  double wrong_seconds_ = 0.0;  // that something else is pressed
 };
 
 }  // namespace dermis::calibration

@@ -25,6 +25,10 @@ std::optional<std::size_t> PressSequence::together_with() const {
   return pair() ? std::optional(pair()->second) : std::nullopt;
 }
 
+std::vector<std::size_t> PressSequence::taxels() const {
+  return pair() ? std::vector{pair()->first, pair()->second} : std::vector{taxel()};
+}
+
 void PressSequence::ask_for(std::vector<PressPair> pairs) {
   pairs_ = std::move(pairs);
   steps_.resize(plan_.press_count() + pairs_.size(), Step::open);

@@ -25,6 +25,8 @@ class PressSequence {
   [[nodiscard]] double weight_n() const { return pair() ? pair()->newtons : plan_.weight_of(step_); }
   /// Another taxel, with as much.
   [[nodiscard]] std::optional<std::size_t> together_with() const;
+  /// The one or both.
+  [[nodiscard]] std::vector<std::size_t> taxels() const;
 
   /// Asks for these, too, after the others.
   void ask_for(std::vector<PressPair> pairs);

@@ -55,8 +55,8 @@ class Selection {
       if (destination != preprocessing::Destination::sample_database) continue;
       ConditionedFrame conditioned;
       conditioner_.process(frames[next_], conditioned);
+      missing_.add(frames[next_], conditioned);
       if (conditioner_.rejection() == preprocessing::Rejection::none) {
-        missing_.add(conditioned);
         batch.push_back({next_, std::move(conditioned)});
       } else if (database.frames_rejected++ == 0) {
         database.first_rejection =
@@ -127,12 +127,13 @@ void reject_without_temperature(SampleDatabase& database) {
   reject_if(database, lacks_temperature, "no temperature, where most frames have one");
 }
 
-Status check_rejected(const SampleDatabase& database) {
+Status check_rejected(const SampleDatabase& database, const preprocessing::MissingReadings& missing) {
   const auto rejected = static_cast<double>(database.frames_rejected);
   const double all = rejected + static_cast<double>(database.samples.size());
   if (rejected > kMaxRejectedShare * all) {
-    return bad_input(
-        fmt::format("{} of {} labelled frames cannot be used, the first: {}", rejected, all, database.first_rejection));
+    const bool is_outside = 2 * missing.frames_outside() > database.frames_rejected;
+    return bad_input(fmt::format("{} of {} labelled frames cannot be used: {}", rejected, all,
+                                 is_outside ? *missing.describe_range() : "the first is " + database.first_rejection));
   }
   if (database.samples.empty()) return bad_input("no labelled frame is left after settling");
   if (std::none_of(database.samples.begin(), database.samples.end(), [](const Sample& s) { return s.unloaded; })) {
@@ -175,7 +176,8 @@ Status check_missing(const SampleDatabase& database, const preprocessing::Missin
   for (const std::size_t taxel : database.array.absent) samples[taxel] = 0;
   const auto of_median = static_cast<double>(upper_median(std::move(samples)));
   if (of_median <= 1.0 + kMostMissingShare * static_cast<double>(database.samples.size())) return Done{};
-  return bad_input("labelled frames have " + missing.describe() + ": check adc_bits");
+  return bad_input("labelled frames have " + missing.describe() + ": " +
+                   missing.describe_range().value_or("check adc_bits"));
 }
 
 std::optional<std::string> remark_on_choice(const LoadsOfFrames& loads_of, const std::vector<bool>& is_chosen) {
@@ -233,7 +235,7 @@ Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<co
   }
   reject_unsolved(database);
   reject_without_temperature(database);
-  if (Status checked = check_rejected(database); !checked) return checked.error();
+  if (Status checked = check_rejected(database, selection.missing()); !checked) return checked.error();
   if (Status checked = check_missing(database, selection.missing()); !checked) return checked.error();
   return database;
 }

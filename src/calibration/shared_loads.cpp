@@ -3,6 +3,7 @@
 #include "calibration/shared_loads.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace dermis::calibration {
 namespace {
@@ -15,7 +16,7 @@ SharedLoads::SharedLoads(const SampleDatabase& database, const SampleTemperature
                          const UnloadedFit& unloaded, const std::vector<bool>& dead)
     : database_(database), temperatures_(temperatures), unloaded_(unloaded), dead_(dead) {
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
-    for (const TotalForce& total : database.samples[k].totals) add(k, total.taxels, total.newtons);
+    for (const TotalForce& total : database.samples[k].totals) add(k, total.taxels, total.newtons, total.felt_share);
   }
   add_presses();
 }
@@ -34,16 +35,19 @@ void SharedLoads::add_presses() {
     const std::size_t count = std::min(of_taxel.size(), kMostPresses);
     for (std::size_t k = 0; k < count; ++k) {
       const Press& press = of_taxel[k * of_taxel.size() / count];
-      add(press.sample, {taxel}, press.newtons);
+      const std::vector<float>& felt_share = database_.samples[press.sample].felt_share;
+      add(press.sample, {taxel}, press.newtons, felt_share.empty() ? 1.0 : static_cast<double>(felt_share[taxel]));
     }
   }
 }
 
-void SharedLoads::add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons) {
+void SharedLoads::add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons, double felt_share) {
+  if (std::isnan(felt_share)) return;
   const Sample& sample = database_.samples[index];
   MeasuredLoad load;
   load.sample = index;
-  load.newtons = newtons;
+  load.newtons = felt_share * newtons;
+  load.load_newtons = newtons;
   load.temperature = normalised_temperature(sample, temperatures_);
   bool is_felt = false;
   for (const std::size_t taxel : taxels) {

@@ -19,7 +19,8 @@ struct MeasuredLoad {
   std::size_t sample = 0;                              ///< In the database.
   std::vector<std::pair<std::size_t, double>> excess;  ///< Taxel, siemens > 0.
   double temperature = 0.0;                            ///< As an input of a network, in [-1, 1].
-  double newtons = 0.0;
+  double newtons = 0.0;                                ///< What the material felt of it.
+  double load_newtons = 0.0;
 };
 
 /// The loads of a database that one network of all taxels learns from: those on several taxels, and some of the presses
@@ -39,7 +40,7 @@ class SharedLoads {
   };
 
   void add_presses();
-  void add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons);
+  void add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons, double felt_share);
 
   const SampleDatabase& database_;
   const SampleTemperatures& temperatures_;

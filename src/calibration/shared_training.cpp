@@ -45,19 +45,36 @@ struct SharedLoad {
   double weight = 0.0;  // 1 / (newtons + typical load)
 };
 
+/// Different forces; a load on several taxels is one of its own.
+std::size_t levels_of(const std::vector<MeasuredLoad>& loads) {
+  std::vector<double> single;
+  for (const MeasuredLoad& load : loads) {
+    if (load.excess.size() == 1) single.push_back(load.load_newtons);
+  }
+  std::sort(single.begin(), single.end());
+  return loads.size() - single.size() + count_levels(single);
+}
+
 /// Single taxels under about the same force: that they differ is their scatter, and says nothing of their law.
 bool are_one_load(const std::vector<MeasuredLoad>& loads) {
   const auto [lightest, heaviest] = std::minmax_element(
-      loads.begin(), loads.end(), [](const auto& a, const auto& b) { return a.newtons < b.newtons; });
-  return heaviest->newtons < kLeastForceRange * lightest->newtons &&
+      loads.begin(), loads.end(), [](const auto& a, const auto& b) { return a.load_newtons < b.load_newtons; });
+  return heaviest->load_newtons < kLeastForceRange * lightest->load_newtons &&
          std::all_of(loads.begin(), loads.end(), [](const MeasuredLoad& load) { return load.excess.size() == 1; });
+}
+
+/// The scatter of readings within a load says nothing of the law between loads: that of material with memory would
+/// make the law a stair.
+PowerPrior power_prior(const std::vector<MeasuredLoad>& loads) {
+  if (are_one_load(loads)) return PowerPrior::held;
+  return levels_of(loads) < kLeastLevelsOfBend ? PowerPrior::straight : PowerPrior::free;
 }
 
 /// The least-squares problem for given gains; its parameters are the free values of the network.
 class SharedProblem {
  public:
   SharedProblem(const std::vector<MeasuredLoad>& raw, const UnloadedFit& unloaded)
-      : gain_(unloaded.noise_siemens.size(), 1.0) {
+      : power_(power_prior(raw)), gain_(unloaded.noise_siemens.size(), 1.0) {
     double log_newtons = 0.0;
     double active = 0.0;
     double active_siemens = 0.0;
@@ -70,7 +87,6 @@ class SharedProblem {
         active_siemens += siemens;
       }
     }
-    if (are_one_load(raw)) power_ = PowerPrior::held;
     const double typical_newtons = std::exp(log_newtons);
     reference_siemens_ = active_siemens / active;
     typical_share_newtons_ = typical_newtons * static_cast<double>(raw.size()) / active;
@@ -132,7 +148,7 @@ class SharedProblem {
 
  private:
   std::vector<SharedLoad> loads_;
-  PowerPrior power_ = PowerPrior::free;
+  PowerPrior power_;
   std::vector<double> gain_;  // [taxels]
   double reference_siemens_ = 1.0;
   double heaviest_siemens_ = 0.0;
@@ -169,13 +185,7 @@ void train(const SharedProblem& problem, Candidate& candidate) {
 /// that can bend learns a stair with the weights as its steps: it is right on every load that is left out, because the
 /// other taxels carried the same weight, and wrong between the weights.
 std::size_t most_hidden_units(const std::vector<MeasuredLoad>& loads) {
-  std::vector<double> single;
-  for (const MeasuredLoad& load : loads) {
-    if (load.excess.size() == 1) single.push_back(load.newtons);
-  }
-  std::sort(single.begin(), single.end());
-  const std::size_t levels = loads.size() - single.size() + count_levels(single);
-  return std::min(kMostHiddenUnits, levels / kLevelsPerHiddenUnit);
+  return std::min(kMostHiddenUnits, levels_of(loads) / kLevelsPerHiddenUnit);
 }
 
 /// The best of several starts for every number of hidden units.

@@ -9,9 +9,14 @@
 #include <set>
 #include <utility>
 
+#include "calibration/even_choice.hpp"
+#include "calibration/force_levels.hpp"
 #include "calibration/level_table.hpp"
+#include "calibration/unloaded_fit.hpp"
 #include "dermis/core/parallel.hpp"
+#include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
+#include "dermis/fusion/force_fusion.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -27,7 +32,11 @@ constexpr double kClearlyBetter = 0.8;      // of the mean error
 constexpr double kLeastSignificance = 4.0;  // in standard errors
 constexpr double kMostError = 1.0;          // counts as this: a single wild one decides nothing
 constexpr double kMostLeverage = 0.95;
-constexpr double kLeastOfKnot = 1e-30;  // N and S: floats hold it and its shares
+constexpr std::size_t kMostUnloaded = 2000;  // samples to see ghosts in
+constexpr double kGhostShare = 0.99;         // of the ghosts are below the one that counts
+constexpr double kLeastGhost = 0.1;          // of the lightest load
+constexpr double kFewerGhosts = 0.5;         // as heavy as those of the other method
+constexpr double kLeastOfKnot = 1e-30;       // N and S: floats hold it and its shares
 
 /// A press that was left out, and what either method makes of it.
 struct JudgedPress {
@@ -43,9 +52,16 @@ struct JudgedSample {
   double error_of_table = 0.0;  // relative
 };
 
+/// Forces of a method where nothing presses [N].
+struct Ghosts {
+  std::vector<float> of_network;
+  std::vector<float> of_table;
+};
+
 struct ComparedTaxel {
   std::vector<JudgedPress> presses;
   std::vector<JudgedSample> samples;
+  Ghosts ghosts;
 };
 
 /// The errors of the networks on one taxel, by rising sample.
@@ -138,6 +154,16 @@ std::vector<std::size_t> draw_folds(std::size_t count, std::size_t folds, std::u
   return fold_of;
 }
 
+/// The lighter of two loads and the heavier.
+std::vector<std::size_t> folds_of_loads(const std::vector<Points>& presses, const std::vector<double>& rising_loads) {
+  std::vector<std::size_t> fold_of;
+  for (const Points press : presses) {
+    const double newtons = press.front().load_newtons;
+    fold_of.push_back(newtons / rising_loads.front() < rising_loads.back() / newtons ? 0 : 1);
+  }
+  return fold_of;
+}
+
 /// What a fit without the press would make of a sample of it: the samples of a press are alike, so that each pulls at
 /// the fit as all of them do that the fit has seen.
 double left_out_error(const TestedLoad& load, std::size_t samples_of_press) {
@@ -148,13 +174,15 @@ double left_out_error(const TestedLoad& load, std::size_t samples_of_press) {
 class TaxelComparison {
  public:
   TaxelComparison(std::size_t taxel, Points points, const NetworkErrors& errors, const TableMaker& maker)
-      : taxel_(taxel), errors_(errors), maker_(maker), presses_(split_presses(points)) {}
+      : taxel_(taxel), errors_(errors), maker_(maker), presses_(split_presses(points)), loads_(rising_loads(points)) {}
 
   [[nodiscard]] ComparedTaxel judge() const {
     ComparedTaxel judged;
     const std::size_t folds = std::min(kFolds, presses_.size());
     if (folds < 2) return judged;
-    const std::vector<std::size_t> fold_of = draw_folds(presses_.size(), folds, taxel_);
+    const bool are_two = count_levels(loads_) == 2 && loads_.back() >= kLeastForceRange * loads_.front();
+    const std::vector<std::size_t> fold_of =
+        are_two ? folds_of_loads(presses_, loads_) : draw_folds(presses_.size(), folds, taxel_);
     for (std::size_t fold = 0; fold < folds; ++fold) {
       std::vector<TaxelPoint> kept;
       for (std::size_t k = 0; k < presses_.size(); ++k) {
@@ -162,7 +190,7 @@ class TaxelComparison {
       }
       kept = by_force(kept);
       const auto fitted = maker_.fit(kept);
-      if (fitted.first.empty()) continue;
+      if (kept.empty() || fitted.first.empty()) continue;
       const fusion::ForceTables table = TableMaker::assemble({fitted}, {taxel_});
       for (std::size_t k = 0; k < presses_.size(); ++k) {
         const bool is_within = presses_[k].front().newtons <= kSameForce * kept.back().newtons;
@@ -203,6 +231,7 @@ class TaxelComparison {
   const NetworkErrors& errors_;
   const TableMaker& maker_;
   std::vector<Points> presses_;
+  std::vector<double> loads_;
 };
 
 /// The means over the presses of each moment.
@@ -224,21 +253,46 @@ std::vector<JudgedPress> by_moment(const std::vector<std::size_t>& group, const 
   return means;
 }
 
-bool is_table_clearly_better(const std::vector<JudgedPress>& presses) {
-  if (presses.size() < kLeastPresses) return false;
+Ghosts all_ghosts(const std::vector<std::size_t>& group, const std::vector<ComparedTaxel>& judged) {
+  Ghosts all;
+  for (const std::size_t taxel : group) {
+    const auto& [of_network, of_table] = judged[taxel].ghosts;
+    all.of_network.insert(all.of_network.end(), of_network.begin(), of_network.end());
+    all.of_table.insert(all.of_table.end(), of_table.begin(), of_table.end());
+  }
+  return all;
+}
+
+/// One of two methods sees ghosts of the weight of loads where the other does not.
+bool sees_ghosts(const std::vector<float>& newtons, const std::vector<float>& of_other, double lightest_newtons) {
+  if (newtons.empty()) return false;
+  const auto ghost = static_cast<double>(quantile(newtons, kGhostShare));
+  const auto other = static_cast<double>(quantile(of_other, kGhostShare));
+  return ghost > kLeastGhost * lightest_newtons && other < kFewerGhosts * ghost;
+}
+
+/// The errors of a method on presses are clearly smaller than those of another.
+bool is_clearly_better(const std::vector<JudgedPress>& presses, double JudgedPress::*one, double JudgedPress::*other) {
   const auto count = static_cast<double>(presses.size());
-  double network = 0.0;
-  double table = 0.0;
+  double of_one = 0.0;
+  double of_other = 0.0;
   for (const JudgedPress& press : presses) {
-    network += press.of_network / count;
-    table += press.of_table / count;
+    of_one += press.*one / count;
+    of_other += press.*other / count;
   }
   double square = 0.0;
   for (const JudgedPress& press : presses) {
-    square += std::pow(press.of_network - press.of_table - (network - table), 2);
+    square += std::pow(press.*other - press.*one - (of_other - of_one), 2);
   }
   const double standard_error = std::sqrt(square / (count - 1.0) / count);
-  return table < kClearlyBetter * network && network - table > kLeastSignificance * standard_error;
+  return of_one < kClearlyBetter * of_other && of_other - of_one > kLeastSignificance * standard_error;
+}
+
+bool are_tables_better(const std::vector<JudgedPress>& presses, const Ghosts& ghosts, double lightest_newtons) {
+  if (presses.size() < kLeastPresses || sees_ghosts(ghosts.of_table, ghosts.of_network, lightest_newtons)) return false;
+  if (is_clearly_better(presses, &JudgedPress::of_table, &JudgedPress::of_network)) return true;
+  return sees_ghosts(ghosts.of_network, ghosts.of_table, lightest_newtons) &&
+         !is_clearly_better(presses, &JudgedPress::of_network, &JudgedPress::of_table);
 }
 
 /// Neighbours in reading order, each group with presses enough to be judged by.
@@ -287,6 +341,60 @@ void install(const std::vector<std::size_t>& asked, std::span<const std::vector<
   training.report.table_taxels = taxels;
 }
 
+/// Both methods on some of the samples in which nothing presses, each taxel after its first press.
+class GhostWatch {
+ public:
+  GhostWatch(const SampleDatabase& database, const SampleTemperatures& temperatures,
+             std::span<const std::vector<TaxelPoint>> points, const TableMaker& maker)
+      : database_(database), temperatures_(temperatures), points_(points), tables_(points.size()) {
+    parallel_for(points.size(), [&](std::size_t taxel) {
+      auto table = maker.fit(by_force(points[taxel]));
+      if (!table.first.empty()) tables_[taxel] = TableMaker::assemble({std::move(table)}, {taxel});
+    });
+  }
+
+  void watch(const fusion::ForceNetworks& networks, std::vector<ComparedTaxel>& judged) const {
+    std::vector<const Sample*> unloaded;
+    for (const Sample& sample : database_.samples) {
+      if (sample.unloaded) unloaded.push_back(&sample);
+    }
+    fusion::ForceFusion fusion(networks);
+    ConductanceFrame conductance;
+    ForceFrame force;
+    for (const std::size_t k : even_choice(unloaded.size(), kMostUnloaded)) {
+      const Sample& sample = *unloaded[k];
+      conductance.temperature_celsius = sample.temperature_celsius;
+      conductance.siemens.assign(sample.siemens.begin(), sample.siemens.end());
+      conductance.sigma_siemens.assign(sample.siemens.size(), 0.0);
+      conductance.taxels.assign(sample.siemens.size(), TaxelStatus::ok);
+      fusion.process(conductance, force);
+      for (std::size_t taxel = 0; taxel < judged.size(); ++taxel) {
+        if (!follows_a_press(taxel, sample) || std::isnan(force.newtons[taxel])) continue;
+        judged[taxel].ghosts.of_network.push_back(force.newtons[taxel]);
+        judged[taxel].ghosts.of_table.push_back(of_table(networks, taxel, sample));
+      }
+    }
+  }
+
+ private:
+  [[nodiscard]] bool follows_a_press(std::size_t taxel, const Sample& sample) const {
+    return !tables_[taxel].taxels.empty() && sample.known_newtons[taxel] == 0.0F &&
+           sample.frame > database_.samples[points_[taxel].front().sample].frame;
+  }
+
+  [[nodiscard]] float of_table(const fusion::ForceNetworks& networks, std::size_t taxel, const Sample& sample) const {
+    const double offset = temperature_offset(sample, temperatures_);
+    const auto excess = static_cast<float>(networks.unloaded.excess(taxel, sample.siemens[taxel], offset));
+    if (excess <= 0.0F) return 0.0F;
+    return std::exp(tables_[taxel].at(0, excess, static_cast<float>(offset)).log_newtons);
+  }
+
+  const SampleDatabase& database_;
+  const SampleTemperatures& temperatures_;
+  std::span<const std::vector<TaxelPoint>> points_;
+  std::vector<fusion::ForceTables> tables_;  // [taxels], of one taxel each or of none
+};
+
 std::vector<ComparedTaxel> judge_all(std::span<const std::vector<TaxelPoint>> points, const TableMaker& maker,
                                      const ForceTraining& training) {
   const std::vector<NetworkErrors> errors = errors_by_taxel(training);
@@ -311,7 +419,7 @@ void number_presses(std::vector<TaxelPoint>& points) {
   const TaxelPoint* first = nullptr;
   for (std::size_t k = 0; k < points.size(); ++k) {
     const auto goes_on = [&] {
-      const auto [least, most] = std::minmax(points[k].newtons, first->newtons);
+      const auto [least, most] = std::minmax(points[k].load_newtons, first->load_newtons);
       return points[k].sample == points[k - 1].sample + 1 && most <= kSameForce * least;
     };
     if (first == nullptr || !goes_on()) first = &points[k];
@@ -319,10 +427,11 @@ void number_presses(std::vector<TaxelPoint>& points) {
   }
 }
 
-void prefer_tables(std::span<const std::vector<TaxelPoint>> points, const SampleTemperatures& temperatures,
-                   ForceTraining& training) {
+void prefer_tables(const SampleDatabase& database, std::span<const std::vector<TaxelPoint>> points,
+                   const SampleTemperatures& temperatures, ForceTraining& training) {
   const TableMaker maker(temperatures);
-  const std::vector<ComparedTaxel> judged = judge_all(points, maker, training);
+  std::vector<ComparedTaxel> judged = judge_all(points, maker, training);
+  GhostWatch(database, temperatures, points, maker).watch(training.networks, judged);
   std::set<std::size_t> own;
   for (const TestedLoad& load : training.tested_own) own.insert(load.taxels.front());
   std::vector<std::vector<std::size_t>> better;  // groups
@@ -335,7 +444,8 @@ void prefer_tables(std::span<const std::vector<TaxelPoint>> points, const Sample
     std::vector<std::vector<std::size_t>> groups = make_groups(taxels, judged);
     for (std::vector<std::size_t>& group : groups) {
       ++training.report.groups;
-      if (!is_table_clearly_better(by_moment(group, judged))) continue;
+      const std::vector<JudgedPress> presses = by_moment(group, judged);
+      if (!are_tables_better(presses, all_ghosts(group, judged), training.report.lightest_newtons)) continue;
       chosen.insert(chosen.end(), group.begin(), group.end());
       better.push_back(std::move(group));
     }

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "calibration/force_levels.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
 
 namespace dermis::calibration {
@@ -38,6 +39,7 @@ class TaxelProblem {
     network_.heaviest_siemens = 0.0;
     network_.parameters.resize(shape.parameter_count());
     typical_newtons_ = geometric_mean(points, &TaxelPoint::newtons);
+    if (count_levels(rising_loads(points)) < kLeastLevelsOfBend) power_ = PowerPrior::straight;
     for (const TaxelPoint& point : points) {
       network_.heaviest_siemens = std::max(network_.heaviest_siemens, point.excess_siemens);
       network_.heaviest_newtons = std::max(network_.heaviest_newtons, point.newtons);
@@ -93,12 +95,13 @@ class TaxelProblem {
         for (double& derivative : row) derivative *= point.weight;
       }
       prior_residuals(network_, 1.0, residuals.subspan(points_.size()),
-                      jacobian.empty() ? jacobian : jacobian.subspan(points_.size() * n), n);
+                      jacobian.empty() ? jacobian : jacobian.subspan(points_.size() * n), n, power_);
     };
   }
 
   ForceNetwork network_;  // its parameters are those that are tried last
   std::vector<TrainingPoint> points_;
+  PowerPrior power_ = PowerPrior::free;
   double typical_newtons_ = 0.0;
 };
 
@@ -113,6 +116,13 @@ std::vector<double> free_parameters(const ForceNetwork& network) {
 }
 
 }  // namespace
+
+std::vector<double> rising_loads(std::span<const TaxelPoint> points) {
+  std::vector<double> newtons;
+  for (const TaxelPoint& point : points) newtons.push_back(point.load_newtons);
+  std::sort(newtons.begin(), newtons.end());
+  return newtons;
+}
 
 ForceNetwork train_taxel(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
                          std::uint64_t seed) {

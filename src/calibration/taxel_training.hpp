@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "calibration/force_network.hpp"
 
@@ -15,13 +16,17 @@ struct TaxelPoint {
   double excess_siemens = 0.0;  ///< > 0
   double noise_siemens = 0.0;   ///< Standard deviation of it.
   double temperature = 0.0;     ///< About [-1, 1]; 0 where temperature is not an input.
-  double newtons = 0.0;         ///< > 0
+  double newtons = 0.0;         ///< What the material felt, > 0.
+  double load_newtons = 0.0;    ///< What pressed, > 0.
   std::size_t sample = 0;       ///< Where it comes from in the database.
   std::size_t press = 0;        ///< Where its press begins there: number_presses().
 };
 
+/// The loads of the points.
+[[nodiscard]] std::vector<double> rising_loads(std::span<const TaxelPoint> points);
+
 /// Trains ln(newtons) of one taxel on its points by Levenberg-Marquardt, from several random starts. Every point counts
-/// by its noise and a floor for what the temperature and supply meters add.
+/// by its noise and a floor for what the temperature and supply meters add. Two different loads tell a power, no more.
 [[nodiscard]] ForceNetwork train_taxel(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
                                        std::uint64_t seed);
 

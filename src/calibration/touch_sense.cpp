@@ -14,7 +14,6 @@ constexpr double kStepSigmas = 6.0;
 constexpr double kLeastTouchCounts = 5.0;
 constexpr double kTouchSigmas = 8.0;
 constexpr double kLeastNoiseCounts = 1.0 / 3.0;  // rounding
-constexpr double kBesideShare = 0.5;
 constexpr double kFollowSeconds = 10.0;
 
 /// Standard deviation of a reading from its steps from frame to frame, which drift does not enter.
@@ -83,7 +82,8 @@ FrameMean QuietWindow::mean() const {
   return mean;
 }
 
-TouchSense::TouchSense(const FrameMean& unloaded, double ratio_per_count) : ratio_per_count_(ratio_per_count) {
+TouchSense::TouchSense(const FrameMean& unloaded, double ratio_per_count)
+    : ratio_per_count_(ratio_per_count), left_(unloaded.taxel_count()) {
   for (std::size_t taxel = 0; taxel < unloaded.taxel_count(); ++taxel) {
     level_.push_back(unloaded.mean_ratio(taxel));
     noise_.push_back(std::max(step_noise(unloaded, taxel), kLeastNoiseCounts * ratio_per_count));
@@ -95,34 +95,18 @@ double TouchSense::threshold(std::size_t taxel) const noexcept {
 }
 
 double TouchSense::relative(std::span<const double> ratio, std::size_t taxel) const noexcept {
-  return 1.0 + excess(ratio, taxel) / std::max(level_[taxel], ratio_per_count_);
-}
-
-Touch TouchSense::feel(std::span<const double> ratio, std::size_t expected) const {
-  Touch touch;
-  double strongest = 0.0;
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-    if (excess(ratio, taxel) <= std::max(strongest, threshold(taxel))) continue;
-    strongest = excess(ratio, taxel);
-    touch.strongest = taxel;
-  }
-  if (!touch.strongest) return touch;
-  const double here = excess(ratio, expected);
-  if (*touch.strongest != expected && here > std::max(kBesideShare * strongest, threshold(expected))) {
-    return {expected, touch.strongest};
-  }
-  double second = kBesideShare * strongest;
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-    if (taxel == *touch.strongest || excess(ratio, taxel) <= std::max(second, threshold(taxel))) continue;
-    second = excess(ratio, taxel);
-    touch.beside = taxel;
-  }
-  return touch;
+  return 1.0 + (ratio[taxel] - level_[taxel]) / std::max(level_[taxel], ratio_per_count_);
 }
 
 void TouchSense::follow(std::span<const double> ratio, double seconds) {
   const double share = -std::expm1(-seconds / kFollowSeconds);
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) level_[taxel] += share * excess(ratio, taxel);
+}
+
+void TouchSense::fade(std::span<const double> ratio) {
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    left_[taxel] = std::clamp(ratio[taxel] - level_[taxel], 0.0, left_[taxel]);
+  }
 }
 
 }  // namespace dermis::calibration

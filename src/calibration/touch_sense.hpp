@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -48,25 +49,34 @@ class QuietWindow {
   bool is_disturbed_ = false;
 };
 
-/// What the array feels.
-struct Touch {
-  /// The taxel that rises most, if one stands out of the noise; the expected one from half as much on.
-  std::optional<std::size_t> strongest;
-  std::optional<std::size_t> beside;  ///< The strongest other one, from half as much on.
-};
-
 /// Compares readings with those of the unloaded array. Idle readings are followed slowly, so that drift of the array
-/// over an hour is not taken for a touch.
+/// over an hour is not taken for a touch, nor is what the material remembers of a press.
 class TouchSense {
  public:
   TouchSense(const FrameMean& unloaded, double ratio_per_count);
 
-  [[nodiscard]] Touch feel(std::span<const double> ratio, std::size_t expected) const;
+  /// The taxel that rises most of those that `counts` is true for, if one of them stands out of the noise.
+  template <typename Counts>
+  [[nodiscard]] std::optional<std::size_t> strongest(std::span<const double> ratio, const Counts& counts) const {
+    std::optional<std::size_t> strongest;
+    for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+      const double least = strongest ? std::max(excess(ratio, *strongest), threshold(taxel)) : threshold(taxel);
+      if (excess(ratio, taxel) > least && counts(taxel)) strongest = taxel;
+    }
+    return strongest;
+  }
   /// Of an array that nothing touches, `seconds` after the last one.
   void follow(std::span<const double> ratio, double seconds);
+  /// A weight is taken off the taxel: what it still reads is memory of the material, from now on.
+  void leave(std::span<const double> ratio, std::size_t taxel) {
+    left_[taxel] = std::max(0.0, ratio[taxel] - level_[taxel]);
+  }
+  /// Memory that has faded does not come back. For every frame.
+  void fade(std::span<const double> ratio);
 
+  /// Over the unloaded reading and over what the material remembers.
   [[nodiscard]] double excess(std::span<const double> ratio, std::size_t taxel) const noexcept {
-    return ratio[taxel] - level_[taxel];
+    return ratio[taxel] - level_[taxel] - left_[taxel];
   }
   [[nodiscard]] double noise(std::size_t taxel) const noexcept { return noise_[taxel]; }
   /// Excess that stands out of the noise.
@@ -77,6 +87,7 @@ class TouchSense {
  private:
   double ratio_per_count_;
   std::vector<double> level_;
+  std::vector<double> left_;  // by presses, in the material
   std::vector<double> noise_;
 };
 

@@ -18,7 +18,6 @@ namespace {
 
 constexpr double kMostPascal = 2e6;    // what rubber bears, and what is pressed on a robot's skin
 constexpr double kLeastPascal = 10.0;  // a dozen sheets of paper
-constexpr double kMostNewtons = 5e3;   // half a car
 constexpr double kFeltShare = 0.1;     // of the taxel that rises most
 constexpr double kFeltSigmas = 20.0;
 
@@ -52,8 +51,8 @@ std::size_t felt_taxels(const ArrayDescription& array, const RawFrame& frame, co
       std::count_if(rises.begin(), rises.end(), [&](double rise) { return rise > kFeltShare * most; }));
 }
 
-bool is_plausible(double pascal, double newtons) {
-  return pascal >= kLeastPascal && pascal <= kMostPascal && newtons <= kMostNewtons;
+bool is_plausible(double pascal) {
+  return pascal >= kLeastPascal && pascal <= kMostPascal;
 }
 
 /// "17 MPa"
@@ -68,10 +67,10 @@ std::string question(const ArrayDescription& array, const Load& load, std::size_
   const bool is_force = load.kind == LoadKind::force;
   std::vector<std::string> likely;
   for (const Unit& unit : is_force ? std::span<const Unit>(kForces) : std::span<const Unit>(kPressures)) {
-    if (!is_plausible(unit.factor * pascal, unit.factor * newtons)) continue;
+    if (!is_plausible(unit.factor * pascal)) continue;
     likely.push_back(fmt::format("{} ({} then)", unit.name, pressure_text(unit.factor * pascal)));
   }
-  if (is_force && is_plausible(1e3 * load.value, 1e3 * load.value * newtons / pascal)) {
+  if (is_force && is_plausible(1e3 * load.value)) {
     likely.push_back(fmt::format("kPa ({} then)", pressure_text(1e3 * load.value)));
   }
   std::string text = fmt::format("the load of frame {} presses {} with {:.3g} N, {} over the {} {} that {} it",
@@ -101,7 +100,7 @@ std::optional<std::string> remark_on_units(const ArrayDescription& array, std::s
     if (!(total > 0.0)) return std::nullopt;
     const std::size_t taxels = felt_taxels(array, frames[load->frame], *load, unloaded);
     const double pascal = total / (area_of_taxel(array) * static_cast<double>(taxels));
-    if (!is_plausible(pascal, total)) return question(array, *load, taxels, pascal, total);
+    if (!is_plausible(pascal)) return question(array, *load, taxels, pascal, total);
   }
   return std::nullopt;
 }

@@ -12,9 +12,9 @@
 
 namespace dermis::calibration {
 
-/// A question, where the heaviest loads would press what no rubber bears, or a mat with what nobody puts on it, or with
-/// less than a dozen sheets of paper: over the taxels that feel them, each with all that lies around it. Empty where
-/// the loads may be as they are. `loads` as check_loads() wants them.
+/// A question, where the heaviest loads would press with more than rubber bears, or with less than a dozen sheets of
+/// paper: over the taxels that feel them, each with all that lies around it. Empty where the loads may be as they are.
+/// `loads` as check_loads() wants them.
 [[nodiscard]] std::optional<std::string> remark_on_units(const ArrayDescription& array,
                                                          std::span<const RawFrame> frames, std::span<const Load> loads);
 

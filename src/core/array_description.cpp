@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iomanip>
+#include <sstream>
+
+#include "dermis/core/millimetres.hpp"
 
 namespace dermis {
 namespace {
@@ -81,6 +85,37 @@ Status validate_automatic(const Readout& readout) {
   }
   if (readout.load_ohm.empty()) return Done{};
   return validate_resistors("load_ohm", readout.load_ohm, 1, false);
+}
+
+/// 0.015 where the file has no more digits.
+std::string short_text(double value) {
+  constexpr int kDigits = 7;
+  std::ostringstream text;
+  text << std::setprecision(kDigits) << value;
+  return text.str();
+}
+
+/// What is far from all skins and mats was written in another unit.
+Status validate_geometry(const ArrayDescription& array) {
+  constexpr double kLeastPitchMm = 0.05;
+  constexpr double kMostPitchMm = 1000.0;
+  const auto check = [](const std::string& key, double metres, double per_metre, double least, double most) -> Status {
+    const auto is_possible = [&](double value) { return value >= least && value <= most; };
+    const double value = per_metre * metres;
+    if (is_possible(value)) return Done{};
+    std::string text = key + ": must be " + short_text(least) + " to " + short_text(most);
+    if (is_possible(per_metre * value)) {
+      text += "; is " + short_text(value) + " in metres? Then write " + short_text(per_metre * value);
+    }
+    return bad_input(text);
+  };
+  for (const double pitch_m : {array.row_pitch_m, array.col_pitch_m}) {
+    Status valid = check("array.pitch_mm", pitch_m, kMillimetresPerMetre, kLeastPitchMm, kMostPitchMm);
+    if (!valid) return valid;
+  }
+  if (!array.taxel_area_m2) return Done{};
+  return check("array.taxel_area_mm2", *array.taxel_area_m2, kMillimetresPerMetre * kMillimetresPerMetre,
+               kLeastPitchMm * kLeastPitchMm, kMostPitchMm * kMostPitchMm);
 }
 
 Status validate_absent(const ArrayDescription& array) {
@@ -171,9 +206,7 @@ std::string ArrayDescription::taxel_name(std::size_t taxel) const {
 Status ArrayDescription::validate() const {
   if (rows < 1 || rows > kMaxLines) return bad_input("array.rows: must be 1 to " + std::to_string(kMaxLines));
   if (cols < 1 || cols > kMaxLines) return bad_input("array.cols: must be 1 to " + std::to_string(kMaxLines));
-  if (!is_positive(row_pitch_m) || !is_positive(col_pitch_m))
-    return bad_input("array.pitch_mm: must be more than 0 mm");
-  if (taxel_area_m2 && !is_positive(*taxel_area_m2)) return bad_input("array.taxel_area_mm2: must be more than 0 mm2");
+  if (Status valid = validate_geometry(*this); !valid) return valid;
   if (Status valid = validate_absent(*this); !valid) return valid;
   return validate_readout(*this);
 }

@@ -27,6 +27,12 @@ Error bad_input(std::string message) {
   return {ErrorKind::bad_input, one_line(std::move(message))};
 }
 
+Error bad_field(const std::string& field, const std::string& message) {
+  Error error = bad_input(field + ": " + message);
+  error.field = field;
+  return error;
+}
+
 Error failed(std::string message) {
   return {ErrorKind::failed, one_line(std::move(message))};
 }

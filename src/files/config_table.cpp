@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "dermis/core/nearest_name.hpp"
+#include "dermis/files/file_kind.hpp"
 #include "files/config_text.hpp"
 
 namespace dermis::files {
@@ -184,6 +185,7 @@ Result<ConfigFile> ConfigFile::read(const std::string& path) {
 }
 
 Result<ConfigFile> ConfigFile::parse(std::string_view text, const std::string& name) {
+  if (const auto other = wrong_kind(text, kTomlKind)) return bad_input(name + ": " + *other);
   if (const Status checked = check_config_text(text, name); !checked) return checked.error();
   ConfigFile file;
   file.parsed_->name = name;

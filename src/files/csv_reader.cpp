@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "dermis/files/file_kind.hpp"
 #include "dermis/files/input.hpp"
 #include "dermis/files/text.hpp"
 
@@ -15,16 +16,17 @@ namespace {
 constexpr std::size_t kFirstBufferBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 25U;
 
-/// What programs save as CSV, and is none here.
-const char* foreign_text(std::string_view line) noexcept {
+/// What is taken or saved for CSV, and is none here.
+std::string foreign_text(std::string_view line) {
+  if (const auto other = wrong_kind(line, kTableKind)) return *other;
   const auto has = [line](char c) { return line.find(c) != std::string_view::npos; };
   if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF") || has('\0')) {
     return "is UTF-16 text; save it as UTF-8";
   }
   if (has('"')) return "has quotes around its values; write them without";
-  if (!has(',') && has(';')) return "has semicolons between its values; write commas";
+  if (!has(',') && has(';')) return "has semicolons between its values; write commas, and decimals with a point";
   if (!has(',') && has('\t')) return "has tabs between its values; write commas";
-  return nullptr;
+  return {};
 }
 
 }  // namespace
@@ -39,8 +41,8 @@ Result<bool> CsvReader::next_line(std::string_view& line) {
     if (line_number_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
     line = trimmed(line);
     if (line.empty()) continue;
-    const char* const mistake = std::exchange(is_first_line_, false) ? foreign_text(line) : nullptr;
-    if (mistake != nullptr) return error(mistake);
+    const std::string mistake = std::exchange(is_first_line_, false) ? foreign_text(line) : "";
+    if (!mistake.empty()) return error(mistake);
     return true;
   }
   if (in_.bad()) return read_failure(name_);
@@ -102,6 +104,14 @@ std::vector<std::string_view> split_cells(std::string_view line) {
 
 std::size_t count_cells(std::string_view line) noexcept {
   return static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
+}
+
+Status check_count(std::string_view line, std::size_t columns) {
+  const std::size_t count = count_cells(line);
+  if (count == columns) return Done{};
+  const bool may_be_decimals = count > columns && !line.ends_with(',');
+  return bad_input("has " + std::to_string(count) + " values, the header " + std::to_string(columns) +
+                   (may_be_decimals ? ": write decimals with a point, as each comma begins a value" : ""));
 }
 
 }  // namespace dermis::files

@@ -66,4 +66,7 @@ class CsvCells {
 
 [[nodiscard]] std::size_t count_cells(std::string_view line) noexcept;
 
+/// Whether a line has as many cells as the header has columns; without its place.
+[[nodiscard]] Status check_count(std::string_view line, std::size_t columns);
+
 }  // namespace dermis::files

@@ -41,10 +41,7 @@ Result<CsvTable> CsvTable::read(std::istream& in, const std::string& name) {
     more = csv.next_line(line);
     if (!more) return more.error();
     if (!*more) return table;
-    if (count_cells(line) != table.columns_.size()) {
-      return csv.error("has " + std::to_string(count_cells(line)) + " values, the header " +
-                       std::to_string(table.columns_.size()));
-    }
+    if (const Status right = check_count(line, table.columns_.size()); !right) return csv.error(right.error().message);
     bytes += line.size() + table.columns_.size() * sizeof(std::string);
     if (bytes > kMostBytes) return csv.error("is beyond 256 MiB of cells; divide the table");
     for (const std::string_view cell : split_cells(line)) table.cells_.emplace_back(cell);

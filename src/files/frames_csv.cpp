@@ -178,9 +178,7 @@ std::optional<Error> FramesCsvReader::State::read_value(Column column, std::stri
 Status FramesCsvReader::State::read_frame(std::string_view line, RawFrame& frame) const {
   const std::size_t taxel_count = header.shape.taxel_count();
   const std::size_t header_size = header.columns.size() + taxel_count;
-  if (const std::size_t size = count_cells(line); size != header_size) {
-    return csv.error("has " + std::to_string(size) + " values, the header " + std::to_string(header_size));
-  }
+  if (const Status right = check_count(line, header_size); !right) return csv.error(right.error().message);
   frame.temperature_celsius.reset();
   frame.supply_v.reset();
   frame.counts.resize(taxel_count);

@@ -78,9 +78,7 @@ Result<Line> parse_position(std::size_t frame, const TaxelRegion& where, std::st
 
 Result<Line> parse_line(std::string_view line, const ArrayDescription& array, std::size_t frame_count) {
   constexpr std::size_t kCells = 4;
-  if (count_cells(line) != kCells) {
-    return bad_input("has " + std::to_string(count_cells(line)) + " values, the header " + std::to_string(kCells));
-  }
+  if (const Status right = check_count(line, kCells); !right) return right.error();
   const std::vector<std::string_view> cells = split_cells(line);
   const Result<std::size_t> frame = parse_frame(cells[0], frame_count);
   if (!frame) return frame.error();

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "dermis/files/atomic_file.hpp"
+#include "dermis/files/file_kind.hpp"
 #include "dermis/files/input.hpp"
 #include "dermis/files/text.hpp"
 
@@ -303,6 +304,7 @@ Result<SafetensorsFile> read_safetensors(const std::string& path) {
 }
 
 Result<SafetensorsFile> safetensors_from_bytes(std::string_view bytes, const std::string& name) {
+  if (const auto other = wrong_kind(bytes, kSafetensorsKind)) return bad_input(name + ": " + *other);
   Result<SafetensorsFile> file = parse_bytes(bytes);
   if (!file) return bad_input(name + ": " + file.error().message);
   return file;

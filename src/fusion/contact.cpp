@@ -96,8 +96,7 @@ class ContactTracker::Implementation {
     found.peak = taxels.front();
     found.contact = gauge_.measure(force, taxels, pressed_sigma(), expected_at(taxels.front()));
     found.profile = gauge_.profile();
-    const double share = holds_several(taxels) ? StressedAreas::kHeldShare : 1.0;
-    const std::size_t own = gauge_.part(force, taxels, options.onset_sigma, share);
+    const auto [own, share] = part(force, taxels);
     if (own < taxels.size() && own > 0 && can_go_on(force, taxels.subspan(own)) && is_top(force, taxels, taxels[own]) &&
         are_apart(force, taxels.first(own), taxels.subspan(own), share)) {
       add(force, taxels.first(own));
@@ -109,6 +108,21 @@ class ContactTracker::Implementation {
     found_.push_back(found);
   }
 
+  struct Parting {
+    std::size_t own = 0;  // taxels before the other contact's
+    double share = 1.0;   // of the evidence that it needs
+  };
+
+  /// A contact that is there already is looked for before a new one.
+  [[nodiscard]] Parting part(const ForceFrame& force, std::span<std::uint32_t> taxels) {
+    if (holds_several(taxels)) {
+      const Parting held{gauge_.part(force, taxels, options.onset_sigma, StressedAreas::kHeldShare, held_),
+                         StressedAreas::kHeldShare};
+      if (held.own < taxels.size()) return held;
+    }
+    return {gauge_.part(force, taxels, options.onset_sigma, 1.0, {}), 1.0};
+  }
+
   /// More than one contact of the frame before was on these taxels.
   [[nodiscard]] bool holds_several(std::span<const std::uint32_t> taxels) const {
     return std::count_if(held_.begin(), held_.end(), [&](std::uint32_t held) {
@@ -116,10 +130,12 @@ class ContactTracker::Implementation {
            }) > 1;
   }
 
-  /// The patches of two contacts do not overlap; those found on the parts of an elongated one do, near each other.
+  /// The other one stands out of all that the first one's taxels differ by from its patch, and their patches do not
+  /// overlap; those found on the parts of an elongated one do, near each other.
   [[nodiscard]] bool are_apart(const ForceFrame& force, std::span<const std::uint32_t> one,
                                std::span<const std::uint32_t> other, double share) {
     const Contact a = gauge_.measure(force, one, pressed_sigma(), nullptr);
+    if (!gauge_.stands_out(force, other.front(), options.onset_sigma, share)) return false;
     const Contact b = gauge_.measure(force, other, pressed_sigma(), nullptr);
     const double distance = std::hypot(a.position.x - b.position.x, a.position.y - b.position.y);
     return distance >= share * kPitchesApart * pitch_m_ ||

@@ -22,6 +22,7 @@ constexpr double kPriorRadiusPitches = 0.75;  // fingers and heels of hands on a
 constexpr float kPriorSigma = 0.6F;
 constexpr float kMismatchOfTaxel = 0.003F;  // what the shape of a real patch differs by from the model's
 constexpr float kMismatchOfPeak = 0.0005F;
+constexpr float kPlainMisfit = 2.0F;        // chi squared per degree of freedom, up to which noise explains a misfit
 constexpr float kMostShareOfOther = 0.35F;  // of a peak, that a contact without a valley before it can have
 constexpr double kLeastPitchesApart = 1.6;  // from this contact's centre to the strongest taxel of another
 constexpr float kLeastShareOfOther = 0.5F;  // of a taxel's force, that is not this contact's
@@ -49,6 +50,17 @@ double strength_on_cell(double pitch_m, double taxel_radius_m) {
   return 12.0 * std::pow(taxel_radius_m / pitch_m, 2);
 }
 
+/// [N^2]
+float square_of_residual(const PatchFit& fit, const FitTaxel& taxel) {
+  const PatchResponse::Row response = PatchResponse::of(fit.profile).row(fit.patch.log_radius);
+  const float dx = taxel.x - fit.patch.x;
+  const float dy = taxel.y - fit.patch.y;
+  const float distance = std::sqrt(dx * dx + dy * dy);
+  const float residual =
+      taxel.newtons - (distance < response.reach() ? fit.patch.newtons * response.share(distance) : 0.0F);
+  return residual * residual;
+}
+
 }  // namespace
 
 ContactGauge::ContactGauge(const ArrayDescription& array, std::optional<StripTable> strip)
@@ -73,6 +85,7 @@ ContactGauge::ContactGauge(const ArrayDescription& array, std::optional<StripTab
   }
   fit_taxels_.reserve(9 * kMostFitted);
   unexplained_.reserve(kMostFitted);
+  apart_.reserve(kMostFitted);
   PatchResponse::of(PatchProfile::hertz);
 }
 
@@ -87,6 +100,7 @@ Contact ContactGauge::measure(const ForceFrame& force, std::span<const std::uint
     correct(force, taxels, contact);
     return contact;
   }
+  contact.position = centre_of_mass(force, taxels, contact.position);
   if (const std::optional<Place> found = place(force, taxels, contact, expected)) {
     contact.position = found->position;
     contact.sigma_position_m = found->sigma;
@@ -186,6 +200,23 @@ void ContactGauge::find_moments(const ForceFrame& force, std::span<const std::ui
   contact.angle_rad = angle <= -std::numbers::pi / 2.0 ? std::numbers::pi / 2.0 : angle;
 }
 
+/// Each taxel weighs the root of its force times its signal. Of the forces alone, one that hardly stands out of the
+/// noise at the rim weighs what its law makes of that noise, which comes and goes; of the signals alone, what unlike
+/// taxels differ by. Saturated taxels have no signal: there it is that of the forces.
+PlaneVector ContactGauge::centre_of_mass(const ForceFrame& force, std::span<const std::uint32_t> taxels,
+                                         PlaneVector of_forces) const {
+  double sum = 0.0;
+  PlaneVector first;
+  for (const std::uint32_t taxel : taxels) {
+    const double weight = std::sqrt(force.newtons[taxel] * force.signal_to_noise[taxel]);
+    sum += weight;
+    first.x += weight * centre(taxel).x;
+    first.y += weight * centre(taxel).y;
+  }
+  if (!std::isfinite(sum)) return of_forces;
+  return {first.x / sum, first.y / sum};
+}
+
 std::optional<ContactGauge::Place> ContactGauge::look_up(const ForceFrame& force,
                                                          std::span<const std::uint32_t> taxels) const {
   if (taxels.size() > kSmall) return {};
@@ -255,33 +286,80 @@ void ContactGauge::add_taxel(const ForceFrame& force, std::uint32_t taxel) {
 }
 
 std::size_t ContactGauge::part(const ForceFrame& force, std::span<std::uint32_t> taxels, double onset_sigma,
-                               double share) {
+                               double share, std::span<const std::uint32_t> held) {
   if (!fit_) return taxels.size();
   unexplained_.clear();
+  for (const std::uint32_t taxel : taxels) {
+    if (stands_out(force, taxel, onset_sigma, share, 0.0F)) unexplained_.push_back(taxel);
+  }
+  const auto seed = held.empty()
+                        ? unexplained_.begin()
+                        : std::find_first_of(unexplained_.begin(), unexplained_.end(), held.begin(), held.end());
+  if (seed == unexplained_.end()) return taxels.size();
+  std::iter_swap(unexplained_.begin(), seed);
+  keep_what_hangs_together(unexplained_);
+  apart_.clear();
   std::size_t explained = 0;
   for (const std::uint32_t taxel : taxels) {
-    if (is_explained(force, taxel, onset_sigma, share)) {
+    if (std::find(unexplained_.begin(), unexplained_.end(), taxel) == unexplained_.end()) {
       taxels[explained++] = taxel;
     } else {
-      unexplained_.push_back(taxel);
+      apart_.push_back(taxel);
     }
   }
-  std::copy(unexplained_.begin(), unexplained_.end(), taxels.begin() + static_cast<std::ptrdiff_t>(explained));
+  std::copy(apart_.begin(), apart_.end(), taxels.begin() + static_cast<std::ptrdiff_t>(explained));
   return explained;
 }
 
+/// With the first of them.
+void ContactGauge::keep_what_hangs_together(std::vector<std::uint32_t>& taxels) const {
+  std::size_t kept = 1;
+  for (std::size_t k = 0; k < kept; ++k) {
+    for (std::size_t other = kept; other < taxels.size(); ++other) {
+      if (are_neighbours(taxels[k], taxels[other])) std::swap(taxels[kept++], taxels[other]);
+    }
+  }
+  taxels.resize(kept);
+}
+
+bool ContactGauge::are_neighbours(std::size_t a, std::size_t b) const noexcept {
+  const std::size_t rows = std::max(a / cols_, b / cols_) - std::min(a / cols_, b / cols_);
+  const std::size_t cols = std::max(a % cols_, b % cols_) - std::min(a % cols_, b % cols_);
+  return rows <= 1 && cols <= 1;
+}
+
+bool ContactGauge::stands_out(const ForceFrame& force, std::uint32_t taxel, double onset_sigma, double share) const {
+  return !fit_ || stands_out(force, taxel, onset_sigma, share, scatter_of_weak_taxels());
+}
+
 /// What another contact presses is weak against this one's peak, or there would be a valley.
-bool ContactGauge::is_explained(const ForceFrame& force, std::uint32_t taxel, double onset_sigma, double share) const {
+bool ContactGauge::stands_out(const ForceFrame& force, std::uint32_t taxel, double onset_sigma, double share,
+                              float scatter) const {
   const float newtons = force.newtons[taxel];
-  const float sigma = force.sigma_newtons[taxel];
-  if (!(newtons < kMostShareOfOther * peak_newtons_) || !std::isfinite(sigma)) return true;
+  const float sigma = std::hypot(force.sigma_newtons[taxel], scatter);
+  if (!is_weak(newtons) || !std::isfinite(sigma)) return false;
   const double dx = places_[taxel].x - places_[origin_taxel_].x - fit_->patch.x;
   const double dy = places_[taxel].y - places_[origin_taxel_].y - fit_->patch.y;
   const double distance = std::sqrt(dx * dx + dy * dy);
-  if (taxel_radius_m_ * distance < kLeastPitchesApart * std::min(row_pitch_m_, col_pitch_m_)) return true;
+  if (taxel_radius_m_ * distance < share * kLeastPitchesApart * std::min(row_pitch_m_, col_pitch_m_)) return false;
   const PatchResponse::Row response = PatchResponse::of(fit_->profile).row(fit_->patch.log_radius);
   const float expected = fit_->patch.newtons * response.share(static_cast<float>(distance));
-  return newtons - expected < share * std::max<double>(kLeastShareOfOther * newtons, onset_sigma * sigma);
+  return newtons - expected >= share * std::max<double>(kLeastShareOfOther * newtons, onset_sigma * sigma);
+}
+
+bool ContactGauge::is_weak(float newtons) const noexcept {
+  return newtons < kMostShareOfOther * peak_newtons_;
+}
+
+float ContactGauge::scatter_of_weak_taxels() const {
+  float squares = 0.0F;
+  float count = 0.0F;
+  for (const FitTaxel& taxel : fit_taxels_) {
+    if (!is_weak(taxel.newtons)) continue;
+    squares += square_of_residual(*fit_, taxel);
+    count += 1.0F;
+  }
+  return std::sqrt(squares / std::max(count, 1.0F));
 }
 
 Patch ContactGauge::start_at(PlaneVector place, double radius_m, double newtons) const {
@@ -310,7 +388,8 @@ ContactGauge::Place ContactGauge::blend(const Place& of_fit, const Contact& cont
   const auto variance = [&](const PlaneVector& sigma) {  // along the axes that the taxels tell
     return (cols_ > 1 ? sigma.x * sigma.x : 0.0) + (rows_ > 1 ? sigma.y * sigma.y : 0.0);
   };
-  const double ratio = variance(of_fit.sigma) / std::max(variance(sigma_mass), std::numeric_limits<double>::min());
+  const double ratio =
+      misfit_ * variance(of_fit.sigma) / std::max(variance(sigma_mass), std::numeric_limits<double>::min());
   const double fading = (static_cast<double>(kMostFitted + 1) - contact.taxels) / kFading;
   const double share = std::min(1.0, fading) / (1.0 + ratio * ratio);  // of the fit
   const auto place = [&](double fitted, double other) { return other + share * (fitted - other); };
@@ -325,11 +404,27 @@ ContactGauge::Place ContactGauge::blend(const Place& of_fit, const Contact& cont
   return mean;
 }
 
+/// Where the patch leaves more than noise explains, every taxel differs by something beside its noise: the material is
+/// uneven, or the patch not round. Else the taxels of the least noise, at the rim, would place it alone.
+void ContactGauge::add_mismatch(const PatchFit& fit) {
+  float squares = 0.0F;
+  for (const FitTaxel& taxel : fit_taxels_) squares += square_of_residual(fit, taxel);
+  const float variance = (1.0F - kPlainMisfit / fit.misfit) * squares / static_cast<float>(fit_taxels_.size());
+  for (FitTaxel& taxel : fit_taxels_) taxel.weight /= std::sqrt(1.0F + variance * taxel.weight * taxel.weight);
+}
+
 std::optional<ContactGauge::Place> ContactGauge::fit(std::span<const std::uint32_t> taxels, const Patch& start,
                                                      PatchProfile profile) {
   const PatchProfile second = profile == PatchProfile::hertz ? PatchProfile::flat : PatchProfile::hertz;
-  const PatchFit one = fit_patch(fit_taxels_, profile, start, prior_);
-  const PatchFit other = fit_patch(fit_taxels_, second, one.patch, prior_);
+  PatchFit one = fit_patch(fit_taxels_, profile, start, prior_);
+  PatchFit other = fit_patch(fit_taxels_, second, one.patch, prior_);
+  const PatchFit& first = one.chi_squared <= other.chi_squared ? one : other;
+  misfit_ = std::max(1.0F, first.misfit / kPlainMisfit);
+  if (misfit_ > 1.0) {
+    add_mismatch(first);
+    one = fit_patch(fit_taxels_, profile, one.patch, prior_);
+    other = fit_patch(fit_taxels_, second, other.patch, prior_);
+  }
   const PatchFit& better = one.chi_squared <= other.chi_squared ? one : other;
   const PatchFit mean =
       taxels.size() <= kSmall ? mean_over_radii(fit_taxels_, better, prior_) : mean_of_profiles(one, other);

@@ -34,12 +34,17 @@ class ContactGauge {
   /// Of the contact measured last.
   [[nodiscard]] PatchProfile profile() const noexcept { return fit_ ? fit_->profile : PatchProfile::hertz; }
 
-  /// Of the taxels measured last, those that the patch found does not explain are put last, both parts by falling
-  /// force; returns how many it does explain. A weak contact beside a strong one makes no valley, but leaves such
+  /// Of the taxels measured last, those that the patch found does not explain and that hang together are put last, both
+  /// parts by falling force; returns how many stay. A weak contact beside a strong one makes no valley, but leaves such
   /// taxels. `onset_sigma`: standard deviations of its force, material included, by which a taxel must stand out of the
-  /// patch; `share`: of all that is asked of them, less than 1 where several contacts are known already.
+  /// patch; `share`: of all that is asked of them. `held`: the taxels of contacts that are there, one of which must be
+  /// among those put last; where empty, the strongest that is unexplained.
   [[nodiscard]] std::size_t part(const ForceFrame& force, std::span<std::uint32_t> taxels, double onset_sigma,
-                                 double share);
+                                 double share, std::span<const std::uint32_t> held);
+
+  /// Whether `taxel` stands out of the contact measured last, to which it does not belong: by so many standard
+  /// deviations of its force and of what the weak taxels of that contact differ by from its patch.
+  [[nodiscard]] bool stands_out(const ForceFrame& force, std::uint32_t taxel, double onset_sigma, double share) const;
 
  private:
   struct Place {
@@ -50,6 +55,8 @@ class ContactGauge {
 
   void sum_forces(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
   void find_moments(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
+  [[nodiscard]] PlaneVector centre_of_mass(const ForceFrame& force, std::span<const std::uint32_t> taxels,
+                                           PlaneVector of_forces) const;
   [[nodiscard]] std::optional<Place> place(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                            const Contact& contact, const ExpectedContact* expected);
   /// Puts a contact on a strip to the learned position.
@@ -66,7 +73,13 @@ class ContactGauge {
   [[nodiscard]] std::optional<Place> look_up(const ForceFrame& force, std::span<const std::uint32_t> taxels) const;
   void gather(const ForceFrame& force, std::span<const std::uint32_t> taxels);
   void add_taxel(const ForceFrame& force, std::uint32_t taxel);
-  [[nodiscard]] bool is_explained(const ForceFrame& force, std::uint32_t taxel, double onset_sigma, double share) const;
+  void add_mismatch(const PatchFit& fit);
+  void keep_what_hangs_together(std::vector<std::uint32_t>& taxels) const;
+  [[nodiscard]] bool are_neighbours(std::size_t a, std::size_t b) const noexcept;
+  [[nodiscard]] bool stands_out(const ForceFrame& force, std::uint32_t taxel, double onset_sigma, double share,
+                                float scatter) const;
+  [[nodiscard]] bool is_weak(float newtons) const noexcept;
+  [[nodiscard]] float scatter_of_weak_taxels() const;
   [[nodiscard]] PlaneVector centre(std::size_t taxel) const noexcept {
     const std::size_t row = taxel / cols_;
     return {static_cast<double>(taxel - row * cols_) * col_pitch_m_, static_cast<double>(row) * row_pitch_m_};
@@ -86,7 +99,9 @@ class ContactGauge {
   float peak_newtons_ = 0.0F;
   float pressed_sigma_ = 0.0F;
   std::optional<PatchFit> fit_;  // of the area measured last
+  double misfit_ = 1.0;          // of its first fit, over what noise explains; at least 1
   std::vector<std::uint32_t> unexplained_;
+  std::vector<std::uint32_t> apart_;
   std::vector<PlaneVector> places_;  // of the taxels, in radii of a taxel
   std::vector<FitTaxel> fit_taxels_;
   std::vector<std::uint32_t> visited_;  // [rows + 2, cols + 2]: the last area that looked at a taxel

@@ -58,7 +58,9 @@ void StressedAreas::collect_one(const ForceFrame& force, std::size_t taxel, floa
   const bool has_force = !std::isnan(newtons);
   const float value = has_force ? newtons : bridged_newtons(force, taxel);
   if (value <= 0.0F) return;
-  pressed_.push_back({value, std::isfinite(noise) ? noise : 0.0F, static_cast<std::uint32_t>(taxel), 0, has_force});
+  const float signal = has_force ? force.signal_to_noise[taxel] : 0.0F;
+  pressed_.push_back(
+      {value, std::isfinite(noise) ? noise : 0.0F, signal, static_cast<std::uint32_t>(taxel), 0, has_force});
 }
 
 float StressedAreas::bridged_newtons(const ForceFrame& force, std::size_t taxel) const noexcept {
@@ -105,7 +107,7 @@ void StressedAreas::grow(std::span<const std::uint32_t> held) {
 
 void StressedAreas::begin_area(Pressed& pressed, std::span<const std::uint32_t> held) {
   pressed.peak = static_cast<std::int32_t>(peaks_.size());
-  peaks_.push_back({pressed.newtons, pressed.sigma, pressed.peak, nearest(pressed.taxel, held), 0, 0});
+  peaks_.push_back({pressed.newtons, pressed.sigma, pressed.signal, pressed.peak, nearest(pressed.taxel, held), 0, 0});
 }
 
 void StressedAreas::meet(std::int32_t a, std::int32_t b, const Pressed& valley) {
@@ -119,7 +121,8 @@ void StressedAreas::meet(std::int32_t a, std::int32_t b, const Pressed& valley) 
   const float scale = are_held ? kHeldShare : 1.0F;
   const float depth = low.newtons - valley.newtons;
   const float noise = std::sqrt(low.sigma * low.sigma + valley.sigma * valley.sigma);
-  const bool is_valley = depth >= scale * kValleySigma * noise && depth >= scale * kValleyShare * low.newtons;
+  const bool is_valley = depth >= scale * kValleySigma * noise && depth >= scale * kValleyShare * low.newtons &&
+                         valley.signal < low.signal;
   if (overlapping_ || !is_valley) low.higher = higher;
 }
 

@@ -15,7 +15,8 @@ namespace dermis::fusion {
 ///
 /// Taxels are taken by falling force. One with no neighbour that was taken before begins an area, any other one joins
 /// that of its strongest neighbour. Where two areas meet, they become one unless the lower peak stands out of the
-/// meeting point by noise (kValleySigma) and by a share of itself (kValleyShare); both count half (kHeldShare)
+/// meeting point by noise (kValleySigma) and by a share of itself (kValleyShare), and shows a higher signal, too: a
+/// valley of the forces alone may be what unlike taxels were calibrated to. The first two count half (kHeldShare)
 /// between two areas that hold a contact each already. Taxels without force carry the lower of two opposite neighbours,
 /// so that a dead line does not cut what lies across it; they are in no area.
 class StressedAreas {
@@ -38,6 +39,7 @@ class StressedAreas {
   struct Pressed {
     float newtons = 0.0F;
     float sigma = 0.0F;  // 0 where it is not finite
+    float signal = 0.0F;
     std::uint32_t taxel = 0;
     std::int32_t peak = 0;  // of its area: index into peaks_
     bool has_force = false;
@@ -45,6 +47,7 @@ class StressedAreas {
   struct Peak {
     float newtons = 0.0F;
     float sigma = 0.0F;
+    float signal = 0.0F;
     std::int32_t higher = 0;  // that took this one over; itself where none did
     std::int32_t held = 0;    // index into held, kNone
     std::uint32_t count = 0;

@@ -94,7 +94,7 @@ class Examination::Implementation {
     last_time_ = raw.time;
     follow_temperature(pipeline.conditioned());
     follow(pipeline.line_faults().faults(), frame, model_.array, counted_.faults);
-    missing_.add(pipeline.conditioned());
+    missing_.add(raw, pipeline.conditioned());
     const auto& taxels = pipeline.conditioned().taxels;
     saturated_ += static_cast<std::size_t>(std::count(taxels.begin(), taxels.end(), TaxelStatus::saturated));
     if (has(conductance.status, FrameStatus::not_converged)) {
@@ -113,7 +113,10 @@ class Examination::Implementation {
     const std::optional<double> noise = noise_.ratio();
     if (noise) diagnosis.noise_counts = *noise * model_.array.readout.adc_noise_counts;
     diagnosis.saturated_share = saturated_share();
-    if (missing_.any()) diagnosis.missing_readings = missing_.describe();
+    if (missing_.any()) {
+      diagnosis.missing_readings = missing_.describe();
+      if (const auto range = missing_.describe_range()) diagnosis.missing_readings += "; " + *range;
+    }
     diagnosis.offset_drift = offsets_.drift();
     diagnosis.blind_lines = blind_lines(pipeline.line_faults(), model_.array);
     diagnosis.findings = findings_of(diagnosis, model_);

@@ -15,9 +15,9 @@ Result<Nanos> time_of_frame(const std::string& place, std::size_t index, double 
 }
 
 void tell_cut(const ImportOptions& options, const std::string& place, std::size_t frames) {
-  if (!options.notice) return;
-  options.notice(place + ": is cut off; the " + std::to_string(frames) +
-                 (frames == 1 ? " frame before is read" : " frames before are read"));
+  if (!options.loss) return;
+  options.loss(place + ": is cut off; the " + std::to_string(frames) +
+               (frames == 1 ? " frame before is read" : " frames before are read"));
 }
 
 }  // namespace dermis::importers

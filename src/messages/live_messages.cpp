@@ -60,6 +60,10 @@ void write_contact(CdrWriter& writer, const SuitContact& placed) {
   write_vector(writer, placed.velocity);
 }
 
+void write_taxel(CdrWriter& writer, std::optional<std::uint32_t> taxel) {
+  writer.write(taxel.value_or(std::numeric_limits<std::uint32_t>::max()));
+}
+
 void write_array_statistics(CdrWriter& writer, const ArrayStatistics& array) {
   writer.write_text(array.name);
   write_bool(writer, array.ended);
@@ -137,6 +141,7 @@ void encode_statistics(const Statistics& statistics, std::string_view frame_id, 
   writer.write(statistics.recording_frames);
   writer.write(statistics.clients);
   writer.write(statistics.client_drops);
+  writer.write(statistics.recording_left_out);
 }
 
 void encode_calibration_state(const CalibrationState& state, std::string_view frame_id,
@@ -154,8 +159,11 @@ void encode_calibration_state(const CalibrationState& state, std::string_view fr
   const std::span<std::uint8_t> presses = writer.write_bytes(state.taxel_presses.size());
   std::copy(state.taxel_presses.begin(), state.taxel_presses.end(), presses.begin());
   writer.write(static_cast<std::uint8_t>(state.hint));
-  writer.write(state.pressed_taxel.value_or(std::numeric_limits<std::uint32_t>::max()));
+  write_taxel(writer, state.pressed_taxel);
   writer.write(state.unpressed_relative_error);
+  write_taxel(writer, state.together_with);
+  writer.write(state.together_reading);
+  write_taxel(writer, state.missing_taxel);
 }
 
 void encode_diagnostics(std::span<const Diagnosis> diagnoses, Nanos time, std::string_view frame_id,

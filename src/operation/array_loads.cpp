@@ -48,6 +48,8 @@ Result<ArrayLoads> ArrayLoads::open(const ArrayLoadInput& input) {
     if (!work) return work.error();
     source.work_.emplace(*std::move(work));
     options.array = &source.work_->model.array;
+    source.troubles_.emplace(*options.array, input.from);
+    source.loss_ = options.loss;
     if (input.tare) source.work_->pipeline.drift().tare();
   } else if (input.tare) {
     source.unloaded_.emplace();
@@ -62,6 +64,7 @@ Result<ArrayLoads> ArrayLoads::open(const ArrayLoadInput& input) {
 
 Result<bool> ArrayLoads::next() {
   Result<bool> more = frames_->next(raw_);
+  if (more && !*more) tell_loss();
   if (!more || !*more) return more;
   work_ ? process_forces() : process_readings();
   for (float& load : loads_) load = !is_tare_ && std::isfinite(load) ? std::max(load, 0.0F) : 0.0F;
@@ -70,6 +73,7 @@ Result<bool> ArrayLoads::next() {
 
 void ArrayLoads::process_forces() {
   work_->pipeline.process(raw_, force_);
+  troubles_->add(raw_, force_, work_->pipeline, frames_.get());
   is_tare_ = work_->pipeline.drift().taring();
   loads_ = force_.newtons;
 }
@@ -78,6 +82,11 @@ void ArrayLoads::process_readings() {
   loads_ = raw_.counts;
   is_tare_ = unloaded_ && unloaded_->add(raw_);
   if (unloaded_ && !is_tare_) unloaded_->subtract_from(loads_);
+}
+
+void ArrayLoads::tell_loss() {
+  if (!troubles_ || !loss_) return;
+  if (const Status verdict = troubles_->verdict(); !verdict) loss_(verdict.error().message);
 }
 
 std::optional<recognition::SensedArray> ArrayLoads::array() const {
@@ -90,9 +99,7 @@ std::optional<recognition::SensedArray> ArrayLoads::array() const {
 Result<HeldLoads> HeldLoads::open(const ArrayLoadInput& input) {
   Result<ArrayLoads> array = ArrayLoads::open(input);
   if (!array) return array.error();
-  const Result<bool> has_next = array->next();
-  if (!has_next) return has_next.error();
-  if (!*has_next) return bad_input(input.from + ": has no frame");
+  if (const Result<bool> has_frame = array->next(); !has_frame) return has_frame.error();
   return HeldLoads(*std::move(array), input.tare);
 }
 

@@ -32,6 +32,7 @@ double largest_of(const std::vector<double>& values) {
 Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, const std::string& model,
                                                    sources::SourceOptions options) {
   std::unique_ptr<ArrayView> view(new ArrayView());
+  view->from_ = from;
   if (!model.empty()) {
     Result<ModelAtWork> work = ModelAtWork::read(model);
     if (!work) return work.error();
@@ -41,7 +42,6 @@ Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, cons
   Result<std::unique_ptr<FrameSource>> source = sources::open_source(from, options);
   if (!source) return source.error();
   view->source_ = *std::move(source);
-  view->from_ = from;
   if (const Status described = view->describe(); !described) return described.error();
   return view;
 }
@@ -49,6 +49,7 @@ Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, cons
 void ArrayView::use(ModelAtWork work) {
   work_.emplace(std::move(work));
   tracker_.emplace(work_->model.array, fusion::ContactOptions{}, work_->model.strip);
+  troubles_.emplace(work_->model.array, from_);
 }
 
 Status ArrayView::set_array(const ArrayDescription& array) {
@@ -80,6 +81,7 @@ Result<bool> ArrayView::next() {
   if (!more || !*more) return more;
   if (work_) {
     work_->pipeline.process(raw_, force_);
+    troubles_->add(raw_, force_, work_->pipeline, source_.get());
     tracker_->process(force_, report_);
     values_.assign(force_.newtons.begin(), force_.newtons.end());
   } else {

@@ -13,6 +13,7 @@
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/content_hash.hpp"
 #include "dermis/files/forces_csv.hpp"
+#include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/recording.hpp"
@@ -20,39 +21,55 @@
 namespace dermis::operation {
 namespace {
 
-/// Frames into a recording, each with its forces.
-class RecordingWithForces final : public FrameSink {
+/// Writes frames with the forces that a pipeline makes of them. What is complete is kept though most frames may have
+/// none, but commit() then fails.
+class ForceSink : public FrameSink {
  public:
-  RecordingWithForces(pipeline::Pipeline pipeline, std::unique_ptr<recordings::RecordingWriter> recording)
-      : pipeline_(std::move(pipeline)), recording_(std::move(recording)) {}
+  ForceSink(const FrameOutput& output, pipeline::Pipeline pipeline)
+      : pipeline_(std::move(pipeline)), troubles_(output.model->array, output.path) {}
 
-  Status write(const RawFrame& frame) override {
+  Status write(const RawFrame& frame) final {
     pipeline_.process(frame, force_);
-    return recording_->write(frame, force_);
+    troubles_.add(frame, force_, pipeline_);
+    return write(frame, force_);
   }
-  Status commit() override { return recording_->commit(); }
+  Status commit() final {
+    if (Status committed = commit_all(); !committed) return committed;
+    return troubles_.verdict();
+  }
 
  private:
+  virtual Status write(const RawFrame& frame, const ForceFrame& force) = 0;
+  virtual Status commit_all() = 0;
+
   pipeline::Pipeline pipeline_;
-  std::unique_ptr<recordings::RecordingWriter> recording_;
+  pipeline::FrameTroubles troubles_;
   ForceFrame force_;
 };
 
-class ForcesOnly final : public FrameSink {
+class RecordingWithForces final : public ForceSink {
  public:
-  ForcesOnly(pipeline::Pipeline pipeline, files::ForcesCsvWriter forces)
-      : pipeline_(std::move(pipeline)), forces_(std::move(forces)) {}
-
-  Status write(const RawFrame& frame) override {
-    pipeline_.process(frame, force_);
-    return forces_.write(force_);
-  }
-  Status commit() override { return forces_.commit(); }
+  RecordingWithForces(const FrameOutput& output, pipeline::Pipeline pipeline,
+                      std::unique_ptr<recordings::RecordingWriter> recording)
+      : ForceSink(output, std::move(pipeline)), recording_(std::move(recording)) {}
 
  private:
-  pipeline::Pipeline pipeline_;
+  Status write(const RawFrame& frame, const ForceFrame& force) override { return recording_->write(frame, force); }
+  Status commit_all() override { return recording_->commit(); }
+
+  std::unique_ptr<recordings::RecordingWriter> recording_;
+};
+
+class ForcesOnly final : public ForceSink {
+ public:
+  ForcesOnly(const FrameOutput& output, pipeline::Pipeline pipeline, files::ForcesCsvWriter forces)
+      : ForceSink(output, std::move(pipeline)), forces_(std::move(forces)) {}
+
+ private:
+  Status write(const RawFrame& /*frame*/, const ForceFrame& force) override { return forces_.write(force); }
+  Status commit_all() override { return forces_.commit(); }
+
   files::ForcesCsvWriter forces_;
-  ForceFrame force_;
 };
 
 Result<recordings::FrameNotes> notes_of(const FrameOutput& output) {
@@ -87,7 +104,8 @@ Result<std::unique_ptr<FrameSink>> create_live_recording(const FrameOutput& outp
       recordings::RecordingWriter::create(output.path, shape, options);
   if (!recording) return recording.error();
   if (!pipeline) return std::unique_ptr<FrameSink>(std::move(*recording));
-  return std::unique_ptr<FrameSink>(std::make_unique<RecordingWithForces>(std::move(*pipeline), std::move(*recording)));
+  return std::unique_ptr<FrameSink>(
+      std::make_unique<RecordingWithForces>(output, std::move(*pipeline), std::move(*recording)));
 }
 
 }  // namespace
@@ -126,7 +144,7 @@ Result<std::unique_ptr<FrameSink>> create_forces(const FrameOutput& output) {
   Result<files::ForcesCsvWriter> forces =
       files::ForcesCsvWriter::create(output.path, output.model->array.rows, output.model->array.cols);
   if (!forces) return forces.error();
-  return std::unique_ptr<FrameSink>(std::make_unique<ForcesOnly>(std::move(*pipeline), std::move(*forces)));
+  return std::unique_ptr<FrameSink>(std::make_unique<ForcesOnly>(output, std::move(*pipeline), std::move(*forces)));
 }
 
 }  // namespace dermis::operation

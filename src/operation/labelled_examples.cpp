@@ -72,7 +72,7 @@ Result<ReadRecording> read_recording(const ExampleOptions& options, const std::s
     times.push_back(source->time());
   }
   if (read.recording.tare_frames == times.size()) {
-    return bad_input(from + (times.empty() ? ": has no frame" : ": ends before it is tared, which takes 1 s"));
+    return bad_input(from + ": ends before it is tared, which takes 1 s");
   }
   read.troubles = source->describe_troubles();
   read.extra_names = source->extra_names();
@@ -86,8 +86,8 @@ Status check_alike(const ReadRecording& first, const ReadRecording& other) {
   const std::string& name = other.recording.name;
   const std::string& first_name = first.recording.name;
   if (other.recording.name == first.recording.name) {
-    return bad_input("--in: two recordings are called " + name +
-                     "; rename one, so that the labels can tell them apart");
+    return bad_field("in",
+                     "two recordings are called " + name + "; rename one, so that the labels can tell them apart");
   }
   if (text_of(other.layout) != text_of(first.layout)) {
     return bad_input(fmt::format("{}: has frames of {}, {} of {}; learn from recordings of the same arrays", name,
@@ -157,16 +157,16 @@ Result<LabelledFrames> read_recordings(const ExampleOptions& options, const sour
 }  // namespace
 
 Result<LabelledFrames> read_examples(const ExampleOptions& options, const sources::SourceOptions& source) {
-  if (!recognition::is_rate(options.data.rate_hz)) return bad_input("--rate: must be 0.001 to 1e6");
+  if (!recognition::is_rate(options.data.rate_hz)) return bad_field("rate", "must be 0.001 to 1e6");
   const bool has_plain = !options.data.frames.empty() || !options.data.arrays.empty();
   if (options.in.empty()) {
     if (!options.model.empty() || options.tare) {
-      return bad_input("--model and --tare are for --in; the frames of --frames are loads already");
+      return bad_field("frames", "are loads already; a model and tare are for recordings");
     }
     if (!options.data.frames.empty() && !options.data.arrays.empty()) return recognition::read_dataset(options.data);
-    return bad_input("name the examples: --in RECORDING..., or --frames FILE with --arrays FILE");
+    return bad_input("name the examples: recordings (in), or frames with their arrays (frames, arrays)");
   }
-  if (has_plain) return bad_input("--in: excludes --frames and --arrays; name one kind of examples");
+  if (has_plain) return bad_field("in", "excludes frames and arrays; name one kind of examples");
   return read_recordings(options, source);
 }
 

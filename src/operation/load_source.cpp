@@ -21,9 +21,9 @@ using recognition::Layout;
 Result<std::vector<ArrayLoadInput>> arrays_of_suit(const LoadInput& input, const std::string& example) {
   const Result<SuitDescription> suit = files::read_suit(input.model);
   if (!suit) {
-    return bad_input(fmt::format(
-        "{}: holds several arrays; name one, as '{}#{}', or give the suit.toml with their models as --model: {}",
-        input.from, input.from, example, suit.error().message));
+    return bad_input(
+        fmt::format("{}: holds several arrays; name one, as '{}#{}', or give the suit.toml that names their models: {}",
+                    input.from, input.from, example, suit.error().message));
   }
   std::vector<std::string> names = input.arrays;
   if (names.empty()) {
@@ -68,12 +68,12 @@ Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input) {
 
 Status check_loads(const Layout& examples, const std::string& classes, const std::string& model) {
   if (examples.has_forces() && model.empty()) {
-    return bad_input(classes + ": its classes were learned from forces; name the --model of the array");
+    return bad_input(classes + ": its classes were learned from forces; name the model of the array");
   }
   if (!examples.has_forces() && !model.empty()) {
-    return bad_input(classes +
-                     ": its classes were learned from readings, not from forces; leave --model out, or learn " +
-                     "them with --model");
+    return bad_input(
+        classes +
+        ": its classes were learned from readings, not from forces; leave the model out, or learn them with a model");
   }
   return Done{};
 }
@@ -98,7 +98,7 @@ Result<LoadSource> LoadSource::open(const LoadInput& input) {
     source.others_.push_back(*std::move(other));
   }
   if (input.extra.empty()) return source;
-  if (source.is_live()) return bad_input("--extra: '" + input.from + "' is a device; 'dermis record' it first");
+  if (source.is_live()) return bad_field("extra", "'" + input.from + "' is a device; 'dermis record' it first");
   Result<FurtherReadings> further = FurtherReadings::read(input.extra, recording_name(input.from));
   if (!further) return further.error();
   source.further_ = *std::move(further);

@@ -25,7 +25,7 @@ Result<std::unique_ptr<Operation>> open_operation(const std::string& model, cons
   options.array = &work->model.array;
   Result<std::unique_ptr<FrameSource>> frames = sources::open_source(from, options);
   if (!frames) return frames.error();
-  return std::make_unique<Operation>(Operation{*std::move(work), *std::move(frames)});
+  return std::make_unique<Operation>(Operation{*std::move(work), *std::move(frames), from});
 }
 
 }  // namespace dermis::operation

@@ -28,12 +28,11 @@ ArrayDescription array_of(const Layout& layout) {
 Status check_classes(const Classes& classes, const RecognitionInput& input) {
   if (classes.layout.extras > 0 && input.loads.extra.empty()) {
     return bad_input(input.classes + ": its classes need " + std::to_string(classes.layout.extras) +
-                     " further readings beside each frame; name their table, --extra, or learn classes without");
+                     " further readings beside each frame; name their table, or learn classes without");
   }
   if (Status checked = check_loads(classes.layout, input.classes, input.loads.model); !checked) return checked;
   if (classes.layout.rate_hz == 0.0 && input.rate_hz > 0.0) {
-    return bad_input("--rate: " + input.classes +
-                     " does not know the rate of its examples; learn its classes with --rate");
+    return bad_field("rate", input.classes + " does not know the rate of its examples; learn its classes with one");
   }
   return Done{};
 }
@@ -54,7 +53,7 @@ Layout layout_of(const LoadSource& source, const Classes& classes, double rate_h
 }  // namespace
 
 Result<SourceRecogniser> SourceRecogniser::open(const RecognitionInput& input) {
-  if (!recognition::is_rate(input.rate_hz)) return bad_input("--rate: must be 0.001 to 1e6");
+  if (!recognition::is_rate(input.rate_hz)) return bad_field("rate", "must be 0.001 to 1e6");
   Result<Classes> classes = recognition::read_classes(input.classes);
   if (!classes) return classes.error();
   if (Status checked = check_classes(*classes, input); !checked) return checked.error();

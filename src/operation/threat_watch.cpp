@@ -22,6 +22,7 @@ ThreatWatch::ThreatWatch(Operation& operation, threats::ThreatMonitor monitor, c
       stop_(stop),
       log_(std::move(log)),
       contacts_(operation.model.array, {}, operation.model.strip),
+      troubles_(operation.model.array, operation.from),
       thread_([this] { run(); }) {}
 
 ThreatWatch::~ThreatWatch() {
@@ -58,12 +59,13 @@ Status ThreatWatch::watch() {
     }
     if (is_over()) break;
   }
-  return Done{};
+  return troubles_.verdict();
 }
 
 /// Whether a threat began or ended. Who waits is told before anything is written.
 bool ThreatWatch::process() {
   operation_.pipeline.process(raw_, force_);
+  troubles_.add(raw_, force_, operation_.pipeline, operation_.frames.get());
   contacts_.process(force_, report_);
   if (!first_time_) first_time_ = force_.time;
   const bool changes = monitor_.process(force_, report_);

@@ -62,7 +62,7 @@ Result<std::vector<FramePicture>> animation_of(const PictureRange& range, ArrayV
   FramePicture shown = picture_of(view, view.raw().time - first);
   for (Nanos moment = range.from; moment < *range.to;) {
     if (pictures.size() == kMostPictures) {
-      return bad_input(fmt::format("--to: at most {} s are drawn", seconds_of(kMostPictures * kPictureTime)));
+      return bad_field("to", fmt::format("at most {} s are drawn", seconds_of(kMostPictures * kPictureTime)));
     }
     pictures.push_back(shown);
     moment += kPictureTime;

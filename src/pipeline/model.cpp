@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/pipeline/model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
@@ -197,12 +198,31 @@ fusion::StripTable get_strip(const SafetensorsFile& file, TensorReader& reader) 
   return strip;
 }
 
+/// Only where there is one: files without it stay as they always were.
+void put_memory(SafetensorsFile& file, const fusion::MemoryLaw& law) {
+  file.metadata["memory"] = "creep and hysteresis";
+  put<float>(file, "memory.creep", {law.creep.size()}, {law.creep.begin(), law.creep.end()});
+  put<float>(file, "memory.gap", {law.gap.size()}, {law.gap.begin(), law.gap.end()});
+}
+
+fusion::MemoryLaw get_memory(TensorReader& reader) {
+  fusion::MemoryLaw law;
+  std::vector<float> creep(law.creep.size());
+  std::vector<float> gap(law.gap.size());
+  reader.get("memory.creep", {law.creep.size()}, creep);
+  reader.get("memory.gap", {law.gap.size()}, gap);
+  std::copy(creep.begin(), creep.end(), law.creep.begin());
+  std::copy(gap.begin(), gap.end(), law.gap.begin());
+  return law;
+}
+
 bool is_consistent(const Model& model) {
   const std::size_t taxels = model.array.taxel_count();
   if (model.networks.taxel_count() != taxels || !model.networks.is_consistent()) return false;
   for (const LookUpTables& tables : model.baselines) {
     if (tables.taxel_count() != taxels || !tables.is_consistent()) return false;
   }
+  if (model.memory && !model.memory->is_consistent()) return false;
   const bool is_strip = (model.array.rows > 1) != (model.array.cols > 1);
   return !model.strip || (is_strip && model.strip->is_consistent());
 }
@@ -228,6 +248,7 @@ Status write_model(const std::string& path, const Model& model) {
   for (std::size_t index = 0; index < model.baselines.size(); ++index) {
     put_baseline(file, index, model.baselines[index]);
   }
+  if (model.memory) put_memory(file, *model.memory);
   if (model.strip) put_strip(file, *model.strip);
   return files::write_safetensors(path, file);
 }
@@ -262,6 +283,7 @@ Result<Model> read_model(const std::string& path) {
   for (std::size_t index = 0; index < baselines; ++index) {
     model.baselines.push_back(get_baseline(*file, index, taxels, reader));
   }
+  if (file->metadata.contains("memory")) model.memory = get_memory(reader);
   if (file->metadata.contains("strip.knots")) model.strip = get_strip(*file, reader);
   if (reader.first_error()) return bad_input(path + ": " + reader.first_error()->message);
   if (!is_consistent(model)) {

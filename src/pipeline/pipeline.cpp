@@ -70,7 +70,8 @@ compensation::UnloadedConductance unloaded(const fusion::ForceNetworks& networks
 
 Result<Pipeline> Pipeline::create(const Model& model) {
   if (Status valid = model.array.validate(); !valid) return valid.error();
-  if (model.networks.taxel_count() != model.array.taxel_count() || !model.networks.is_consistent()) {
+  const bool is_consistent = model.networks.is_consistent() && (!model.memory || model.memory->is_consistent());
+  if (model.networks.taxel_count() != model.array.taxel_count() || !is_consistent) {
     return bad_input("the model's networks do not fit its array, or hold values out of range");
   }
   Result<compensation::Compensator> compensator =
@@ -84,7 +85,9 @@ Pipeline::Pipeline(const Model& model, compensation::Compensator compensator)
       compensator_(std::move(compensator)),
       monitor_(model.array, model.networks.unloaded.offset_siemens),
       drift_({model.array.rows, model.array.cols}, unloaded(model.networks)),
-      fusion_(model.networks) {}
+      fusion_(model.networks) {
+  if (model.memory) memory_.emplace(*model.memory, model.networks.taxel_count());
+}
 
 void Pipeline::process(const RawFrame& raw, ForceFrame& force) noexcept {
   conditioner_.process(raw, conditioned_);           // unit 2: validated, supply divided out
@@ -95,6 +98,7 @@ void Pipeline::process(const RawFrame& raw, ForceFrame& force) noexcept {
   }
   drift_.process(conductance_);          // zero kept at zero
   fusion_.process(conductance_, force);  // unit 4: material and temperature fused to newtons
+  if (memory_) memory_->process(force);  // and what the material remembers
 }
 
 }  // namespace dermis::pipeline

@@ -37,14 +37,11 @@ std::vector<std::string> left_out(const Extras& extras, bool has_forces, const F
   return names;
 }
 
-Result<bool> holds_forces(const std::string& path, const ConversionOptions& options) {
+Result<bool> holds_forces(const std::string& path) {
   const RecordingPlace place = recording_place(path);
   if (const auto format = frame_format(place.path); !format || *format != FrameFormat::mcap) return false;
   const Result<RecordingInfo> info = recording_info(place.path);
   if (!info) return info.error();
-  if (!info->complete && options.notice) {
-    options.notice(path + ": was not written to its end; the frames that are there are converted");
-  }
   for (const RecordingTopic& topic : info->topics) {
     if (topic.type == messages::grid_type().name && topic.messages > 0) return true;
   }
@@ -59,18 +56,23 @@ Result<FrameNotes> notes_of(const std::string& path, const ArrayDescription* arr
   return notes;
 }
 
-/// All frames of `source`, of which `frame` is the first if there is one.
-Status copy(FrameSource& source, RawFrame& frame, bool has_frame, FrameSink& sink, const std::atomic<bool>* stop,
-            Extras& extras) {
-  while (has_frame) {
+/// How the frames are read: no rate is asked for that is written nowhere.
+FrameFileInput input_of(const ConversionOptions& options, FrameFormat in, FrameFormat out) {
+  FrameFileInput input = options.input;
+  if (!has_times(in) && !has_times(out) && !input.rate_hz) input.rate_hz = 1.0;
+  return input;
+}
+
+/// All frames of `source`, of which `frame` is the first.
+Status copy(FrameSource& source, RawFrame& frame, FrameSink& sink, const std::atomic<bool>* stop, Extras& extras) {
+  for (;;) {
     if (stop != nullptr && stop->load()) return failed("stopped; nothing is written");
     extras.add(frame);
     if (Status written = sink.write(frame); !written) return written;
     const Result<bool> more = source.next(frame);
     if (!more) return more.error();
-    has_frame = *more;
+    if (!*more) return sink.commit();
   }
-  return sink.commit();
 }
 
 }  // namespace
@@ -79,25 +81,22 @@ Result<std::vector<std::string>> convert_frames(const std::string& in, const std
                                                 const ConversionOptions& options) {
   const Result<FrameFormat> format = output_format(out);
   if (!format) return format.error();
-  FrameFileInput input = options.input;
-  input.notice = options.notice;
-  const Result<std::unique_ptr<FrameSource>> source = open_frames(in, input);
+  const Result<FrameFormat> in_format = recognise_frames(in);
+  if (!in_format) return in_format.error();
+  const Result<std::unique_ptr<FrameSource>> source = open_frames(in, input_of(options, *in_format, *format));
   if (!source) return source.error();
   const Result<FrameNotes> notes = notes_of(in, options.array);
   if (!notes) return notes.error();
-  const Result<bool> has_forces = holds_forces(in, options);
+  const Result<bool> has_forces = holds_forces(in);
   if (!has_forces) return has_forces.error();
 
   RawFrame frame;
-  const Result<bool> has_frame = (*source)->next(frame);
-  if (!has_frame) return has_frame.error();
-  const std::optional<FrameShape> shape = (*source)->shape();
-  if (!shape) return bad_input(in + ": has no frames, so that their shape is not known");
-  const Result<std::unique_ptr<FrameSink>> sink = create_frames(out, *shape, *notes);
+  if (const Result<bool> has_frame = (*source)->next(frame); !has_frame) return has_frame.error();
+  const Result<std::unique_ptr<FrameSink>> sink = create_frames(out, *(*source)->shape(), *notes);
   if (!sink) return sink.error();
   Extras extras;
-  extras.is_timed = !options.input.rate_hz;
-  if (Status copied = copy(**source, frame, *has_frame, **sink, options.stop, extras); !copied) return copied.error();
+  extras.is_timed = has_times(*in_format);
+  if (Status copied = copy(**source, frame, **sink, options.stop, extras); !copied) return copied.error();
   return left_out(extras, *has_forces, *notes, *format);
 }
 

@@ -53,12 +53,14 @@ void add(const RawFrame& frame, FrameFileInfo& info) {
 Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format,
                                      const std::optional<FrameShape>& shape) {
   const bool is_timed = has_times(format);
-  const Result<std::unique_ptr<FrameSource>> source =
-      open_frames(path, {.shape = shape, .rate_hz = is_timed ? std::nullopt : std::optional(1e3)});
+  FrameFileInfo info;
+  const Result<std::unique_ptr<FrameSource>> source = open_frames(
+      path, {.shape = shape, .rate_hz = is_timed ? std::nullopt : std::optional(1e3), .loss = [&](const std::string&) {
+               info.complete = false;
+             }});
   if (!source) return source.error();
   Result<FrameNotes> notes = read_frame_notes(path);
   if (!notes) return notes.error();
-  FrameFileInfo info;
   info.notes = std::move(*notes);
   info.shape = (*source)->shape();
   RawFrame frame;

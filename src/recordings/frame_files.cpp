@@ -28,22 +28,58 @@ Result<std::unique_ptr<Interface>> as(Result<std::unique_ptr<Opened>> opened) {
   return std::unique_ptr<Interface>(*std::move(opened));
 }
 
-Result<std::unique_ptr<FrameSource>> open_recording(const std::string& path, std::optional<FrameShape> shape) {
+/// A file that may have no frame, or not all that it was to have.
+class FrameFile final : public FrameSource {
+ public:
+  /// `loss`: told at the end of a recording that was not written to its own. Empty: it was.
+  FrameFile(std::string path, std::unique_ptr<FrameSource> frames, std::function<void(const std::string&)> loss)
+      : path_(std::move(path)), frames_(std::move(frames)), loss_(std::move(loss)) {}
+
+  Result<bool> next(RawFrame& frame) override {
+    Result<bool> more = frames_->next(frame);
+    if (!more) return more;
+    has_frame_ = has_frame_ || *more;
+    if (*more || std::exchange(has_ended_, true)) return more;
+    if (!has_frame_) return bad_input(path_ + ": has no frame");
+    if (loss_) {
+      loss_(path_ + ": was not written to its end, so that its last frames may be missing; 'dermis recover' makes it " +
+            "complete");
+    }
+    return more;
+  }
+
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return frames_->shape(); }
+  [[nodiscard]] SourceStatistics statistics() const override { return frames_->statistics(); }
+  [[nodiscard]] bool is_live() const override { return frames_->is_live(); }
+  [[nodiscard]] std::string place() const override { return frames_->place(); }
+
+ private:
+  std::string path_;
+  std::unique_ptr<FrameSource> frames_;
+  std::function<void(const std::string&)> loss_;
+  bool has_frame_ = false;
+  bool has_ended_ = false;
+};
+
+Result<std::unique_ptr<FrameSource>> open_recording(const std::string& path, const FrameFileInput& input) {
   const RecordingPlace place = recording_place(path);
   Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::open(place.path, place.array);
   if (!reader) return reader.error();
   const std::optional<FrameShape> found = (*reader)->shape();
-  if (shape && found && *found != *shape) {
-    return bad_input(path + ": has " + files::size_text(*found) + " taxels, the array is " + files::size_text(*shape));
+  if (input.shape && found && *found != *input.shape) {
+    return bad_input(path + ": has " + files::size_text(*found) + " taxels, the array is " +
+                     files::size_text(*input.shape));
   }
-  return as<FrameSource>(std::move(reader));
+  const bool is_complete = (*reader)->complete();
+  return std::unique_ptr<FrameSource>(
+      std::make_unique<FrameFile>(path, *std::move(reader), is_complete ? nullptr : input.loss));
 }
 
 /// Files of other systems.
 Result<std::unique_ptr<FrameSource>> open_import(const std::string& path, FrameFormat format,
                                                  const FrameFileInput& input) {
   const RecordingPlace place = recording_place(path);
-  const importers::ImportOptions options{input.shape, input.rate_hz, place.array, input.notice};
+  const importers::ImportOptions options{input.shape, input.rate_hz, place.array, input.notice, input.loss};
   if (format == FrameFormat::png_stack) return importers::open_png_stack(place.path, options);
   Result<std::unique_ptr<std::istream>> in = files::open_input(place.path);
   if (!in) return in.error();
@@ -61,7 +97,7 @@ Result<std::unique_ptr<FrameSource>> open_import(const std::string& path, FrameF
 Status check_rate(const std::string& path, FrameFormat format, const std::optional<double>& rate_hz) {
   if (has_times(format) || rate_hz) return Done{};
   const std::string nor = format == FrameFormat::text_matrix ? ", nor a header time_s,r0c0,..." : "";
-  return bad_input(path + ": has no times" + nor + ": give a rate, to 'dermis convert --rate HZ' or as 'file:" + path +
+  return bad_input(path + ": has no times" + nor + ": give a rate, to 'dermis convert' or as 'file:" + path +
                    "?rate=HZ'");
 }
 
@@ -75,20 +111,27 @@ Result<std::unique_ptr<FrameSink>> create_recording(const std::string& path, Fra
   return as<FrameSink>(RecordingWriter::create(path, shape, options));
 }
 
+Result<std::unique_ptr<FrameSource>> open_format(const std::string& path, FrameFormat format,
+                                                 const FrameFileInput& input) {
+  switch (format) {
+    case FrameFormat::hdf5: return as<FrameSource>(Hdf5FramesReader::open(path, input.shape));
+    case FrameFormat::wiresens: return as<FrameSource>(WiresensHdf5Reader::open(path, input.shape));
+    case FrameFormat::npy: return as<FrameSource>(files::NpyReader::open(path, {*input.rate_hz, input.shape}));
+    case FrameFormat::csv: return as<FrameSource>(files::FramesCsvReader::open(path, input.shape, input.loss));
+    default: return open_import(path, format, input);
+  }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_frames(const std::string& path, const FrameFileInput& input) {
   const Result<FrameFormat> format = recognise_frames(path);
   if (!format) return format.error();
   if (const Status valid = check_rate(path, *format, input.rate_hz); !valid) return valid.error();
-  switch (*format) {
-    case FrameFormat::mcap: return open_recording(path, input.shape);
-    case FrameFormat::hdf5: return as<FrameSource>(Hdf5FramesReader::open(path, input.shape));
-    case FrameFormat::wiresens: return as<FrameSource>(WiresensHdf5Reader::open(path, input.shape));
-    case FrameFormat::npy: return as<FrameSource>(files::NpyReader::open(path, {*input.rate_hz, input.shape}));
-    case FrameFormat::csv: return as<FrameSource>(files::FramesCsvReader::open(path, input.shape, input.notice));
-    default: return open_import(path, *format, input);
-  }
+  if (*format == FrameFormat::mcap) return open_recording(path, input);
+  Result<std::unique_ptr<FrameSource>> frames = open_format(path, *format, input);
+  if (!frames) return frames.error();
+  return std::unique_ptr<FrameSource>(std::make_unique<FrameFile>(path, *std::move(frames), nullptr));
 }
 
 Result<FrameNotes> read_frame_notes(const std::string& path) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "dermis/files/file_kind.hpp"
 #include "dermis/files/input.hpp"
 #include "dermis/files/text.hpp"
 #include "dermis/recordings/frame_files.hpp"
@@ -55,15 +56,22 @@ Result<FrameFormat> hdf5_format(const std::string& path) {
   return bad_input(path + ": has neither the dataset 'counts' (dermis) nor 'pressure' and 'frame_count' (WiReSens)");
 }
 
-/// The first word of a text that is there, without quotes.
-std::string first_word(const std::string& path) {
+/// Of a file that can be read from its beginning again; else nothing.
+std::string first_bytes(const std::string& path) {
   constexpr std::size_t kLooked = 4096;
-  constexpr std::string_view kBetween = " \t\r\n\",;";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return {};
   const Result<std::unique_ptr<std::istream>> in = files::open_input(path);
   if (!in) return {};
-  std::string text(kLooked, '\0');
-  (*in)->read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>((*in)->gcount()));
+  std::string bytes(kLooked, '\0');
+  (*in)->read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>((*in)->gcount()));
+  return bytes;
+}
+
+/// The first word of a text, without quotes.
+std::string first_word(std::string text) {
+  constexpr std::string_view kBetween = " \t\r\n\",;";
   if (text.starts_with(files::kByteOrderMark)) text.erase(0, files::kByteOrderMark.size());
   const std::size_t begin = std::min(text.find_first_not_of(kBetween), text.size());
   return text.substr(begin, std::min(text.find_first_of(kBetween, begin), text.size()) - begin);
@@ -71,14 +79,27 @@ std::string first_word(const std::string& path) {
 
 /// Exports of several systems have the endings .csv and .txt.
 FrameFormat text_format(const std::string& path, FrameFormat by_name) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return by_name;
-  const std::string word = first_word(path);
+  const std::string word = first_word(first_bytes(path));
   double number = 0.0;
   if (word == "DATA_TYPE") return FrameFormat::tekscan;
   if (word == "File:" || word == "FRAME") return FrameFormat::xsensor;
   if (files::parse_number(word, number)) return FrameFormat::text_matrix;
   return by_name;
+}
+
+/// What files of a format begin as; empty where they may begin as anything.
+std::string_view kind_of_format(FrameFormat format) {
+  switch (format) {
+    case FrameFormat::mcap: return files::kMcapKind;
+    case FrameFormat::hdf5:
+    case FrameFormat::wiresens: return files::kHdf5Kind;
+    case FrameFormat::npy: return files::kNpyKind;
+    case FrameFormat::npz: return files::kZipKind;
+    case FrameFormat::tekscan:
+    case FrameFormat::novel_lst:
+    case FrameFormat::text_matrix: return files::kTableKind;
+    default: return {};
+  }
 }
 
 }  // namespace
@@ -134,6 +155,10 @@ Result<FrameFormat> recognise_frames(const std::string& path) {
   const RecordingPlace place = recording_place(path);
   Result<FrameFormat> format = frame_format(place.path);
   if (!format) return format;
+  if (const std::string_view kind = kind_of_format(*format); !kind.empty()) {
+    if (const auto other = files::wrong_kind(first_bytes(place.path), kind))
+      return bad_input(place.path + ": " + *other);
+  }
   if (*format == FrameFormat::hdf5 || *format == FrameFormat::wiresens) return hdf5_format(place.path);
   if (*format == FrameFormat::csv || *format == FrameFormat::text_matrix) return text_format(place.path, *format);
   return format;

@@ -27,7 +27,7 @@ constexpr std::chrono::milliseconds kChunkTime{50};
 constexpr std::size_t kChunkBytes = std::size_t{1} << 20U;
 constexpr std::size_t kSuitChunkBytes = std::size_t{8} << 20U;  ///< Each chunk has an index of each topic.
 
-constexpr std::size_t kMostWaitingBytes = std::size_t{64} << 20U;  ///< For a disk that stalls; then write() waits.
+constexpr std::size_t kMostWaitingBytes = std::size_t{64} << 20U;  ///< For a disk that stalls.
 
 constexpr std::chrono::seconds kSynchronisePeriod{1};
 
@@ -52,6 +52,7 @@ struct WrittenArray {
   Topic raw{"raw", messages::image_type()};
   std::uint64_t frames = 0;
   std::uint64_t lost = 0;
+  std::uint32_t left_out = 0;  ///< Frames since the last one that is in the file.
   std::uint64_t log_time = 0;
 };
 
@@ -67,8 +68,8 @@ std::uint64_t log_time_of(Nanos time) {
 }
 
 void encode(WrittenArray& array, const RawFrame& frame, const ForceFrame* force_frame) {
+  assert(frame.counts.size() == array.description.shape.taxel_count());
   array.log_time = std::max(array.log_time, log_time_of(frame.time));
-  array.lost += frame.acquisition.lost_before;
   array.temperature.is_in_frame = frame.temperature_celsius.has_value();
   if (frame.temperature_celsius) {
     messages::encode_temperature(*frame.temperature_celsius, frame.time, array.frame_id, array.temperature.message);
@@ -105,14 +106,21 @@ class SuitRecordingWriter::Implementation {
 
   [[nodiscard]] Status write(std::size_t array, const RawFrame& frame, const ForceFrame* force_frame);
   [[nodiscard]] Status write(const RecordedEvent& event);
+  [[nodiscard]] Result<bool> try_write(std::size_t array, const RawFrame& frame);
+  [[nodiscard]] Result<bool> try_write(const RecordedEvent& event);
   [[nodiscard]] Status commit();
 
  private:
   void describe(const WrittenArray& array);
   void add(WrittenArray& array);
   void add(const RecordedEvent& event);
+  [[nodiscard]] std::size_t most_chunks() const { return kMostWaitingBytes / chunk_bytes_; }
   template <typename Written>
-  [[nodiscard]] Status add_to_chunk(Written& written);
+  [[nodiscard]] Status wait_and_add(Written& written);
+  template <typename Written>
+  [[nodiscard]] Result<bool> try_to_add(Written& written, std::size_t most_chunks);
+  template <typename Written>
+  void add_to_chunk(Written& written);
   void seal_chunk();
   void write_chunks(const std::stop_token& stop);
   [[nodiscard]] Status write_sealed();
@@ -249,32 +257,64 @@ Status SuitRecordingWriter::Implementation::write(std::size_t index, const RawFr
                                                   const ForceFrame* force_frame) {
   assert(index < arrays_.size());
   WrittenArray& array = arrays_[index];
-  assert(frame.counts.size() == array.description.shape.taxel_count());
   encode(array, frame, force_frame);
-  return add_to_chunk(array);
+  array.lost += frame.acquisition.lost_before;
+  return wait_and_add(array);
 }
 
 Status SuitRecordingWriter::Implementation::write(const RecordedEvent& event) {
-  return add_to_chunk(event);
+  return wait_and_add(event);
+}
+
+Result<bool> SuitRecordingWriter::Implementation::try_write(std::size_t index, const RawFrame& frame) {
+  assert(index < arrays_.size());
+  WrittenArray& array = arrays_[index];
+  if (array.left_out > 0) {
+    RawFrame after_gap = frame;
+    after_gap.acquisition.lost_before += array.left_out;
+    encode(array, after_gap, nullptr);
+  } else {
+    encode(array, frame, nullptr);
+  }
+  Result<bool> added = try_to_add(array, most_chunks());
+  const bool is_left_out = added && !*added;
+  array.lost += frame.acquisition.lost_before + (is_left_out ? 1 : 0);
+  array.left_out = is_left_out ? array.left_out + frame.acquisition.lost_before + 1 : 0;
+  return added;
+}
+
+Result<bool> SuitRecordingWriter::Implementation::try_write(const RecordedEvent& event) {
+  return try_to_add(event, 2 * most_chunks());
 }
 
 template <typename Written>
-Status SuitRecordingWriter::Implementation::add_to_chunk(Written& written) {
-  bool has_work = false;
-  {
-    std::unique_lock lock(mutex_);
-    room_.wait(lock, [this] { return !status_ || waiting_chunks_ < kMostWaitingBytes / chunk_bytes_; });
-    if (!status_) return status_;
-    add(written);
-    has_work = chunk_due_ == Clock::time_point::max();
-    if (has_work) chunk_due_ = Clock::now() + kChunkTime;
-    if (mcap_->chunk_bytes() >= chunk_bytes_) {
-      seal_chunk();
-      has_work = true;
-    }
+Status SuitRecordingWriter::Implementation::wait_and_add(Written& written) {
+  std::unique_lock lock(mutex_);
+  room_.wait(lock, [this] { return !status_ || waiting_chunks_ < most_chunks(); });
+  if (!status_) return status_;
+  add_to_chunk(written);
+  return Done{};
+}
+
+template <typename Written>
+Result<bool> SuitRecordingWriter::Implementation::try_to_add(Written& written, std::size_t most_chunks) {
+  const std::scoped_lock lock(mutex_);
+  if (!status_) return status_.error();
+  if (waiting_chunks_ >= most_chunks) return false;
+  add_to_chunk(written);
+  return true;
+}
+
+template <typename Written>
+void SuitRecordingWriter::Implementation::add_to_chunk(Written& written) {
+  add(written);
+  bool has_work = chunk_due_ == Clock::time_point::max();
+  if (has_work) chunk_due_ = Clock::now() + kChunkTime;
+  if (mcap_->chunk_bytes() >= chunk_bytes_) {
+    seal_chunk();
+    has_work = true;
   }
   if (has_work) work_.notify_one();
-  return Done{};
 }
 
 Status SuitRecordingWriter::Implementation::commit() {
@@ -318,6 +358,14 @@ Status SuitRecordingWriter::write(std::size_t array, const RawFrame& frame, cons
 
 Status SuitRecordingWriter::write(const RecordedEvent& event) {
   return implementation_->write(event);
+}
+
+Result<bool> SuitRecordingWriter::try_write(std::size_t array, const RawFrame& frame) {
+  return implementation_->try_write(array, frame);
+}
+
+Result<bool> SuitRecordingWriter::try_write(const RecordedEvent& event) {
+  return implementation_->try_write(event);
 }
 
 Status SuitRecordingWriter::commit() {

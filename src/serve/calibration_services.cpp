@@ -45,11 +45,6 @@ Status write_frames(const std::string& path, const ArrayDescription& array, cons
   return (*writer)->commit();
 }
 
-sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time) {
-  const bool press = state.stage == GuideStage::pressing && state.hint != GuideHint::release;
-  return {press, state.hint == GuideHint::other_taxel, state.taxel, state.weight_n, state.together_with, hold_time};
-}
-
 /// What `dermis calibrate` needs to make the model again, or a better one.
 Status write_data(const std::string& path, const ArrayDescription& array, const GuidedData& data) {
   if (Status written = files::write_array(path + ".array.toml", array); !written) return written;
@@ -58,6 +53,13 @@ Status write_data(const std::string& path, const ArrayDescription& array, const 
 }
 
 }  // namespace
+
+sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time) {
+  const bool press = state.stage == GuideStage::pressing && state.hint != GuideHint::release;
+  const bool is_wrong =
+      state.hint == GuideHint::other_taxel || state.hint == GuideHint::several || state.hint == GuideHint::one_of_two;
+  return {press, is_wrong, state.taxel, state.weight_n, state.together_with, hold_time};
+}
 
 CalibrationServices::CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model,
                                          std::shared_ptr<sources::GuideVoice> guide_voice)

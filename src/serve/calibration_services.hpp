@@ -35,6 +35,9 @@ struct CalibrationProgress {
   calibration::GuideState state;  ///< Stage `none` after a calibration was cancelled.
 };
 
+/// What a calibration asks for, as it is said to a simulated hand.
+[[nodiscard]] sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time);
+
 /// The services /calibration/... of docs/stream.md: one guided calibration at a time. Thread-safe.
 class CalibrationServices {
  public:

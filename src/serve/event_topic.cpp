@@ -19,8 +19,8 @@ void EventTopic::show(Nanos time, std::span<const std::uint8_t> message) {
 }
 
 void EventTopic::publish(Nanos time, std::span<const std::uint8_t> message) {
-  recorder_.write({name_, type_, time, message});
   show(time, message);
+  recorder_.write({name_, type_, time, message});
 }
 
 }  // namespace dermis::serve

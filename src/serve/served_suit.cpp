@@ -76,7 +76,7 @@ Status read_classes(const std::string& path, const Notice& notice, ServedArray& 
   const Result<ArrayRecognition> fits = ArrayRecognition::create(*classes, array.name, array.model->array);
   if (!fits) return bad_input(fmt::format("{}: {}", path, fits.error().message));
   if (!classes->layout.has_forces() && notice) {
-    notice(path + ": was not learned with --model; what it learned from is taken for newtons");
+    notice(path + ": was not learned with a model; what it learned from is taken for newtons");
   }
   array.classes = *std::move(classes);
   return Done{};
@@ -133,7 +133,7 @@ bool is_recording(const std::string& from) {
 Result<std::unique_ptr<FrameSource>> open_live(const std::string& from, const ServedArray& array,
                                                sources::SourceOptions options) {
   if (is_recording(from)) {
-    return bad_input(fmt::format("'{}': a recording is served with --from {} --suit suit.toml", from, from));
+    return bad_input(fmt::format("'{}': is a recording of a suit; name its suit.toml, too", from));
   }
   if (!acquisition::is_source_uri(from)) {
     return bad_input(
@@ -148,9 +148,7 @@ Result<std::unique_ptr<FrameSource>> open_live(const std::string& from, const Se
                                  from.find('?') == std::string::npos ? "?" : "&"));
   }
   if (uri->transport == acquisition::Transport::file && uri->rate_hz) {
-    return bad_input(fmt::format(
-        "'{}': has times of its own; make a recording of it first (dermis record --from '{}' --out it.mcap)", from,
-        from));
+    return bad_input(fmt::format("'{}': has times of its own; make a recording of it first ('dermis record')", from));
   }
   options.array = &array.model->array;
   return sources::open_source(*uri, options);

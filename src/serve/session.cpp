@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/serve/session.hpp"
 
+#include <fmt/core.h>
+
 #include <cassert>
 #include <chrono>
 #include <optional>
@@ -9,6 +11,7 @@
 #include <thread>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/content_hash.hpp"
@@ -27,8 +30,10 @@ namespace dermis::serve {
 namespace {
 
 using Notice = std::function<void(const std::string&)>;
+using Listener = std::function<void(const live::ArrayResult&)>;
 
 constexpr int kErrorLevel = 2;
+constexpr std::int64_t kTicksToReport = std::int64_t{5} * StatusPublisher::kTicksPerSecond;
 
 std::vector<CalibratedArray> calibrated_arrays(const ServedSuit& suit) {
   std::vector<CalibratedArray> arrays;
@@ -79,15 +84,18 @@ class Session::Implementation {
   [[nodiscard]] std::uint16_t port() const noexcept { return server_->port(); }
 
  private:
-  [[nodiscard]] Status make_suit(const Notice& notice);
+  [[nodiscard]] Status make_suit();
   [[nodiscard]] Status make_server(const SessionOptions& options);
-  [[nodiscard]] Status make_publishers(const Notice& notice);
-  void on_result(const live::ArrayResult& result);
+  [[nodiscard]] Status make_publishers();
+  [[nodiscard]] std::vector<Listener> listeners_in_order();
   [[nodiscard]] Status set_parameter(const stream::Parameter& parameter);
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
   [[nodiscard]] Status use_classes(std::size_t array, recognition::Classes classes);
-  void report_failed_recording(const Notice& notice, const std::string& why);
+  void report_failed_recording(const std::string& why);
+  void report_left_out();
+  void tell(const std::string& line);
 
+  const Notice notice_;
   ServedSuit suit_;
   ModelsInUse models_;
   CalibrationServices calibration_;
@@ -100,10 +108,15 @@ class Session::Implementation {
   std::unique_ptr<ThreatPublisher> threats_;  // null: nothing is limited
   std::optional<LiveParameters> parameters_;
   std::optional<StatusPublisher> status_;
+  /// What listens to every frame, in this order: a threat is told before anything else is done with its frame, then
+  /// what clients see and hear, then what is learned of it. It is recorded last.
+  std::vector<Listener> listeners_;
+  std::uint64_t left_out_ = 0;  // frames of the recording, when they were told last
 };
 
 Session::Implementation::Implementation(ServedSuit suit, const SessionOptions& options)
-    : suit_(std::move(suit)),
+    : notice_(options.server.notice),
+      suit_(std::move(suit)),
       models_(suit_),
       calibration_(
           calibrated_arrays(suit_),
@@ -116,7 +129,7 @@ Session::Implementation::Implementation(ServedSuit suit, const SessionOptions& o
           [this](std::size_t array, recognition::Classes classes) { return use_classes(array, std::move(classes)); }),
       recorder_(
           options.record, [this] { return recorded_arrays(suit_, models_); },
-          [this, notice = options.server.notice](const std::string& why) { report_failed_recording(notice, why); }) {}
+          [this](const std::string& why) { report_failed_recording(why); }) {}
 
 Session::Implementation::~Implementation() {
   if (suit_.playback) suit_.playback->stop();
@@ -126,24 +139,27 @@ Session::Implementation::~Implementation() {
 }
 
 Status Session::Implementation::start(const SessionOptions& options) {
-  if (Status made = make_suit(options.server.notice); !made) return made;
+  if (Status made = make_suit(); !made) return made;
   if (Status made = make_server(options); !made) return made;
-  if (Status made = make_publishers(options.server.notice); !made) return made;
+  if (Status made = make_publishers(); !made) return made;
   parameters_.emplace(suit_, *live_, *broadcaster_, recorder_);
   status_.emplace(SuitAtWork{suit_, models_, *live_, recorder_, calibration_, threats_.get()}, *server_);
+  listeners_ = listeners_in_order();
   server_->start();
   return options.record.empty() ? Status(Done{}) : recorder_.begin();
 }
 
-Status Session::Implementation::make_suit(const Notice& notice) {
+Status Session::Implementation::make_suit() {
   std::vector<live::LiveArray> arrays;
   for (ServedArray& array : suit_.arrays) {
     assert(array.source != nullptr && array.model != nullptr);
     arrays.push_back({array.name, std::move(array.source), array.model, array.surface});
   }
   live::LiveOptions options;
-  options.on_result = [this](const live::ArrayResult& result) { on_result(result); };
-  options.notice = notice;
+  options.on_result = [this](const live::ArrayResult& result) {
+    for (const Listener& listener : listeners_) listener(result);
+  };
+  options.notice = notice_;
   Result<std::unique_ptr<live::LiveSuit>> live = live::LiveSuit::create(std::move(arrays), std::move(options));
   if (!live) return live.error();
   live_ = *std::move(live);
@@ -172,7 +188,7 @@ Status Session::Implementation::make_server(const SessionOptions& options) {
   return Done{};
 }
 
-Status Session::Implementation::make_publishers(const Notice& notice) {
+Status Session::Implementation::make_publishers() {
   broadcaster_.emplace(suit_, *server_);
   recognition_.emplace(suit_, *server_, recorder_);
   for (std::size_t k = 0; k < suit_.arrays.size(); ++k) {
@@ -181,21 +197,23 @@ Status Session::Implementation::make_publishers(const Notice& notice) {
     if (Status used = recognition_->use(k, *classes); !used) return used;
   }
   Result<std::unique_ptr<ThreatPublisher>> threats =
-      ThreatPublisher::create(suit_, *server_, recorder_, [notice](const std::string& line) {
-        if (notice) notice(line);
+      ThreatPublisher::create(suit_, *server_, recorder_, [this](const std::string& line) {
+        if (notice_) notice_(line);
       });
   if (!threats) return threats.error();
   threats_ = *std::move(threats);
   return Done{};
 }
 
-void Session::Implementation::on_result(const live::ArrayResult& result) {
-  recorder_.write(result.array, result.raw);
-  calibration_.feed(result.array, result.raw);
-  broadcaster_->publish(result);
-  recognition_->publish(result);
-  teaching_.feed(result);
-  if (threats_) threats_->publish(result);
+std::vector<Listener> Session::Implementation::listeners_in_order() {
+  std::vector<Listener> listeners;
+  if (threats_) listeners.emplace_back([this](const auto& result) { threats_->publish(result); });
+  listeners.emplace_back([this](const auto& result) { broadcaster_->publish(result); });
+  listeners.emplace_back([this](const auto& result) { recognition_->publish(result); });
+  listeners.emplace_back([this](const auto& result) { calibration_.feed(result.array, result.raw); });
+  listeners.emplace_back([this](const auto& result) { teaching_.feed(result); });
+  listeners.emplace_back([this](const auto& result) { recorder_.write(result.array, result.raw); });
+  return listeners;
 }
 
 Status Session::Implementation::set_parameter(const stream::Parameter& parameter) {
@@ -221,11 +239,24 @@ Status Session::Implementation::use_classes(std::size_t array, recognition::Clas
   return Done{};
 }
 
-void Session::Implementation::report_failed_recording(const Notice& notice, const std::string& why) {
-  const std::string line = "the recording has ended: " + why;
-  if (notice) notice(line);
-  server_->status(kErrorLevel, line);
+void Session::Implementation::report_failed_recording(const std::string& why) {
+  tell("the recording has ended: " + why);
   server_->parameters_changed();
+}
+
+/// The log and all clients.
+void Session::Implementation::tell(const std::string& line) {
+  if (notice_) notice_(line);
+  server_->status(kErrorLevel, line);
+}
+
+/// Here, where no array waits: a log may stall as a disk does.
+void Session::Implementation::report_left_out() {
+  const std::uint64_t left_out = recorder_.left_out();
+  if (left_out != std::exchange(left_out_, left_out) && left_out > 0) {
+    tell(fmt::format("the disk of the recording does not follow: {} frames are left out of {}", left_out,
+                     recorder_.path()));
+  }
 }
 
 Status Session::Implementation::run(const std::atomic<bool>& stop) {
@@ -235,10 +266,12 @@ Status Session::Implementation::run(const std::atomic<bool>& stop) {
   for (std::int64_t tick = 0; !stop; ++tick) {
     broadcaster_->publish_points();
     status_->publish(tick);
+    if (tick % kTicksToReport == 0) report_left_out();
     std::this_thread::sleep_until(begin + Nanos((tick + 1) * 1'000'000'000 / StatusPublisher::kTicksPerSecond));
   }
   if (suit_.playback) suit_.playback->stop();
   live_->stop();
+  report_left_out();
   return recorder_.end();
 }
 

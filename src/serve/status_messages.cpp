@@ -85,8 +85,13 @@ messages::CalibrationState::Hint hint_of(calibration::GuideHint hint) {
     case GuideHint::unsteady: return Hint::unsteady;
     case GuideHint::too_short: return Hint::too_short;
     case GuideHint::several: return Hint::several;
+    case GuideHint::one_of_two: return Hint::one_of_two;
   }
   return Hint::none;
+}
+
+std::optional<std::uint32_t> taxel_of(std::optional<std::size_t> taxel) {
+  return taxel ? std::optional(static_cast<std::uint32_t>(*taxel)) : std::nullopt;
 }
 
 }  // namespace
@@ -106,8 +111,11 @@ messages::CalibrationState calibration_message(CalibrationProgress progress) {
   state.median_relative_error = guide.median_relative_error.value_or(kUnknown);
   state.taxel_presses = std::move(guide.taxel_presses);
   state.hint = hint_of(guide.hint);
-  if (guide.pressed_taxel) state.pressed_taxel = static_cast<std::uint32_t>(*guide.pressed_taxel);
+  state.pressed_taxel = taxel_of(guide.pressed_taxel);
   state.unpressed_relative_error = guide.unpressed_relative_error.value_or(kUnknown);
+  state.together_with = taxel_of(guide.together_with);
+  state.together_reading = guide.together_reading.value_or(kUnknown);
+  state.missing_taxel = taxel_of(guide.missing_taxel);
   return state;
 }
 

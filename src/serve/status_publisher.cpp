@@ -50,6 +50,7 @@ void StatusPublisher::publish_statistics() {
   statistics.recording = work_.recorder.recording();
   statistics.recording_file = work_.recorder.path();
   statistics.recording_frames = work_.recorder.frames();
+  statistics.recording_left_out = work_.recorder.left_out();
   const stream::ServerStatistics server = server_.statistics();
   statistics.clients = static_cast<std::uint32_t>(server.clients);
   statistics.client_drops = server.dropped;

@@ -40,6 +40,7 @@ Status SuitRecorder::begin() {
   path_ = path;
   outcome_ = Done{};
   frames_ = 0;
+  left_out_ = 0;
   recording_ = true;
   return Done{};
 }
@@ -74,23 +75,25 @@ void SuitRecorder::await_closing() {
 }
 
 void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
-  if (write_with([&](recordings::SuitRecordingWriter& writer) { return writer.write(array, raw); })) ++frames_;
+  const auto taken = write_with([&](recordings::SuitRecordingWriter& writer) { return writer.try_write(array, raw); });
+  if (taken) ++(*taken ? frames_ : left_out_);
 }
 
 void SuitRecorder::write(const recordings::RecordedEvent& event) {
-  write_with([&](recordings::SuitRecordingWriter& writer) { return writer.write(event); });
+  const auto taken = write_with([&](recordings::SuitRecordingWriter& writer) { return writer.try_write(event); });
+  if (taken && !*taken) ++left_out_;
 }
 
 template <typename Write>
-bool SuitRecorder::write_with(const Write& write) {
-  if (!recording_) return false;
+std::optional<bool> SuitRecorder::write_with(const Write& write) {
+  if (!recording_) return std::nullopt;
   {
     const std::shared_lock lock(writer_mutex_);
-    if (!writer_) return false;
-    if (write(*writer_)) return true;
+    if (!writer_) return std::nullopt;
+    if (const Result<bool> taken = write(*writer_)) return *taken;
   }
   stop();
-  return false;
+  return std::nullopt;
 }
 
 std::string SuitRecorder::path() const {

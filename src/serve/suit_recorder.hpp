@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <shared_mutex>
 #include <string>
 #include <thread>
@@ -26,8 +27,8 @@ namespace dermis::serve {
                                          std::chrono::system_clock::time_point now);
 
 /// Records every frame of all arrays, as the device said it, from begin() to stop(): the model gives the forces again,
-/// and they would be four fifths of the bytes. Loses nothing: where the disk cannot follow, the arrays wait for it.
-/// Thread-safe.
+/// and they would be four fifths of the bytes. No array waits for the disk. Frames wait for a disk that stalls, as many
+/// as have room in 64 MB; what comes then is left out and counted. Thread-safe.
 class SuitRecorder {
  public:
   using Arrays = std::function<std::vector<recordings::RecordedArray>()>;
@@ -56,11 +57,13 @@ class SuitRecorder {
   /// Of the present or the last recording.
   [[nodiscard]] std::string path() const;
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_.load(); }
+  /// Frames and events that the present or the last recording has not, because its disk did not follow.
+  [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_.load(); }
 
  private:
-  /// Whether it was written; ends a recording that cannot be.
+  /// Whether it was taken; empty where nothing is recorded. Ends a recording that cannot be written.
   template <typename Write>
-  bool write_with(const Write& write);
+  std::optional<bool> write_with(const Write& write);
   void close(recordings::SuitRecordingWriter& writer);
   void await_closing();
 
@@ -70,6 +73,7 @@ class SuitRecorder {
   std::mutex switch_mutex_;  // One begin() or end() at a time.
   std::atomic<bool> recording_{false};
   std::atomic<std::uint64_t> frames_{0};
+  std::atomic<std::uint64_t> left_out_{0};
   Status outcome_ = Done{};  // Of closing_, once it has ended.
 
   mutable std::shared_mutex writer_mutex_;  // Of what follows; shared by those who write.

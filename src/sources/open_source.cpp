@@ -38,15 +38,17 @@ Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri
     return bad_input("'" + uri.text + "': the file has times of its own; write '" + uri.path +
                      "' alone, without file: and rate");
   }
-  return recordings::open_frames(uri.path,
-                                 {.shape = given ? given : wanted, .rate_hz = uri.rate_hz, .notice = options.notice});
+  return recordings::open_frames(
+      uri.path,
+      {.shape = given ? given : wanted, .rate_hz = uri.rate_hz, .notice = options.notice, .loss = options.loss});
 }
 
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const SourceOptions& options) {
   if (!acquisition::is_source_uri(from)) {
-    return recordings::open_frames(from, {.shape = shape_of(options.array), .notice = options.notice});
+    return recordings::open_frames(from,
+                                   {.shape = shape_of(options.array), .notice = options.notice, .loss = options.loss});
   }
   const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
   if (!uri) return uri.error();

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "sources/rehearsal.hpp"
 
-#include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "dermis/simulation/scene.hpp"
@@ -13,8 +11,6 @@ namespace {
 
 constexpr double kCelsius = 22.0;
 constexpr double kDefaultSupplyV = 5.0;
-constexpr std::uint64_t kPressesToAMistake = 8;
-constexpr double kSeesMistakeSeconds = 0.6;  // the page hears ten times a second
 constexpr simulation::EnvironmentOptions kEnvironment;
 
 }  // namespace
@@ -23,13 +19,13 @@ Rehearsal::Rehearsal(const ArrayDescription& array, simulation::ConductiveRubber
                      simulation::ReadoutCircuit circuit, std::uint64_t seed, double rate_hz,
                      std::shared_ptr<GuideVoice> guide)
     : guide_(std::move(guide)),
+      hand_(array.taxel_count(), seed),
       rubber_(std::move(rubber)),
       circuit_(std::move(circuit)),
       adc_(array.readout, kEnvironment.adc_noise_lsb),
       random_(seed),
       frame_seconds_(1.0 / rate_hz),
       supply_v_(array.readout.supply_v.value_or(kDefaultSupplyV)),
-      force_n_(array.taxel_count()),
       siemens_(array.taxel_count()),
       ratio_(array.taxel_count()) {}
 
@@ -45,36 +41,10 @@ Result<Rehearsal> Rehearsal::create(const ArrayDescription& array, std::uint64_t
   return Rehearsal(array, *std::move(piece), *std::move(circuit), seed, rate_hz, std::move(guide));
 }
 
-void Rehearsal::put_on(const GuideWords& words) {
-  const bool is_mistake = ++presses_ % kPressesToAMistake == 0;
-  pressed_ = (words.taxel + (is_mistake ? 1 : 0)) % force_n_.size();
-  force_n_[*pressed_] = words.weight_n;
-  if (words.together_with && *words.together_with < force_n_.size()) force_n_[*words.together_with] = words.weight_n;
-  seconds_ = 0.0;
-}
-
-void Rehearsal::move_hand(double seconds) {
-  const GuideWords words = guide_->words();
-  const double while_s = std::chrono::duration<double>(words.hold_time).count();
-  seconds_ += seconds;
-  if (!pressed_) {
-    if (words.press && seconds_ > while_s && words.taxel < force_n_.size()) put_on(words);
-    return;
-  }
-  const bool sees_mistake = words.other_taxel && seconds_ > while_s + kSeesMistakeSeconds;
-  release_seconds_ = words.press ? 0.0 : release_seconds_ + seconds;
-  if (!sees_mistake && release_seconds_ <= 0.5 * while_s) return;
-  std::fill(force_n_.begin(), force_n_.end(), 0.0);
-  pressed_.reset();
-  seconds_ = 0.0;
-  release_seconds_ = 0.0;
-}
-
 void Rehearsal::read(std::uint64_t number, RawFrame& frame) {
   const double seconds = frame_seconds_ * static_cast<double>(number + 1 - next_);
   next_ = number + 1;
-  move_hand(seconds);
-  rubber_.press(force_n_, seconds);
+  rubber_.press(hand_.move(guide_->words(), seconds), seconds);
   rubber_.read(kCelsius, siemens_);
   circuit_.ratios(siemens_, ratio_);
   frame.temperature_celsius = kCelsius + kEnvironment.temperature_noise_celsius * random_.normal();

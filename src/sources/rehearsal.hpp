@@ -2,10 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "dermis/core/array_description.hpp"
@@ -16,12 +14,12 @@
 #include "dermis/simulation/readout_circuit.hpp"
 #include "dermis/simulation/rubber.hpp"
 #include "dermis/sources/guide_voice.hpp"
+#include "sources/rehearsing_hand.hpp"
 
 namespace dermis::sources {
 
-/// A simulated array under the hand of somebody who does what the guide says, so that it can be tried without an array:
-/// puts the weight on after a while of the length of a hold, and takes it off when told. Every eighth press begins on
-/// the taxel beside. Not thread-safe.
+/// A simulated array under the hand of somebody who does what the guide says, so that it can be tried without an array.
+/// Not thread-safe.
 class Rehearsal {
  public:
   /// `guide` null: nobody asks for anything.
@@ -35,10 +33,9 @@ class Rehearsal {
  private:
   Rehearsal(const ArrayDescription& array, simulation::ConductiveRubber rubber, simulation::ReadoutCircuit circuit,
             std::uint64_t seed, double rate_hz, std::shared_ptr<GuideVoice> guide);
-  void move_hand(double seconds);
-  void put_on(const GuideWords& words);
 
   std::shared_ptr<GuideVoice> guide_;
+  RehearsingHand hand_;
   simulation::ConductiveRubber rubber_;
   simulation::ReadoutCircuit circuit_;
   simulation::Adc adc_;
@@ -46,11 +43,6 @@ class Rehearsal {
   double frame_seconds_;
   double supply_v_;
   std::uint64_t next_ = 0;
-  std::uint64_t presses_ = 0;
-  double seconds_ = 0.0;          // since the hand moved
-  double release_seconds_ = 0.0;  // since it was told to take the weight off
-  std::optional<std::size_t> pressed_;
-  std::vector<double> force_n_;
   std::vector<double> siemens_;
   std::vector<double> ratio_;
 };

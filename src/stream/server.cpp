@@ -42,7 +42,7 @@ std::string random_session() {
 Status in_use_or_forbidden(const ServerOptions& options, const error_code& error) {
   const std::string place = options.host + ":" + std::to_string(options.port);
   if (error == asio::error::address_in_use) {
-    return failed("port " + std::to_string(options.port) + " is in use; choose another with --port, or 0 for any");
+    return failed("port " + std::to_string(options.port) + " is in use; choose another, or 0 for any");
   }
   if (error == asio::error::access_denied) {
     return failed("port " + std::to_string(options.port) + " needs rights that you do not have; choose one above 1023");
@@ -59,12 +59,12 @@ struct Published {
 }  // namespace
 
 Status ServerOptions::validate() const {
-  if (!is_address(host)) return bad_input("--host: '" + host + "' is no address; give one like 127.0.0.1 or 0.0.0.0");
+  if (!is_address(host)) return bad_field("host", "'" + host + "' is no address; give one like 127.0.0.1 or 0.0.0.0");
   if (token.empty() && !is_loopback(host)) {
-    return bad_input("--host: others could reach " + host + "; give a --token that they must know, or use 127.0.0.1");
+    return bad_field("host", "others could reach " + host + "; give a token that they must know, or use 127.0.0.1");
   }
-  if (!token.empty() && token.size() < kShortestToken) return bad_input("--token: must have 8 characters or more");
-  if (!is_url_safe(token)) return bad_input("--token: letters, digits and -._~ only, as it stands in a URL");
+  if (!token.empty() && token.size() < kShortestToken) return bad_field("token", "must have 8 characters or more");
+  if (!is_url_safe(token)) return bad_field("token", "letters, digits and -._~ only, as it stands in a URL");
   if (most_clients < 1 || most_clients > 1000) return bad_input("most_clients: must be 1 ... 1000");
   if (client_queue_bytes < 65'536) return bad_input("client_queue_bytes: must be at least 65536");
   return Done{};

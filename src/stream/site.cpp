@@ -98,7 +98,7 @@ std::optional<Response> Site::refuse_upgrade(const Request& request) const {
   const bool is_of_here = is_same_origin(view(request[http::field::origin]), view(request[http::field::host]));
   if (options_.token.empty() && !is_of_here) {
     return make_refusal(request, http::status::forbidden,
-                        "a page of another origin; to allow it, serve with --token and give it the token");
+                        "a page of another origin; to allow it, serve with a token and give it to the page");
   }
   if (choose_subprotocol(view(request[http::field::sec_websocket_protocol])).empty()) {
     return make_refusal(request, http::status::bad_request,

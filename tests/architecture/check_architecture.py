@@ -7,6 +7,7 @@ from pathlib import Path
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 STANDARD_HEADER = re.compile(r"[a-z_]+")
+OPTION_IN_A_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*--[a-z](?:[^"\\\n]|\\.)*"')
 SPDX = "// SPDX-License-Identifier: Apache-2.0\n// SPDX-FileCopyrightText: 2026 The dermis authors\n"
 
 
@@ -65,10 +66,29 @@ def header_violations(root):
 
 
 def licence_violations(root):
-    for folder in ("src", "apps", "tests", "examples", "benchmarks", "fuzz"):
+    for folder in ("src", "apps", "c", "python", "tests", "examples", "benchmarks", "fuzz"):
         for path in sorted((root / folder).rglob("*.[ch]pp")):
             if not path.read_text().startswith(SPDX):
                 yield f"{path.relative_to(root)}: must begin with the two SPDX lines"
+
+
+def message_violations(root):
+    """An error of the library names a field (bad_field() of core/result.hpp); the command knows its option."""
+    for path in sorted((root / "src").rglob("*.[ch]pp")):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if OPTION_IN_A_TEXT.search(line.split(" // ")[0]):
+                yield f"{path.relative_to(root)}:{number}: a text of the library names an option of the command line"
+
+
+def permission_violations(root, allowed):
+    """Each permission of the table is used; a module may be linked for others to have it."""
+    used = {module: {module} for module in allowed}
+    for path, module in sources(root):
+        used.get(module, set()).update(name.split("/")[1] if name.startswith("dermis/") else name.split("/")[0]
+                                       for _, name in INCLUDE.findall(path.read_text()) if "/" in name)
+    for module, names in sorted(allowed.items()):
+        for name in sorted(names - used[module]):
+            yield f"ARCHITECTURE.md: {module} makes no use of {name}"
 
 
 def version_violations(root):
@@ -85,6 +105,8 @@ def violations(root):
     yield from include_violations(root, allowed)
     yield from header_violations(root)
     yield from licence_violations(root)
+    yield from message_violations(root)
+    yield from permission_violations(root, allowed)
     yield from version_violations(root)
 
 

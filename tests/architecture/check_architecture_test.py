@@ -16,8 +16,8 @@ TABLE = """# Architecture
 |---|---|
 | `core` | |
 | `fusion` | `core` |
-| `simulation` | `core` |
-| `apps` | `core` `fusion` `simulation` |
+| `simulation` | |
+| `apps` | `fusion` |
 
 ## End
 """
@@ -34,8 +34,9 @@ class Rules(unittest.TestCase):
         self.write("CHANGELOG.md", "# Changelog\n\n## [1.2.3] - 2026-01-01\n")
         self.write("include/dermis/core/frames.hpp", HEADER + "#include <vector>\n")
         self.write("include/dermis/fusion/force.hpp", HEADER + '#include "dermis/core/frames.hpp"\n')
-        self.write("src/fusion/force.cpp", SPDX + '#include "fusion/table.hpp"\n#include <tbb/tbb.h>\n')
+        self.write("src/fusion/force.cpp", SPDX + '#include "dermis/core/frames.hpp"\n#include "fusion/table.hpp"\n#include <tbb/tbb.h>\n')
         self.write("src/fusion/table.hpp", HEADER)
+        self.write("apps/dermis/main.cpp", SPDX + '#include "dermis/fusion/force.hpp"\n')
         self.write("tests/core/frames_test.cpp", SPDX)
         self.write("tests/fusion/force_test.cpp", SPDX)
 
@@ -75,6 +76,14 @@ class Rules(unittest.TestCase):
     def test_a_third_party_header_in_a_public_one(self):
         self.write("include/dermis/fusion/force.hpp", HEADER + "#include <Eigen/Core>\n")
         self.expect("must not include <Eigen/Core>")
+
+    def test_a_permission_that_nobody_uses(self):
+        self.write("apps/dermis/main.cpp", SPDX)
+        self.expect("apps makes no use of fusion")
+
+    def test_a_text_of_the_library_that_names_an_option(self):
+        self.write("src/fusion/force.cpp", SPDX + 'auto text = "give the rate, --rate";  // "--rate" in a comment is none\nx--y;\n')
+        self.expect("src/fusion/force.cpp:3: a text of the library names an option")
 
     def test_a_private_header_in_a_public_one(self):
         self.write("include/dermis/fusion/force.hpp", HEADER + '#include "fusion/table.hpp"\n')

@@ -330,6 +330,52 @@ TEST(CircuitFit, does_not_take_the_resistance_of_contacts_for_that_of_the_circui
   EXPECT_NEAR(ratio, 25.0 / 200.0, 0.2 * 25.0 / 200.0);
 }
 
+/// Unloaded readings of three counts, at five temperatures.
+TEST(CircuitFit, does_not_take_idle_readings_near_the_noise_for_no_circuit) {
+  ArrayDescription truth = reference_array(9, 9);
+  truth.readout.drive_ohm.assign(9, 25.0);
+  simulation::SimulationOptions options;
+  options.rubber.unloaded_ohm = 250e3;
+  ArrayDescription unknown = truth;
+  unknown.readout.circuit = Circuit::automatic;
+  unknown.readout.drive_ohm = unknown.readout.load_ohm = {kFitOhm};
+  const CircuitFit fit = fit_of(unknown, record(truth, "calibration", 1, options));
+  SCOPED_TRACE(fit.statements[0]);
+  EXPECT_EQ(fit.candidates.front().name, "divider, idle rows grounded");
+  const CircuitCandidate* none = nullptr;
+  const CircuitCandidate* transimpedance = nullptr;
+  for (const CircuitCandidate& candidate : fit.candidates) {
+    if (candidate.name == "none") none = &candidate;
+    if (candidate.name == "transimpedance") transimpedance = &candidate;
+  }
+  ASSERT_TRUE(none != nullptr && transimpedance != nullptr);
+  EXPECT_LT(fit.candidates.front().misfit, 1.1);
+  EXPECT_NEAR(none->misfit, transimpedance->misfit, 0.1) << "the same where drivers are ideal";
+}
+
+TEST(CircuitFit, names_presses_that_make_the_drivers_surer) {
+  const ArrayDescription truth = uneven_array(6, 3);
+  Recording recording = record(truth, "calibration", 3);
+  const CircuitFit alone = fit_of(to_be_fitted(truth), recording);
+  ASSERT_FALSE(alone.driver_presses.empty());
+  EXPECT_LE(alone.driver_presses.size(), 5U);
+  EXPECT_TRUE(says(alone, "drive_ohm: these frames leave it uncertain"));
+  HandledArray handled(truth, {}, 3);
+  for (const PressPair& pair : alone.driver_presses) {
+    EXPECT_EQ(pair.first / truth.cols, pair.second / truth.cols) << "one driver";
+    std::vector<double> force_n(truth.taxel_count());
+    for (const std::size_t taxel : {pair.first, pair.second}) {
+      force_n[taxel] = pair.newtons;
+      const std::size_t row = taxel / truth.cols;
+      const std::size_t col = taxel % truth.cols;
+      recording.loads.push_back({recording.frames.size(), LoadKind::force, {row, col, row, col}, pair.newtons});
+    }
+    recording.frames.push_back(handled.frame(force_n));
+  }
+  const CircuitFit beside = fit_of(to_be_fitted(truth), recording);
+  EXPECT_LT(beside.common_drive_error, 0.6 * alone.common_drive_error);
+}
+
 TEST(CircuitFit, does_not_depend_on_the_number_of_threads) {
   const ArrayDescription truth = uneven_array(4, 1);
   const Recording recording = record(truth, "uniform", 1);
@@ -342,8 +388,8 @@ TEST(CircuitFit, does_not_depend_on_the_number_of_threads) {
   }
 }
 
-// What the recordings of a real hand show of crosstalk (docs/accuracy.md). A contact: readings above 50 counts; remote:
-// at least three taxels from it; shared: in a row or column of the contact.
+// What the recordings of a real hand show of crosstalk (docs/notes/ghosts.md). A contact: readings above 50 counts;
+// remote: at least three taxels from it; shared: in a row or column of the contact.
 constexpr float kContactCounts = 50.0F;
 constexpr std::size_t kHandRows = 13;
 constexpr std::size_t kHandCols = 6;

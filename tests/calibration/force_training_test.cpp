@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "calibration/press_bench.hpp"
 #include "calibration/simulated.hpp"
 #include "calibration/simulated_user.hpp"
 #include "dermis/calibration/calibrate.hpp"
@@ -163,6 +164,36 @@ TEST(ForceTraining, learns_no_stair_from_two_weights) {
     force_n[taxel] = 0.0;
   }
   EXPECT_LT(sum, 0.08);  // exponents and gains scatter; a stair is wrong by a third and more
+}
+
+/// Long holds whose readings creep: the scatter under one weight says nothing of the law between the weights.
+SampleDatabase creeping_holds(PressBench& bench, const std::vector<double>& weights_n) {
+  SampleDatabase database = bench.presses({}, 0);
+  for (std::size_t taxel = 0; taxel < bench.taxels; ++taxel) {
+    for (const double newtons : weights_n) {
+      for (int k = 0; k < 200; ++k) {
+        const double felt = newtons * (1.0 + 0.1 * std::log10(0.1 * (k + 1)));
+        database.samples.push_back(bench.sample(taxel, felt));
+        database.samples.back().known_newtons[taxel] = static_cast<float>(newtons);
+        database.samples.back().frame = database.samples.size() - 1;
+      }
+    }
+  }
+  return database;
+}
+
+TEST(ForceTraining, takes_the_creep_of_few_weights_for_no_law) {
+  for (const std::vector<double>& weights : {std::vector{5.0, 15.0}, std::vector{5.0, 10.0, 20.0}}) {
+    SCOPED_TRACE(testing::Message() << weights.size() << " weights");
+    PressBench bench{9, [](std::size_t, double newtons) { return 1e-4 * std::pow(newtons, 0.9); }, 0.002};
+    const auto training = train_force_networks(creeping_holds(bench, weights));
+    ASSERT_TRUE(training) << training.error().message;
+    EXPECT_EQ(training->report.own_networks, weights.size() > 2 ? 9U : 0U);
+    BenchForces estimates(training->networks, bench);
+    for (const double newtons : {0.5, 2.0, 8.0, 30.0}) {
+      EXPECT_NEAR(static_cast<double>(estimates.press(4, newtons).newtons[4]) / newtons, 1.0, 0.25) << newtons << " N";
+    }
+  }
 }
 
 TEST(ForceTraining, is_content_with_an_air_bladder) {

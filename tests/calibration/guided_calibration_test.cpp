@@ -423,15 +423,22 @@ TEST(GuidedCalibration, knows_both_taxels_of_a_pair) {
   wait(0.5);
   force_n[second] = newtons;
   wait(0.5);
-  EXPECT_EQ(guide->state().hint, GuideHint::press) << "waits for the first";
+  state = guide->state();
+  EXPECT_EQ(state.hint, GuideHint::one_of_two);
+  EXPECT_EQ(state.missing_taxel, first);
+  EXPECT_GT(*state.together_reading, 2.0);
   force_n[foreign] = 0.7 * newtons;
   wait(0.5);
   state = guide->state();
-  EXPECT_EQ(state.hint, GuideHint::several);
+  EXPECT_EQ(state.hint, GuideHint::other_taxel);
   EXPECT_EQ(state.pressed_taxel, foreign);
+  EXPECT_EQ(state.missing_taxel, first);
+  force_n[first] = newtons;
+  wait(0.5);
+  EXPECT_EQ(guide->state().hint, GuideHint::several);
+  EXPECT_EQ(guide->state().pressed_taxel, foreign);
 
   force_n[foreign] = 0.0;
-  force_n[first] = newtons;
   while (guide->state().hint != GuideHint::release && session.handled.seconds() < 1000.0) wait(0.1);
   ASSERT_EQ(guide->state().hint, GuideHint::release);
   const std::size_t presses = guide->state().presses_done;

@@ -118,7 +118,7 @@ TEST(SampleDatabase, counts_rejected_frames_and_refuses_many_of_them) {
   const auto many = build_sample_database(bare_array(), frames, loads);
   ASSERT_FALSE(many);
   EXPECT_EQ(many.error().message,
-            "7 of 40 labelled frames cannot be used, the first: frame 5: a supply of 0 V or less");
+            "7 of 40 labelled frames cannot be used: the first is frame 5: a supply of 0 V or less");
 }
 
 TEST(SampleDatabase, does_not_trust_a_saturated_reading) {
@@ -383,6 +383,16 @@ TEST(SampleDatabase, asks_whether_kilopascals_are_pascals) {
       database->remarks[0],
       "the load of frame 700 presses all with 6e+03 N, 10 MPa over the 6 taxels that feel it: is it in kPa? It may "
       "be in Pa (10 kPa then)");
+}
+
+TEST(SampleDatabase, does_not_doubt_a_pressure_because_the_array_is_large) {
+  auto [frames, loads] = labelled_presses(0);
+  for (Load& load : loads) load = {load.frame, LoadKind::pressure, load.where, 1.35e4 * load.value};
+  ArrayDescription array = bare_array();
+  array.taxel_area_m2 = 0.01;
+  const auto database = build_sample_database(array, frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  EXPECT_EQ(database->remarks, std::vector<std::string>{}) << "270 kPa, and 16 kN";
 }
 
 TEST(SampleDatabase, leaves_out_a_taxel_that_flickers) {

@@ -69,6 +69,67 @@ TEST(TableChoice, takes_tables_where_networks_cannot_follow_the_rubber_and_leave
             error_of(training->networks, bench, kTaxels / 2, kTaxels, new_forces));
 }
 
+/// Hardly conducts until it is pressed hard: a network follows it, and makes newtons of the noise about zero.
+TEST(TableChoice, takes_tables_where_networks_see_ghosts_after_a_press) {
+  const auto law = [](std::size_t, double n) { return 2e-10 * std::pow(n, 4); };
+  PressBench bench{12, law, 0.02};
+  SampleDatabase database = bench.presses(forces_between(5.0, 50.0, 15), 2);
+  for (int k = 0; k < 100; ++k) {
+    database.samples.push_back(bench.sample(0, 0.0));
+    database.samples.back().frame = database.samples.size() - 1;
+  }
+  const auto training = train_force_networks(database);
+  ASSERT_TRUE(training) << training.error().message;
+  EXPECT_EQ(training->report.table_taxels.size(), 12U);
+  fusion::ForceNetworks without = training->networks;
+  without.tables = {};
+  BenchForces of_networks(without, bench);
+  BenchForces of_tables(training->networks, bench);
+  float ghost_of_networks = 0.0F;
+  float ghost_of_tables = 0.0F;
+  for (int k = 0; k < 100; ++k) {
+    ghost_of_networks = std::max(ghost_of_networks, of_networks.press(0, 0.0).newtons[0]);
+    ghost_of_tables = std::max(ghost_of_tables, of_tables.press(0, 0.0).newtons[0]);
+  }
+  EXPECT_GT(ghost_of_networks, 1.0F);
+  EXPECT_LT(ghost_of_tables, 0.5F * ghost_of_networks);
+
+  // Frames of before the first press tell nothing of a release.
+  std::erase_if(database.samples, [&](const Sample& sample) { return sample.unloaded && sample.frame >= 20; });
+  const auto unwatched = train_force_networks(database);
+  ASSERT_TRUE(unwatched);
+  EXPECT_TRUE(unwatched->report.table_taxels.empty());
+}
+
+/// The material remembers, and neither method knows of it.
+TEST(TableChoice, two_weights_on_material_that_remembers_give_forces_no_worse_than_the_table) {
+  simulation::SimulationOptions physics;
+  physics.rubber.memory.emplace();
+  for (const std::uint64_t seed : {1U, 2U}) {
+    for (const std::size_t rows : {3U, 4U}) {
+      SCOPED_TRACE(testing::Message() << "seed " << seed << ", " << rows << " rows");
+      physics.rubber.seed = seed;
+      const ArrayDescription array = reference_array(rows, 3);
+      physics.scene = {.rate_hz = 10.0, .taxels = 3 * rows};
+      const Recording weights = record(array, "two_weights", seed, physics);
+      const auto database = build_sample_database(array, weights.frames, weights.loads);
+      ASSERT_TRUE(database);
+      const auto calibration = calibrate(*database);
+      ASSERT_TRUE(calibration) << calibration.error().message;
+      physics.scene = {.rate_hz = 25.0};
+      const Recording touches = record(array, "touches", seed + 10, physics, 1500);
+      const auto evaluation = evaluate(calibration->model, touches.frames, touches.loads);
+      ASSERT_TRUE(evaluation);
+      const EstimatorResult& dermis = evaluation->estimators.front();
+      const EstimatorResult& table = evaluation->estimators[3];
+      ASSERT_EQ(table.name, "crosstalk_lookup");
+      EXPECT_LE(*dermis.relative_error.median, *table.relative_error.median);
+      EXPECT_LE(*dermis.relative_error.p95, *table.relative_error.p95);
+      EXPECT_LE(*dermis.ghost_n.p99, *table.ghost_n.p99);
+    }
+  }
+}
+
 TEST(TableChoice, tables_have_an_honest_sigma) {
   PressBench bench{16, [](std::size_t, double n) { return wavy(n); }, 0.02};
   const SampleDatabase database = bench.presses(forces_between(1.0, 50.0, 40), 3);

@@ -44,6 +44,10 @@ class Usage(SmallArray):
                 self.refuse(["simulate", "--array", self.array, "--scene", "multitouch", "--out", self.work / "o",
                              option, "-1"], [option], **files_limited_to(1000000))
 
+    def test_a_count_beyond_its_range(self):
+        self.refuse(["serve", "--from", "sim:idle?rate=10", "--model", self.model, "--port", 99999],
+                    ["--port", "must be 0 to 65535"])
+
     def test_unknown_scene(self):
         self.refuse(["simulate", "--array", self.array, "--scene", "party", "--out", self.work / "o"],
                     ["party", "multitouch"])
@@ -83,7 +87,7 @@ class MissingFiles(SmallArray):
     def test_a_bank(self):
         absent = self.work / "absent"
         self.refuse([*self.evaluate_arguments(), "--bank", absent], [absent])
-        self.refuse([*self.evaluate_arguments(), "--bank", self.model], [self.model, "calibrate --bank"])
+        self.refuse([*self.evaluate_arguments(), "--bank", self.model], [self.model, "not a bank of the paper", "dermis calibrate"])
 
     def test_a_folder_instead_of_a_file(self):
         self.refuse(self.run_arguments(self.work / "f.csv", **{"in": self.root}), [self.root])
@@ -110,6 +114,10 @@ class ArrayFile(SmallArray):
         self.refuse_array(ARRAY.replace("rows = 4", "rows = 0"), [":3", "array.rows"])
         self.refuse_array(ARRAY.replace("load_ohm = 200.0", "load_ohm = -1"), [":10", "load_ohm"])
         self.refuse_array(ARRAY.replace("adc_bits = 12", "adc_bits = 99"), [":11", "adc_bits"])
+
+    def test_metres_for_millimetres(self):
+        self.refuse_array(ARRAY.replace("cols = 5", "cols = 5\npitch_mm = [0.015, 0.015]"),
+                          [":5", "pitch_mm", "0.05 to 1000", "write 15"])
 
     def test_a_list_of_the_wrong_length(self):
         self.refuse_array(ARRAY.replace("load_ohm = 200.0", "load_ohm = [1.0, 2.0]"), [":10", "load_ohm", "5"])
@@ -181,10 +189,132 @@ class FramesFile(SmallArray):
         frames.write_bytes(bytes(range(256)) * 100)
         self.refuse(self.run_arguments(self.work / "out", **{"in": frames}), [frames])
 
-    def test_no_frame_at_all(self):
-        frames = self.written("frames.csv", (self.contacts / "frames.csv").read_text().splitlines()[0] + "\n")
-        loads = self.written("loads.csv", "frame,kind,where,value\n")
-        self.refuse(self.evaluate_arguments(frames=frames, loads=loads), [""])
+    def test_decimals_with_a_comma(self):
+        def change(lines):
+            lines[6] = lines[6].replace(".", ",")
+        self.refuse_frames(change, [":7", "the header 23", "decimals with a point"])
+
+
+class EveryCommand(SmallArray):
+    """All that read frames, on frames that are missing, cut or beyond the ADC."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.threats = cls.root / "threats.toml"
+        cls.threats.write_text('[[threat]]\nname = "hard"\nquantity = "contact_force"\nlimit_n = 1e6\n')
+        cls.labels = cls.root / "labels.csv"
+        cls.labels.write_text("id,first,last,class\n" + "".join(
+            f"{k},{5 * k},{5 * k},{'hand' if k % 2 else 'foot'}\n" for k in range(40)))
+        cls.classes = cls.root / "classes"
+        cls.recording = cls.root / "rec.mcap"
+        for step in (("learn", "--in", cls.contacts / "frames.csv", "--labels", cls.labels, "--out", cls.classes),
+                     ("convert", cls.contacts / "frames.csv", cls.recording)):
+            result = support.dermis(*step)
+            if result.returncode != 0:
+                raise AssertionError(f"{step}: {result.stderr}")
+
+    def with_forces(self, frames):
+        """Commands that compute forces, and what each writes."""
+        out = self.work / "out.csv"
+        yield self.run_arguments(out, **{"in": frames}), out
+        yield self.evaluate_arguments(frames=frames), None
+        yield ("watch", "--threats", self.threats, "--model", self.model, "--in", frames), None
+        yield ("replay", frames, "--speed", 0, "--model", self.model, "--out", self.work / "replayed.csv"), \
+            self.work / "replayed.csv"
+        yield ("record", "--from", frames, "--model", self.model, "--out", self.work / "forces.mcap"), \
+            self.work / "forces.mcap"
+        yield ("image", "--in", frames, "--model", self.model, "--frame", 150, "--out", self.work / "forces.png"), \
+            self.work / "forces.png"
+
+    def all_commands(self, frames):
+        yield from self.with_forces(frames)
+        yield self.calibrate_arguments(self.work / "model", frames=frames, loads=self.contacts / "loads.csv"), None
+        yield ("convert", frames, self.work / "frames.npy"), self.work / "frames.npy"
+        yield ("info", frames), None
+        yield ("replay", frames, "--speed", 0, "--out", self.work / "counts.csv"), self.work / "counts.csv"
+        yield ("record", "--from", frames, "--out", self.work / "counts.mcap"), self.work / "counts.mcap"
+        yield ("image", "--in", frames, "--frame", 150, "--out", self.work / "counts.png"), self.work / "counts.png"
+        yield ("learn", "--in", frames, "--labels", self.labels, "--out", self.work / "classes"), self.work / "classes"
+        yield ("recognise", "--classes", self.classes, "--in", frames, "--out", self.work / "r.csv"), self.work / "r.csv"
+        yield ("emulate", "--protocol", "csv", "--in", frames, "--to", "stdout:"), None
+
+    def test_a_header_alone(self):
+        header = (self.contacts / "frames.csv").read_text().splitlines()[0]
+        frames = self.written("frames.csv", header + "\n")
+        for arguments, _ in self.all_commands(frames):
+            with self.subTest(arguments[0]):
+                self.refuse(arguments, [frames, "has no frame"])
+        self.refuse(("doctor", "--model", self.model, "--in", frames), [frames, "has no frame"])
+
+    def end_with(self, arguments, out, places):
+        """Status 1 and one line; what could be read is written."""
+        result = support.dermis(*arguments)
+        self.assertEqual(result.returncode, 1, result.stderr)
+        lines = [line for line in support.error_lines(result) if line.startswith("dermis: ")]
+        self.assertEqual(len(lines), 1, result.stderr)
+        for place in places:
+            self.assertIn(str(place), lines[0])
+        self.assertTrue(out is None or out.stat().st_size > 0)
+
+    def test_a_recording_that_is_cut(self):
+        cut = self.work / "cut.mcap"
+        cut.write_bytes(self.recording.read_bytes()[:-20])
+        for arguments, out in self.all_commands(cut):
+            if arguments[0] in ("calibrate", "image"):
+                continue  # too few frames to calibrate by; the picture is of a frame that is there
+            with self.subTest(arguments[0]):
+                self.end_with(arguments, out, [cut, "dermis recover"])
+
+    def test_a_table_that_is_cut(self):
+        cut = self.written("cut.csv", (self.contacts / "frames.csv").read_text()[:-20])
+        loads = self.work / "loads.csv"
+        lines = (self.contacts / "loads.csv").read_text().splitlines()
+        loads.write_text("\n".join(line for line in lines if not line.startswith("199,")) + "\n")
+        self.end_with(self.run_arguments(self.work / "f.csv", **{"in": cut}), self.work / "f.csv", [f"{cut}:201", "cut off"])
+        self.end_with(self.evaluate_arguments(frames=cut, loads=loads), None, [f"{cut}:201", "cut off"])
+        self.end_with(("info", cut), None, [cut, "cut off"])
+        self.refuse(self.evaluate_arguments(frames=cut), [f"{cut}:201", "cut off", "loads.csv", "frame 199"])
+
+    def scaled(self, factor):
+        """The frames with all counts times `factor`."""
+        lines = [line.split(",") for line in (self.contacts / "frames.csv").read_text().splitlines()]
+        first = lines[0].index("r0c0")
+        rows = [line[:first] + [str(factor * int(count)) for count in line[first:]] for line in lines[1:]]
+        return self.written("scaled.csv", "".join(",".join(row) + "\n" for row in [lines[0], *rows]))
+
+    def test_counts_that_are_a_hundred_times_too_large(self):
+        frames = self.scaled(100)
+        for arguments, out in self.with_forces(frames):
+            with self.subTest(arguments[0]):
+                self.end_with(arguments, out, ["have no force", "but the ADC gives 0 to 4095 (adc_bits = 12)"])
+        self.refuse(self.calibrate_arguments(self.work / "m", frames=frames, loads=self.contacts / "loads.csv"),
+                    ["the ADC gives 0 to 4095 (adc_bits = 12)"])
+
+    def test_settling_beyond_the_end(self):
+        self.refuse([*self.run_arguments(self.work / "f.csv"), "--settle", "1e6"], ["frames.csv", "settling"], status=1)
+
+
+class WrongFiles(SmallArray):
+    def test_what_a_file_is_is_said(self):
+        recording = self.work / "rec.mcap"
+        self.succeed("convert", self.contacts / "frames.csv", recording)
+        frames = self.contacts / "frames.csv"
+        out = self.work / "out"
+        for arguments, file, kind in (
+                (self.run_arguments(out, model=recording), recording, "an MCAP recording, not a safetensors file"),
+                (self.run_arguments(out, model=frames), frames, "a table (CSV), not a safetensors file"),
+                (self.calibrate_arguments(out, array=recording), recording, "an MCAP recording, not a TOML file"),
+                (self.calibrate_arguments(out, array=frames), frames, "a table (CSV), not a TOML file"),
+                (self.calibrate_arguments(out, loads=recording), recording, "an MCAP recording, not a table (CSV)"),
+                (self.calibrate_arguments(out, loads=self.array), self.array, "a TOML file, not a table (CSV)")):
+            with self.subTest(kind):
+                self.refuse(arguments, [file, kind])
+        for name in ("frames.csv", "frames.h5", "frames.npy", "frames.npz"):
+            with self.subTest(name):
+                wrong = self.work / name
+                wrong.write_bytes(self.model.read_bytes())
+                self.refuse(("info", wrong), [wrong, "is a safetensors file, not "])
 
 
 class LoadsFile(SmallArray):

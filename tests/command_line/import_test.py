@@ -129,11 +129,11 @@ class Imports(support.SmallArray):
                                                     "cut.asf:")):
             out = self.work / "out.npy"
             result = support.dermis("convert", source, out)
-            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.returncode, 1, result.stderr)
             self.assertIn(place, result.stderr)
             self.assertIn("is cut off", result.stderr)
         result = support.dermis("run", "--model", self.model, "--in", cut, "--out", self.work / "forces.csv")
-        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.returncode, 1, result.stderr)
         self.assertIn("cut.csv:51: is cut off", result.stderr)
         self.assertEqual(len(self.rows(self.work / "forces.csv")[1]), 49)
 

@@ -43,8 +43,11 @@ class Interrupted(SmallArray):
 
     def test_while_frames_are_read(self):
         beginning = (self.contacts / "frames.csv").read_text()
+        labels = self.written("labels.csv", "id,first,last,class\n0,0,4,hand\n1,5,9,foot\n")
         for name, command in (("convert.csv", lambda frames: ("convert", frames, self.work / "out.npy")),
                               ("evaluate.csv", lambda frames: self.evaluate_arguments(frames=frames)),
+                              ("learn.csv", lambda frames: ("learn", "--in", frames, "--labels", labels, "--out",
+                                                            self.work / "classes")),
                               ("calibrate.csv", lambda frames: self.calibrate_arguments(self.work / "m", frames=frames))):
             with self.subTest(name):
                 frames, is_read = self.endless(name, beginning)

@@ -315,7 +315,7 @@ class Suit(SmallArray):
             for _ in range(10 * patience):
                 time.sleep(0.1)
                 info = dermis("info", recording, "--json") if recording.exists() else None
-                if info and info.returncode == 0 and json.loads(info.stdout)["frames"] >= 300:
+                if info and info.stdout and json.loads(info.stdout)["frames"] >= 300:
                     break
             process.send_signal(signal.SIGINT)
             if process.wait(patience) != 0:

@@ -115,7 +115,7 @@ class Serve(SmallArray):
         threats = self.written("threats.toml", LIMITS.format(array="small", last_row=1))
         process, address = self.serve("--from", LIVE, "--model", self.model, "--classes", self.learned(4, 5),
                                       "--threats", threats)
-        self.assertEqual(["not learned with --model" in notice for notice in process.notices], [True])
+        self.assertEqual(["not learned with a model" in notice for notice in process.notices], [True])
         [array] = json.loads(self.get(address + "suit.json"))["arrays"]
         self.assertEqual(array["classes"], ["lower", "upper"])
         self.assertEqual([(limit["name"], limit["zone"]["rows"]) for limit in array["limits"]], [("edge", [0, 1])])

@@ -139,5 +139,76 @@ TEST(FalseFaults, readings_cut_at_a_threshold_are_no_silence) {
   }
 }
 
+/// An array of 16x8 taxels, column 5 of which reads half as much as the others, and what it reads unloaded.
+class WeakColumn {
+ public:
+  static constexpr std::size_t kRows = 16;
+  static constexpr std::size_t kColumn = 5;
+
+  WeakColumn(int adc_bits, double weak_counts) : array_(reference_circuit(kRows, 8)) {
+    Readout& readout = array_.readout;
+    readout.adc_bits = adc_bits;
+    readout.drive_ohm.assign(kRows, 0.0);
+    readout.load_ohm[kColumn] = 0.5 * readout.load_ohm[0];
+    const double weak = weak_counts / readout.full_scale_counts();
+    siemens_ = weak / (1.0 - kRows * weak) / readout.load_ohm[kColumn];
+    for (std::size_t col = 0; col < 8; ++col) {
+      const double taken = siemens_ * readout.load_ohm[col];
+      counts_.push_back(readout.full_scale_counts() * taken / (1.0 + kRows * taken));
+    }
+  }
+
+  [[nodiscard]] Watch watch() const { return {array_, siemens_}; }
+
+  /// The readings when `share` of the unloaded ones is left and fewer than `threshold` counts are sent as none.
+  [[nodiscard]] std::vector<double> faded(double share, double threshold = 0.0) const {
+    std::vector<double> ratio;
+    for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {
+      const double counts = std::round(share * counts_[taxel % 8]);
+      ratio.push_back(counts < threshold ? 0.0 : counts / array_.readout.full_scale_counts());
+    }
+    return ratio;
+  }
+
+ private:
+  ArrayDescription array_;
+  double siemens_ = 0.0;
+  std::vector<double> counts_;
+};
+
+/// Rubber that forgets, ages or warms up takes a weak column below the threshold of the readout before the others.
+TEST(FalseFaults, a_line_that_fades_below_the_threshold_is_not_silent) {
+  constexpr double kThreshold = 20.0;
+  const WeakColumn array(16, 2.0 * kThreshold);
+  Watch watch = array.watch();
+  for (int frame = 0; frame < 300; ++frame) {
+    const double share = std::max(1.0 - 0.02 * frame, 0.45);
+    ASSERT_EQ(watch.observe(array.faded(share, kThreshold)), "") << "frame " << frame;
+  }
+}
+
+/// It read five thresholds: rubber that fades would leave more than one.
+TEST(FalseFaults, a_line_that_no_threshold_hides_is_silent) {
+  constexpr double kThreshold = 20.0;
+  const WeakColumn array(16, 5.0 * kThreshold);
+  Watch watch = array.watch();
+  for (int frame = 0; frame < 10; ++frame) ASSERT_EQ(watch.observe(array.faded(0.25, kThreshold)), "");
+  std::vector<double> open = array.faded(1.0, kThreshold);
+  for (std::size_t row = 0; row < WeakColumn::kRows; ++row) open[row * 8 + WeakColumn::kColumn] = 0.0;
+  std::string found;
+  for (int frame = 0; frame < 10; ++frame) found = watch.observe(open);
+  EXPECT_EQ(found, "column 5; ");
+}
+
+/// An ADC that has less noise than is said rounds a weak column down to 0 in every frame, and the others up to 1.
+TEST(FalseFaults, a_line_that_is_rounded_to_0_is_not_silent) {
+  const WeakColumn array(8, 1.6);
+  Watch watch = array.watch();
+  for (int frame = 0; frame < 300; ++frame) {
+    const double share = std::max(1.0 - 0.02 * frame, 0.31);
+    ASSERT_EQ(watch.observe(array.faded(share)), "") << "frame " << frame;
+  }
+}
+
 }  // namespace
 }  // namespace dermis::compensation

@@ -53,14 +53,23 @@ TEST(ArrayDescription, needs_no_resistors_without_a_circuit) {
             "valid");
 }
 
+TEST(ArrayDescription, doubts_lengths_in_metres_that_were_to_be_in_millimetres) {
+  EXPECT_EQ(message_after([](ArrayDescription& array) { array.row_pitch_m = 15e-6; }),
+            "array.pitch_mm: must be 0.05 to 1000; is 0.015 in metres? Then write 15");
+  EXPECT_EQ(message_after([](ArrayDescription& array) { array.taxel_area_m2 = 38.48e-12; }),
+            "array.taxel_area_mm2: must be 0.0025 to 1000000; is 3.848e-05 in metres? Then write 38.48");
+  EXPECT_EQ(message_after([](ArrayDescription& array) { array.col_pitch_m = 15.0; }),
+            "array.pitch_mm: must be 0.05 to 1000");
+}
+
 TEST(ArrayDescription, names_the_field_out_of_range) {
   using Array = ArrayDescription;
   EXPECT_EQ(message_after([](Array& array) { array.rows = 0; }), "array.rows: must be 1 to 1024");
   EXPECT_EQ(message_after([](Array& array) { array.cols = 1025; }), "array.cols: must be 1 to 1024");
-  EXPECT_EQ(message_after([](Array& array) { array.row_pitch_m = 0.0; }), "array.pitch_mm: must be more than 0 mm");
-  EXPECT_EQ(message_after([](Array& array) { array.col_pitch_m = NAN; }), "array.pitch_mm: must be more than 0 mm");
+  EXPECT_EQ(message_after([](Array& array) { array.row_pitch_m = 0.0; }), "array.pitch_mm: must be 0.05 to 1000");
+  EXPECT_EQ(message_after([](Array& array) { array.col_pitch_m = NAN; }), "array.pitch_mm: must be 0.05 to 1000");
   EXPECT_EQ(message_after([](Array& array) { array.taxel_area_m2 = -1.0; }),
-            "array.taxel_area_mm2: must be more than 0 mm2");
+            "array.taxel_area_mm2: must be 0.0025 to 1000000");
   EXPECT_EQ(message_after([](Array& array) { array.readout.adc_bits = 25; }), "readout.adc_bits: must be 1 to 24");
   EXPECT_EQ(message_after([](Array& array) { array.readout.adc_reference_v = 0.0; }),
             "readout.adc_reference_v: must be more than 0 V");

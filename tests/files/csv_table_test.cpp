@@ -49,7 +49,8 @@ TEST(CsvTable, names_the_line_of_a_number_that_is_none) {
 }
 
 TEST(CsvTable, refuses_lines_that_do_not_fit_the_header) {
-  EXPECT_EQ(error_of("id,first\na,1,2\n"), "t.csv:2: has 3 values, the header 2");
+  EXPECT_EQ(error_of("id,first\na,1,2\n"),
+            "t.csv:2: has 3 values, the header 2: write decimals with a point, as each comma begins a value");
   EXPECT_EQ(error_of("id,first,id\n"), "t.csv:1: names a column twice");
   EXPECT_EQ(error_of("\n"), "t.csv:1: is empty; a line with the names of its columns is expected");
 }

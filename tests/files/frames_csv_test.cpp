@@ -184,7 +184,8 @@ TEST(FramesCsvReader, names_a_column_out_of_place) {
 
 TEST(FramesCsvReader, says_what_another_program_has_saved) {
   using namespace std::string_literals;  // NOLINT(google-build-using-namespace): the literals only
-  EXPECT_EQ(error_of("time_s;r0c0;r0c1\n"), "frames.csv:1: has semicolons between its values; write commas");
+  EXPECT_EQ(error_of("time_s;r0c0;r0c1\n"),
+            "frames.csv:1: has semicolons between its values; write commas, and decimals with a point");
   EXPECT_EQ(error_of("time_s\tr0c0\tr0c1\n"), "frames.csv:1: has tabs between its values; write commas");
   EXPECT_EQ(error_of("\"time_s\",\"r0c0\",\"r0c1\"\n"),
             "frames.csv:1: has quotes around its values; write them without");
@@ -214,6 +215,11 @@ TEST(FramesCsvReader, loses_only_the_last_line_where_it_is_cut) {
 TEST(FramesCsvReader, names_both_lengths_of_a_ragged_row) {
   EXPECT_EQ(error_of("time_s,r0c0,r0c1\n0,1,2\n1,1\n"), "frames.csv:3: has 2 values, the header 3");
   EXPECT_EQ(error_of("time_s,r0c0,r0c1\n0,1,2,\n"), "frames.csv:2: has 4 values, the header 3");
+}
+
+TEST(FramesCsv, names_decimals_that_are_written_with_a_comma) {
+  EXPECT_EQ(error_of("time_s,r0c0,r0c1\n0,5,1,2\n"),
+            "frames.csv:2: has 4 values, the header 3: write decimals with a point, as each comma begins a value");
 }
 
 TEST(FramesCsvReader, names_column_and_text_that_is_not_a_number) {

@@ -68,7 +68,8 @@ TEST(TaxelTablesReader, names_the_line_at_which_a_frame_begins) {
 TEST(TaxelTablesReader, refuses_other_sizes) {
   EXPECT_EQ(error_of("1,2,3\n4,5\n"),
             "g.csv:2: has 2 values, the array 3 columns; write 2 lines of 3 numbers a frame, with commas");
-  EXPECT_EQ(error_of("1;2;3\n4;5;6\n7,8,9\n"), "g.csv:1: has semicolons between its values; write commas");
+  EXPECT_EQ(error_of("1;2;3\n4;5;6\n7,8,9\n"),
+            "g.csv:1: has semicolons between its values; write commas, and decimals with a point");
   EXPECT_EQ(error_of("1,2,3\n4,5,6\n7,8,9\n"), "g.csv:3: the file ends after 1 line of a frame; the array has 2 rows");
 }
 

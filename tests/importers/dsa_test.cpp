@@ -88,7 +88,7 @@ TEST(Dsa, loses_only_the_frame_that_is_cut) {
   const std::size_t end = whole.find("</frame>", begin);
   for (std::size_t size = begin; size < end + 8; ++size) {
     EXPECT_EQ(importer.counts(whole.substr(0, size)), (Frames{{0, 9}})) << size;
-    EXPECT_EQ(importer.notices().size(), 1U) << size;
+    EXPECT_EQ(importer.losses().size(), 1U) << size;
   }
 }
 
@@ -109,7 +109,7 @@ TEST(Dsa, reads_what_is_whole_of_a_compressed_file_that_is_cut) {
   const Frames counts = importer.counts(whole.substr(0, whole.size() / 2));
   EXPECT_GT(counts.size(), 1000U);
   EXPECT_LT(counts.size(), 30000U);
-  EXPECT_EQ(importer.notices().size(), 1U);
+  EXPECT_EQ(importer.losses().size(), 1U);
   EXPECT_EQ(importer.counts(whole).size(), 30000U);
 }
 

@@ -55,12 +55,14 @@ class Importer {
                                                         const ImportOptions&);
   explicit Importer(Open open, ImportOptions options = {}) : open_(open), options_(std::move(options)) {
     options_.notice = [this](const std::string& line) { notices_.push_back(line); };
+    options_.loss = [this](const std::string& line) { losses_.push_back(line); };
   }
   Importer(const Importer&) = delete;
   Importer& operator=(const Importer&) = delete;
 
   Result<std::vector<RawFrame>> read(const std::string& bytes, const std::string& name = "f") {
     notices_.clear();
+    losses_.clear();
     const auto source = open_(std::make_unique<std::istringstream>(bytes), name, options_);
     if (!source) return source.error();
     shape_ = (*source)->shape();
@@ -111,12 +113,14 @@ class Importer {
 
   [[nodiscard]] std::optional<FrameShape> shape() const { return shape_; }
   [[nodiscard]] const std::vector<std::string>& notices() const { return notices_; }
+  [[nodiscard]] const std::vector<std::string>& losses() const { return losses_; }
 
  private:
   Open open_;
   ImportOptions options_;
   std::optional<FrameShape> shape_;
   std::vector<std::string> notices_;
+  std::vector<std::string> losses_;
 };
 
 using Frames = std::vector<std::vector<float>>;

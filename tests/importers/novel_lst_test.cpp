@@ -59,7 +59,7 @@ TEST(NovelLst, loses_only_the_frame_that_is_cut) {
   const std::string whole = with_tabs();
   const std::size_t end = whole.find("\t1.0\t2.0") + 6;
   EXPECT_EQ(importer.counts(whole.substr(0, end)).size(), 1U);
-  EXPECT_EQ(importer.notices(), std::vector<std::string>{"f:19: is cut off; the 1 frame before is read"});
+  EXPECT_EQ(importer.losses(), std::vector<std::string>{"f:19: is cut off; the 1 frame before is read"});
 }
 
 TEST(NovelLst, keeps_the_picture_before_a_page_that_is_cut_above_its_values) {
@@ -69,7 +69,7 @@ TEST(NovelLst, keeps_the_picture_before_a_page_that_is_cut_above_its_values) {
   for (std::size_t size = 0; size <= next.size(); ++size) {
     EXPECT_EQ(importer.counts(whole + next.substr(0, size)), kPressed) << size;
   }
-  EXPECT_EQ(importer.notices(), std::vector<std::string>{"f:26: is cut off; the 2 frames before are read"});
+  EXPECT_EQ(importer.losses(), std::vector<std::string>{"f:26: is cut off; the 2 frames before are read"});
 }
 
 TEST(NovelLst, names_what_is_wrong) {

@@ -27,7 +27,7 @@ TEST(Packed10, begins_each_frame_with_a_byte) {
 TEST(Packed10, loses_only_the_frame_that_is_cut) {
   Importer importer(open_packed10, {.shape = FrameShape{1, 4}, .rate_hz = 50.0});
   EXPECT_EQ(importer.counts(std::string(9, '\0')).size(), 1U);
-  EXPECT_EQ(importer.notices(), std::vector<std::string>{"f: is cut off; the 1 frame before is read"});
+  EXPECT_EQ(importer.losses(), std::vector<std::string>{"f: is cut off; the 1 frame before is read"});
 }
 
 TEST(Packed10, tells_a_file_that_cannot_be_read) {

@@ -27,7 +27,7 @@ TEST(Tekscan, reads_a_movie) {
   EXPECT_EQ(importer.shape(), (FrameShape{2, 3}));
   EXPECT_EQ(importer.seconds(header() + kTwo), (std::vector<double>{0.0, 0.02})) << "by the numbers of the frames";
   EXPECT_EQ((*importer.read(header() + kTwo))[1].acquisition.sequence, 7U);
-  EXPECT_TRUE(importer.notices().empty());
+  EXPECT_TRUE(importer.losses().empty());
 }
 
 TEST(Tekscan, reads_what_a_spreadsheet_has_made_of_it) {
@@ -69,7 +69,7 @@ TEST(Tekscan, loses_only_the_frame_that_is_cut) {
   for (std::size_t size = begin + 8; size < end + 4; ++size) {
     const Frames frames = importer.counts(whole.substr(0, size));
     EXPECT_EQ(frames, Frames{kCounts[0]}) << size;
-    EXPECT_EQ(importer.notices().size(), 1U) << size;
+    EXPECT_EQ(importer.losses().size(), 1U) << size;
   }
 }
 

@@ -23,7 +23,7 @@ TEST(TextMatrix, reads_blocks_with_any_separators) {
         "left,middle,right\n\"1\",\"2\",\"3\"\n4,5,6\nFrame 2:\n7,8,9\n10,11,12.5\n"}) {
     EXPECT_EQ(importer.counts(text), kTwo) << text;
     EXPECT_EQ(importer.shape(), (FrameShape{2, 3}));
-    EXPECT_TRUE(importer.notices().empty());
+    EXPECT_TRUE(importer.losses().empty());
   }
   EXPECT_EQ(importer.seconds("1\n\n2\n\n3\n"), (std::vector<double>{0.0, 0.01, 0.02}));
 }
@@ -89,8 +89,8 @@ TEST(TextMatrix, loses_only_the_block_that_is_cut) {
   const Frames first = {kTwo[0]};
   for (const std::string rest : {"7,8", "7,8,9", "7,8,9\n", "7,8,9\n10,1", "7,8,9\n10,11,", "7,8,9\n10,11,1x"}) {
     EXPECT_EQ(importer.counts("1,2,3\n4,5,6\n\n" + rest), first) << rest;
-    ASSERT_EQ(importer.notices().size(), 1U) << rest;
-    EXPECT_TRUE(importer.notices()[0].ends_with(": is cut off; the 1 frame before is read"));
+    ASSERT_EQ(importer.losses().size(), 1U) << rest;
+    EXPECT_TRUE(importer.losses()[0].ends_with(": is cut off; the 1 frame before is read"));
   }
   Importer strip(open_text_matrix, {.shape = FrameShape{1, 3}, .rate_hz = 1.0});
   for (const std::string rest : {"4", "4,", "4,5,", "4,,"}) {

@@ -86,7 +86,7 @@ TEST(Xsensor, loses_only_the_frame_that_is_cut) {
   const std::string whole = two_frames();
   for (std::size_t size = whole.find("\"6\""); size < whole.find("\"11\"") + 1; ++size) {
     EXPECT_EQ(importer.counts(whole.substr(0, size)), Frames{kCounts[0]}) << size;
-    EXPECT_EQ(importer.notices().size(), 1U) << size;
+    EXPECT_EQ(importer.losses().size(), 1U) << size;
   }
 }
 

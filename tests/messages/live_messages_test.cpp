@@ -151,6 +151,9 @@ TEST(LiveMessages, a_calibration_state_has_all_of_its_fields) {
   state.hint = CalibrationState::Hint::other_taxel;
   state.pressed_taxel = 7;
   state.unpressed_relative_error = 0.09;
+  state.together_with = 5;
+  state.together_reading = 1.5;
+  state.missing_taxel = 4;
   std::vector<std::uint8_t> message;
   encode_calibration_state(state, "suit", message);
   EXPECT_EQ(read_by_definition(calibration_state_type(), message), json({{"header", header()},
@@ -167,7 +170,10 @@ TEST(LiveMessages, a_calibration_state_has_all_of_its_fields) {
                                                                          {"taxel_presses", {1, 0, 2}},
                                                                          {"hint", 4},
                                                                          {"pressed_taxel", 7},
-                                                                         {"unpressed_relative_error", 0.09}}));
+                                                                         {"unpressed_relative_error", 0.09},
+                                                                         {"together_with", 5},
+                                                                         {"together_reading", 1.5},
+                                                                         {"missing_taxel", 4}}));
 }
 
 TEST(LiveMessages, what_is_not_known_of_a_calibration_is_told) {
@@ -177,6 +183,9 @@ TEST(LiveMessages, what_is_not_known_of_a_calibration_is_told) {
   EXPECT_TRUE(std::isnan(state["median_relative_error"].get<double>()));
   EXPECT_EQ(state["pressed_taxel"], 4'294'967'295U);
   EXPECT_TRUE(std::isnan(state["unpressed_relative_error"].get<double>()));
+  EXPECT_EQ(state["together_with"], 4'294'967'295U);
+  EXPECT_TRUE(std::isnan(state["together_reading"].get<double>()));
+  EXPECT_EQ(state["missing_taxel"], 4'294'967'295U);
 }
 
 TEST(LiveMessages, statistics_have_all_of_their_fields) {
@@ -188,6 +197,7 @@ TEST(LiveMessages, statistics_have_all_of_their_fields) {
   statistics.recording_frames = 1ULL << 40U;
   statistics.clients = 3;
   statistics.client_drops = 5;
+  statistics.recording_left_out = 6;
   std::vector<std::uint8_t> message;
   encode_statistics(statistics, "suit", message);
   EXPECT_EQ(read_by_definition(statistics_type(), message), json({{"header", header()},
@@ -209,7 +219,8 @@ TEST(LiveMessages, statistics_have_all_of_their_fields) {
                                                                   {"recording_file", "r.mcap"},
                                                                   {"recording_frames", 1ULL << 40U},
                                                                   {"clients", 3},
-                                                                  {"client_drops", 5}}));
+                                                                  {"client_drops", 5},
+                                                                  {"recording_left_out", 6}}));
 }
 
 TEST(LiveMessages, diagnoses_and_transforms_read_back) {

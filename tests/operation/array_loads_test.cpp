@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include "force_mat.hpp"
@@ -38,6 +39,20 @@ TEST(ArrayLoads, gives_newtons_by_a_model_and_tells_its_array) {
   EXPECT_EQ(source->time(), std::chrono::seconds(1));
   EXPECT_EQ(source->array(), (recognition::SensedArray{"mat", 3, 4, 0, 4.0, 10.0}));
   EXPECT_FALSE(source->is_live());
+}
+
+TEST(ArrayLoads, tell_at_the_end_that_most_frames_had_no_force) {
+  const MatFiles mat;
+  std::vector<RawFrame> frames = pressed({1.0F, 1.0F, 1.0F});
+  for (const std::size_t lost : {0U, 2U}) frames[lost].counts.assign(kShape.taxel_count(), NAN);
+  std::vector<std::string> losses;
+  ArrayLoadInput input{.from = mat.write("frames.csv", frames), .model = mat.model()};
+  input.source.loss = [&](const std::string& line) { losses.push_back(line); };
+  Result<ArrayLoads> source = ArrayLoads::open(input);
+  ASSERT_TRUE(source) << source.error().message;
+  while (source->next().value()) EXPECT_TRUE(losses.empty());
+  ASSERT_EQ(losses.size(), 1U);
+  EXPECT_TRUE(losses[0].starts_with(input.from + ": 2 of 3 frames have no force: ")) << losses[0];
 }
 
 TEST(ArrayLoads, takes_the_mean_of_the_first_second_for_unloaded) {

@@ -105,7 +105,7 @@ TEST(ReadExamples, refuses_recordings_that_are_not_alike) {
   const std::string first = mat.write("rec.csv", two_presses());
   options.in = {first, first};
   EXPECT_EQ(error_of(read_examples(options)),
-            "--in: two recordings are called rec.csv; rename one, so that the labels can tell them apart");
+            "in: two recordings are called rec.csv; rename one, so that the labels can tell them apart");
   options.in = {first, mat.write("other.csv", pressed({1.0F, 2.0F}, {2, 3}), {2, 3})};
   EXPECT_EQ(error_of(read_examples(options)),
             "other.csv: has frames of 2x3 taxels, rec.csv of 3x4 taxels; learn from recordings of the same arrays");
@@ -132,12 +132,12 @@ TEST(ReadExamples, wants_recordings_or_plain_files_and_not_both) {
   ExampleOptions options;
   EXPECT_NE(error_of(read_examples(options)).find("name the examples"), std::string::npos);
   options.tare = true;
-  EXPECT_NE(error_of(read_examples(options)).find("are for --in"), std::string::npos);
+  EXPECT_NE(error_of(read_examples(options)).find("are for recordings"), std::string::npos);
   options.in = {"rec.csv"};
   options.data.frames = "frames.npy";
-  EXPECT_NE(error_of(read_examples(options)).find("--in: excludes"), std::string::npos);
+  EXPECT_NE(error_of(read_examples(options)).find("in: excludes"), std::string::npos);
   options.data.rate_hz = -1.0;
-  EXPECT_EQ(error_of(read_examples(options)), "--rate: must be 0.001 to 1e6");
+  EXPECT_EQ(error_of(read_examples(options)), "rate: must be 0.001 to 1e6");
 }
 
 }  // namespace

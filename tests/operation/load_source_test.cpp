@@ -36,10 +36,10 @@ TEST(CheckLoads, wants_forces_for_classes_of_forces_and_readings_for_those_of_re
   EXPECT_TRUE(check_loads(layout(1.0), "c", ""));
   const Status without = check_loads(layout(recognition::kLeastNewtons), "c", "");
   ASSERT_FALSE(without);
-  EXPECT_EQ(without.error().message, "c: its classes were learned from forces; name the --model of the array");
+  EXPECT_EQ(without.error().message, "c: its classes were learned from forces; name the model of the array");
   const Status with = check_loads(layout(1.0), "c", "model");
   ASSERT_FALSE(with);
-  EXPECT_NE(with.error().message.find("leave --model out"), std::string::npos);
+  EXPECT_NE(with.error().message.find("leave the model out"), std::string::npos);
 }
 
 TEST(LoadSource, gives_the_frames_of_one_array) {
@@ -164,7 +164,7 @@ TEST(LoadSource, has_further_readings_beside_its_frames) {
   EXPECT_NE(source->describe_troubles()[0].find("joints.csv: 1 of 2 frames of frames.csv"), std::string::npos);
   const std::string device = "sim:idle?rate=10";
   EXPECT_EQ(error_of(LoadSource::open({.from = device, .extra = mat.file("joints.csv")})),
-            "--extra: '" + device + "' is a device; 'dermis record' it first");
+            "extra: '" + device + "' is a device; 'dermis record' it first");
 }
 
 TEST(RecordingName, has_no_folder_but_the_array) {

@@ -124,10 +124,10 @@ TEST(SourceRecogniser, refuses_frames_and_rates_that_the_classes_cannot_be_seen_
   input.rate_hz = 10.0;
   EXPECT_NE(error_of(SourceRecogniser::open(input)).find("does not know the rate"), std::string::npos);
   input.rate_hz = -1.0;
-  EXPECT_EQ(error_of(SourceRecogniser::open(input)), "--rate: must be 0.001 to 1e6");
+  EXPECT_EQ(error_of(SourceRecogniser::open(input)), "rate: must be 0.001 to 1e6");
   input.rate_hz = 0.0;
   input.loads.model = poses.mat.model();
-  EXPECT_NE(error_of(SourceRecogniser::open(input)).find("leave --model out"), std::string::npos);
+  EXPECT_NE(error_of(SourceRecogniser::open(input)).find("leave the model out"), std::string::npos);
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ TEST(DrawPictures, fails_where_there_is_nothing_to_draw_or_too_much) {
   two[1].time += std::chrono::seconds(61);
   const auto view = ArrayView::open(mat.write("long.csv", two), "");
   ASSERT_TRUE(view);
-  EXPECT_EQ(error_of(draw_pictures(**view, {.to = std::chrono::seconds(61)})), "--to: at most 60 s are drawn");
+  EXPECT_EQ(error_of(draw_pictures(**view, {.to = std::chrono::seconds(61)})), "to: at most 60 s are drawn");
 }
 
 }  // namespace

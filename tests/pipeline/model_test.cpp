@@ -64,6 +64,7 @@ Model make_model() {
   model.networks.heaviest_newtons[2] = std::numeric_limits<float>::infinity();
   model.networks.dead[5] = 1;
   model.networks.tables = {{1, 4}, 2, {1e-4F, 3e-4F, 2e-4F, 1e-3F}, {1.0F, 7.0F, 0.5F, 9.0F}, {0.01F, -0.002F}};
+  model.memory = fusion::MemoryLaw{{0.1F, 0.0F, 0.05F, 0.2F}, {0.01F, 0.03F, 0.02F}};
   model.baselines = {make_baseline(6, "raw look-up", fusion::LookUpSignal::reading),
                      make_baseline(6, "look-up", fusion::LookUpSignal::conductance)};
   model.provenance = {{"frames", "120"}, {"note", "two\nlines, \"quotes\" and \xC2\xB5"}, {"empty", ""}};
@@ -122,6 +123,7 @@ void expect_equal(const Model& a, const Model& b) {
     EXPECT_EQ(a.baselines[k].knot_newtons, b.baselines[k].knot_newtons);
     EXPECT_EQ(a.baselines[k].temperature_coefficient, b.baselines[k].temperature_coefficient);
   }
+  EXPECT_EQ(a.memory, b.memory);
   EXPECT_EQ(a.provenance, b.provenance);
 }
 
@@ -176,6 +178,21 @@ TEST(Model, without_a_table_says_nothing_of_tables) {
     EXPECT_FALSE(name.starts_with("tables")) << name;
   }
   EXPECT_EQ(bytes_of(folder.file("m.safetensors")).find("tables"), std::string::npos);
+}
+
+TEST(Model, without_memory_says_nothing_of_it) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_model(folder.file("m.safetensors"), support::hand_made_model(2, 2)));
+  EXPECT_EQ(bytes_of(folder.file("m.safetensors")).find("memory"), std::string::npos);
+  EXPECT_FALSE(read_model(folder.file("m.safetensors"))->memory);
+}
+
+TEST(Model, memory_that_cannot_be_undone_is_refused) {
+  const TemporaryFolder folder;
+  write_damaged(folder.file("m"), [&](auto& file) {
+    file.tensors["memory.creep"].values = std::vector<float>{0.3F, 0.3F, 0.3F, 0.1F};
+  });
+  expect_refused(folder.file("m"), "out of range");
 }
 
 TEST(Model, every_circuit_survives_the_file) {
@@ -271,7 +288,7 @@ TEST(Model, every_tensor_must_be_there) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_model(folder.file("m"), make_model()));
   const auto names = tensor_names(folder.file("m"));
-  EXPECT_EQ(names.size(), 16U + 2U * 4U);
+  EXPECT_EQ(names.size(), 18U + 2U * 4U);
   for (const std::string& name : names) {
     SCOPED_TRACE(name);
     write_damaged(folder.file("m"), [&](auto& file) { file.tensors.erase(name); });

@@ -161,6 +161,31 @@ TEST(Pipeline, process_is_the_units_chained_by_hand) {
   }
 }
 
+TEST(Pipeline, what_the_material_remembers_is_taken_off_the_forces_of_the_networks) {
+  const Model without = hand_made_model(3, 4);
+  Model model = without;
+  model.memory = fusion::MemoryLaw{{0.05F, 0.1F, 0.1F, 0.15F}, {0.02F, 0.03F, 0.03F}};
+  const auto pipeline = make_pipeline(model);
+  const auto of_networks = make_pipeline(without);
+  fusion::MaterialMemory memory(*model.memory, 12);
+  ForceFrame force;
+  ForceFrame by_hand;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    RawFrame raw = random_frame(model, seed);
+    raw.time = std::chrono::milliseconds(37 * seed * seed);
+    if (seed % 5 == 0) raw.supply_v = -1.0;
+    pipeline->process(raw, force);
+    of_networks->process(raw, by_hand);
+    memory.process(by_hand);
+    EXPECT_EQ(force.status, by_hand.status);
+    EXPECT_TRUE(same_bits(force.newtons, by_hand.newtons));
+    EXPECT_TRUE(same_bits(force.sigma_newtons, by_hand.sigma_newtons));
+  }
+  model.memory->creep[0] = 0.7F;  // more than the inverse can undo
+  EXPECT_FALSE(Pipeline::create(model));
+}
+
 TEST(Pipeline, frames_influence_each_other_far_below_their_noise) {
   const Model model = hand_made_model(6, 6);
   const auto pipeline = make_pipeline(model);
@@ -416,6 +441,7 @@ TEST(Pipeline, allocates_nothing_after_the_first_frame) {
     Model model = hand_made_model(8, 9);
     model.array.readout.circuit = circuit;
     model.networks.tables = {{5, 50}, 1, {1e-3F, 1e-3F}, {9.0F, 11.0F}, {0.01F, 0.0F}};
+    model.memory = fusion::MemoryLaw{{0.1F, 0.1F, 0.1F, 0.1F}, {0.02F, 0.02F, 0.02F}};
     const auto frames = frames_of_every_kind(model);
     for (std::size_t first = 0; first < frames.size(); ++first) {
       SCOPED_TRACE(testing::Message() << to_string(circuit) << ", first frame " << first);

@@ -57,7 +57,9 @@ TEST_F(Conversion, what_the_format_has_no_place_for_is_named) {
 TEST_F(Conversion, a_file_without_times_has_none_to_leave_out) {
   const std::string npy = folder_.file("f.npy");
   ASSERT_TRUE(convert_frames(in_, npy));
-  EXPECT_EQ(*convert_frames(npy, folder_.file("g.npy"), {.input = {.rate_hz = 100.0}}), Names{});
+  EXPECT_EQ(*convert_frames(npy, folder_.file("g.npy")), Names{});
+  EXPECT_FALSE(convert_frames(npy, folder_.file("g.csv"))) << "whose frames need times";
+  EXPECT_EQ(*convert_frames(npy, folder_.file("g.csv"), {.input = {.rate_hz = 100.0}}), Names{});
 }
 
 TEST_F(Conversion, the_array_is_kept_where_there_is_a_place_for_it) {
@@ -81,10 +83,12 @@ TEST_F(Conversion, a_recording_that_was_cut_is_converted_as_far_as_it_goes_and_s
   const std::string cut = folder_.file("cut.mcap");
   const std::string bytes = support::read_bytes(in_);
   support::write_bytes(cut, std::string_view(bytes).substr(0, bytes.size() - 10));
-  Names notices;
+  Names losses;
   ASSERT_TRUE(convert_frames(cut, folder_.file("out.csv"),
-                             {.notice = [&](const std::string& text) { notices.push_back(text); }}));
-  EXPECT_EQ(notices, Names{cut + ": was not written to its end; the frames that are there are converted"});
+                             {.input = {.loss = [&](const std::string& text) { losses.push_back(text); }}}));
+  EXPECT_EQ(losses,
+            Names{cut + ": was not written to its end, so that its last frames may be missing; 'dermis recover' "
+                        "makes it complete"});
   EXPECT_EQ(read_frames(folder_.file("out.csv"))->size(), 5U);
 }
 

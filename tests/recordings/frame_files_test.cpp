@@ -119,6 +119,44 @@ TEST_P(EveryFormat, is_read_at_once) {
   EXPECT_EQ(frames->size(), 30U);
 }
 
+TEST_P(EveryFormat, without_a_frame_is_bad_input) {
+  const support::TemporaryFolder folder;
+  const std::string path = folder.file(GetParam());
+  const auto sink = create_frames(path, {3, 4});
+  ASSERT_TRUE(sink && (*sink)->commit());
+  const auto frames = read_frames(path, {.rate_hz = 100.0});
+  ASSERT_FALSE(frames);
+  EXPECT_EQ(frames.error().kind, ErrorKind::bad_input);
+  EXPECT_EQ(frames.error().message, path + ": has no frame");
+}
+
+TEST(FrameFiles, of_a_file_that_is_cut_all_whole_frames_are_given_and_the_loss_is_told_once) {
+  const support::TemporaryFolder folder;
+  support::write_bytes(folder.file("f.csv"), "time_s,r0c0,r0c1\n0,1,2\n1,3,4\n2,5");
+  std::vector<std::string> losses;
+  const auto source =
+      open_frames(folder.file("f.csv"), {.loss = [&](const std::string& text) { losses.push_back(text); }});
+  ASSERT_TRUE(source);
+  EXPECT_EQ(read_frames(**source)->size(), 2U);
+  EXPECT_EQ(losses, std::vector<std::string>{folder.file("f.csv") + ":4: is cut off; the frames before are read"});
+}
+
+TEST(FrameFiles, names_what_a_file_with_a_wrong_ending_is) {
+  const support::TemporaryFolder folder;
+  const auto sink = create_frames(folder.file("f.mcap"), {3, 4});
+  ASSERT_TRUE(sink && (*sink)->commit());
+  const std::string recording = support::read_bytes(folder.file("f.mcap"));
+  for (const auto& [name, wanted] : {std::pair{"f.h5", "an HDF5 file"},
+                                     {"f.npy", "a NumPy array (.npy)"},
+                                     {"f.npz", "a zip archive (.npz)"},
+                                     {"f.txt", "a table (CSV)"}}) {
+    support::write_bytes(folder.file(name), recording);
+    const auto source = open_frames(folder.file(name), {.rate_hz = 100.0});
+    ASSERT_FALSE(source) << name;
+    EXPECT_EQ(source.error().message, folder.file(name) + ": is an MCAP recording, not " + wanted);
+  }
+}
+
 TEST(FrameFiles, keep_notes_where_the_format_has_a_place_for_them) {
   const support::TemporaryFolder folder;
   const FrameNotes notes{"hand", "[array]\nname = \"hand\"\n", "0123456789abcdef"};
@@ -162,8 +200,7 @@ TEST(FrameFiles, of_a_pipe_are_csv) {
 TEST(FrameFiles, of_numpy_need_a_rate) {
   const auto source = open_frames("f.npy");
   ASSERT_FALSE(source);
-  EXPECT_EQ(source.error().message,
-            "f.npy: has no times: give a rate, to 'dermis convert --rate HZ' or as 'file:f.npy?rate=HZ'");
+  EXPECT_EQ(source.error().message, "f.npy: has no times: give a rate, to 'dermis convert' or as 'file:f.npy?rate=HZ'");
 }
 
 TEST(FrameFiles, of_other_systems_are_told_by_what_they_hold) {
@@ -185,12 +222,12 @@ TEST(FrameFiles, of_other_systems_are_told_by_what_they_hold) {
 TEST(FrameFiles, of_other_systems_are_read_and_not_written) {
   const support::TemporaryFolder folder;
   support::write_bytes(folder.file("a.txt"), "1,2\n3,4\n\n5,6\n7,8\n\n9");
-  std::vector<std::string> notices;
-  const auto frames = read_frames(
-      folder.file("a.txt"), {.rate_hz = 10.0, .notice = [&](const std::string& line) { notices.push_back(line); }});
+  std::vector<std::string> losses;
+  const auto frames = read_frames(folder.file("a.txt"),
+                                  {.rate_hz = 10.0, .loss = [&](const std::string& line) { losses.push_back(line); }});
   ASSERT_TRUE(frames) << frames.error().message;
   EXPECT_EQ(frames->size(), 2U);
-  EXPECT_EQ(notices.size(), 1U);
+  EXPECT_EQ(losses.size(), 1U);
   const auto sink = create_frames(folder.file("b.txt"), {2, 2});
   ASSERT_FALSE(sink);
   EXPECT_EQ(sink.error().message,

@@ -14,11 +14,14 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/messages/live_messages.hpp"
 #include "dermis/recordings/mcap.hpp"
 #include "dermis/recordings/suit_recording.hpp"
+#include "messages/read_by_definition.hpp"
 #include "serve/named_touches.hpp"
 #include "serve/small_suit.hpp"
 #include "serve/stream_client.hpp"
+#include "support/stalled_disk.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::serve {
@@ -108,6 +111,43 @@ class GuidedArray final : public FrameSource {
   std::shared_ptr<sources::GuideVoice> voice_;
   std::vector<double> force_n_;
 };
+
+/// An array of noise that a hand presses when it is told, as fast as it is read.
+class NoisyArray final : public FrameSource {
+ public:
+  NoisyArray(const ArrayDescription& array, const std::atomic<bool>& is_pressed)
+      : shape_{array.rows, array.cols}, handled_(array, {}, kSeed), random_(kSeed), is_pressed_(is_pressed) {}
+
+  Result<bool> next(RawFrame& frame) override {
+    time_ += std::chrono::milliseconds(1);
+    frame.time = time_;
+    frame.counts.resize(shape_.taxel_count());
+    for (float& counts : frame.counts) counts = static_cast<float>(random_.below(1000));
+    if (is_pressed_) {
+      frame = handled_.frame(std::vector<double>(shape_.taxel_count(), 20.0));
+      frame.time = time_;
+    }
+    return true;
+  }
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return shape_; }
+
+ private:
+  FrameShape shape_;
+  calibration::HandledArray handled_;
+  Random random_;
+  const std::atomic<bool>& is_pressed_;
+  Nanos time_{};
+};
+
+/// The next message of a topic that `is_awaited`.
+template <typename IsAwaited>
+json await(StreamClient& client, const std::string& topic, const messages::MessageType& type,
+           const IsAwaited& is_awaited) {
+  for (;;) {
+    json message = messages::read_by_definition(type, client.next_message(topic).bytes);
+    if (is_awaited(message)) return message;
+  }
+}
 
 TEST(Session, streams_every_topic_of_all_arrays) {
   const std::atomic<bool> never = false;
@@ -227,6 +267,44 @@ TEST(Session, names_touches_and_watches_limits_for_its_clients_and_in_its_record
   bool is_recorded = false;
   for (const auto& [id, channel] : (*info)->channels()) is_recorded |= channel.topic == "/left/recognition";
   EXPECT_TRUE(is_recorded);
+}
+
+TEST(Session, tells_a_threat_while_the_disk_of_its_recording_stands_still) {
+  const TemporaryFolder folder;
+  support::StalledDisk disk(folder.file("rec.mcap"));
+  std::atomic<bool> is_pressed = false;
+  const auto model = std::make_shared<const pipeline::Model>(support::hand_made_model(32, 32));
+  ServedSuit suit;
+  suit.arrays.push_back({"chest",
+                         std::make_unique<NoisyArray>(model->array, is_pressed),
+                         model,
+                         ArraySurface::create(model->array).value(),
+                         {},
+                         model->array});
+  suit.threats = threats::ThreatLimits{
+      {}, {{.name = "pushed", .quantity = threats::ThreatQuantity::total_force, .limit = 1000.0}}};
+  Work work(session_of(std::move(suit), options_with(folder.file("rec.mcap"))));
+  StreamClient client(work.port());
+  client.subscribe({"/statistics", "/threat"});
+  const auto has_no_room = [](const json& statistics) { return statistics["recording_left_out"] > 0; };
+  static_cast<void>(await(client, "/statistics", messages::statistics_type(), has_no_room));
+
+  const auto pressed = std::chrono::steady_clock::now();
+  is_pressed = true;
+  const auto begins = [](const json& threat) { return threat["changed"] == true && threat["state"] == 2; };
+  EXPECT_EQ(await(client, "/threat", messages::threat_type(), begins)["name"], "pushed");
+  const std::chrono::duration<double, std::milli> delay = std::chrono::steady_clock::now() - pressed;
+  RecordProperty("ms_to_threat", std::to_string(delay.count()));
+
+  disk.flow_into(folder.file("flown.mcap"));
+  ASSERT_TRUE(work.end());
+  disk.await_end();
+  EXPECT_GT(recorded_frames(folder.file("flown.mcap"))[0], 0U);
+  const auto info = recordings::McapReader::open(folder.file("flown.mcap"));
+  ASSERT_TRUE(info);
+  bool is_recorded = false;
+  for (const auto& [id, channel] : (*info)->channels()) is_recorded |= channel.topic == "/threat";
+  EXPECT_TRUE(is_recorded) << "events have room of their own";
 }
 
 TEST(Session, refuses_classes_and_limits_that_do_not_fit_an_array) {

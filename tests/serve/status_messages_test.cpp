@@ -117,6 +117,9 @@ TEST(StatusMessages, a_calibration_is_told_with_all_that_the_guide_says) {
   guide.median_relative_error = 0.01;
   guide.unpressed_relative_error = 0.02;
   guide.taxel_presses = {1, 0, 2};
+  guide.together_with = 9;
+  guide.together_reading = 4.0;
+  guide.missing_taxel = 5;
   const messages::CalibrationState message = calibration_message({"chest", guide});
   EXPECT_EQ(message.array, "chest");
   EXPECT_EQ(message.stage, messages::CalibrationState::Stage::pressing);
@@ -132,12 +135,18 @@ TEST(StatusMessages, a_calibration_is_told_with_all_that_the_guide_says) {
   EXPECT_EQ(message.median_relative_error, 0.01);
   EXPECT_EQ(message.unpressed_relative_error, 0.02);
   EXPECT_EQ(message.taxel_presses, (std::vector<std::uint8_t>{1, 0, 2}));
+  EXPECT_EQ(message.together_with, 9U);
+  EXPECT_EQ(message.together_reading, 4.0);
+  EXPECT_EQ(message.missing_taxel, 5U);
 }
 
-TEST(StatusMessages, errors_that_no_fit_has_told_are_not_numbers) {
+TEST(StatusMessages, what_is_not_known_of_a_calibration_is_no_number_and_no_taxel) {
   const messages::CalibrationState message = calibration_message({"chest", {}});
   EXPECT_EQ(message.stage, messages::CalibrationState::Stage::none);
   EXPECT_FALSE(message.pressed_taxel);
+  EXPECT_FALSE(message.together_with);
+  EXPECT_FALSE(message.missing_taxel);
+  EXPECT_TRUE(std::isnan(message.together_reading));
   EXPECT_TRUE(std::isnan(message.median_relative_error));
   EXPECT_TRUE(std::isnan(message.unpressed_relative_error));
 }

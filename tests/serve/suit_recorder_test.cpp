@@ -9,8 +9,10 @@
 #include <thread>
 #include <vector>
 
+#include "dermis/messages/live_messages.hpp"
 #include "support/full_disk.hpp"
 #include "support/random_frames.hpp"
+#include "support/stalled_disk.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::serve {
@@ -132,6 +134,49 @@ TEST(SuitRecorder, says_where_it_cannot_begin_and_may_begin_later) {
   std::filesystem::create_directory(folder.file("none"));
   ASSERT_TRUE(recorder.begin());
   EXPECT_EQ(recorder.path(), folder.file("none/rec.mcap"));
+}
+
+TEST(SuitRecorder, waits_for_no_disk_that_stands_still_and_counts_what_it_has_no_room_for) {
+  constexpr FrameShape kLarge{64, 64};
+  const TemporaryFolder folder;
+  support::StalledDisk disk(folder.file("rec.mcap"));
+  const auto large = [&] { return std::vector<recordings::RecordedArray>{{.name = "chest", .shape = kLarge}}; };
+  SuitRecorder recorder(folder.file("rec.mcap"), large, fail_on);
+  ASSERT_TRUE(recorder.begin());
+  Random random(1);
+  std::uint64_t written = 0;
+  const auto write = [&] {
+    RawFrame noise = support::random_frame(random, kLarge.taxel_count(), support::RandomCounts::whole);
+    noise.time = Nanos(static_cast<std::int64_t>(++written) * 1'000'000);
+    noise.acquisition = {};
+    recorder.write(0, noise);
+  };
+  while (recorder.left_out() < 10) write();
+  const std::uint64_t before = recorder.frames();
+  EXPECT_GT(before, 1000U) << "that wait for the disk";
+  recorder.write({"/threat", messages::threat_type(), {}, std::vector<std::uint8_t>(100)});
+  EXPECT_EQ(recorder.left_out(), 10U) << "events have room of their own";
+
+  disk.flow_into(folder.file("flown.mcap"));
+  while (recorder.frames() == before) write();
+  const std::uint64_t left_out = recorder.left_out();
+  EXPECT_EQ(recorder.frames() + left_out, written);
+  ASSERT_TRUE(recorder.end());
+  disk.await_end();
+
+  const auto reader = recordings::SuitRecordingReader::open(folder.file("flown.mcap"));
+  ASSERT_TRUE(reader) << reader.error().message;
+  EXPECT_TRUE((*reader)->complete());
+  std::size_t array = 0;
+  RawFrame frame;
+  std::uint64_t frames = 0;
+  std::uint64_t lost = 0;
+  for (auto more = (*reader)->next(array, frame); more && *more; more = (*reader)->next(array, frame)) {
+    ++frames;
+    lost += frame.acquisition.lost_before;
+  }
+  EXPECT_EQ(frames, before + 1);
+  EXPECT_EQ(lost, left_out) << "the frames after gaps tell them";
 }
 
 TEST(SuitRecorder, tells_once_that_the_disk_is_full) {

@@ -20,10 +20,10 @@ TEST(GuideVoice, repeats_what_was_said_last) {
   voice.listen();
   EXPECT_TRUE(voice.has_listener());
   voice.say({.press = true, .taxel = 3, .weight_n = 2.0});
-  voice.say({.press = true, .other_taxel = true, .taxel = 7, .weight_n = 5.0, .hold_time = Nanos(9)});
+  voice.say({.press = true, .is_wrong = true, .taxel = 7, .weight_n = 5.0, .hold_time = Nanos(9)});
   const GuideWords words = voice.words();
   EXPECT_TRUE(words.press);
-  EXPECT_TRUE(words.other_taxel);
+  EXPECT_TRUE(words.is_wrong);
   EXPECT_EQ(words.taxel, 7U);
   EXPECT_EQ(words.weight_n, 5.0);
   EXPECT_EQ(words.hold_time, Nanos(9));

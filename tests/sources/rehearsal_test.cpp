@@ -68,26 +68,6 @@ TEST_F(RehearsalTest, presses_harder_with_a_heavier_weight) {
   EXPECT_GT(frame_.counts[7], 1.5F * light);
 }
 
-TEST_F(RehearsalTest, begins_every_eighth_press_beside_and_mends_it_when_told) {
-  for (std::size_t press = 0; press < 7; ++press) {
-    ask_for(press);
-    ASSERT_EQ(pressed_after(2s), press);
-    tell_to_release();
-    ASSERT_EQ(pressed_after(1s), std::nullopt);
-  }
-  ask_for(7);
-  ASSERT_EQ(pressed_after(2s), 8U);
-  guide_->say({.press = true, .other_taxel = true, .taxel = 7, .weight_n = 5.0, .hold_time = 1s});
-  EXPECT_EQ(pressed_after(1s), std::nullopt);
-  ask_for(7);
-  EXPECT_EQ(pressed_after(2s), 7U);
-}
-
-TEST_F(RehearsalTest, does_not_press_beside_the_array) {
-  ask_for(20);
-  EXPECT_EQ(pressed_after(3s), std::nullopt);
-}
-
 TEST_F(RehearsalTest, time_passes_in_frames_that_are_left_out) {
   ask_for(7);
   ASSERT_EQ(pressed_after(100ms), std::nullopt);

@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,6 +36,20 @@ struct HealthyArray {
   bool shuffled = false;          ///< Frames come in any order.
   std::string words;
 };
+
+/// Half of the arrays have the memory of real rubber; a third are touched as hands do.
+inline void give_memory_and_touches(std::uint64_t seed, HealthyArray& healthy) {
+  Random random = Random::stream(seed, 1);
+  simulation::RubberOptions& rubber = healthy.options.rubber;
+  if (random.below(2) == 0) {
+    rubber.creep = rubber.hysteresis = 0.0;
+    rubber.memory = simulation::RubberMemoryOptions{.creep_per_decade = random.uniform(0.02, 0.3),
+                                                    .loop_gap = random.uniform(0.0, 0.2),
+                                                    .touch_gain = random.uniform(0.0, 0.3),
+                                                    .release_dip = random.uniform(0.0, 0.6)};
+  }
+  if (random.below(3) == 0) healthy.scene = "touches";
+}
 
 inline HealthyArray random_healthy_array(std::uint64_t seed) {
   Random random(seed);
@@ -65,6 +81,7 @@ inline HealthyArray random_healthy_array(std::uint64_t seed) {
   rubber.mechanical_spread = one_of({0.0, 0.0, 0.2});
   const char* const scenes[] = {"multitouch", "contacts", "uniform", "idle", "calibration"};
   healthy.scene = scenes[random.below(std::size(scenes))];
+  give_memory_and_touches(seed, healthy);
   const double full_scale = array.readout.full_scale_counts();
   healthy.threshold_counts = full_scale * one_of({0.0, 0.0, 0.005, 0.02, 0.05});
   healthy.loaded_share = one_of({0.0, 0.0, 0.1, 0.3});
@@ -72,8 +89,9 @@ inline HealthyArray random_healthy_array(std::uint64_t seed) {
   healthy.words = circuit.name + ' ' + std::to_string(array.rows) + 'x' + std::to_string(array.cols) + ' ' +
                   std::to_string(array.readout.adc_bits) + " bit, noise " +
                   std::to_string(array.readout.adc_noise_counts) + ", " + healthy.scene + ", spread " +
-                  std::to_string(rubber.resistance_spread) + ", threshold " + std::to_string(healthy.threshold_counts) +
-                  ", loaded " + std::to_string(healthy.loaded_share) + (healthy.shuffled ? ", shuffled" : "");
+                  std::to_string(rubber.resistance_spread) + (rubber.memory ? ", memory" : "") + ", threshold " +
+                  std::to_string(healthy.threshold_counts) + ", loaded " + std::to_string(healthy.loaded_share) +
+                  (healthy.shuffled ? ", shuffled" : "");
   return healthy;
 }
 
@@ -85,31 +103,62 @@ inline ConditionedFrame conditioned_frame(const HealthyArray& healthy, const Raw
   frame.time = raw.time;
   frame.sigma_ratio = readout.adc_noise_counts / full_scale;
   for (const float count : raw.counts) {
-    const double sent = static_cast<double>(count) < healthy.threshold_counts ? 0.0 : static_cast<double>(count);
+    const auto sent = static_cast<double>(count);
     frame.ratio.push_back(sent / full_scale);
     frame.taxels.push_back(sent >= full_scale ? TaxelStatus::saturated : TaxelStatus::ok);
   }
   return frame;
 }
 
-/// At most `frames` of a scene, fixed ones from anywhere in it.
-inline std::vector<ConditionedFrame> frames_of(const HealthyArray& healthy, const std::string& scene,
-                                               std::uint64_t seed, std::size_t frames) {
-  const bool has_any_length = scene == "multitouch" || scene == "contacts" || scene == "idle";
-  std::optional<std::size_t> length;
-  if (has_any_length) length = frames;
-  const auto simulator = simulation::Simulator::create(healthy.array, healthy.options, scene, seed, length).value();
-  std::vector<ConditionedFrame> all;
+/// The scene on this array; `frames` where it has any length.
+inline std::unique_ptr<simulation::Simulator> play(const HealthyArray& healthy, const std::string& scene,
+                                                   std::uint64_t seed, std::size_t frames) {
+  constexpr double kTouchRateHz = 10.0;
+  const bool has_any_length = scene == "multitouch" || scene == "contacts" || scene == "idle" || scene == "touches";
+  simulation::SimulationOptions options = healthy.options;
+  if (simulation::takes_rate(scene)) options.scene.rate_hz = kTouchRateHz;
+  return simulation::Simulator::create(healthy.array, options, scene, seed,
+                                       has_any_length ? std::optional(frames) : std::nullopt)
+      .value();
+}
+
+/// What the readout sends of a frame.
+inline void cut_off(const HealthyArray& healthy, RawFrame& raw) {
+  for (float& count : raw.counts) {
+    if (static_cast<double>(count) < healthy.threshold_counts) count = 0.0F;
+  }
+}
+
+/// At most `frames` of a scene.
+inline std::vector<RawFrame> sent_frames(const HealthyArray& healthy, const std::string& scene, std::uint64_t seed,
+                                         std::size_t frames) {
+  const auto simulator = play(healthy, scene, seed, frames);
+  std::vector<RawFrame> all;
   RawFrame raw;
-  while (all.size() < frames && *simulator->next(raw)) all.push_back(conditioned_frame(healthy, raw));
+  while (all.size() < frames && *simulator->next(raw)) {
+    cut_off(healthy, raw);
+    all.push_back(raw);
+  }
   return all;
+}
+
+/// What happens to the array, in order or, the times aside, not.
+inline std::vector<RawFrame> stream_of(const HealthyArray& healthy, std::size_t frames) {
+  std::vector<RawFrame> stream = sent_frames(healthy, healthy.scene, healthy.seed, frames);
+  Random random(healthy.seed);
+  for (std::size_t k = stream.size(); healthy.shuffled && k-- > 1;) {
+    const std::size_t other = random.below(k + 1);
+    std::swap(stream[k], stream[other]);
+    std::swap(stream[k].time, stream[other].time);
+  }
+  return stream;
 }
 
 /// Conductance in frames that were said to be unloaded, as a calibration takes it.
 inline std::vector<double> calibrated_unloaded(const HealthyArray& healthy, compensation::Compensator& compensator) {
   constexpr std::size_t kFrames = 40;
-  auto frames = frames_of(healthy, "idle", healthy.seed + 1, kFrames);
-  const auto loaded = frames_of(healthy, "contacts", healthy.seed + 2, 400);
+  auto frames = sent_frames(healthy, "idle", healthy.seed + 1, kFrames);
+  const auto loaded = sent_frames(healthy, "contacts", healthy.seed + 2, 400);
   const auto replaced = static_cast<std::size_t>(healthy.loaded_share * kFrames);
   for (std::size_t k = 0; k < replaced; ++k) frames[k] = loaded[k * loaded.size() / replaced];
   const double counts =
@@ -117,8 +166,8 @@ inline std::vector<double> calibrated_unloaded(const HealthyArray& healthy, comp
   std::vector<std::vector<calibration::Point>> points(healthy.array.taxel_count());
   std::vector<double> sigma(points.size(), std::numeric_limits<double>::infinity());
   ConductanceFrame conductance;
-  for (const ConditionedFrame& frame : frames) {
-    compensator.process(frame, conductance);
+  for (const RawFrame& frame : frames) {
+    compensator.process(conditioned_frame(healthy, frame), conductance);
     for (std::size_t taxel = 0; taxel < points.size(); ++taxel) {
       points[taxel].push_back({0.0, conductance.siemens[taxel]});
       sigma[taxel] = std::min(sigma[taxel], conductance.sigma_siemens[taxel]);
@@ -131,23 +180,27 @@ inline std::vector<double> calibrated_unloaded(const HealthyArray& healthy, comp
   return unloaded;
 }
 
-/// The faults that are found within so many frames, as text: "silent_row row 3; ".
+/// Names the faults that mask taxels, each once: "silent_row row 3; ".
+inline void name_faults(std::span<const compensation::LineFault> faults, const ArrayDescription& array,
+                        std::string& text) {
+  for (const compensation::LineFault& fault : faults) {
+    if (masked_taxel_count(fault, array) == 0) continue;
+    const std::string name = std::string(to_string(fault.kind)) + ' ' + place_name(fault, array) + "; ";
+    if (text.find(name) == std::string::npos) text += name;
+  }
+}
+
+/// The faults that are found within so many frames.
 inline std::string found_faults(const HealthyArray& healthy, std::size_t frames) {
   compensation::Compensator compensator = compensation::Compensator::create(healthy.array).value();
   compensation::LineFaultMonitor monitor(healthy.array, calibrated_unloaded(healthy, compensator));
-  std::vector<ConditionedFrame> stream = frames_of(healthy, healthy.scene, healthy.seed, frames);
-  Random random(healthy.seed);
-  for (std::size_t k = stream.size(); healthy.shuffled && k-- > 1;) std::swap(stream[k], stream[random.below(k + 1)]);
   ConductanceFrame conductance;
   std::string text;
-  for (const ConditionedFrame& frame : stream) {
+  for (const RawFrame& raw : stream_of(healthy, frames)) {
+    const ConditionedFrame frame = conditioned_frame(healthy, raw);
     compensator.process(frame, conductance);
     if (!monitor.observe(frame, conductance)) continue;
-    for (const compensation::LineFault& fault : monitor.faults()) {
-      if (masked_taxel_count(fault, healthy.array) == 0) continue;
-      const std::string name = std::string(to_string(fault.kind)) + ' ' + place_name(fault, healthy.array) + "; ";
-      if (text.find(name) == std::string::npos) text += name;
-    }
+    name_faults(monitor.faults(), healthy.array, text);
     compensator.set_faults(monitor.faults());
   }
   return text;

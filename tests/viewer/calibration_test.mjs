@@ -91,6 +91,52 @@ it("walks through the calibration of an array without a model and takes the mode
   }
 });
 
+it("shows both taxels of a pair, names what is wrong with it, and ends by itself with an unknown circuit", async () => {
+  const readout = (lines) => arrayToml("pair", 4, 4).replace(/\[readout\][^]*/, `[readout]\nadc_bits = 10\n${lines}\n`);
+  writeFileSync(bench.path("true.toml"), readout('circuit = "divider"\nidle_columns = "floating"\ndrive_ohm = 20.0\nload_ohm = 200.0'));
+  writeFileSync(bench.path("unknown.toml"), readout('circuit = "auto"'));
+  const from = `sim:rehearsal?rate=200&seed=6&array=${bench.path("true.toml")}`;
+  const server = await bench.serve("--port", "0", "--from", from, "--model", bench.path("unknown.toml"));
+  try {
+    const page = await openPage(browser, `${server.url}#/calibration`);
+    await becomes(page, "live");
+    await part(page, "weights").fill("2, 6, 20");
+    await part(page, "taxels").selectOption("2");
+    await part(page, "hold").fill("0.3");
+    await part(page, "quiet").fill("0.4");
+    await part(page, "start").click();
+
+    await hears(page, /circuit is not certain yet\. Put 20 N \(2\.04 kg\) on r\dc\d and as much on r\dc\d/);
+    const [first, second] = (await page.locator(".calibration-picture canvas").getAttribute("aria-label")).match(/press (r\dc\d) and (r\dc\d)$/).slice(1);
+    assert.notEqual(first, second);
+    assert.match(await page.locator(".readings").textContent(), /Reading of r\dc\d.*Reading of r\dc\d/);
+    assert.equal(await page.locator(".reading:visible").count(), 2);
+    assert.equal(await page.locator(".ring-words").textContent(), "20 N2.04 kg each");
+    await hears(page, /^That is r\dc\d: put 20 N \(2\.04 kg\) on r\dc\d instead\. r\dc\d is right\./);
+    await hears(page, /^Only r\dc\d is pressed: put 20 N \(2\.04 kg\) on r\dc\d, too\./);
+    await hears(page, /^17 presses of 2 to 20 N\./);
+    assertUnhurt(page);
+  } finally {
+    await server.stop();
+  }
+});
+
+it("has room for the array and for the guide on a narrow page", async () => {
+  const server = await bench.serve("--port", "0", "--from", "sim:rehearsal?rate=200", "--model", bench.path("palm.toml"));
+  try {
+    const page = await openPage(browser, `${server.url}#/calibration`);
+    await becomes(page, "live");
+    await page.setViewportSize({ width: 390, height: 844 });
+    for (const selector of [".calibration-picture", ".calibration-setup"]) {
+      const { x, width } = await page.locator(selector).boundingBox();
+      assert.ok(x >= 0 && width > 300 && x + width <= 390, `${selector}: ${x}, ${width}`);
+    }
+    assertUnhurt(page);
+  } finally {
+    await server.stop();
+  }
+});
+
 it("asks before it forgets presses, and says what the server refuses", async () => {
   const server = await bench.serve("--port", "0", "--from", "sim:rehearsal?rate=200", "--model", bench.path("palm.toml"));
   try {

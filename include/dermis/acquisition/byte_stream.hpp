@@ -14,13 +14,13 @@
 
 namespace dermis::acquisition {
 
-/// Bytes to and from a device, by any transport. No call takes longer than the time it is given. Not thread-safe.
+/// Bytes to and from a device, by any transport. No call exceeds its time limit. Not thread-safe.
 class ByteStream {
  public:
   enum class End {
     none,    ///< There may be more.
     closed,  ///< The other side closed in an orderly way; the end of a file.
-    lost,    ///< Unplugged, reset: closed as well, but nobody meant it.
+    lost,    ///< Unplugged or reset: closed without intention.
   };
   struct Transferred {
     std::size_t bytes = 0;
@@ -32,17 +32,17 @@ class ByteStream {
   ByteStream& operator=(const ByteStream&) = delete;
   virtual ~ByteStream() = default;
 
-  /// Opens, or opens again what has ended. False: nobody has connected yet (tcp-listen, pty); to be called again.
-  /// Errors name the place and the mend.
+  /// Opens, or reopens after an end. False: nobody has connected yet (tcp-listen, pty); call it again. Errors name the
+  /// place and the remedy.
   [[nodiscard]] virtual Result<bool> open(Nanos timeout) = 0;
 
-  /// Reads what is there, or waits for it.
+  /// Reads the bytes that have come, or waits for some.
   [[nodiscard]] virtual Transferred read(std::span<std::uint8_t> into, Nanos timeout) = 0;
 
-  /// Writes what the other side takes within the time.
+  /// Writes the bytes that the other side accepts within the time.
   [[nodiscard]] virtual Transferred write(std::span<const std::uint8_t> bytes, Nanos timeout) = 0;
 
-  /// What was opened, for people: "/dev/ttyACM0", "127.0.0.1:7000", the name of a new pty.
+  /// Readable name of the opened place: "/dev/ttyACM0", "127.0.0.1:7000", the name of a new pty.
   [[nodiscard]] virtual std::string name() const = 0;
 };
 

@@ -12,22 +12,23 @@ namespace dermis::acquisition {
 
 /// A device's clock -> the host's steady clock, from pairs of device time and arrival:
 ///   arrival = offset + (1 + drift) * device time + delay, delay >= 0.
-/// The line lies below all pairs of the last 15 to 30 s of the device and as near to them as it can: an edge of their
-/// lower convex hull [Moon, Skelly, Towsley, "Estimation and removal of clock skew from network delay measurements",
-/// INFOCOM 1999]. So the least delay counts as none, and bursts do not move it. A device time that goes back, or leaps
-/// ahead of the host by more than delay can explain, is a restart of the device: the line is begun anew. One that
-/// stands is that of a clock which ticks slower than frames come: they take the time of its tick. It is no clock where
-/// it has stood for a second, or since the line began: frames are taken when they arrive. O(1) amortised a frame;
-/// allocates nothing after construction. Not thread-safe.
+/// The line is below all pairs of the last 15 to 30 s of the device and as near to them as possible. It is an edge of
+/// their lower convex hull [Moon, Skelly, Towsley, "Estimation and removal of clock skew from network delay
+/// measurements", INFOCOM 1999]. So the least delay counts as none, and bursts do not move the line. A device restarts
+/// if its time goes back, or leaps ahead of the host by more than delay can explain. The line then begins anew. A
+/// device time that stands still belongs to a clock that ticks slower than frames come. The frames get the time of its
+/// tick. If it has stood still for a second, or since the line began, it is no clock. The frames then get the time of
+/// their arrival. O(1) amortised a frame; allocates nothing after construction. Not thread-safe.
 class ClockMapping {
  public:
-  /// Takes the pair of the next frame and returns when the frame was taken, by the host: not later than its arrival.
+  /// Adds the pair of the next frame. Returns when the frame was taken, by the host's clock: not later than its
+  /// arrival.
   [[nodiscard]] Nanos map(Nanos device_time, Nanos arrival);
 
-  /// The device was away: the next pair begins anew.
+  /// The device was disconnected: the next pair begins anew.
   void restart() noexcept;
 
-  /// How much faster than the host's the device's clock runs, in millionths; empty before a second of pairs.
+  /// How much faster the device's clock runs than the host's, in millionths; empty before a second of pairs.
   [[nodiscard]] std::optional<double> drift_ppm() const noexcept;
 
  private:
@@ -46,7 +47,7 @@ class ClockMapping {
     [[nodiscard]] double span_ns() const noexcept;
     /// Slope of the edge over the mean device time of all pairs.
     [[nodiscard]] double middle_slope() const noexcept;
-    /// The greatest offset with which a line of this slope lies below all pairs.
+    /// The greatest offset at which a line of this slope is below all pairs.
     [[nodiscard]] double offset_below(double slope) const noexcept;
 
    private:

@@ -13,7 +13,7 @@
 
 namespace dermis::acquisition {
 
-/// What a decoder has made of the bytes so far.
+/// Result of the bytes so far.
 struct DecoderCounts {
   std::uint64_t frames = 0;          ///< Delivered.
   std::uint64_t lost_frames = 0;     ///< Gaps in the numbers of the device.
@@ -23,10 +23,10 @@ struct DecoderCounts {
   bool operator==(const DecoderCounts&) const = default;
 };
 
-/// The bytes of one device -> frames. A pure function of the bytes: frames and counts do not depend on how the bytes
-/// are cut into pieces. Bytes may be anything; memory stays bounded (a few frames). After bytes were dropped, inserted
-/// or flipped, at most two frames besides the damaged ones pass before frames are delivered again.
-/// Not thread-safe.
+/// Turns the bytes of one device into frames. A pure function of the bytes: frames and counts do not depend on how the
+/// bytes are cut into pieces. Bytes may be anything; memory stays bounded (a few frames). After bytes were dropped,
+/// inserted or flipped, at most two frames besides the damaged ones pass before frames are delivered again. Not
+/// thread-safe.
 class Decoder {
  public:
   Decoder() = default;
@@ -34,21 +34,21 @@ class Decoder {
   Decoder& operator=(const Decoder&) = delete;
   virtual ~Decoder() = default;
 
-  /// Takes the next bytes of the stream, at most kMaxPush; next() is to be called until it returns false before more.
+  /// Adds the next bytes of the stream, at most kMaxPush. Before more, next() must be called until it returns false.
   virtual void push(std::span<const std::uint8_t> bytes) = 0;
   static constexpr std::size_t kMaxPush = 65536;
 
-  /// Fills counts, temperature, supply and of `frame.acquisition` sequence, device_time, lost_before and held_taxels;
-  /// time and arrivals are left to the caller. Returns false where the bytes so far hold no further whole frame.
+  /// Fills counts, temperature and supply. In `frame.acquisition` it fills sequence, device_time, lost_before and
+  /// held_taxels. The caller sets time and arrivals. Returns false if the bytes so far hold no further whole frame.
   /// Allocates nothing after the first frame.
   [[nodiscard]] virtual bool next(RawFrame& frame) = 0;
 
-  /// No byte has come for a while (100 ms): next() delivers a whole frame that only waits for what follows it; one that
-  /// is cut stays. What is learnt from pauses between lines of text depends on them too.
+  /// Call it when no byte has come for 100 ms. next() then delivers a whole frame that only waits for its successor. An
+  /// incomplete frame stays. Protocols of text lines also learn from these pauses.
   virtual void idle() {}
 
-  /// The stream ended or was interrupted here: next() delivers the frame that only waited for what follows it, if
-  /// there is one; a frame that is cut is dropped. What was learnt (size, offsets) stays; push() may go on.
+  /// The stream ended or was interrupted here. next() then delivers a whole frame that only waited for its successor.
+  /// An incomplete frame is dropped. What was learned (size, offsets) stays, and push() may continue.
   virtual void finish() = 0;
 
   /// Number of bytes pushed since the beginning up to and including the last byte of the last frame of next().
@@ -59,8 +59,8 @@ class Decoder {
 
   [[nodiscard]] virtual const DecoderCounts& counts() const noexcept = 0;
 
-  /// Bytes that the device waits for before it sends its next frame; to be sent when a connection opens, after each
-  /// frame, and again after a second of silence. Empty for devices that send on their own, and while they do.
+  /// Bytes that the device needs before it sends its next frame. Send them when a connection opens, after each frame,
+  /// and after a second of silence. Empty for devices that send on their own, and while they do.
   [[nodiscard]] virtual std::string_view request() const noexcept { return {}; }
 
   /// The name of the protocol that "auto" has recognised; empty until then, and for decoders of one protocol.

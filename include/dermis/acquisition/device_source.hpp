@@ -15,22 +15,23 @@
 namespace dermis::acquisition {
 
 struct DeviceOptions {
-  std::optional<FrameShape> shape{};        ///< The shape that the frames must have; rows and cols of the URI.
-  const std::atomic<bool>* stop = nullptr;  ///< Set: next() gives what was received, then returns false within 100 ms.
-  std::function<void(const std::string&)> notice{};  ///< Told what a user should know while it goes on; one line.
+  std::optional<FrameShape> shape{};  ///< Required shape of the frames; rows and cols of the URI.
+  /// If set, next() delivers what was received, then returns false within 100 ms.
+  const std::atomic<bool>* stop = nullptr;
+  std::function<void(const std::string&)> notice{};  ///< Receives messages for the user, one line each.
 };
 
 /// Opens a device as a source of frames. Each frame carries when its last byte had come;
 /// the device's clock, where it has one, is mapped to the host's (clock_mapping.hpp).
 ///
-/// A serial device that is unplugged, or a TCP connection that ends, is waited for (reconnect_s, 10 s by default); a
-/// serial device that does not come back is an error, a TCP peer that closed in an orderly way the end. stdin and files
-/// end at their end, tcp-listen waits for its first device without limit.
-/// Fails, with one line that says what to do, where the device is not there, busy, in use or not permitted, where the
-/// shapes disagree, and where bytes come that are no frames of the protocol for 5 s.
+/// The source waits for a serial device that is unplugged and for a TCP connection that ends (reconnect_s, 10 s by
+/// default). It is an error if a serial device does not come back. A TCP peer that closed in an orderly way ends the
+/// source. stdin and files end at their end. tcp-listen waits for its first device without limit. Errors say in one
+/// line what to do. Reasons are a device that is missing, busy, in use or not permitted, different shapes, and 5 s of
+/// bytes that are no frames of the protocol.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_device(SourceUri uri, const DeviceOptions& options);
 
-/// The same by the text of its URI; fails on one that parse_source_uri() refuses, too.
+/// The same by the text of its URI. Also fails on one that parse_source_uri() refuses.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_device(const std::string& uri, const DeviceOptions& options);
 
 }  // namespace dermis::acquisition

@@ -21,10 +21,10 @@ class Encoder {
   /// Appends the bytes of the next frame. Counts are rounded and clamped to what the protocol can carry.
   virtual void encode(const RawFrame& frame, std::vector<std::uint8_t>& bytes) = 0;
 
-  /// Appends what completes the last frame, where part of it waits for the next one (WiReSens).
+  /// Appends the rest of the last frame, if part of it waits for the next one (WiReSens).
   virtual void finish(std::vector<std::uint8_t>& /*bytes*/) {}
 
-  /// The request that a device of this protocol waits for before each frame; empty where it sends on its own.
+  /// The request that a device of this protocol needs before each frame; empty if it sends on its own.
   [[nodiscard]] virtual std::string_view request() const noexcept { return {}; }
 };
 

@@ -26,13 +26,13 @@ struct QueueStatistics {
   Nanos longest_wait{};        ///< the longest of them.
 };
 
-/// A bounded queue of frames from one thread to another. Frames are swapped in and out, so their buffers go round and
+/// A bounded queue of frames from one thread to another. Frames are swapped in and out, so buffers are reused and
 /// nothing is allocated once each has been used. Thread-safe: one writer, one reader; statistics() from any.
 class FrameQueue {
  public:
   FrameQueue(std::size_t capacity, Overflow overflow);
 
-  /// Swaps `frame` in; what it holds afterwards is of no meaning. False where the reader has left: the frame is lost.
+  /// Swaps `frame` in; its content afterwards has no meaning. False if the reader has left: the frame is lost.
   bool push(RawFrame& frame);
 
   enum class Pop {

@@ -18,14 +18,14 @@
 
 namespace dermis::acquisition {
 
-/// A device protocol and what may be said of it beforehand; docs/devices.md describes each.
+/// A device protocol and its options; docs/devices.md describes each.
 struct ProtocolOptions {
   std::string name = "auto";           ///< One of protocol_names(): flexitac, 3dvitac, wiresens, ... or auto.
-  std::optional<FrameShape> shape{};   ///< Empty: the protocol's own or learnt from the bytes. 1x1 ... 1024x1024.
+  std::optional<FrameShape> shape{};   ///< Empty: the protocol's own or learned from the bytes. 1x1 ... 1024x1024.
   std::size_t nodes_per_packet = 120;  ///< wiresens: readings in a packet, 1 ... 32767.
   bool delimited = true;               ///< wiresens: "wr" ends a packet (serial); false: bare packets (TCP, UDP).
   int bit_shift = 5;                   ///< stag: bits of the low byte of a reading, 5 or 6.
-  bool datagrams = false;  ///< Frames may come late or twice (UDP): by number, where they have one, dropped.
+  bool datagrams = false;              ///< Frames may come late or twice (UDP); those with a number are then dropped.
 };
 
 /// "flexitac", "3dvitac", ..., and "auto" at the end.
@@ -37,7 +37,7 @@ struct ProtocolOptions {
 /// The same; `shape` is required, and "auto" cannot be encoded.
 [[nodiscard]] Result<std::unique_ptr<Encoder>> make_encoder(const ProtocolOptions& options);
 
-/// What bytes look like, as a protocol name, by which decoder finds the most frames in them; empty where none does.
+/// Name of the protocol whose decoder finds the most frames in the bytes; empty if none finds any.
 [[nodiscard]] std::string recognise_protocol(std::span<const std::uint8_t> bytes);
 
 }  // namespace dermis::acquisition

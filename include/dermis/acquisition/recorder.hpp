@@ -30,7 +30,7 @@ struct RecorderOptions {
   /// duration is over and the device silent.
   std::atomic<bool>* stop = nullptr;
   bool source_stops =
-      false;  ///< By the flag, when it has given what it had received until then: record() waits for it.
+      false;  ///< The source ends by the flag, after delivering what it has received; record() waits for it.
   std::size_t queue_frames = 256;  ///< Frames that may wait for the sink; fewer of large ones.
   std::function<void(const RecorderProgress&)>
       progress{};  ///< Called twice a second on the writing thread; must not throw.
@@ -39,11 +39,11 @@ struct RecorderOptions {
 /// Makes the sink for frames of a shape.
 using OpenSink = std::function<Result<std::unique_ptr<FrameSink>>(const FrameShape&)>;
 
-/// Source -> sink, losing nothing: frames are read on the thread of the caller and written on one of its own, with a
-/// queue between them. The sink is made as soon as the shape is known: at once, or with the first frame; a source
-/// without frames and shape leaves none. Ends at the end of the source, by the options, or with the first error of
-/// source or sink, which is returned; what was read until then is written and the sink committed in every case, unless
-/// there was nothing. `last` holds what was done in either case.
+/// Copies frames from source to sink without loss. The caller's thread reads, a second thread writes, with a queue
+/// between them. The sink is made as soon as the shape is known: at once, or with the first frame. A source without
+/// frames and shape makes none. It ends at the end of the source, by the options, or with the first error of source or
+/// sink, which is returned. In every case the frames read so far are written and the sink is committed, unless there
+/// are none. `last` always holds the final progress.
 [[nodiscard]] Status record(FrameSource& source, const OpenSink& open_sink, const RecorderOptions& options,
                             RecorderProgress& last);
 

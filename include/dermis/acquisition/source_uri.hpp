@@ -14,7 +14,7 @@
 
 namespace dermis::acquisition {
 
-/// How the bytes of a device come (docs/devices.md).
+/// Transport of a device's bytes (docs/devices.md).
 enum class Transport {
   serial,           ///< serial:///dev/ttyACM0
   tcp,              ///< tcp://host:port, the device listens
@@ -27,8 +27,8 @@ enum class Transport {
   standard_output,  ///< stdout:, only to send
 };
 
-/// A URI taken apart. What a parameter does not say has its default; a parameter that does not suit the transport is an
-/// error of the parser.
+/// A parsed URI. A missing parameter has its default. A parameter that does not suit the transport is an error of the
+/// parser.
 struct SourceUri {
   std::string text;  ///< As it was given.
   Transport transport = Transport::file;
@@ -39,8 +39,8 @@ struct SourceUri {
   unsigned baud = 0;           ///< serial: 50 ... 20,000,000; not given: the usual one of the protocol.
   Nanos reconnect{};           ///< serial, tcp: how long an unplugged device may stay away; reconnect_s, 0 ... 1e6.
   std::optional<FrameShape> array_shape{};  ///< simulation: rows and cols.
-  /// simulation: rate, > 0 ... 1e6; empty: as fast as it can. file: frames a second of its times, which begin at 0;
-  /// empty: they are those of the reading.
+  /// simulation: rate, > 0 ... 1e6; empty: as fast as possible. file: frames a second, for times that begin at 0;
+  /// empty: times of the reading.
   std::optional<double> rate_hz{};
   std::uint64_t seed = 1;               ///< simulation.
   std::string array{};                  ///< simulation: path of an array.toml.
@@ -48,15 +48,16 @@ struct SourceUri {
   std::string memory{};                 ///< simulation: what the material remembers, by its name; empty: as usual.
 };
 
-/// True where `text` begins as a URI of a transport does, right or wrong; false: a path of a file.
+/// True if `text` begins like a URI of a transport, valid or not; false: the path of a file.
 [[nodiscard]] bool is_source_uri(std::string_view text);
 
-/// scheme:[//]place[?name=value&...]; %XX stands for a byte. Fails on unknown schemes, hosts without port, and on
-/// parameters that are unknown (with the nearest known one), do not suit the transport, come twice or are out of range.
+/// scheme:[//]place[?name=value&...]; %XX stands for a byte. Fails on unknown schemes and on hosts without port. Also
+/// fails on parameters that are unknown (with the nearest known one), do not suit the transport, come twice or are out
+/// of range.
 [[nodiscard]] Result<SourceUri> parse_source_uri(std::string_view text);
 
-/// Where an emulated device sends to: pty:, stdout:, serial, tcp, tcp-listen and udp (to that host), without
-/// parameters of protocols.
+/// Target of an emulated device: pty:, stdout:, serial, tcp, tcp-listen and udp (to that host), without parameters of
+/// protocols.
 [[nodiscard]] Result<SourceUri> parse_target_uri(std::string_view text);
 
 }  // namespace dermis::acquisition

@@ -31,6 +31,7 @@ struct CalibrationReport {
   std::vector<std::string> remarks;        ///< On labels and readings: SampleDatabase::remarks.
   std::vector<std::string> circuit;        ///< What the fit of an unknown circuit found; empty where all was given.
   std::vector<PressPair> telling_presses;  ///< Would tell circuits apart that the frames do not; see CircuitFit.
+  std::string memory;                      ///< What the material remembers, a sentence; empty: nothing was learned.
   TrainingReport training;
   UncertaintyReport uncertainty;
   std::vector<StageTime> stages;
@@ -50,8 +51,12 @@ using Progress = std::function<void(const std::string& stage, double share)>;
                                             std::span<const Load> loads, Nanos settle_time = Nanos{0},
                                             const Progress& progress = {});
 
-/// The same from samples that are there already; the report has no stage "circuit".
+/// The same from samples that are there already, of the recording `frames`; the report has no stage "circuit".
 /// Errors: those of train_force_networks().
+[[nodiscard]] Result<Calibration> calibrate(const SampleDatabase& database, std::span<const RawFrame> frames,
+                                            const Progress& progress = {});
+
+/// The same without the recording: the memory of the material is not learned.
 [[nodiscard]] Result<Calibration> calibrate(const SampleDatabase& database, const Progress& progress = {});
 
 }  // namespace dermis::calibration

@@ -24,7 +24,7 @@ struct CalibrationPlan {
   [[nodiscard]] std::size_t taxel_of(std::size_t press) const { return taxels[press % taxels.size()]; }
   [[nodiscard]] double weight_of(std::size_t press) const { return weights_n[press / taxels.size()]; }
 
-  /// Means over 1, 2 or 4 pieces of its hold that are kept of every press, so that a taxel with at least three weights
+  /// Number of pieces of a press's hold, 1, 2 or 4, whose means are kept. With it a taxel with at least three weights
   /// gets the samples that a network of its own needs.
   [[nodiscard]] std::size_t frames_per_press() const noexcept;
 
@@ -34,8 +34,7 @@ struct CalibrationPlan {
 
 inline constexpr std::size_t kMostGuidedPresses = 8192;
 
-/// Every `stride`-th row and column (>= 1), as far from the edges as they can be, in reading order,
-/// without taxels that the sheet does not have.
+/// Every `stride`-th row and column (>= 1), as far from the edges as possible, in reading order, without absent taxels.
 [[nodiscard]] std::vector<std::size_t> taxels_with_stride(const ArrayDescription& array, std::size_t stride);
 
 /// 1, 2, 5, 10 and 20 N on about 16 taxels all over the array.

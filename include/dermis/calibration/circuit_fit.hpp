@@ -47,16 +47,17 @@ struct CircuitFit {
   std::size_t frames = 0;           ///< Frames the fit used, after repeated ones were averaged.
   std::vector<CircuitCandidate> candidates;  ///< Of `auto`; empty otherwise.
   std::vector<PressPair> telling_presses;    ///< Would tell the circuits apart that these frames do not; at most 5.
+  std::vector<PressPair> driver_presses;     ///< Would tell the drivers that these frames leave uncertain; at most 5.
   std::vector<std::string> statements;       ///< What was found and what the data cannot determine, in plain words.
 };
 
 /// Finds the resistances that are kFitOhm, and the circuit where it is Circuit::automatic, from labelled frames: single
-/// presses, several at once or uniform loads, mixed. For each trial of the resistances every frame is inverted; a taxel
-/// that nothing presses must then keep its conductance, whatever presses beside it, and a pressed one must follow one
-/// smooth law of force and temperature in all frames. Gauss-Newton on what is left, the laws of the taxels eliminated
-/// (variable projection, Golub and Pereyra 1973). Deterministic, whatever the number of threads.
-/// A circuit that the ADC does not resolve under these loads, also a known one, becomes Circuit::none.
-/// Errors: those of build_sample_database() that concern frames and loads; no pressed frame.
+/// presses, several at once or uniform loads, mixed. For each trial of the resistances every frame is inverted. An
+/// untouched taxel must then keep its conductance, whatever presses beside it. A pressed one must follow one smooth law
+/// of force and temperature in all frames. Gauss-Newton on what is left, the laws of the taxels eliminated (variable
+/// projection, Golub and Pereyra 1973). Deterministic, whatever the number of threads. A circuit that the ADC does not
+/// resolve under these loads, also a known one, becomes Circuit::none. Errors: those of build_sample_database() that
+/// concern frames and loads; no pressed frame.
 [[nodiscard]] Result<CircuitFit> fit_circuit(const ArrayDescription& array, std::span<const RawFrame> frames,
                                              std::span<const Load> loads, Nanos settle_time = Nanos{0});
 

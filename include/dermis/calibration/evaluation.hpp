@@ -15,8 +15,8 @@
 
 namespace dermis::calibration {
 
-/// Taxels are judged by relative error from this share on of the most that one taxel carried in the calibration; where
-/// readings are forces already, of the most that a taxel carries in the evaluation.
+/// Taxels are judged by relative error from this share of the heaviest load of a taxel in the calibration. If readings
+/// are forces already, it is the heaviest in the evaluation.
 inline constexpr double kJudgedShare = 0.02;
 
 /// An estimator from outside that is judged beside dermis and the baselines.
@@ -118,7 +118,8 @@ struct Evaluation {
   ArrayDescription array;
   std::size_t frames = 0;  ///< Labelled frames judged.
   std::size_t frames_rejected = 0;
-  double judged_from_n = 0.0;  ///< True force from which on taxels are judged [N]: kJudgedShare.
+  Status most_have_forces = Done{};  ///< Else what is wrong with the frames: pipeline::FrameTroubles::verdict().
+  double judged_from_n = 0.0;        ///< True force from which on taxels are judged [N]: kJudgedShare.
   std::vector<EstimatorResult> estimators;
   Coverage coverage;  ///< Of dermis, over all judged taxels.
   BoundComparison bound;

@@ -61,10 +61,10 @@ struct ForceTraining {
   std::vector<TestedLoad> tested_unpressed;
 };
 
-/// Trains what the samples support: a network per taxel where its own force is known often enough, one shared network
-/// with gains, trained through the sum of the taxels, for the others; and look-up tables where they are clearly better
-/// on presses that are left out, or where there is but one load to draw a line through. `progress` gets the share done,
-/// from any thread. Errors: no load above zero; no taxel answers to the loads.
+/// Trains what the samples support. A taxel whose own force is known often enough gets its own network. The others
+/// share one network with gains, trained through the sum of the taxels. Look-up tables are used if they are clearly
+/// better on presses that are left out, or if only one load is known. `progress` gets the share done, from any thread.
+/// Errors: no load above zero; no taxel answers to the loads.
 [[nodiscard]] Result<ForceTraining> train_force_networks(const SampleDatabase& database,
                                                          const std::function<void(double)>& progress = {});
 

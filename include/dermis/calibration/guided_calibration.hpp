@@ -26,10 +26,11 @@ enum class GuideHint : std::uint8_t {
   press,        ///< Put the weight on.
   hold,         ///< It is on: hold still.
   release,      ///< The press is kept: take the weight off.
-  other_taxel,  ///< GuideState::pressed_taxel is pressed instead.
+  other_taxel,  ///< GuideState::pressed_taxel is pressed instead; of two, in the place of one or of both.
   unsteady,     ///< The reading moves: the hold began anew.
   too_short,    ///< The weight was taken off before the hold was over.
   several,      ///< GuideState::pressed_taxel is pressed, too.
+  one_of_two,   ///< GuideState::pressed_taxel is pressed; GuideState::missing_taxel is still to be.
 };
 
 struct GuideState {
@@ -39,9 +40,11 @@ struct GuideState {
   std::size_t taxel = 0;                     ///< To be pressed, row-major.
   double weight_n = 0.0;                     ///< With.
   std::optional<std::size_t> together_with;  ///< Another taxel, to be pressed at the same time with as much.
-  double reading = 1.0;                      ///< Of that taxel now over that of the unloaded taxel: 1 unloaded, rising.
+  double reading = 1.0;                      ///< Of `taxel` now over that of the unloaded taxel: 1 unloaded, rising.
+  std::optional<double> together_reading;    ///< The same of `together_with`.
   double hold_share = 0.0;                   ///< Of the quiet time or the hold that is done, 0 ... 1.
-  std::optional<std::size_t> pressed_taxel;  ///< The taxel that feels most; with hint `several` the other one.
+  std::optional<std::size_t> pressed_taxel;  ///< The one that is pressed though it should not; else that feels most.
+  std::optional<std::size_t> missing_taxel;  ///< Of two, the one that is not pressed while the other is.
   std::size_t presses_done = 0;
   std::size_t presses_total = 0;                   ///< Skipped ones left out.
   std::optional<double> median_relative_error;     ///< Of the fit so far on presses it did not see.

@@ -21,6 +21,7 @@ namespace dermis::calibration {
 struct TotalForce {
   std::vector<std::size_t> taxels;  ///< Row-major indices.
   double newtons = 0.0;             ///< >= 0
+  double felt_share = 1.0;          ///< What the material felt of it, as in Sample.
 };
 
 /// A labelled frame with supply and crosstalk removed.
@@ -34,6 +35,9 @@ struct Sample {
   std::vector<TaxelStatus> taxels;   ///< What is known about each [taxels].
   std::vector<float> known_newtons;  ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
   std::vector<TotalForce> totals;
+  /// What the material felt of each known force, after all that came before, as a share of it [taxels]; NaN: not known.
+  /// Empty: all of it.
+  std::vector<float> felt_share{};
   bool unloaded = false;  ///< Nothing presses anywhere.
 };
 

@@ -12,9 +12,9 @@
 
 namespace dermis::calibration {
 
-/// Learns where a strip is touched from touches at known positions: isotonic regression of the position on the centre
-/// of mass of the signals that `model` gives. `positions` by rising frame. Errors: an array that is no strip, fewer
-/// than 16 positions with a contact, positions that do not rise with the centre of mass.
+/// Learns the position of touches on a strip from touches at known positions. It is an isotonic regression of the
+/// position on the centre of mass of the signals that `model` gives. `positions` by rising frame. Errors: an array that
+/// is no strip, fewer than 16 positions with a contact, positions that do not rise with the centre of mass.
 [[nodiscard]] Result<fusion::StripTable> train_strip(const pipeline::Model& model, std::span<const RawFrame> frames,
                                                      std::span<const TouchPosition> positions);
 

@@ -7,10 +7,9 @@
 
 namespace dermis::calibration {
 
-/// Stands for the model of an array that is still to be calibrated, so that it can be looked at meanwhile: no taxel has
-/// a force (TaxelStatus::dead). Where the circuit is unknown, readings are taken as proportional to conductance; where
-/// they are forces already, it is pipeline::direct_model().
-/// `array` must be valid. Not to be written to a file.
+/// A model for an array that is still to be calibrated, so that it can be shown meanwhile. No taxel has a force
+/// (TaxelStatus::dead). Where the circuit is unknown, readings are taken as proportional to conductance; where they are
+/// forces already, it is pipeline::direct_model(). `array` must be valid. Not to be written to a file.
 [[nodiscard]] pipeline::Model uncalibrated_model(const ArrayDescription& array);
 
 }  // namespace dermis::calibration

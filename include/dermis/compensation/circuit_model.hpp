@@ -10,19 +10,19 @@
 
 namespace dermis::compensation {
 
-/// Any readout circuit as nodal equations: its readings and their exact derivatives, in double precision. What the
-/// inversion by Newton's method, the fit of unknown resistances and the Cramer-Rao bound have in common. With u the
-/// node voltages while line k is driven and w the response of the reading j to a current into each node (adjoint), a
-/// conductance g between the nodes a and b moves the reading by
+/// Any readout circuit as nodal equations: its readings and their exact derivatives, in double precision. The inversion
+/// by Newton's method, the fit of unknown resistances and the Cramer-Rao bound all use it. Let u be the node voltages
+/// while line k is driven. Let w be the response of the reading j to a current into each node (adjoint). A conductance
+/// g between the nodes a and b then changes the reading by
 ///
 ///   d T_kj / d g = -(w_a - w_b) (u_a - u_b)            formula (5) of docs/derivations.md
 ///
-/// Potentials are found by star-mesh elimination, without a subtraction: readings are right to a few roundings however
-/// far apart the conductances are. Readings stand at their taxel's row-major index. Not thread-safe: one per thread.
+/// Star-mesh elimination finds the potentials without a subtraction. So readings are right to a few roundings, however
+/// far apart the conductances are. Readings have their taxel's row-major index. Not thread-safe: one per thread.
 class CircuitModel {
  public:
-  /// Errors: an invalid array, `none`, a circuit with unknown resistances, or an array too large: with
-  /// 128x128 taxels every circuit is solved, with resistive lines read between two terminals 64x64.
+  /// Errors: an invalid array, `none`, a circuit with unknown resistances, or an array that is too large. Every circuit
+  /// of 128x128 taxels is solved, with resistive lines read between two terminals 64x64.
   [[nodiscard]] static Result<CircuitModel> create(const ArrayDescription& array);
   CircuitModel(CircuitModel&&) noexcept;
   CircuitModel& operator=(CircuitModel&&) noexcept;

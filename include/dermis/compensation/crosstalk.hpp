@@ -17,13 +17,13 @@ struct InversionOptions {
   /// A frame is solved once its certificate is this good (InversionResult::residual_ratio), >= 0; 0: to rounding.
   /// Empty: a hundredth of a count of the ADC, far below its noise.
   std::optional<double> tolerance_ratio;
-  /// Floating lines and lines with resistance: the noise of each taxel to a fifth, by twelve samples, instead of
-  /// exactly (up to 400 taxels), which takes rows^3 cols^3 multiplications a frame.
+  /// Floating lines and lines with resistance: twelve samples give the noise of each taxel to a fifth. Otherwise it is
+  /// exact up to 400 taxels, which takes rows^3 cols^3 multiplications a frame.
   bool samples_noise = false;
   /// Floating lines and lines with resistance: steps of Newton's method on a frame before it counts as unsolved, >= 1.
-  /// Readings that have a solution mostly take 1 to 20; empty: as long as there is hope, on large arrays for seconds.
+  /// Readings that have a solution mostly take 1 to 20. Empty: as long as they converge, on large arrays for seconds.
   std::optional<int> most_steps = std::nullopt;
-  /// propagate_noise() adds what drivers do that are known only to readout.drive_error_ohm.
+  /// propagate_noise() adds the effect of the drivers' error, readout.drive_error_ohm.
   bool counts_driver_errors = false;
 };
 
@@ -53,12 +53,12 @@ class CrosstalkInversion {
   /// Forgets the last frame: the next one does not depend on it, not in the last bit.
   virtual void forget() noexcept {}
 
-  /// Standard deviation of every taxel [rows, cols] of the last solved frame, each of whose readings had independent
-  /// noise of standard deviation `sigma_ratio`, to first order. Allocates nothing.
+  /// Standard deviation of every taxel [rows, cols] of the last solved frame, to first order. Each reading has
+  /// independent noise of standard deviation `sigma_ratio`. Allocates nothing.
   virtual void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept = 0;
 
-  /// Rise of an unloaded taxel's conductance for a rise of its ratio [S], the largest of all sensed lines: what the
-  /// noise of a reading becomes.
+  /// Rise of an unloaded taxel's conductance for a rise of its ratio [S], the largest of all sensed lines. It turns the
+  /// noise of a reading into that of a conductance.
   [[nodiscard]] virtual double siemens_per_ratio() const noexcept = 0;
 };
 
@@ -69,25 +69,25 @@ class CrosstalkInversion {
 class FaultInversion;
 class SupplyError;
 
-/// Unit 3 of the paper, the Compensation Unit: data "that deviate from the actual values by a known relationship" are
-/// put right by that relationship. Not thread-safe: one per stream.
+/// Unit 3 of the paper, the Compensation Unit: it corrects data "that deviate from the actual values by a known
+/// relationship" by that relationship. Not thread-safe: one per stream.
 class Compensator {
  public:
-  /// `typical_siemens` [rows, cols], > 0, or empty: conductance of each taxel under one same force, in any unit; tells
-  /// what the neighbours of a masked taxel say about it.
+  /// `typical_siemens` [rows, cols], > 0, or empty: conductance of each taxel under one same force, in any unit. It
+  /// relates a masked taxel to its neighbours.
   [[nodiscard]] static Result<Compensator> create(const ArrayDescription& array,
                                                   std::span<const double> typical_siemens = {});
   Compensator(Compensator&&) noexcept;
   Compensator& operator=(Compensator&&) noexcept;
   ~Compensator();
 
-  /// Masks what these faults spoil (TaxelStatus::line_fault) and solves the rest with them in the circuit, from the
-  /// next frame on; none: as before. Allocates nothing.
+  /// From the next frame on, masks the taxels that these faults spoil (TaxelStatus::line_fault) and solves the rest
+  /// with the faults in the circuit. An empty list ends this. Allocates nothing.
   void set_faults(std::span<const LineFault> faults);
 
   /// Taxels without a reading (TaxelStatus::invalid) are estimated from their neighbours, so that the others are
-  /// solved; so are the saturated ones, at most half, and become invalid, where the circuit has no solution with
-  /// them. Allocates nothing once `conductance` has the array's size.
+  /// solved. If the circuit has no solution with the saturated taxels, they are estimated too (at most half) and become
+  /// invalid. Allocates nothing once `conductance` has the array's size.
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
 
   /// See CrosstalkInversion.

@@ -49,8 +49,8 @@ struct LineFault {
   Nanos time{};            ///< Time of that frame.
   double drive_ohm = 0.0;  ///< drifting_driver: its resistance now [ohm].
   /// Silent lines and dead taxels: log-likelihood ratio of a short to 0 V, or of a taxel that conducts, against an open
-  /// one, from -30 on (lines: to 30). Both read the same, but take different currents from the other lines where they
-  /// are pressed; 0 until they have been.
+  /// one. The least is -30 (for lines, the most is 30). Both read the same, but draw different currents from the other
+  /// lines when they are pressed. 0 until then.
   double ground_evidence = 0.0;
   bool grounded = false;  ///< Taken to be shorted to 0 V, not open: from evidence 10 until it has fallen to -10.
 };
@@ -61,8 +61,8 @@ struct LineFault {
 /// "row 3", "columns 4 and 5", "taxel r3c5", "driver of row 3".
 [[nodiscard]] std::string place_name(const LineFault& fault, const ArrayDescription& array);
 
-/// Taxels whose readings are not their own: all on the faulty lines, or the faulty one; none for a drifting driver,
-/// which is reported alone, as nothing is to be spoilt by a wrong suspicion.
+/// Number of taxels that a fault masks: all on the faulty lines, or the faulty one. A drifting driver masks none and is
+/// only reported, because a wrong suspicion must not cost taxels.
 [[nodiscard]] std::size_t masked_taxel_count(const LineFault& fault, const ArrayDescription& array) noexcept;
 
 }  // namespace dermis::compensation

@@ -13,8 +13,8 @@
 
 namespace dermis::compensation {
 
-/// Finds line faults in a stream of frames, and sees when they are gone. What it knows is the conductance of the
-/// unloaded taxels and the noise of a reading:
+/// Finds line faults in a stream of frames, and notices when they are gone. It knows the conductance of the unloaded
+/// taxels and the noise of a reading:
 ///
 /// silent lines, dead taxels   an unloaded taxel that works reads at least 0.3 of its unloaded value, less what the
 ///                             other taxels of its lines take; log-likelihood ratio against the floor of the ADC,
@@ -32,31 +32,30 @@ namespace dermis::compensation {
 /// drifting drivers            unloaded taxels that fall from one frame to the next when the current of their line
 ///                             rises, and rise when it falls; reported, but neither masked nor corrected
 ///
-/// What it cannot see: a line whose unloaded taxels read below about 1.5 standard deviations each, 16 of them
-/// (sees_silent_*); a short between lines that nothing presses; a taxel that stands at an end of the ADC, or is stuck
-/// at what unloaded ones read. With `circuit = "none"` silent lines and taxels are judged where nothing is pressed,
-/// shorts and drivers not at all. Not thread-safe: one per stream.
+/// It cannot find a silent line of 16 whose unloaded taxels read below about 1.7 counts and 1.5 standard
+/// deviations each (sees_silent_*). Nor can it find a short between lines that nothing presses. A taxel at an end of the ADC, or stuck
+/// at an unloaded reading, is not found either. With `circuit = "none"` silent lines and taxels are judged where
+/// nothing is pressed, shorts and drivers not at all. Not thread-safe: one per stream.
 class LineFaultMonitor {
  public:
-  /// `unloaded_siemens` [rows, cols]: conductance of the unloaded taxels [S]; 0 or less where it is not known or the
-  /// taxel is dead since calibration. The array is valid and its circuit known.
+  /// `unloaded_siemens` [rows, cols]: conductance of the unloaded taxels [S]; 0 or less if unknown, or if the taxel is
+  /// dead since calibration. The array is valid and its circuit known.
   LineFaultMonitor(const ArrayDescription& array, std::span<const double> unloaded_siemens);
   LineFaultMonitor(LineFaultMonitor&&) noexcept;
   LineFaultMonitor& operator=(LineFaultMonitor&&) noexcept;
   ~LineFaultMonitor();
 
-  /// One frame before and after the crosstalk was solved, with the faults found so far in the model. True where
-  /// faults() has changed. Allocates nothing.
+  /// One frame before and after the crosstalk was solved, with the faults found so far in the model. True if faults()
+  /// has changed. Allocates nothing.
   bool observe(const ConditionedFrame& conditioned, const ConductanceFrame& conductance) noexcept;
 
-  /// The faults that are there now, in the order in which they were found.
+  /// The present faults, in the order in which they were found.
   [[nodiscard]] std::span<const LineFault> faults() const noexcept;
 
-  /// What some presses look like, but too few, or all in one place: no fault, and nothing is masked for it. Allocates.
+  /// Possible faults: too few presses, or all in one place. Nothing is masked for them. Allocates.
   [[nodiscard]] std::vector<LineFault> suspicions() const;
 
-  /// The line's unloaded taxels stand far enough above the noise for it to be missed when it is silent; false until the
-  /// first frame.
+  /// The line's unloaded taxels read far enough above the noise to show its silence; false until the first frame.
   [[nodiscard]] bool sees_silent_row(std::size_t row) const noexcept;
   [[nodiscard]] bool sees_silent_column(std::size_t col) const noexcept;
 

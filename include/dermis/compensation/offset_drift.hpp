@@ -22,9 +22,9 @@ struct OffsetDriftOptions {
   bool track = false;  ///< Follow the idle taxels; off: only tare() moves the offsets.
 };
 
-/// Keeps zero at zero: subtracts from each conductance what the unloaded taxel has come to show beside its calibration,
-/// by an explicit tare, and by following idle taxels slowly. With u the conductance that the taxel is taken to have
-/// unloaded (calibration and tare) and s the 1-sigma of a reading, judged on means over 1 s of n frames:
+/// Keeps zero at zero. It subtracts from each conductance the change of the unloaded taxel since calibration, by an
+/// explicit tare and by following idle taxels slowly. Let u be the unloaded conductance of the taxel (calibration and
+/// tare) and s the 1-sigma of a reading. Means over 1 s of n frames decide:
 ///
 /// band       0.1 u + 3 sigma_offset + 5 s / sqrt(min(n, 25))
 /// idle       within the band around the tracked offset; or below both this and the calibration, where no load can be
@@ -34,10 +34,9 @@ struct OffsetDriftOptions {
 ///            by no more than 0.01 u + 0.1 s a minute, and in all to at most 0.5 u + 3 (s + sigma_offset) above the
 ///            offset of the calibration or the last tare
 ///
-/// So a load above the band is never eaten, however long it lasts; one that grows into it costs less than the band
-/// where it grows by more than 0.02 u + 0.2 s a minute, and never more than the range. Temperature is fed forward by
-/// the calibration meanwhile. Where nothing is tracked and nothing was tared, frames pass untouched. Not thread-safe:
-/// one per stream.
+/// So a load above the band is never absorbed, however long it lasts. A load that grows into the band by more than 0.02
+/// u + 0.2 s a minute loses less than the band. No load loses more than the range. The calibration corrects for
+/// temperature meanwhile. Without tracking and tare, frames pass unchanged. Not thread-safe: one per stream.
 class OffsetDrift {
  public:
   /// The vectors of `unloaded` have the size of `shape` and hold numbers.
@@ -49,11 +48,11 @@ class OffsetDrift {
   /// Corrects `frame.siemens` in place; rejected frames pass. Allocates nothing.
   void process(ConductanceFrame& frame) noexcept;
 
-  /// Takes what every taxel shows over the next second (10 frames where these take longer, but at most 10 s) for
-  /// unloaded, whatever it is. A taxel that has not moved beyond the noise of that mean keeps its offset.
+  /// Takes the mean of every taxel over the next second as its zero, whatever it is. If 10 frames take longer, it waits
+  /// for them, at most 10 s. A taxel that has not changed beyond the noise of that mean keeps its offset.
   void tare() noexcept;
   [[nodiscard]] bool taring() const noexcept;
-  /// Back to the offsets of the calibration; also ends a tare that is going on.
+  /// Back to the offsets of the calibration; also ends a tare in progress.
   void reset() noexcept;
 
   void set_options(const OffsetDriftOptions& options) noexcept;

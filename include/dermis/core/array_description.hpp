@@ -19,10 +19,11 @@ inline constexpr std::size_t kMaxLines = 1024;
 enum class Circuit {
   divider,         ///< Every column ends in a resistor to ground; the ADC reads the column voltage.
   transimpedance,  ///< Every column is held at 0 V (virtual ground); the ADC reads its current times load_ohm.
-  flexitac,   ///< One column is driven and the others are at 0 V; one row ends in a resistor to ground and is read, the
-              ///< other rows float (FlexiTac, Sensitronics).
+  /// One column is driven, the others are at 0 V. One row ends in a resistor to ground and is read; the other rows
+  /// float (FlexiTac, Sensitronics).
+  flexitac,
   none,       ///< Unknown: readings are taken as proportional to conductance.
-  automatic,  ///< "auto": calibration chooses among the circuits by what they leave unexplained.
+  automatic,  ///< "auto": calibration chooses the circuit that leaves least unexplained.
 };
 
 /// What a reading is.
@@ -32,28 +33,27 @@ enum class Quantity {
   force,     ///< Newtons, the same.
 };
 
-/// What the rows that are not being scanned are tied to.
+/// State of the rows that are not being scanned.
 enum class IdleRows {
   grounded,  ///< Through their drive resistance to 0 V.
   floating,  ///< To nothing.
 };
 
-/// What the columns that are not being read end in.
+/// State of the columns that are not being read.
 enum class IdleColumns {
   loaded,    ///< In their load, like the one that is read.
   floating,  ///< In nothing: one load is switched from column to column.
 };
 
-/// Stands for a resistance that calibration is to find ("fit"); not a number, so that nothing can compute with it.
+/// A resistance that calibration is to find ("fit"); not a number, so nothing can compute with it.
 inline constexpr double kFitOhm = std::numeric_limits<double>::quiet_NaN();
 
-/// The path from taxel resistance to counts (the paper's Fig. 3). Lists with one value a line may be empty where the
-/// circuit does not have that part; for `automatic`, where it is open which lines are driven, drive_ohm and load_ohm
-/// are empty (to be fitted) or hold one value for all lines.
+/// The path from taxel resistance to counts (the paper's Fig. 3). Lists with one value a line may be empty if the
+/// circuit does not have that part. For `automatic` the driven lines are not known yet, so drive_ohm and load_ohm are
+/// empty (to be fitted) or hold one value for all lines.
 struct Readout {
   Circuit circuit = Circuit::divider;
-  /// Other than counts with Circuit::none only; the members that speak of counts are in this unit then, and readings
-  /// below 0 are readings, too.
+  /// Not counts: only with Circuit::none. Members in counts are then in this unit, and readings below 0 are valid.
   Quantity quantity = Quantity::counts;
   IdleRows idle_rows = IdleRows::grounded;         ///< divider, transimpedance
   IdleColumns idle_columns = IdleColumns::loaded;  ///< divider
@@ -86,11 +86,11 @@ struct ArrayDescription {
   std::string name = "array";
   std::size_t rows = 0;                 ///< 1 ... kMaxLines.
   std::size_t cols = 0;                 ///< 1 ... kMaxLines.
-  double row_pitch_m = 0.010;           ///< Distance between neighbouring rows [m], > 0.
-  double col_pitch_m = 0.010;           ///< Distance between neighbouring columns [m], > 0.
-  std::optional<double> taxel_area_m2;  ///< Pressed area of a taxel [m2], > 0; needed for loads given as pressure.
-  /// Crossings of lines where the sheet has no taxel, as row-major indices, rising: they conduct nothing, their
-  /// readings are not looked at and they have no force. Not all taxels.
+  double row_pitch_m = 0.010;           ///< Distance between neighbouring rows [m], 0.05 mm ... 1 m.
+  double col_pitch_m = 0.010;           ///< Distance between neighbouring columns [m], 0.05 mm ... 1 m.
+  std::optional<double> taxel_area_m2;  ///< Pressed area of a taxel [m2], 0.0025 mm2 ... 1 m2; needed for pressures.
+  /// Crossings of lines where the sheet has no taxel, as row-major indices, rising. They conduct nothing, their
+  /// readings are ignored and they have no force. Not all taxels may be absent.
   std::vector<std::size_t> absent;
   Readout readout;
 
@@ -104,7 +104,7 @@ struct ArrayDescription {
 
   [[nodiscard]] bool is_absent(std::size_t taxel) const noexcept;
 
-  /// Calibration is still to find the circuit or some of its resistances: a reading cannot be computed yet.
+  /// Calibration still has to find the circuit or some of its resistances, so a reading cannot be computed yet.
   [[nodiscard]] bool has_unknown_circuit() const noexcept;
 
   /// "r3c5" for a row-major index.

@@ -8,8 +8,8 @@
 
 #include "dermis/core/frames.hpp"
 
-/// Where an array is touched, in the plane of the array: the origin is the centre of taxel r0c0, x runs along the
-/// columns (x = col * col_pitch_m), y along the rows (y = row * row_pitch_m).
+/// Contacts of an array, in its plane. The origin is the centre of taxel r0c0. x runs along the columns (x = col *
+/// col_pitch_m), y along the rows (y = row * row_pitch_m).
 namespace dermis {
 
 /// A point or a direction in the plane of an array [m].
@@ -23,7 +23,7 @@ struct PlaneVector {
 /// The life of a contact. Each contact is reported once with `onset` and once, the last time, with `release`.
 enum class ContactPhase : std::uint8_t { onset, held, release };
 
-/// One stressed area, or one of several that were told apart in it.
+/// One stressed area, or one of several that were separated in it.
 struct Contact {
   std::uint32_t id = 0;  ///< From 1 on; the same from onset to release, never used again by the same tracker.
   ContactPhase phase = ContactPhase::onset;
@@ -31,15 +31,15 @@ struct Contact {
   PlaneVector position{};          ///< Centre of the pressed patch [m].
   PlaneVector sigma_position_m{};  ///< Standard deviation of both [m], > 0.
   PlaneVector velocity{};          ///< Of the position [m/s]; 0 at onset.
-  double force_n = 0.0;        ///< Sum of the forces on its taxels [N], >= 0: what presses between taxels is not in it.
-  double sigma_force_n = 0.0;  ///< Its standard deviation [N], > 0; infinite where a taxel is saturated.
-  double area_m2 = 0.0;        ///< Of the pressed patch [m2], > 0.
-  double peak_pressure_pa = 0.0;  ///< Highest pressure on a taxel [Pa].
-  double mean_pressure_pa = 0.0;  ///< force_n over the area of its taxels [Pa].
-  double major_axis_m = 0.0;      ///< Standard deviation of the pressure along its longest axis [m],
-  double minor_axis_m = 0.0;      ///< and across it; major >= minor >= 0.
-  double angle_rad = 0.0;         ///< Of the longest axis against x, -pi/2 < angle <= pi/2.
-  std::uint32_t taxels = 0;       ///< Number of taxels in it, >= 1.
+  double force_n = 0.0;            ///< Sum of the forces on its taxels [N], >= 0, without what presses between taxels.
+  double sigma_force_n = 0.0;      ///< Its standard deviation [N], > 0; infinite where a taxel is saturated.
+  double area_m2 = 0.0;            ///< Of the pressed patch [m2], > 0.
+  double peak_pressure_pa = 0.0;   ///< Highest pressure on a taxel [Pa].
+  double mean_pressure_pa = 0.0;   ///< force_n over the area of its taxels [Pa].
+  double major_axis_m = 0.0;       ///< Standard deviation of the pressure along its longest axis [m],
+  double minor_axis_m = 0.0;       ///< and across it; major >= minor >= 0.
+  double angle_rad = 0.0;          ///< Of the longest axis against x, -pi/2 < angle <= pi/2.
+  std::uint32_t taxels = 0;        ///< Number of taxels in it, >= 1.
 
   bool operator==(const Contact&) const = default;
 };

@@ -30,7 +30,7 @@ struct SourceStatistics {
   std::uint64_t reconnections = 0;        ///< Times the device came back after it was unplugged or closed.
   double rate_hz = 0.0;                   ///< Delivered frames per second of arrival, over the last seconds.
   Nanos jitter{};                         ///< Standard deviation of the time between two arrivals, over the same.
-  std::optional<double> clock_drift_ppm;  ///< The device's clock against the host's: positive where it runs fast.
+  std::optional<double> clock_drift_ppm;  ///< The device's clock against the host's: positive if it runs fast.
 
   bool operator==(const SourceStatistics&) const = default;
 };
@@ -47,16 +47,16 @@ class FrameSource {
   /// Fills `frame` with the next frame, reusing its buffers. Returns false at the end of the source.
   [[nodiscard]] virtual Result<bool> next(RawFrame& frame) = 0;
 
-  /// Empty where only the first frame will tell.
+  /// Empty if it is known only with the first frame.
   [[nodiscard]] virtual std::optional<FrameShape> shape() const = 0;
 
   [[nodiscard]] virtual SourceStatistics statistics() const { return {}; }
 
-  /// True of a device, be it real, simulated or played: frames are there when they come. False of a file, whose frames
-  /// are read at any pace.
+  /// True for a device, real, simulated or played: its frames come at their own pace. False for a file, which is read
+  /// at any pace.
   [[nodiscard]] virtual bool is_live() const { return false; }
 
-  /// Where the last frame stands, for messages: "frames.csv:17". Empty where only its number tells.
+  /// Place of the last frame, for messages: "frames.csv:17". Empty if the frame has only a number.
   [[nodiscard]] virtual std::string place() const { return {}; }
 };
 

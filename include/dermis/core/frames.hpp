@@ -18,7 +18,7 @@ using Nanos = std::chrono::nanoseconds;
 /// What is known about one taxel of one frame.
 enum class TaxelStatus : std::uint8_t {
   ok,
-  saturated,    ///< The ADC stands at the end of its range: the force is at least the one given.
+  saturated,    ///< The ADC is at the end of its range: the force is at least the one given.
   above_range,  ///< Beyond the heaviest calibrated load: extrapolated, at most to eight times that load.
   dead,         ///< Did not answer to its calibration loads: no force is given (NaN).
   line_fault,   ///< On an open or shorted line, or stuck: no force is given (NaN).
@@ -32,7 +32,7 @@ enum class FrameStatus : std::uint8_t {
   saturated = 1U << 1U,            ///< At least one taxel is saturated.
   above_range = 1U << 2U,          ///< At least one taxel is beyond its heaviest calibrated load.
   dead_taxels = 1U << 3U,          ///< The array has dead taxels.
-  temperature_unknown = 1U << 4U,  ///< The frame carries no temperature: the calibration's mean is taken.
+  temperature_unknown = 1U << 4U,  ///< The frame has no temperature: the middle of the calibration is used.
   temperature_clamped = 1U << 5U,  ///< More than 1 C outside the calibrated temperatures: clamped to the nearest.
   not_converged = 1U << 6U,        ///< The crosstalk inversion did not reach its tolerance.
   line_fault = 1U << 7U,  ///< A line or taxel is faulty: masked, the rest is solved with the fault in the model.
@@ -51,22 +51,22 @@ constexpr FrameStatus& operator|=(FrameStatus& a, FrameStatus b) noexcept {
 /// "ok", or the flags joined with '+', as in the status column of forces.csv.
 [[nodiscard]] std::string to_string(FrameStatus status);
 
-/// What the acquisition knows of a frame besides its readings; empty or 0 where the source cannot know it.
+/// What the acquisition knows of a frame besides its readings; empty or 0 if the source cannot know it.
 struct Acquisition {
   std::optional<std::uint64_t> sequence;  ///< The device's number of the frame, counted on where it wraps.
   std::optional<Nanos> device_time;       ///< The device's clock, counted on where it wraps.
   Nanos arrival_steady{};                 ///< The host's steady clock when the last byte of the frame had come.
   Nanos arrival_utc{};                    ///< The host's UTC clock at that moment, since 1970.
   std::uint32_t lost_before = 0;          ///< Frames known to be lost between the frame before and this one.
-  std::uint32_t held_taxels = 0;  ///< Taxels the device did not send: they hold what both sides predict (WiReSens).
+  std::uint32_t held_taxels = 0;          ///< Taxels the device did not send: they keep their last reading (WiReSens).
 
   bool operator==(const Acquisition&) const = default;
 };
 
-/// Unit 1 -> 2. What the device said.
+/// Unit 1 -> 2. What the device sent.
 struct RawFrame {
-  /// When the frame was taken. A device's frames count from 1970 by the host's steady clock, set by UTC once, when the
-  /// source is opened, so that time never goes back; by the device's clock mapped to that one, where there is one.
+  /// When the frame was taken. A device's frames count from 1970 by the host's steady clock. UTC sets that clock once,
+  /// when the source is opened, so time never goes back. If the device has a clock, its time is mapped to the host's.
   Nanos time{};
   std::optional<double> temperature_celsius;  ///< Temperature of the array [C]; empty where the source has none.
   std::optional<double> supply_v;             ///< Measured supply [V], > 0; empty where the source has none.
@@ -91,8 +91,9 @@ struct ConductanceFrame {
   std::optional<double> temperature_celsius;
   std::vector<double> siemens;        ///< Taxel conductance [S], >= 0; the bare ratio for `circuit = "none"`.
   std::vector<double> sigma_siemens;  ///< Standard deviation of each from noise of readings and supply [S].
-  double residual_sigma = 0.0;  ///< Certificate: no reading differs from the circuit's at `siemens` by more than this
-                                ///< times its standard deviation (where a taxel is held at 0, it lies below instead).
+  /// Certificate: no reading differs from the circuit's at `siemens` by more than this times its standard deviation.
+  /// The reading of a taxel held at 0 is below instead.
+  double residual_sigma = 0.0;
   std::vector<TaxelStatus> taxels;
 };
 
@@ -101,15 +102,15 @@ struct ForceFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
   std::vector<float> newtons;  ///< Normal force per taxel [N], >= 0; NaN where `taxels` says there is no force.
-  /// Standard deviation of each [N], > 0. Of an unloaded taxel, its detection limit: the force that would just stand
-  /// out of the noise. Infinite where only a lower bound is known (saturated, more than eight times the heaviest
+  /// Standard deviation of each [N], > 0. For an unloaded taxel it is the detection limit: the force that would just
+  /// exceed the noise. Infinite where only a lower bound is known (saturated, more than eight times the heaviest
   /// calibrated load). NaN where `newtons` is.
   std::vector<float> sigma_newtons;
   std::vector<TaxelStatus> taxels;
-  /// What each taxel shows beyond an unloaded one, over the standard deviation of the additive noise: of the readings
-  /// and of the zero. What is uncertain in proportion to the force (material, temperature) is not in it: that makes a
-  /// force uncertain, not the touch. Around 0 where nothing presses, infinite where a reading is saturated, NaN where
-  /// `newtons` is.
+  /// Signal of each taxel above the unloaded one, over the standard deviation of the additive noise of readings and
+  /// zero. Uncertainty in proportion to the force (material, temperature) is not included: it widens sigma_newtons and
+  /// does not affect contact detection. Around 0 where nothing presses, infinite where a reading is saturated, NaN
+  /// where `newtons` is.
   std::vector<float> signal_to_noise{};
 };
 

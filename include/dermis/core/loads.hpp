@@ -24,7 +24,7 @@ struct TaxelRegion {
 };
 
 enum class LoadKind {
-  force,     ///< Total force over the taxels of the region [N]; how they share it is unknown unless it is one taxel.
+  force,     ///< Total force over the taxels of the region [N]; of several taxels only the sum is known.
   pressure,  ///< Uniform pressure on each taxel of the region [Pa].
 };
 
@@ -37,7 +37,7 @@ struct Load {
   double value = 0.0;  ///< [N] for force, [Pa] for pressure; >= 0.
 };
 
-/// Where the only contact on a strip, an array of one row or one column, was in a frame.
+/// Place of the only contact on a strip (an array of one row or one column) in a frame.
 struct TouchPosition {
   std::size_t frame = 0;  ///< Index of the frame, from 0.
   double along_m = 0.0;   ///< From the centre of the first taxel, along the strip [m].

@@ -4,7 +4,7 @@
 
 namespace dermis {
 
-/// What people read and write is in millimetres, everything else in metres.
+/// People read and write millimetres; everything else is in metres.
 inline constexpr double kMillimetresPerMetre = 1e3;
 
 }  // namespace dermis

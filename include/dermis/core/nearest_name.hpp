@@ -7,8 +7,8 @@
 
 namespace dermis {
 
-/// The known name nearest to `name` by inserted, removed or replaced characters, for "did you mean ...?"; empty where
-/// none is near enough to be meant.
+/// The known name nearest to `name` by inserted, removed or replaced characters, for "did you mean ...?"; empty if none
+/// is near enough.
 [[nodiscard]] std::string nearest_name(const std::string& name, const std::set<std::string>& known);
 
 }  // namespace dermis

@@ -9,11 +9,11 @@
 
 namespace dermis {
 
-/// What the playback of a recording is to do from now on.
+/// What a playback does from now on.
 struct PlaybackCommand {
-  bool play = true;             ///< After the end, from the beginning again, unless it is to seek.
-  double speed = 1.0;           ///< Times the recorded pace: taken between 0.01 and 100.
-  std::optional<Nanos> seek{};  ///< Taken between the first and the last frame.
+  bool play = true;             ///< After the end it starts from the beginning, unless `seek` is set.
+  double speed = 1.0;           ///< Factor on the recorded pace, clamped to 0.01 ... 100.
+  std::optional<Nanos> seek{};  ///< Clamped to the times of the first and the last frame.
 
   bool operator==(const PlaybackCommand&) const = default;
 };

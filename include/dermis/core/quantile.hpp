@@ -16,7 +16,7 @@ namespace dermis {
   return std::max<std::size_t>(rank, 1) - 1;
 }
 
-/// Number `place` of the values (at least so many and one), counted from 0, when they rise.
+/// The value at `place` of the sorted values, counted from 0; there must be more values than that.
 template <typename Number>
 [[nodiscard]] Number ranked(std::vector<Number> values, std::size_t place) {
   const auto here = values.begin() + static_cast<std::ptrdiff_t>(place);
@@ -31,7 +31,7 @@ template <typename Number>
   return ranked(std::move(values), place);
 }
 
-/// The middle one of the values (at least one); of an even number the upper of the two, where quantile(values, 0.5) is
+/// The middle one of the values (at least one). Of an even number it is the upper of the two; quantile(values, 0.5) is
 /// the lower.
 template <typename Number>
 [[nodiscard]] Number upper_median(std::vector<Number> values) {

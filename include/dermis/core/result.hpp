@@ -11,18 +11,23 @@ namespace dermis {
 
 /// Who has to act on an error: the command line exits with 2 for `bad_input` and 1 for `failed`.
 enum class ErrorKind {
-  bad_input,  ///< A file, an option or a device said something that cannot be used.
+  bad_input,  ///< A file, an option or a device holds something that cannot be used.
   failed,     ///< The work itself could not be done (disk full, solver gave up).
 };
 
-/// One clear line that names the place and the mend.
+/// One clear line that names the place and the remedy.
 struct Error {
   ErrorKind kind = ErrorKind::failed;
   std::string message;
+  std::string
+      field{};  ///< The message begins with the field that is wrong, and ": "; empty: it is about something else.
 };
 
-/// An error whose message stays on one line whatever a file name or a file holds: control characters become '?'.
+/// An error whose message stays on one line: control characters of file names or files become '?'.
 [[nodiscard]] Error bad_input(std::string message);
+/// bad_input() about a field of options, as "rate: must be 0.001 to 1e6". Callers know the field by a name of their
+/// own.
+[[nodiscard]] Error bad_field(const std::string& field, const std::string& message);
 [[nodiscard]] Error failed(std::string message);
 
 /// A value or an Error. Reading the wrong one is a programmer error (assert).

@@ -10,12 +10,12 @@
 
 namespace dermis {
 
-/// One array of a suit: where its frames come from, what turns them into newtons, where it sits.
+/// One array of a suit: the source of its frames, its model and its pose.
 struct SuitArray {
   std::string name;       ///< Unique in the suit; a letter, then letters, digits and '_': topics are /<name>/raw, ...
   std::string from;       ///< URI of a device or of the simulator.
   std::string model;      ///< Path of its model file.
-  std::string classes{};  ///< Path of the classes of what touches it; empty: none.
+  std::string classes{};  ///< Path of a classes file for its touches; empty: none.
   Pose base_from_array{};
   bool mirrored = false;
   ArrayShape shape{};

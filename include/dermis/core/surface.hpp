@@ -33,7 +33,7 @@ struct Quaternion {
   bool operator==(const Quaternion&) const = default;
 };
 
-/// Turns, then moves: p_base = rotation * p_array + translation.
+/// Rotates, then translates: p_base = rotation * p_array + translation.
 struct Pose {
   Vector3 translation{};  ///< [m]
   Quaternion rotation{};
@@ -46,9 +46,9 @@ struct FlatShape {
   bool operator==(const FlatShape&) const = default;
 };
 
-/// Wound round a cylinder whose axis is parallel to the rows' direction x ("x") or the columns' ("y") and lies radius_m
-/// below the array (z = -radius_m) at its middle; the outside is pressed. Arc lengths are the distances of the flat
-/// array.
+/// Wound round a cylinder; the outside is pressed. Its axis is parallel to x, the direction of the rows, or to y, that
+/// of the columns. It is radius_m below the middle of the array (z = -radius_m). Arc lengths are the distances of the
+/// flat array.
 struct CylinderShape {
   enum class Axis { x, y };
   Axis axis = Axis::y;
@@ -76,16 +76,16 @@ struct SurfacePoint {
 /// The surface of one array in the suit's frame. Thread-safe: const after construction.
 class ArraySurface {
  public:
-  /// `mirrored`: columns run the other way (x -> -x in the array's frame), as on the other side of a body. Fails, as
-  /// "shape.radius_m: ...", on a shape that does not suit the array and on a quaternion that is not of unit length.
+  /// `mirrored`: columns run the other way (x -> -x in the array's frame), as on the other side of a body. Fails on a
+  /// shape that does not suit the array, as "shape.radius_m: ...", and on a quaternion that is not of unit length.
   [[nodiscard]] static Result<ArraySurface> create(const ArrayDescription& array, const ArrayShape& shape = FlatShape{},
                                                    const Pose& suit_from_array = {}, bool mirrored = false);
 
   /// Of each taxel, [rows, cols] row-major.
   [[nodiscard]] std::span<const SurfacePoint> taxels() const noexcept { return taxels_; }
 
-  /// Of any point of the array's plane (see core/contacts.hpp): exact on planes and cylinders; of a free shape between
-  /// the taxels by interpolation, beyond the edge by extrapolation. Allocates nothing.
+  /// Place of any point of the array's plane (see core/contacts.hpp). Exact on planes and cylinders. A free shape is
+  /// interpolated between the taxels and extrapolated beyond the edge. Allocates nothing.
   [[nodiscard]] SurfacePoint at(const PlaneVector& point) const noexcept;
 
   /// A displacement or velocity along the plane at `point`, in the suit's frame.
@@ -126,8 +126,8 @@ struct SuitContact {
   Vector3 velocity{};  ///< [m/s]
 };
 
-/// What is wrong with a shape or a pose by themselves, as "shape.radius_m: ..."; whether a shape suits its array,
-/// ArraySurface::create() says.
+/// Errors of a shape or a pose by themselves, as "shape.radius_m: ...". ArraySurface::create() checks whether a shape
+/// suits its array.
 [[nodiscard]] Status validate(const ArrayShape& shape, const Pose& pose);
 
 }  // namespace dermis

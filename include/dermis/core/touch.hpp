@@ -4,12 +4,12 @@
 
 namespace dermis {
 
-/// A taxel that nothing touches reads less than so many times what it was calibrated to read unloaded, whatever its
-/// temperature and its age.
+/// An untouched taxel reads less than this many times its calibrated unloaded reading, whatever its temperature and its
+/// age.
 inline constexpr double kTouchedShare = 3.0;
 
-/// A taxel that conducts (or reads) more than this is touched. `unloaded`: what it conducts unloaded, >= 0; `sigma`:
-/// the standard deviation of what it conducts now, of which `sigmas` are left to the noise.
+/// A taxel with a higher conductance (or reading) is touched. `unloaded`: its unloaded conductance, >= 0; `sigma`: the
+/// standard deviation of its present conductance; `sigmas`: how many of them count as noise.
 [[nodiscard]] constexpr double touched_above(double unloaded, double sigma, double sigmas) noexcept {
   return kTouchedShare * unloaded + sigmas * sigma;
 }

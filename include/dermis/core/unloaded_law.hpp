@@ -13,14 +13,14 @@ struct TemperatureSpan {
   double centre_celsius = 20.0;
   double half_span_celsius = 0.0;  ///< >= 0
 
-  /// A temperature from the centre [C], clamped to the span.
+  /// A temperature relative to the centre [C], clamped to the span.
   [[nodiscard]] double offset(double celsius) const noexcept {
     return std::clamp(celsius - centre_celsius, -half_span_celsius, half_span_celsius);
   }
 };
 
-/// What calibration knows of the taxels when nothing touches them: offset + per_celsius * dT, dT the temperature from
-/// the centre of the calibrated ones, as TemperatureSpan::offset() gives it.
+/// Calibrated conductance of the untouched taxels: offset + per_celsius * dT. dT is the temperature relative to the
+/// centre of the calibration, as TemperatureSpan::offset() gives it.
 struct UnloadedLaw {
   std::vector<double> offset_siemens;  ///< Conductance of the unloaded taxel at the centre temperature [taxels] [S].
   std::vector<double> per_celsius;     ///< [taxels] [S/C]
@@ -31,7 +31,7 @@ struct UnloadedLaw {
     return offset_siemens[taxel] + per_celsius[taxel] * temperature_offset;
   }
 
-  /// What `siemens` of a taxel is above its unloaded conductance [S].
+  /// `siemens` of a taxel minus its unloaded conductance [S].
   [[nodiscard]] double excess(std::size_t taxel, double siemens, double temperature_offset) const noexcept {
     return siemens - offset_siemens[taxel] - per_celsius[taxel] * temperature_offset;
   }

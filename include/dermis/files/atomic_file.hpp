@@ -14,13 +14,12 @@
 
 namespace dermis::files {
 
-/// A file that appears complete or not at all: the bytes go to a temporary file in the same folder, which commit()
-/// renames over the target. A target that is there and is not a regular file (/dev/stdout, a pipe) is written directly,
-/// at least every 50 ms of write().
-/// Not thread-safe.
+/// A file that appears complete or not at all. The bytes go to a temporary file in the same folder, which commit()
+/// renames over the target. A target that exists and is no regular file (/dev/stdout, a pipe) is written directly, at
+/// least every 50 ms of write(). Not thread-safe.
 class AtomicFile {
  public:
-  /// Opens the temporary file; fails where the folder cannot be written.
+  /// Opens the temporary file; fails if the folder cannot be written.
   [[nodiscard]] static Result<AtomicFile> create(const std::string& path);
 
   AtomicFile(AtomicFile&& other) noexcept;
@@ -28,11 +27,11 @@ class AtomicFile {
   /// Without commit(), removes the temporary file and leaves the target untouched.
   ~AtomicFile();
 
-  /// Appends to a buffer of 1 MiB; the first error is kept, and all that follows is dropped.
+  /// Appends to a buffer of 1 MiB. The first error is kept, and later bytes are dropped.
   void write(std::string_view bytes);
-  /// Writes at a place of the file, counted from its beginning. Fails where the target is written directly.
+  /// Writes at an offset from the beginning of the file. Fails if the target is written directly.
   void write_at(std::uint64_t offset, std::string_view bytes);
-  /// Reads back what was written by now; zeros where nothing was.
+  /// Reads back the bytes written so far; zeros where there are none.
   void read_at(std::uint64_t offset, std::span<char> bytes);
   /// The first error, or Done, as far as the buffer was written out.
   [[nodiscard]] Status status() const;

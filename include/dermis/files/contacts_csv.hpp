@@ -11,15 +11,15 @@
 namespace dermis::files {
 
 /// Writes contacts.csv (docs/file-formats.md): a line for each contact of each frame, none for a frame without
-/// contacts. Numbers have the fewest digits that read back as the same single-precision value; `inf` for a standard
-/// deviation that has no bound. Not thread-safe.
+/// contacts. Numbers have the fewest digits that read back as the same single-precision value; `inf` is a standard
+/// deviation without bound. Not thread-safe.
 class ContactsCsvWriter {
  public:
   [[nodiscard]] static Result<ContactsCsvWriter> create(const std::string& path);
 
   /// Appends the contacts of a frame. Returns the first write error as soon as it is known.
   [[nodiscard]] Status write(const ContactReport& report);
-  /// Puts the complete file in its place; without it, nothing is left behind.
+  /// Puts the complete file in its place. Without it, no file remains.
   [[nodiscard]] Status commit();
 
  private:

@@ -8,8 +8,8 @@
 
 namespace dermis::files {
 
-/// "fnv1a64:" and 16 hexadecimal digits: the FNV-1a hash of the bytes of a file. It tells files apart by accident, not
-/// against forgery.
+/// "fnv1a64:" and 16 hexadecimal digits: the FNV-1a hash of the bytes of a file. It detects accidental changes, not
+/// forgery.
 [[nodiscard]] Result<std::string> content_hash(const std::string& path);
 
 }  // namespace dermis::files

@@ -13,27 +13,27 @@
 
 namespace dermis::files {
 
-/// A CSV file of texts under a header of names. Lines end, blanks and commas are as in every CSV file of the project.
+/// A CSV file of texts under a header of names. Line ends, blanks and commas are as in every CSV file of the project.
 class CsvTable {
  public:
   [[nodiscard]] static Result<CsvTable> read(const std::string& path);
-  /// The same from a stream; `name` stands for the path in messages. Fails on a column that stands twice, and on a line
-  /// that has not as many values as the header, and on more than 256 MiB of cells in memory.
+  /// The same from a stream; `name` stands for the path in messages. Fails on a repeated column, on a line with another
+  /// number of values than the header, and on more than 256 MiB of cells in memory.
   [[nodiscard]] static Result<CsvTable> read(std::istream& in, const std::string& name);
 
   [[nodiscard]] std::size_t rows() const noexcept { return lines_.size(); }
 
   [[nodiscard]] const std::vector<std::string>& columns() const noexcept { return columns_; }
-  /// Place of a column; empty where there is none of the name.
+  /// Index of a column; empty if there is none of the name.
   [[nodiscard]] std::optional<std::size_t> column(std::string_view name) const;
-  /// Fails where there is none of the name, and names those that are there.
+  /// Fails if there is none of the name, and names the columns of the file.
   [[nodiscard]] Result<std::size_t> needed_column(std::string_view name) const;
 
   [[nodiscard]] const std::string& at(std::size_t row, std::size_t column) const;
 
   /// A whole number of 0 or more.
   [[nodiscard]] Result<std::size_t> count_at(std::size_t row, std::size_t column) const;
-  /// A number that is finite.
+  /// A finite number.
   [[nodiscard]] Result<double> number_at(std::size_t row, std::size_t column) const;
 
   /// Bad input at a row: "name:line: message".

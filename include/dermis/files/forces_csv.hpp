@@ -11,15 +11,15 @@
 
 namespace dermis::files {
 
-/// What a forces.csv holds of each taxel.
+/// What a forces.csv holds for each taxel.
 enum class ForceColumn {
   newtons,        ///< ForceFrame::newtons
   sigma_newtons,  ///< ForceFrame::sigma_newtons
 };
 
-/// Writes forces.csv (docs/file-formats.md), or a file of the same shape with the standard deviations: numbers with the
-/// shortest digits that read back as the same number, `nan` where no force is given, `inf` for a standard deviation
-/// that has no bound. Not thread-safe.
+/// Writes forces.csv (docs/file-formats.md), or a file of the same shape with the standard deviations. Numbers have the
+/// fewest digits that read back as the same number. `nan` is no force, `inf` a standard deviation without bound. Not
+/// thread-safe.
 class ForcesCsvWriter {
  public:
   [[nodiscard]] static Result<ForcesCsvWriter> create(const std::string& path, std::size_t rows, std::size_t cols,
@@ -27,7 +27,7 @@ class ForcesCsvWriter {
 
   /// Appends a frame of rows * cols forces. Returns the first write error as soon as it is known.
   [[nodiscard]] Status write(const ForceFrame& frame);
-  /// Puts the complete file in its place; without it, nothing is left behind.
+  /// Puts the complete file in its place. Without it, no file remains.
   [[nodiscard]] Status commit();
 
  private:

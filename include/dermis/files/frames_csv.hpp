@@ -18,22 +18,22 @@
 
 namespace dermis::files {
 
-/// The optional columns of frames.csv; time_s and the taxels are always there.
+/// The optional columns of frames.csv; time_s and the taxels are always present.
 struct FramesCsvColumns {
   bool temperature_celsius = true;
   bool supply_v = true;
 };
 
-/// Reads frames.csv (docs/file-formats.md) frame by frame: the memory is that of one line, at most 32 MiB.
-/// Counts may be fractional, nan or inf: whether a reading can be used is for preprocessing to say. An empty cell of
-/// temperature_celsius or supply_v is no value. Errors name the line and the column. A last line without an end that is
-/// no frame is left out where others stand before it, and told. Not thread-safe.
+/// Reads frames.csv (docs/file-formats.md) frame by frame. The memory is that of one line, at most 32 MiB. Counts may
+/// be fractional, nan or inf; preprocessing decides whether a reading can be used. An empty cell of temperature_celsius
+/// or supply_v is no value. Errors name the line and the column. An incomplete last line without line end is left out
+/// if frames come before it, with a notice. Not thread-safe.
 class FramesCsvReader final : public FrameSource {
  public:
   using Notice = std::function<void(const std::string&)>;  ///< Takes one line.
 
-  /// Opens the file and checks its header: against an array of that shape, or, where none is given, against the shape
-  /// that its last column names (1x1 ... 1024x1024).
+  /// Opens the file and checks its header against `shape`. Without one, the last column names the shape (1x1 ...
+  /// 1024x1024).
   [[nodiscard]] static Result<std::unique_ptr<FramesCsvReader>> open(const std::string& path,
                                                                      std::optional<FrameShape> shape = {},
                                                                      Notice notice = {});
@@ -56,8 +56,8 @@ class FramesCsvReader final : public FrameSource {
   std::unique_ptr<State> state_;
 };
 
-/// Writes frames.csv: exact times, shortest digits that read back as the same number; of what the acquisition knows of
-/// a frame, it keeps nothing. Without commit(), nothing is left behind. Not thread-safe.
+/// Writes frames.csv with exact times and the fewest digits that read back as the same number. RawFrame::acquisition is
+/// dropped. Without commit(), no file remains. Not thread-safe.
 class FramesCsvWriter final : public FrameSink {
  public:
   [[nodiscard]] static Result<std::unique_ptr<FramesCsvWriter>> create(const std::string& path, FrameShape shape,

@@ -11,7 +11,7 @@
 
 namespace dermis::files {
 
-/// A path that cannot be opened is bad input; what fails later is a failure.
+/// A path that cannot be opened is bad input; a later error is a failure.
 [[nodiscard]] Result<std::unique_ptr<std::istream>> open_input(const std::string& path);
 
 /// To be called right after a stream went bad.

@@ -13,9 +13,10 @@
 
 namespace dermis::files {
 
-/// Reads the forces and pressures of loads.csv (docs/file-formats.md) in the order of its lines. Errors name the line:
-/// a taxel or a frame that does not exist (frames are 0 ... frame_count - 1), a negative value, a pressure without
-/// taxel_area_m2, two loads of one frame that share a taxel, a position on an array that is no strip.
+/// Reads the forces and pressures of loads.csv (docs/file-formats.md) in the order of its lines. Errors name the line.
+/// A taxel or a frame that does not exist is an error (frames are 0 ... frame_count - 1). So are a negative value, a
+/// pressure without taxel_area_m2, and two loads of one frame that share a taxel. A position is an error on an array
+/// that is no strip.
 [[nodiscard]] Result<std::vector<Load>> read_loads(const std::string& path, const ArrayDescription& array,
                                                    std::size_t frame_count);
 /// The same from a stream; `name` stands for the path in messages.

@@ -13,8 +13,7 @@
 
 namespace dermis::files {
 
-/// The file beside its target that an output is written to. It goes with this, but where it has taken the target's
-/// place.
+/// The temporary file beside the target of an output. The destructor removes it, unless it has become the target.
 class UnfinishedFile {
  public:
   UnfinishedFile() = default;  ///< None: the target is written directly.
@@ -23,37 +22,38 @@ class UnfinishedFile {
   UnfinishedFile& operator=(UnfinishedFile&& other) noexcept;
   ~UnfinishedFile();
 
-  /// Whether there is one, and it has not taken its place.
+  /// Whether there is one that has not become the target.
   [[nodiscard]] bool exists() const noexcept { return !path_.empty(); }
 
-  /// Empty where there is none.
+  /// Empty if there is none.
   [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
-  /// Becomes the target, at once. Fails where the system refuses it.
+  /// Becomes the target, atomically. Fails if the system refuses it.
   [[nodiscard]] Status take_place_of(const std::string& target);
 
  private:
   std::string path_;
 };
 
-/// Removes all unfinished files of the process, which must end then: who begins or finishes one from now on waits for
-/// ever. Thread-safe.
+/// Removes all unfinished files of the process, which must end then. A thread that begins or finishes one from now on
+/// blocks for ever. Thread-safe.
 void remove_unfinished_files();
 
-/// Where the bytes of an output file go until it is complete.
+/// Destination of the bytes of an output file until it is complete.
 struct OutputPlace {
   std::string target;  ///< The file behind a symbolic link, so that a rename replaces the file and not the link.
   UnfinishedFile unfinished;
   int descriptor = -1;
 };
 
-/// Opens a new file beside `path`, or `path` itself where it is there and no regular file (/dev/stdout, a pipe).
+/// Opens a new file beside `path`, or `path` itself if it exists and is no regular file (/dev/stdout, a pipe).
 [[nodiscard]] Result<OutputPlace> open_output(const std::string& path);
 
-/// Writes all of the bytes, at `offset` where one is given, else where the descriptor stands. Returns 0, or the errno.
+/// Writes all of the bytes, at `offset` if one is given, else at the position of the descriptor. Returns 0, or the
+/// errno.
 [[nodiscard]] int write_all(int descriptor, std::span<const std::byte> bytes, std::optional<std::uint64_t> offset = {});
 
-/// Has the disk keep the name of a file, as far as its file system can.
+/// Makes the name of a file durable on disk, as far as its file system can.
 void synchronise_folder_of(const std::string& path);
 
 [[nodiscard]] Error cannot_write(const std::string& path, int error_number);

@@ -15,8 +15,8 @@
 
 namespace dermis::files {
 
-/// A dense row-major array. `values` holds as many elements as the product of `shape` (1 for an empty shape); its type
-/// is the type in the file: F32, F64, U8 or I64.
+/// A dense row-major array. The number of `values` is the product of `shape` (1 for an empty shape). Their type is that
+/// in the file: F32, F64, U8 or I64.
 struct Tensor {
   std::vector<std::size_t> shape;
   std::variant<std::vector<float>, std::vector<double>, std::vector<std::uint8_t>, std::vector<std::int64_t>> values;
@@ -29,7 +29,7 @@ struct SafetensorsFile {
   std::map<std::string, std::string> metadata;
   std::map<std::string, Tensor> tensors;
 
-  /// The elements of a tensor that must be there with this shape and element type (float, double, std::uint8_t or
+  /// The elements of a tensor, which must have this shape and element type (float, double, std::uint8_t or
   /// std::int64_t). They live as long as the tensor. Errors name the tensor, without a path.
   template <typename T>
   [[nodiscard]] Result<std::span<const T>> view(const std::string& name, const std::vector<std::size_t>& shape) const;

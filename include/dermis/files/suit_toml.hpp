@@ -13,12 +13,12 @@
 
 namespace dermis::files {
 
-/// Reads suit.toml (docs/suit.md). Paths in it are taken from the folder of the file, but those inside a URI. Unknown
-/// keys are errors with the nearest known name; every error names the file and the line where there is one. What is
-/// read has passed SuitDescription::validate().
+/// Reads suit.toml (docs/suit.md). Paths are relative to the folder of the file, except inside a URI. Unknown keys are
+/// errors with the nearest known name. Every error names the file, and the line if there is one. The result has passed
+/// SuitDescription::validate().
 [[nodiscard]] Result<SuitDescription> read_suit(const std::string& path);
 
-/// Where the file of the places of taxels that suit.toml names is read.
+/// Reads the file of the places of taxels that suit.toml names.
 using ReadPositions = std::function<Result<std::vector<Vector3>>(const std::string& path)>;
 
 /// The same from memory; `name` stands for the path.

@@ -20,8 +20,8 @@ enum class TableValues {
 };
 
 /// Reads tables of one number a taxel (docs/file-formats.md) frame by frame: `rows` lines of `cols` numbers a frame.
-/// Blank lines and a first line without any number are passed over. The memory is that of one line, at most 32 MiB.
-/// Errors name the line, what is wrong and the mend. Not thread-safe.
+/// Blank lines and a first line without any number are skipped. The memory is that of one line, at most 32 MiB. Errors
+/// name the line, the problem and the remedy. Not thread-safe.
 class TaxelTablesReader {
  public:
   [[nodiscard]] static Result<TaxelTablesReader> open(const std::string& path, std::size_t rows, std::size_t cols,
@@ -45,15 +45,15 @@ class TaxelTablesReader {
   std::unique_ptr<State> state_;
 };
 
-/// Writes such tables: the shortest digits that read back as the same number, a blank line between frames; "nan" where
-/// there is no number. Not thread-safe.
+/// Writes such tables, with the fewest digits that read back as the same number and a blank line between frames. "nan"
+/// is a missing number. Not thread-safe.
 class TaxelTablesWriter {
  public:
   [[nodiscard]] static Result<TaxelTablesWriter> create(const std::string& path, std::size_t rows, std::size_t cols);
 
   /// Appends a frame [rows, cols]. Returns the first write error as soon as it is known.
   [[nodiscard]] Status write(std::span<const double> table);
-  /// Puts the complete file in its place; without it, nothing is left behind.
+  /// Puts the complete file in its place. Without it, no file remains.
   [[nodiscard]] Status commit();
 
  private:

@@ -21,7 +21,7 @@ struct TaxelPlace {
 /// Reads "r3c5".
 [[nodiscard]] std::optional<TaxelPlace> parse_taxel(std::string_view text);
 
-/// Reads "r3c5", "r0c0:r3c3" or "all"; the error says what is wrong with the text.
+/// Reads "r3c5", "r0c0:r3c3" or "all"; the error names the problem of the text.
 [[nodiscard]] Result<TaxelRegion> parse_region(std::string_view text, FrameShape shape);
 
 /// "12x32"

@@ -10,7 +10,7 @@
 
 namespace dermis::files {
 
-/// What some programs begin UTF-8 with.
+/// Some programs begin UTF-8 with it.
 inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 /// 'text' in quotes for a message; long text is cut.
@@ -29,16 +29,16 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 [[nodiscard]] bool parse_number(std::string_view text, double& value);
 [[nodiscard]] bool parse_number(std::string_view text, std::size_t& value);
 
-/// Seconds of at most 9e9 in size (285 years), rounded to nanoseconds; plain decimals are taken exactly.
+/// Seconds of at most 9e9 in size (285 years), rounded to nanoseconds; plain decimals are exact.
 [[nodiscard]] bool parse_seconds(std::string_view text, Nanos& time);
 
-/// Rounded to nanoseconds; empty for what is no time: NaN, or more than 9e9 in size.
+/// Rounded to nanoseconds; empty for NaN, or more than 9e9 in size.
 [[nodiscard]] std::optional<Nanos> nanos_from_seconds(double seconds);
 
-/// The nearest double where it is a whole number of microseconds.
+/// Time in seconds: the nearest double if it is a whole number of microseconds.
 [[nodiscard]] double seconds_of(Nanos time);
 
-/// The shortest digits that read back as the same number; "nan" for every NaN.
+/// The fewest digits that read back as the same number; "nan" for every NaN.
 void append_number(std::string& text, float value);
 void append_number(std::string& text, double value);
 

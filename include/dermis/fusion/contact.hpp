@@ -18,12 +18,12 @@ namespace dermis::fusion {
 inline constexpr std::size_t kMostContacts = 255;
 
 struct ContactOptions {
-  /// A contact begins where a taxel stands so many standard deviations of the additive noise above an unloaded one, or
-  /// several stand less high and are together as unlikely, 1 ... 100,
+  /// A contact begins where a taxel exceeds an unloaded one by this many standard deviations of the additive noise, 1
+  /// ... 100. Several taxels may exceed it by less if they are together as unlikely.
   double onset_sigma = 5.0;
-  double onset_force_n = 0.1;      ///< and where the sum over the area is at least this [N], 0 ... 1000.
+  double onset_force_n = 0.1;      ///< The sum over the area must also be at least this [N], 0 ... 1000.
   double release_share = 0.5;      ///< It ends below this share of both, 0.1 ... 1 (hysteresis).
-  std::size_t most_contacts = 32;  ///< At once, 1 ... kMostContacts; of more, the strongest are kept.
+  std::size_t most_contacts = 32;  ///< At once, 1 ... kMostContacts; if there are more, the strongest are kept.
 
   /// Names the first field that is out of its range, as "contacts.onset_sigma: ...".
   [[nodiscard]] Status validate() const;
@@ -34,8 +34,8 @@ struct ContactOptions {
 /// Not thread-safe: one per stream of frames.
 class ContactTracker {
  public:
-  /// `array` and `options` must be valid, `strip`, the model's learned positions where it has them, consistent; without
-  /// taxel_area_m2 a taxel is a disc of 0.7 of the smaller pitch.
+  /// `array` and `options` must be valid. `strip` holds the model's learned positions, if it has them, and must be
+  /// consistent. Without taxel_area_m2 a taxel is a disc of 0.7 of the smaller pitch.
   explicit ContactTracker(const ArrayDescription& array, const ContactOptions& options = {},
                           std::optional<StripTable> strip = {});
   ContactTracker(ContactTracker&&) noexcept;
@@ -46,7 +46,7 @@ class ContactTracker {
   /// held most_contacts contacts.
   void process(const ForceFrame& force, ContactReport& report) noexcept;
 
-  /// Forgets the contacts that are held, without a release: the frames that follow are of another time. Ids go on.
+  /// Forgets the present contacts without a release, because the next frames are of another time. Ids continue.
   void forget() noexcept;
 
   /// From the next frame on. Contacts keep their ids.

@@ -25,15 +25,15 @@ inline constexpr std::size_t kSigmaKnots = 6;
 ///   e = siemens - (offset + per_celsius * dT),   dT = temperature - centre              excess over the unloaded taxel
 ///   newtons = gain * exp(network(ln(e / reference), e / reference - 1, dT / half_span))    and 0 where e <= 0
 ///
-/// The network's direct connection from ln(e) is the power law of conductive rubber, F ~ e^p, which also carries the
-/// force to zero below the lightest calibrated load; what bends it (contact resistance, percolation, temperature) is
-/// learned by the hidden units. Above the heaviest load F_h the power law at its end goes on, to eight times that load,
-/// as far as it stands out of the noise: with x = ln(newtons / F_h) by that law and s the relative standard deviation
-/// at F_h, newtons = F_h exp(x^3 / (x^2 + s^2)). Outside the calibrated temperatures the temperature is clamped. The
-/// force rises with conductance throughout.
+/// The network's direct connection from ln(e) is the power law of conductive rubber, F ~ e^p. It also carries the force
+/// to zero below the lightest calibrated load. The hidden units learn what bends the law (contact resistance,
+/// percolation, temperature). Above the heaviest load F_h the power law at its end continues, to eight times that load,
+/// as far as it exceeds the noise. Let x = ln(newtons / F_h) by that law and s the relative standard deviation at F_h.
+/// Then newtons = F_h exp(x^3 / (x^2 + s^2)). Outside the calibrated temperatures the temperature is clamped. The force
+/// rises with conductance throughout.
 ///
-/// We deviate from the paper, whose networks see every taxel and the supply (Fig. 7): the circuit and the supply are
-/// known relationships and are solved before; what is left to learn is the material of one taxel.
+/// This differs from the paper, whose networks see every taxel and the supply (Fig. 7). The circuit and the supply are
+/// known relationships and are solved before. Only the material of one taxel is left to learn.
 struct ForceNetworks {
   network::PerceptronShape shape{2, 1, 2};  ///< 2 inputs (conductance, twice) or 3 (temperature too).
   UnloadedLaw unloaded;                     ///< Over the calibrated temperatures.
@@ -45,17 +45,18 @@ struct ForceNetworks {
   std::vector<float> parameters;            ///< [shape.parameter_count(), taxels]
   ForceTables tables;  ///< Take the place of the network, and of its gain, on the taxels that have one.
 
-  // What calibration found of its own uncertainty; see ForceFusion.
+  // The uncertainty that calibration found; see ForceFusion.
   double temperature_sigma_celsius = 0.0;   ///< Noise of the temperature sensor [C], >= 0.
   std::vector<float> offset_sigma_siemens;  ///< Standard deviation of unloaded.offset_siemens [S], >= 0.
-  /// Relative error of the force from all that is not known otherwise (misfit, hysteresis, creep), > 0, at kSigmaKnots
-  /// forces in equal ratios. In between its square is linear in ln(newtons), beyond the ends it is constant.
+  /// Relative error of the force from causes without a term of their own (misfit, hysteresis, creep), > 0, at
+  /// kSigmaKnots forces in equal ratios. Between them its square is linear in ln(newtons), beyond the ends it is
+  /// constant.
   std::vector<float> relative_sigma;                       ///< [kSigmaKnots, taxels]
   std::array<float, 2> sigma_knots_newtons{0.1F, 100.0F};  ///< First and last of the forces [N], > 0, rising.
 
   [[nodiscard]] std::size_t taxel_count() const noexcept { return gain.size(); }
 
-  /// Place of a force between the knots of relative_sigma: 0 at the first (and below), kSigmaKnots - 1 at the last.
+  /// Position of a force between the knots of relative_sigma: 0 at the first (and below), kSigmaKnots - 1 at the last.
   [[nodiscard]] float sigma_place(float log_newtons) const noexcept;
 
   /// All vectors have the right size and every number is in its range.
@@ -64,27 +65,28 @@ struct ForceNetworks {
 
 /// Unit 4 of the paper, the Data Processing Unit: fuses conductance and temperature to newtons.
 ///
-/// The standard deviation of a force, to first order, with p = d ln newtons / d ln e and q = d ln newtons / dT at a
-/// fixed conductance (p and q by the backward pass of the network):
+/// The standard deviation of a force, to first order. p = d ln newtons / d ln e and q = d ln newtons / dT at a fixed
+/// conductance come from the backward pass of the network:
 ///
 ///   (sigma_newtons / newtons)^2 = (p / e)^2 (sigma_siemens^2 + offset_sigma^2) + (q sigma_T)^2 + relative_sigma^2
 ///
-/// and, where temperature is not an input, the square of 0.5 %/C times what lies outside the calibrated temperatures:
-/// pressure-sensitive rubber drifts by 0.2 to 1 %/C (FlexiForce: 0.36), and nobody measured this one's.
+/// If temperature is not an input, the square of 0.5 %/C times the distance from the calibrated temperatures is added.
+/// Pressure-sensitive rubber drifts by 0.2 to 1 %/C (FlexiForce: 0.36), and that of this rubber is not measured.
 ///
-/// Beyond the heaviest load F_h the square of x sqrt(0.2^2 + (0.3 x)^2), x = ln(newtons / F_h), and below the first of
-/// sigma_knots_newtons that of 0.1 ln(first / newtons), on the line below the first load of a table also that of
-/// 0.3 ln(e_1 / e), e_1 the conductance there; from 8 F_h on the force stands still, with an infinite sigma.
+/// Outside the calibrated loads further squares are added. Beyond the heaviest load F_h it is that of x sqrt(0.2^2 +
+/// (0.3 x)^2), x = ln(newtons / F_h). Below the first of sigma_knots_newtons it is that of 0.1 ln(first / newtons). On
+/// the line below the first load of a table it is also that of 0.3 ln(e_1 / e), e_1 the conductance there. From 8 F_h
+/// on the force is constant, with an infinite sigma.
 ///
-/// sigma_T is the noise of the temperature sensor, and what the temperature was clamped by; half_span / sqrt(3) where
-/// the frame has none. Below e = sigma_siemens (+) offset_sigma the right side times newtons is that of this
-/// conductance, reached along the power law: what an unloaded taxel shows is its detection limit, the force that would
-/// just stand out of the noise.
+/// sigma_T is the noise of the temperature sensor and the amount by which the temperature was clamped. Without a
+/// temperature it is half_span / sqrt(3). Below e = sigma_siemens (+) offset_sigma the right side times newtons is that
+/// of this conductance, reached along the power law. So an unloaded taxel shows its detection limit, the force that
+/// would just exceed the noise.
 ///
 ///   signal_to_noise = e / (sqrt(sigma_siemens^2 + offset_sigma^2) + 2 |per_celsius| sigma_T)
 ///
-/// An error of the temperature moves the zero of all taxels alike, which no sum over taxels averages out: two standard
-/// deviations of it count in full.
+/// An error of the temperature moves the zero of all taxels alike, and no sum over taxels averages it out. So two
+/// standard deviations of it count in full.
 ///
 /// Not thread-safe: one per stream.
 class ForceFusion {

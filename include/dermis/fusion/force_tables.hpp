@@ -8,7 +8,7 @@
 
 namespace dermis::fusion {
 
-/// Tables, conductance -> force, of those taxels of an array whose calibration was better with one than with a network
+/// Tables from conductance to force, for taxels whose calibration was better with a table than with a network
 /// (docs/calibration.md, "Never worse than a table"). Straight lines through the knots:
 ///
 ///   s = e * (1 + per_celsius * dT)       e: excess over the unloaded taxel, dT: from the centre of the calibration
@@ -22,7 +22,7 @@ struct ForceTables {
   std::vector<float> newtons;         ///< [tables, knots], > 0, strictly rising along the knots.
   std::vector<float> per_celsius;     ///< [tables], 1/C
 
-  /// Force of a table, and what it does where the conductance or the temperature changes.
+  /// Force of a table, and its derivatives by conductance and temperature.
   struct Value {
     float log_newtons = 0.0F;
     float exponent = 0.0F;     ///< d ln newtons / d ln e, > 0.
@@ -32,12 +32,12 @@ struct ForceTables {
   /// `table` < taxels.size(), excess_siemens > 0.
   [[nodiscard]] Value at(std::size_t table, float excess_siemens, float temperature_offset) const noexcept;
 
-  /// d ln newtons / d ln e beyond the last knot of a table, from the knot nearest to half its heaviest force to the
-  /// last: 0.3 ... 3; 1 where there is one knot.
+  /// d ln newtons / d ln e beyond the last knot of a table: 0.3 ... 3. It is the slope from the knot nearest to half
+  /// its heaviest force to the last; 1 with a single knot.
   [[nodiscard]] float end_exponent(std::size_t table) const noexcept;
 
-  /// s where the straight line from (0 S, 0 N) through the first knot ends [S]: at that knot, or at later ones that lie
-  /// on it. Below, no load has told the law.
+  /// s at the end of the straight line from (0 S, 0 N) through the first knot [S]: that knot, or later ones on the
+  /// line. No load has determined the law below it.
   [[nodiscard]] float line_end_siemens(std::size_t table) const noexcept;
 
   /// Of an array of `taxel_count` taxels: all vectors have the right size and every number is in its range.

@@ -6,13 +6,13 @@
 
 namespace dermis::fusion {
 
-/// Where a strip (an array of one row or one column) is touched, learned from touches whose positions were known:
-/// taxels that overlap, and those missing beyond the ends, pull the centre of mass of the signals
-/// (ForceFrame::signal_to_noise) aside. Places are from the centre of the first taxel, along the strip.
+/// The position of a touch on a strip (an array of one row or one column), learned from touches at known positions.
+/// Overlapping taxels, and missing ones beyond the ends, shift the centre of mass of the signals
+/// (ForceFrame::signal_to_noise). Positions are from the centre of the first taxel, along the strip.
 struct StripTable {
   std::vector<double> centre_m;    ///< Centre of mass of the signals [m], rising; at least 2.
-  std::vector<double> position_m;  ///< Position of a touch that has it [m], not falling.
-  double sigma_m = 0.0;            ///< Standard deviation of a touch from the table, its noise left out [m], >= 0.
+  std::vector<double> position_m;  ///< Position of a touch with that centre [m], not falling.
+  double sigma_m = 0.0;  ///< Standard deviation of a touch's position from the table, without its noise [m], >= 0.
 
   struct Place {
     double position_m = 0.0;

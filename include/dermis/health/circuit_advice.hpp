@@ -13,10 +13,10 @@
 
 namespace dermis::health {
 
-/// 1-sigma of a conductance from the noise of the ADC in one frame, relative, over the pressed taxels of several
+/// Relative 1-sigma of a conductance from the noise of the ADC in one frame. It covers the pressed taxels of several
 /// contact patterns: a whole array pressed, a tenth of it, a row, a column, one taxel.
 struct Precision {
-  double mean = 0.0;  ///< Geometric: what is judged by.
+  double mean = 0.0;  ///< Geometric mean; it decides.
   double median = 0.0;
   double p95 = 0.0;
   double worst = 0.0;

@@ -11,8 +11,8 @@
 
 namespace dermis::health {
 
-/// Examines an array by the frames of one stream, in whatever way it is touched: line faults, noise and drift of the
-/// unloaded taxels, saturation, temperature, misfit of the circuit. Keeps 8 bytes a frame. Not thread-safe.
+/// Examines an array by the frames of one stream, however it is touched. It reports line faults, noise and drift of the
+/// unloaded taxels, saturation, temperature and misfit of the circuit. Keeps 8 bytes a frame. Not thread-safe.
 class Examination {
  public:
   /// `model` must outlive the examination.

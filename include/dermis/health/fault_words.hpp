@@ -15,17 +15,17 @@
 
 namespace dermis::health {
 
-/// A fault and the frames in which it stood.
+/// A fault and the frames in which it was present.
 struct FaultHistory {
   compensation::LineFault fault;       ///< As it was last seen.
-  std::optional<std::size_t> until{};  ///< First frame without it; empty while it stands.
+  std::optional<std::size_t> until{};  ///< First frame without it; empty while it lasts.
 };
 
-/// What the fault is, since when, what to look at, and what is lost, to be read after place_name(): "is open since
-/// frame 120: check the wire or crimp of row 3; its 16 taxels are masked, the rest is still good".
+/// Describes a fault, to be read after place_name(): its kind, since when, what to check, and what is lost. "is open
+/// since frame 120: check the wire or crimp of row 3; its 16 taxels are masked, the rest is still good".
 [[nodiscard]] std::string describe(const FaultHistory& history, const ArrayDescription& array);
 
-/// How an array at work is at this moment, in short.
+/// Short state of a working array at this moment.
 struct Condition {
   std::string message;  ///< "healthy", "dead taxels" (since calibration) or "2 faults".
   /// Each fault by its place_name() with what describe() says of it, then the names of the taxels that are dead since

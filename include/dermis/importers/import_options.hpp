@@ -16,7 +16,8 @@ struct ImportOptions {
   std::optional<FrameShape> shape{};  ///< That the frames must have; empty: what the file says. 1x1 ... 1024x1024.
   std::optional<double> rate_hz{};    ///< Frames a second of a file without times. > 0
   std::string array{};                ///< Which of several arrays of a file; empty: the only one.
-  std::function<void(const std::string&)> notice{};  ///< Told in one line what was left out: a frame that is cut.
+  std::function<void(const std::string&)> notice{};  ///< Told in one line what a user should know of the frames.
+  std::function<void(const std::string&)> loss{};    ///< Told in one line what was left out: a frame that is cut.
 };
 
 /// Bad input, with `name` of the file, where its frames have not the shape that they must have, or more than 1024 rows

@@ -12,9 +12,9 @@
 
 namespace dermis::importers {
 
-/// Listings of novel (emed, pliance: .lst): pages with "Pict-No.: 7" and a table of kilopascals, whose first line has
-/// the numbers of the columns and whose first column those of the rows, both from 1 on the whole platform. Pages of the
-/// same picture are one frame; MPP and MVP, the sums of a measurement, are passed over, and so are sums of force. Cells
+/// Listings of novel (emed, pliance: .lst): pages with "Pict-No.: 7" and a table of kilopascals. The first line has the
+/// numbers of the columns and the first column those of the rows, both counted from 1 on the whole platform. Pages of
+/// the same picture are one frame. MPP and MVP, the sums of a measurement, are skipped, and so are sums of force. Cells
 /// that a table does not have are 0. Where options.shape is given, a table lies at its place on the platform; else the
 /// frames are the smallest rectangle that holds all tables. A last frame that is cut is left out, and told. The memory
 /// is that of a frame and of a line, at most 32 MiB. `in` must be able to seek; `name` stands for the path in messages.

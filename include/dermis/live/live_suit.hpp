@@ -67,17 +67,17 @@ struct LiveSettings {
 
 struct LiveOptions {
   LiveSettings settings{};
-  /// Called for every frame of every array, on the thread of that array, several at once: it must be quick and
-  /// thread-safe, and not call the suit.
+  /// Called for every frame of every array, on the thread of that array, several at once. It must be quick and
+  /// thread-safe, and must not call the suit.
   std::function<void(const ArrayResult&)> on_result{};
   std::function<void(const std::string&)> notice{};  ///< One line for the log; on the thread of an array.
 };
 
-/// Runs all arrays until their sources end or stop() is called; a source that fails ends its array alone. What is set
-/// takes effect with an array's next frame. Thread-safe.
+/// Runs all arrays until their sources end or stop() is called. A source that fails ends only its array. Settings take
+/// effect with an array's next frame. Thread-safe.
 class LiveSuit {
  public:
-  /// Fails, as "array 'chest': ...", where a model cannot work or does not fit its source or its surface.
+  /// Fails, as "array 'chest': ...", if a model cannot work or does not fit its source or its surface.
   [[nodiscard]] static Result<std::unique_ptr<LiveSuit>> create(std::vector<LiveArray> arrays, LiveOptions options);
   LiveSuit(const LiveSuit&) = delete;
   LiveSuit& operator=(const LiveSuit&) = delete;
@@ -86,16 +86,16 @@ class LiveSuit {
 
   /// Once.
   void start();
-  /// Waits for the threads. Each ends with the frame it works on or waits for, so a source that may wait long must have
-  /// been told to end (DeviceOptions::stop).
+  /// Waits for the threads. Each ends with its present or next frame. So stop a source that may wait long first
+  /// (DeviceOptions::stop).
   void stop();
-  /// True where no array works any more.
+  /// True if no array works any more.
   [[nodiscard]] bool ended() const noexcept;
 
   /// `settings` must be valid.
   void set_settings(const LiveSettings& settings);
   [[nodiscard]] LiveSettings settings() const;
-  /// Of one array, or of all: takes what they show from now on for unloaded (compensation::OffsetDrift::tare).
+  /// For one array or all: takes their state from now on as zero (compensation::OffsetDrift::tare).
   void tare(std::optional<std::size_t> array = {});
   /// Back to the zero of the calibration.
   void reset_tare(std::optional<std::size_t> array = {});

@@ -13,9 +13,9 @@
 #include <string_view>
 #include <vector>
 
-/// Common Data Representation as ROS 2 has it in recordings, streams and DDS: XCDR version 1, little-endian (OMG
-/// DDSI-RTPS 2.3, section 10; OMG CORBA 3.3, section 9.3). Four bytes 00 01 00 00, then the fields in their order,
-/// each number at a multiple of its size, counted from behind those four bytes.
+/// Common Data Representation as ROS 2 has it in recordings, streams and DDS. It is XCDR version 1, little-endian (OMG
+/// DDSI-RTPS 2.3, section 10; OMG CORBA 3.3, section 9.3). Four bytes 00 01 00 00 come first, then the fields in their
+/// order. Each number is at a multiple of its size, counted from behind those four bytes.
 namespace dermis::messages {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as the machine holds them");
@@ -28,7 +28,7 @@ inline constexpr std::size_t kCdrHeaderBytes = 4;
 /// Writes one message into a buffer that is reused. Not thread-safe.
 class CdrWriter {
  public:
-  /// Replaces what is in the buffer.
+  /// Replaces the content of the buffer.
   explicit CdrWriter(std::vector<std::uint8_t>& bytes) : bytes_(bytes) { bytes_.assign({0, 1, 0, 0}); }
 
   template <CdrNumber T>
@@ -41,7 +41,8 @@ class CdrWriter {
   /// The text must not hold a NUL.
   void write_text(std::string_view text) { std::copy(text.begin(), text.end(), write_bytes(text.size() + 1).begin()); }
 
-  /// A sequence<uint8>: its length, and the place of the bytes, zeros, which is valid until the next call.
+  /// Writes the length of a sequence<uint8> and zeros. The result is the place of these bytes, valid until the next
+  /// call.
   [[nodiscard]] std::span<std::uint8_t> write_bytes(std::size_t count) {
     write(static_cast<std::uint32_t>(count));
     return {append(count), count};
@@ -54,8 +55,8 @@ class CdrWriter {
   std::vector<std::uint8_t>& bytes_;
 };
 
-/// Reads one message; the bytes may be anything and must outlive the reader. What does not fit reads as 0 or empty,
-/// and so does all that follows. Not thread-safe.
+/// Reads one message. The bytes may be anything and must outlive the reader. A field that does not fit reads as 0 or
+/// empty, and so do all that follow. Not thread-safe.
 class CdrReader {
  public:
   explicit CdrReader(std::span<const std::uint8_t> message)
@@ -64,7 +65,7 @@ class CdrReader {
     fields_ = rest_.size();
   }
 
-  /// All that was asked for was there.
+  /// Every field read so far was present.
   [[nodiscard]] bool good() const noexcept { return good_; }
 
   template <CdrNumber T>

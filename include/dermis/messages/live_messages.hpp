@@ -16,8 +16,8 @@
 #include "dermis/core/surface.hpp"
 #include "dermis/messages/ros_messages.hpp"
 
-/// What is made of frames while they come, as ROS 2 messages in CDR (docs/stream.md). encode_...() replace what is in
-/// `message`, and allocate nothing once it has its size.
+/// Live results of frames as ROS 2 messages in CDR (docs/stream.md). encode_...() replace the content of `message`, and
+/// allocate nothing once it has its size.
 namespace dermis::messages {
 
 [[nodiscard]] const MessageType& point_cloud_type();
@@ -47,7 +47,7 @@ struct TaxelPoint {
 void encode_points(std::span<const TaxelPoint> points, Nanos time, std::string_view frame_id,
                    std::vector<std::uint8_t>& message);
 
-/// dermis_msgs/msg/Contacts: what touches one array in one frame.
+/// dermis_msgs/msg/Contacts: the contacts of one array in one frame.
 struct ArrayContacts {
   std::string_view array;
   const ContactReport& report;
@@ -80,13 +80,14 @@ struct Statistics {
   std::uint64_t recording_frames = 0;
   std::uint32_t clients = 0;
   std::uint64_t client_drops = 0;
+  std::uint64_t recording_left_out = 0;
 };
 void encode_statistics(const Statistics& statistics, std::string_view frame_id, std::vector<std::uint8_t>& message);
 
 /// dermis_msgs/msg/CalibrationState.
 struct CalibrationState {
   enum class Stage : std::uint8_t { none, unloaded, pressing, fitting, done, failed };
-  enum class Hint : std::uint8_t { none, press, hold, release, other_taxel, unsteady, too_short, several };
+  enum class Hint : std::uint8_t { none, press, hold, release, other_taxel, unsteady, too_short, several, one_of_two };
   Nanos time{};
   std::string array;
   Stage stage = Stage::none;
@@ -102,6 +103,9 @@ struct CalibrationState {
   Hint hint = Hint::none;
   std::optional<std::uint32_t> pressed_taxel{};
   double unpressed_relative_error = std::numeric_limits<double>::quiet_NaN();
+  std::optional<std::uint32_t> together_with{};
+  double together_reading = std::numeric_limits<double>::quiet_NaN();
+  std::optional<std::uint32_t> missing_taxel{};
 };
 void encode_calibration_state(const CalibrationState& state, std::string_view frame_id,
                               std::vector<std::uint8_t>& message);
@@ -134,7 +138,7 @@ struct Hypothesis {
 void encode_classification(std::span<const Hypothesis> results, Nanos time, std::string_view frame_id,
                            std::vector<std::uint8_t>& message);
 
-/// dermis_msgs/msg/Threat: how one limit stands in one array.
+/// dermis_msgs/msg/Threat: the state of one limit in one array.
 struct Threat {
   enum class State : std::uint8_t { clear, crossed, active, latched };
   Nanos time{};

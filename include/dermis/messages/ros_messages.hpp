@@ -14,12 +14,12 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 
-/// Frames as ROS 2 messages, in CDR. encode_...() replace what is in `message`, and allocate nothing once it has its
-/// size; decode_...() take any bytes, and fail with what is wrong, without a place.
+/// Frames as ROS 2 messages, in CDR. encode_...() replace the content of `message`, and allocate nothing once it has
+/// its size. decode_...() accept any bytes. Their errors name the problem, but no place.
 namespace dermis::messages {
 
-/// A type of message: its name, and its definition as "ros2msg": the fields, and after a line of 80 '=' those of each
-/// type that they use.
+/// A type of message: its name and its definition as "ros2msg". The definition holds the fields, and after a line of 80
+/// '=' those of each type that they use.
 struct MessageType {
   const char* name;  ///< "sensor_msgs/msg/Image"
   std::string definition;
@@ -31,11 +31,11 @@ struct MessageType {
 [[nodiscard]] const MessageType& acquisition_type();
 [[nodiscard]] const MessageType& frame_status_type();
 
-/// sensor_msgs/msg/Image of frame.counts, stamped with frame.time: "16UC1" where all counts are whole numbers of
-/// 0 ... 65535, else "32FC1". Reads back with the same bits.
+/// sensor_msgs/msg/Image of frame.counts, stamped with frame.time: "16UC1" if all counts are whole numbers of 0 ...
+/// 65535, else "32FC1". Reads back with the same bits.
 void encode_image(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
                   std::vector<std::uint8_t>& message);
-/// Sets counts, and time to the stamp. Takes the encodings 16UC1, mono16 and 32FC1, of 1x1 ... 1024x1024 taxels, in
+/// Sets counts, and time to the stamp. Accepts the encodings 16UC1, mono16 and 32FC1, with 1x1 ... 1024x1024 taxels, in
 /// either byte order.
 [[nodiscard]] Result<FrameShape> decode_image(std::span<const std::uint8_t> message, RawFrame& frame);
 
@@ -54,11 +54,11 @@ struct Pitch {
   double col_m = 0.010;
 };
 
-/// foxglove_msgs/msg/Grid with the fields newtons and sigma_newtons (float32) and status (uint8, TaxelStatus) of each
-/// taxel; r0c0 lies in the origin of `frame_id`, columns along x, rows along y.
+/// foxglove_msgs/msg/Grid with newtons and sigma_newtons (float32) and status (uint8, TaxelStatus) of each taxel. r0c0
+/// is at the origin of `frame_id`, with columns along x and rows along y.
 void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& pitch, std::string_view frame_id,
                  std::vector<std::uint8_t>& message);
-/// Sets time to the stamp, newtons, sigma_newtons and taxels. Takes what encode_grid() writes.
+/// Sets time to the stamp, newtons, sigma_newtons and taxels. Reads the messages of encode_grid().
 [[nodiscard]] Result<FrameShape> decode_grid(std::span<const std::uint8_t> message, ForceFrame& frame);
 
 /// dermis_msgs/msg/FrameStatus: the time and the status of a frame of forces.

@@ -10,12 +10,12 @@
 
 namespace dermis::network {
 
-/// Fills `residuals` [m] and, where it is not empty, `jacobian` [m, n] (row-major, d residual / d parameter) at
-/// `parameters` [n].
+/// Fills `residuals` [m] at `parameters` [n]. Also fills `jacobian` [m, n] (row-major, d residual / d parameter) if it
+/// is not empty.
 using ResidualFunction =
     std::function<void(std::span<const double> parameters, std::span<double> residuals, std::span<double> jacobian)>;
 
-/// A sum of squares of any kind, for those that need not store their Jacobian J.
+/// A sum of squares that need not store its Jacobian J.
 class LeastSquaresProblem {
  public:
   LeastSquaresProblem() = default;
@@ -30,16 +30,16 @@ class LeastSquaresProblem {
   virtual void linearise(std::span<const double> point, std::span<double> gradient, std::span<double> normal) = 0;
 };
 
-/// Called after each iteration with its number from 1, the error of the best point so far, which is what the parameters
-/// being minimised then hold, and the damping of the next: with it as initial_damping and from these parameters,
-/// another call goes on as this one would. false stops.
+/// Called after each iteration with its number (from 1), the error of the best point so far and the next damping. The
+/// parameters being minimised then hold that point. Another call from these parameters, with that damping as
+/// initial_damping, continues as this one would. false stops.
 using LevenbergMarquardtObserver = std::function<bool(int iteration, double error, double damping)>;
 
 /// Errors are those of eq. (6) of the paper: half the sum of squares.
 struct LevenbergMarquardtOptions {
   int max_iterations = 200;          ///< Accepted or refused steps, >= 1.
   double error_goal = 0.0;           ///< Stop at an error this small, >= 0.
-  double gradient_limit = 0.0;       ///< Stop where no |dE/dparameter| is greater, >= 0.
+  double gradient_limit = 0.0;       ///< Stop if no |dE/dparameter| is greater, >= 0.
   double relative_reduction = 1e-9;  ///< Stop when a step lowers the error by at most this share, >= 0; 0: never.
   double initial_damping = 1e-2;     ///< mu at the start, relative to the diagonal of J^T J, > 0.
   LevenbergMarquardtObserver observer = {};  ///< May be empty.
@@ -49,9 +49,9 @@ enum class LevenbergMarquardtStop : std::uint8_t {
   error_goal,
   gradient_limit,
   relative_reduction,
-  no_descent,      ///< No step goes down, however short.
-  max_iterations,  ///< This and what follows: not converged.
-  observer,        ///< It said so.
+  no_descent,      ///< No step lowers the error, however short.
+  max_iterations,  ///< This and the following: not converged.
+  observer,        ///< It returned false.
   not_finite,      ///< The error of the start, or a derivative on the way.
 };
 
@@ -64,10 +64,10 @@ struct LevenbergMarquardtReport {
   [[nodiscard]] bool converged() const noexcept { return stop < LevenbergMarquardtStop::max_iterations; }
 };
 
-/// Minimises half the sum of `residual_count` squared residuals over `parameters`, in place; the best point seen is
-/// kept, and a point with a residual that is not finite is never accepted. Marquardt's scaling: (J^T J + mu
-/// diag(J^T J)) step = -J^T r, mu divided by 10 after a good step and multiplied by 10 after a bad one.
-/// Levenberg 1944, Marquardt 1963. Thread-safe.
+/// Minimises half the sum of `residual_count` squared residuals over `parameters`, in place. The best point seen is
+/// kept. A point with a residual that is not finite is never accepted. Marquardt's scaling: (J^T J + mu diag(J^T J))
+/// step = -J^T r. A good step divides mu by 10, a bad one multiplies it by 10. Levenberg 1944, Marquardt 1963.
+/// Thread-safe.
 LevenbergMarquardtReport minimise(const ResidualFunction& residual_function, std::size_t residual_count,
                                   std::vector<double>& parameters, const LevenbergMarquardtOptions& options = {});
 
@@ -75,16 +75,16 @@ LevenbergMarquardtReport minimise(const ResidualFunction& residual_function, std
 LevenbergMarquardtReport minimise(LeastSquaresProblem& problem, std::vector<double>& parameters,
                                   const LevenbergMarquardtOptions& options = {});
 
-/// A residual of a fit, and how much of its own datum the fit has made its own.
+/// A residual of a fit, and how strongly the fit follows its datum.
 struct FittedResidual {
   double residual = 0.0;  ///< r
   double leverage = 0.0;  ///< h, 0 ... 0.95, from the linearised problem.
 
-  /// What the residual would be with its datum left out of the fit: r / (1 - h). Allen 1974 (PRESS).
+  /// The residual with its datum left out of the fit: r / (1 - h). Allen 1974 (PRESS).
   [[nodiscard]] double left_out() const noexcept { return residual / (1.0 - leverage); }
 
-  /// The noise of a datum has the variance s^2 and r has (1 - h) s^2: as large as that noise, and as the error on a new
-  /// datum in the same place, (1 + h) s^2.
+  /// r scaled to another variance. The noise of a datum has the variance s^2, and r has (1 - h) s^2. as_noise() scales
+  /// r to s^2. as_new_error() scales it to (1 + h) s^2, the variance of the error on a new datum in the same place.
   [[nodiscard]] double as_noise() const noexcept;
   [[nodiscard]] double as_new_error() const noexcept;
 };
@@ -95,8 +95,8 @@ struct FittedResidual {
                                                            std::size_t data_count, std::size_t residual_count,
                                                            std::span<const double> parameters);
 
-/// Mean square of the first `data_count` residuals, each as it would be with its own datum left out, without a single
-/// refit. As fitted_residuals().
+/// Mean square of the first `data_count` residuals, each with its own datum left out, without any refit. Conditions as
+/// for fitted_residuals().
 [[nodiscard]] double leave_one_out_mean_square(const ResidualFunction& residual_function, std::size_t data_count,
                                                std::size_t residual_count, std::span<const double> parameters);
 

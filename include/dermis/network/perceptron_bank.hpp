@@ -10,9 +10,9 @@
 
 namespace dermis::network {
 
-/// Many independent perceptrons of one shape, evaluated side by side with the networks in the SIMD lanes
-/// (single precision, Highway; absolute error of a sigmoid below 1e-6). Immutable after construction; evaluate() is
-/// thread-safe and allocates nothing.
+/// Many independent perceptrons of one shape, evaluated side by side in the SIMD lanes. Single precision, Highway; the
+/// absolute error of a sigmoid is below 1e-6. Immutable after construction; evaluate() is thread-safe and allocates
+/// nothing.
 class PerceptronBank {
  public:
   PerceptronBank() = default;

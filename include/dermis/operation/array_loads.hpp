@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +13,7 @@
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/operation/operation.hpp"
+#include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/recognition/segment.hpp"
 #include "dermis/sources/open_source.hpp"
 
@@ -50,7 +52,8 @@ class ArrayLoads {
  public:
   [[nodiscard]] static Result<ArrayLoads> open(const ArrayLoadInput& input);
 
-  /// Takes the next frame; false at the end of the source.
+  /// Takes the next frame; false at the end of the source, after telling its options' `loss` where most frames had no
+  /// force.
   [[nodiscard]] Result<bool> next();
 
   /// Whether the frame belongs to the tare; its loads are 0.
@@ -66,9 +69,12 @@ class ArrayLoads {
   ArrayLoads() = default;
   void process_forces();
   void process_readings();
+  void tell_loss();
 
   std::unique_ptr<FrameSource> frames_;
   std::optional<ModelAtWork> work_;
+  std::optional<pipeline::FrameTroubles> troubles_;  ///< Of the forces.
+  std::function<void(const std::string&)> loss_;
   std::optional<UnloadedReadings> unloaded_;
   std::string name_;
   RawFrame raw_;

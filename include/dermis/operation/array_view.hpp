@@ -12,6 +12,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/contact.hpp"
 #include "dermis/operation/operation.hpp"
+#include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/sources/open_source.hpp"
 
 namespace dermis::operation {
@@ -19,8 +20,8 @@ namespace dermis::operation {
 /// End of a colour scale that covers a value: 1, 2 or 5 times a power of ten newtons, at least 1.
 [[nodiscard]] double force_scale(double newtons);
 
-/// A source of frames as it is shown: in newtons with its contacts where there is a model, or where a recording says
-/// that its readings are forces; else in counts. Not thread-safe.
+/// A source of frames, ready to be shown. With a model, or if a recording says that its readings are forces, it shows
+/// newtons and contacts. Otherwise it shows counts. Not thread-safe.
 class ArrayView {
  public:
   /// `model`: as for pipeline::read_model(), or empty. `from` and `options`: as for sources::open_source(), but the
@@ -30,6 +31,9 @@ class ArrayView {
 
   /// Takes the next frame. Returns false at the end.
   [[nodiscard]] Result<bool> next();
+
+  /// Of the frames so far: failed where most have no force (pipeline::FrameTroubles::verdict()).
+  [[nodiscard]] Status verdict() const { return troubles_ ? troubles_->verdict() : Status(Done{}); }
 
   // Of the last frame.
   [[nodiscard]] const RawFrame& raw() const noexcept { return raw_; }
@@ -43,8 +47,8 @@ class ArrayView {
   [[nodiscard]] const char* unit() const noexcept { return work_ ? "N" : "counts"; }
   [[nodiscard]] double row_pitch_m() const noexcept { return row_pitch_m_; }
   [[nodiscard]] double col_pitch_m() const noexcept { return col_pitch_m_; }
-  /// End of a colour scale that covers the largest of the values: of forces, force_scale(); of counts, that of the ADC,
-  /// as described or as it must be.
+  /// End of a colour scale that covers the largest of the values. For forces it is force_scale(). For counts it is that
+  /// of the ADC, as described or as large as needed.
   [[nodiscard]] double scale(double largest) const;
   [[nodiscard]] bool is_live() const { return source_->is_live(); }
   [[nodiscard]] bool has_model() const noexcept { return work_.has_value(); }
@@ -59,6 +63,7 @@ class ArrayView {
   std::unique_ptr<FrameSource> source_;
   std::optional<ModelAtWork> work_;
   std::optional<fusion::ContactTracker> tracker_;
+  std::optional<pipeline::FrameTroubles> troubles_;  ///< Of the forces.
   std::string from_;
   std::string name_;
   double row_pitch_m_ = ArrayDescription{}.row_pitch_m;

@@ -31,7 +31,7 @@ struct FrameOutput {
 [[nodiscard]] Status check_output(const FrameOutput& output);
 
 /// The file that frames of `shape` are recorded in: .mcap, with the forces of the model, or any other format of frames,
-/// which has no place for forces.
+/// which cannot hold forces.
 [[nodiscard]] Result<std::unique_ptr<FrameSink>> create_recording(const FrameOutput& output, const FrameShape& shape);
 
 /// The forces of the model alone, as forces.csv.

@@ -26,6 +26,7 @@ struct ModelAtWork {
 /// A model at work on a source. Not thread-safe.
 struct Operation : ModelAtWork {
   std::unique_ptr<FrameSource> frames;
+  std::string from;  ///< What was opened.
 };
 
 /// `from` and `options`: as for sources::open_source(), but the array is that of the model. Fails where

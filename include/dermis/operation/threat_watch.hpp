@@ -16,6 +16,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/contact.hpp"
 #include "dermis/operation/operation.hpp"
+#include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/threats/threat_limits.hpp"
 #include "dermis/threats/threat_monitor.hpp"
 
@@ -31,8 +32,8 @@ struct ThreatEvent {
   [[nodiscard]] bool begins() const noexcept { return state.phase == threats::ThreatPhase::standing; }
 };
 
-/// Holds the forces of a source against limits on a thread of its own, so that silence and the end of the program are
-/// seen while no frame comes. Not a safety function.
+/// Compares the forces of a source with limits on a thread of its own. So it notices silence and the end of the program
+/// while no frame comes. Not a safety function.
 class ThreatWatch {
  public:
   /// Told of the threats that begin or end with one frame, on the thread of the watch; valid during the call. A failure
@@ -52,7 +53,7 @@ class ThreatWatch {
     bool is_over = false;     ///< The source has ended, failed or, where it is live, shown a threat.
     bool any_threat = false;  ///< One has begun.
     std::chrono::steady_clock::time_point last_frame{};  ///< When the last one with forces came.
-    Status source = Done{};                              ///< What failed.
+    Status source = Done{};                              ///< What failed, or that most frames had no force.
   };
 
   /// Waits until it is over, or for `time`. A threat is told here before it is logged. Thread-safe.
@@ -72,6 +73,7 @@ class ThreatWatch {
   std::atomic<bool>& stop_;
   Log log_;
   fusion::ContactTracker contacts_;
+  pipeline::FrameTroubles troubles_;
   RawFrame raw_;
   ForceFrame force_;
   ContactReport report_;

@@ -13,7 +13,8 @@
 
 namespace dermis::operation {
 
-/// Takes the frames of a view on a thread of its own, those of a file at their pace, for who draws one now and then.
+/// Reads the frames of a view on a thread of its own, for callers that draw one now and then. Frames of a file come at
+/// their pace.
 class ViewPlayer {
  public:
   /// Begins. `stop`: what the source of the view was opened with; it ends the playing, and the end of the player sets

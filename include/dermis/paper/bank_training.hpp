@@ -27,10 +27,10 @@ enum class BankStart {
 
 /// The training of the paper's bank on a sample database: Fig. 9 for all networks at once, in mini-batches.
 ///
-/// A network's own presses are a few of very many samples (14 of 3,584 where every taxel is pressed alone), so half of
-/// each batch is drawn from the samples that load its taxel and half from those that do not; and squared errors are
-/// weighted as relative ones down to a force of half the heaviest, and evenly below. Samples that do not tell the
-/// force of a taxel are left out for its network. Deterministic by seed.
+/// A network's own presses are a few of very many samples (14 of 3,584 if every taxel is pressed alone). So half of
+/// each batch is drawn from the samples that load its taxel and half from the others. Squared errors are weighted as
+/// relative ones down to half the heaviest force, and evenly below. Samples that do not tell the force of a taxel are
+/// left out for its network. Deterministic by seed.
 class BankTraining {
  public:
   /// Errors: no sample tells a force on a single taxel; more unknowns than kMostUnknowns.

@@ -13,10 +13,10 @@ namespace dermis::paper {
 
 class HalfPanels;
 
-/// The networks of a NetworkBank with their parameters rounded to 16 bits (IEEE 754 binary16, relative error 2^-11), to
-/// evaluate only: half the memory to read, and reading is what a frame of a large bank costs. Sums and activations
-/// are single precision. Results do not depend on the number of threads. An object holds work space: one call at a
-/// time. Inputs must be finite.
+/// The networks of a NetworkBank with parameters rounded to 16 bits (IEEE 754 binary16, relative error 2^-11), for
+/// evaluation only. The memory to read is halved, and reading it takes most of the time of a frame of a large bank.
+/// Sums and activations are single precision. Results do not depend on the number of threads. An object holds work
+/// space: one call at a time. Inputs must be finite.
 class HalfNetworkBank {
  public:
   /// Fails where a parameter is not a number that 16 bits hold: beyond +-65,504 or not finite.

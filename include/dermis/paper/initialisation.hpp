@@ -33,13 +33,13 @@ struct InputRange {
 template <std::floating_point Real>
 [[nodiscard]] std::vector<InputRange> input_ranges(const Samples<Real>& samples, std::size_t inputs);
 
-/// Nguyen and Widrow 1990, as in MATLAB's initnw: the active regions of the neurons of a layer (sums in +-4 for
-/// log_sigmoid, +-2 for tanh) share the range of its inputs evenly. For S neurons of R inputs scaled to +-1, before the
-/// stretch to the active region: weights of a random direction and length 0.7 S^(1/R), thresholds evenly from minus to
-/// plus that length, each times the sign of the neuron's first weight (0 for S = 1). The layers above have the outputs
-/// of the layer below as their range. Layers of other activations, whose active region has no end, begin as in
-/// xavier_start(); so do layers above a relu or linear one.
-/// `ranges` [inputs], finite, least <= greatest; an input without a range gets weights of 0.
+/// Nguyen and Widrow 1990, as in MATLAB's initnw. The active regions of the neurons of a layer divide the range of its
+/// inputs evenly (sums in +-4 for log_sigmoid, +-2 for tanh). Take S neurons of R inputs scaled to +-1, before the
+/// stretch to the active region. Weights have a random direction and length 0.7 S^(1/R). Thresholds run evenly from
+/// minus to plus that length, each times the sign of the neuron's first weight (0 for S = 1). The layers above have the
+/// outputs of the layer below as their range. Layers of other activations, whose active region has no end, begin as in
+/// xavier_start(); so do layers above a relu or linear one. `ranges` [inputs], finite, least <= greatest; an input
+/// without a range gets weights of 0.
 template <std::floating_point Real>
 [[nodiscard]] std::vector<Real> nguyen_widrow_start(const NetworkShape& shape, std::span<const InputRange> ranges,
                                                     std::uint64_t seed);

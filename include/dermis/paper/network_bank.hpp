@@ -37,9 +37,9 @@ struct BankStep {
 /// evaluate_batch() differ from those of evaluate() by rounding. An object holds work space: one call at a time.
 /// Nothing is allocated once the work space has grown to the batch, and the moments at the first step of Adam.
 ///
-/// A NaN is never hidden: a network with one among its parameters gives NaN outputs and a NaN error, step after step,
-/// until it gets new parameters; the other networks of the bank do not notice. Inputs, targets and weights of patterns
-/// must be finite.
+/// A NaN is never hidden. A network with a NaN parameter gives NaN outputs and a NaN error, step after step, until it
+/// gets new parameters. The other networks of the bank are not affected. Inputs, targets and weights of patterns must
+/// be finite.
 class NetworkBank {
  public:
   /// All parameters 0. The shape must be valid.

@@ -81,8 +81,8 @@ struct PaperReproduction {
   PeaksReproduction peaks;
   std::size_t unknowns = 0;  ///< Counted by the bank.
   std::vector<StartSystem> start;
-  /// Gradient descent of the bank from each start, the paper's structured start first; eq. (6): half the weighted mean
-  /// square of a batch, mean of the networks.
+  /// Gradient descent of the bank from each start, the paper's structured start first. The error is eq. (6): half the
+  /// weighted mean square of a batch, averaged over the networks.
   std::vector<TrainingCurve> convergence;
   TrainingCurve bank_training;         ///< The training that the points are judged with; the same error.
   std::size_t bank_samples = 0;        ///< Labelled frames of the training.
@@ -97,9 +97,9 @@ struct PaperReproduction {
 /// point; as evaluation_page().
 [[nodiscard]] std::string paper_page(const PaperReproduction& reproduction);
 
-/// Writes the page as DIR/index.html and each of its figures as an SVG file beside it, named after the paper's figures
-/// where there is one (paper_fig_05.svg, ..., peaks_training.svg, ...), as far as there is something to show; otherwise
-/// as write_evaluation_report().
+/// Writes the page as DIR/index.html and each figure that has data as an SVG file beside it. Files are named after the
+/// paper's figures if there is one (paper_fig_05.svg, ..., peaks_training.svg, ...). The rest is as in
+/// write_evaluation_report().
 [[nodiscard]] Status write_paper_report(const std::string& directory, const PaperReproduction& reproduction);
 
 }  // namespace dermis::paper

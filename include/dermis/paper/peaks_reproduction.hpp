@@ -16,8 +16,8 @@ struct PeaksEffort {
   std::uint64_t adaptive_rate_epochs = 10'000;
   std::size_t paper_size_starts = 2000;  ///< Levenberg-Marquardt on 2-5-1.
   std::size_t starts = 16;               ///< For every other size of the hidden layer.
-  /// For the sizes just below one that reached the goal: so many over the square of the hidden units, which is about
-  /// the same time for every size.
+  /// For the sizes just below one that reached the goal: this number over the square of the hidden units. That takes
+  /// about the same time for every size.
   std::size_t starts_times_size_squared = 90'000;
   std::size_t most_hidden = 48;  ///< The search ends there at the latest.
   int iterations = 1000;         ///< Of Levenberg-Marquardt, at most.

@@ -17,10 +17,10 @@ namespace dermis::paper {
 /// position with omega_A, to its neighbours with omega_B, to the rest with omega_C. With all inputs at 0 every output
 /// is 0.25, with all at the maximum 0.75.
 ///
-/// N: the text counts 2 N^3 + N^2 connections and 33,751,296 unknowns with N = 256 for a 16 x 16 array; there N is the
-/// number of inputs, and the count is that of N networks N-N-N-1. Eq. (7) to (15) have N^2 - 9 others beside a position
-/// and its eight neighbours, and N^2 connections to the output; there N is the side of the array. So N^2 of the
-/// equations is `inputs` here.
+/// The meaning of N: the text counts 2 N^3 + N^2 connections and 33,751,296 unknowns with N = 256 for a 16 x 16 array.
+/// There N is the number of inputs, and the count is that of N networks N-N-N-1. Eq. (7) to (15) have N^2 - 9 others
+/// beside a position and its eight neighbours, and N^2 connections to the output. There N is the side of the array. So
+/// N^2 of the equations is `inputs` here.
 ///
 /// What the printed systems say, solved: with ln 3 = 1.0986,
 ///   eq. (11): omega_A = 2 ln 3 / x_max, omega_B = omega_C = 0, theta = -ln 3;
@@ -28,13 +28,13 @@ namespace dermis::paper {
 ///   eq. (15): omega   = 4 ln 3 / N^2,                          theta = -2 ln 3.
 /// For eq. (9) less eq. (10) is x_max omega_C = 0, and eq. (7) less eq. (8) is then 8 x_max omega_B = 0: a unit far
 /// away must not be seen, and all units together must do no more than the own one. A network so started connects each
-/// position with itself only; what it knows of its neighbours begins with the small random numbers.
-/// The text before eq. (12) has the replacement the wrong way round: eq. (12) is eq. (11) with 0.25 in the place of 0
-/// and 0.75 in that of x_max, as its rows are printed. (15) follows from (13) and (14), (11) from (7) to (10).
+/// position with itself only; what it knows of its neighbours begins with the small random numbers. The text before eq.
+/// (12) has the replacement the wrong way round. As its rows are printed, eq. (12) is eq. (11) with 0.25 in place of 0
+/// and 0.75 in place of x_max. (15) follows from (13) and (14), (11) from (7) to (10).
 ///
-/// Where we fill in: positions at an edge have five neighbours and in a corner three, and the systems are solved with
-/// their numbers, so that each neuron meets the same conditions. A grid too small to have a rest or neighbours has no
-/// omega_C or omega_B; the equations that speak of them are then left out.
+/// Two things are added to the paper. Positions at an edge have five neighbours and in a corner three. The systems are
+/// solved with these numbers, so each neuron meets the same conditions. A grid too small to have a rest or neighbours
+/// has no omega_C or omega_B. Their equations are then left out.
 
 /// The connections of a neuron.
 struct GridWeights {
@@ -44,8 +44,8 @@ struct GridWeights {
   double threshold = 0.0;  ///< theta
 };
 
-/// Eq. (7) to (11) for a neuron of the first layer with so many neighbours (the paper's 8) and others (its N^2 - 9);
-/// inputs are 0 ... max_input, > 0. No neighbours means no others either.
+/// Eq. (7) to (11) for a neuron of the first layer with this many neighbours (the paper's 8) and others (its N^2 - 9).
+/// Inputs are 0 ... max_input, > 0. No neighbours means no others either.
 [[nodiscard]] GridWeights first_layer_weights(std::size_t neighbours, std::size_t others, double max_input);
 
 /// Eq. (12) for a neuron of the second layer; its inputs are 0.25 ... 0.75.

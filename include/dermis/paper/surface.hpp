@@ -11,7 +11,7 @@
 
 namespace dermis::paper {
 
-/// A signed function of two variables as a surface in space, seen as MATLAB's mesh() shows it: from azimuth -37.5 and
+/// A signed function of two variables as a surface in space. The view is that of MATLAB's mesh(): azimuth -37.5 and
 /// elevation 30 degrees, in parallel projection. Colours are those of diverging_colour() over the height.
 struct Surface {
   std::string title;

@@ -35,9 +35,10 @@ enum class TrainingAlgorithm : std::uint8_t {
   ///   else w += step, and where the error fell, rate *= rate_increase.
   adaptive_rate,
 
-  /// iRPROP- (Igel and Huesken 2000), full batch. Each parameter has a step size, 0.1 at the start: times 1.2 (to at
-  /// most 50) where its derivative keeps its sign, times 0.5 (to at least 1e-6) where the sign changes; there the
-  /// derivative counts as 0 in this epoch and the next. w moves by the step size against the sign of its derivative.
+  /// iRPROP- (Igel and Huesken 2000), full batch. Each parameter has a step size, 0.1 at the start. It is multiplied by
+  /// 1.2 (to at most 50) if its derivative keeps its sign, and by 0.5 (to at least 1e-6) if the sign changes. After a
+  /// change the derivative counts as 0 in this epoch and the next. w moves by the step size against the sign of its
+  /// derivative.
   resilient_propagation,
 
   /// Scaled conjugate gradient (Moller 1993), full batch; sigma = 1e-4 and lambda = 1e-6 at the start.

@@ -11,16 +11,18 @@
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/force_fusion.hpp"
 #include "dermis/fusion/look_up.hpp"
+#include "dermis/fusion/material_memory.hpp"
 #include "dermis/fusion/strip_table.hpp"
 
 namespace dermis::pipeline {
 
-/// Everything that turns the counts of one array into newtons: what is known (the array and its circuit), what was
-/// learned (the networks), and what the networks are judged against (the baselines of the same calibration).
+/// Everything that turns the counts of one array into newtons. It holds what is known (the array and its circuit) and
+/// what was learned (the networks). It also holds the baselines of the same calibration, to compare the networks with.
 struct Model {
   ArrayDescription array;
   fusion::ForceNetworks networks;
   std::vector<fusion::LookUpTables> baselines;
+  std::optional<fusion::MemoryLaw> memory{};      ///< Of the material, where the calibration learned one.
   std::optional<fusion::StripTable> strip{};      ///< Learned positions on a strip, where the calibration had some.
   std::map<std::string, std::string> provenance;  ///< Hashes, counts and statistics of the calibration, as text.
 };

@@ -2,12 +2,15 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <optional>
+
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/compensation/line_faults.hpp"
 #include "dermis/compensation/offset_drift.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/fusion/force_fusion.hpp"
+#include "dermis/fusion/material_memory.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 
@@ -39,6 +42,7 @@ class Pipeline {
   compensation::LineFaultMonitor monitor_;
   compensation::OffsetDrift drift_;
   fusion::ForceFusion fusion_;
+  std::optional<fusion::MaterialMemory> memory_;
   ConditionedFrame conditioned_;
   ConductanceFrame conductance_;
 };

@@ -17,24 +17,25 @@ enum class Rejection {
   not_a_number,          ///< The supply is NaN or infinite, or the temperature infinite.
   too_few_readings,      ///< More than half of the taxels have no reading.
   supply_not_positive,   ///< A measured supply of 0 V or less.
-  supply_unknown,        ///< The ADC has a reference in volts, and neither the frame nor the array tells the supply.
+  supply_unknown,        ///< The ADC has a reference in volts, and neither the frame nor the array has a supply.
   time_going_backwards,  ///< Earlier than the frame before it.
 };
 
 [[nodiscard]] const char* to_string(Rejection rejection) noexcept;
 
-/// Unit 2 of the paper, Data Pre-Processing: validates a raw frame and "converts raw sensor data into the needed data
-/// formats": counts -> ratio of the supply, so that supply fluctuation is gone before the circuit is solved.
+/// Unit 2 of the paper, Data Pre-Processing. It validates a raw frame and "converts raw sensor data into the needed
+/// data formats". Counts become a ratio of the supply, so fluctuation of the supply is removed before the circuit is
+/// solved.
 ///
 ///   ratio = counts / (2^adc_bits - 1) * adc_reference_v / supply_v     (where the reference is the supply, or the
 ///   circuit
 ///                                                                       and the supply are unknown, the factor is 1)
 ///
-/// and 1 - ratio where pressure lowers the reading. Readings within half a count of the end that pressure drives them
-/// to, of the ADC or readout.rail_counts, or beyond it are marked saturated. A taxel without a reading (NaN, infinite,
-/// above 2^adc_bits - 1, or below 0 where readings are counts) is invalid and has the mean ratio of its neighbours that
-/// have one; a taxel that the sheet does not have is invalid and has the ratio 0. A temperature of NaN is none. Not
-/// thread-safe: one conditioner per stream of frames.
+/// and 1 - ratio if pressure lowers the reading. Pressure drives readings to one end of the ADC, or to
+/// readout.rail_counts. Readings within half a count of that end, or beyond it, are marked saturated. A taxel has no
+/// reading if it is NaN, infinite, above 2^adc_bits - 1, or below 0 where readings are counts. It is invalid and gets
+/// the mean ratio of its neighbours that have one. A taxel that the sheet does not have is invalid and has the ratio 0.
+/// A temperature of NaN is none. Not thread-safe: one conditioner per stream of frames.
 class Conditioner {
  public:
   /// The array must be valid (ArrayDescription::validate). A reference in volts needs a supply, either nominal
@@ -42,8 +43,8 @@ class Conditioner {
   explicit Conditioner(ArrayDescription array);
 
   /// Allocates nothing once `conditioned` has the array's size. A rejected frame has the status `rejected` and only
-  /// invalid taxels. Time is judged against the last accepted frame, or the one that went back: a clock that jumps
-  /// costs one frame.
+  /// invalid taxels. Time is compared with the last accepted frame, or with the one that went back. So a clock that
+  /// jumps costs one frame.
   void process(const RawFrame& raw, ConditionedFrame& conditioned) noexcept;
 
   /// Why the last frame was rejected.
@@ -68,9 +69,9 @@ class Conditioner {
   Rejection rejection_ = Rejection::none;
 };
 
-/// counts / full scale, turned round where pressure lowers the reading: what an estimator sees that knows neither the
-/// supply nor the circuit. `reading` [rows, cols] in [0, 1], 0 where there is none; the frame must have the array's
-/// shape. Thread-safe.
+/// counts / full scale, or 1 minus that if pressure lowers the reading. An estimator that knows neither the supply nor
+/// the circuit uses it. `reading` [rows, cols] is in [0, 1], 0 if there is none. The frame must have the array's shape.
+/// Thread-safe.
 void bare_readings(const ArrayDescription& array, const RawFrame& raw, std::span<double> reading) noexcept;
 
 }  // namespace dermis::preprocessing

@@ -19,8 +19,8 @@ enum class Phase {
 /// Where a frame goes.
 enum class Destination { nowhere, sample_database, pipeline };
 
-/// Settles for a time from the first frame on, then stays in `after_settling`, whatever the clock does later; a clock
-/// that goes back while settling starts the time anew. Not thread-safe.
+/// Settles for a time from the first frame on, then stays in `after_settling`, even if the clock goes back later. A
+/// clock that goes back while settling restarts the time. Not thread-safe.
 class PhaseSelector {
  public:
   /// `settle_time` >= 0; `after_settling` is calibrate or operate.

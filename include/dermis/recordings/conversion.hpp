@@ -3,7 +3,6 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,14 +14,13 @@
 namespace dermis::recordings {
 
 struct ConversionOptions {
-  FrameFileInput input{};                            ///< What must be known of the file that is read.
-  const ArrayDescription* array = nullptr;           ///< Kept with the frames, where the format has a place for it.
-  std::function<void(const std::string&)> notice{};  ///< What a user should know: a recording that is incomplete.
-  const std::atomic<bool>* stop = nullptr;           ///< Ends the conversion, without a file.
+  FrameFileInput input{};                   ///< Shape of the input, and its rate where only its own file lacks times.
+  const ArrayDescription* array = nullptr;  ///< Stored with the frames, if the format has a place for it.
+  const std::atomic<bool>* stop = nullptr;  ///< Ends the conversion, without a file.
 };
 
 /// Writes the frames of the file `in` to the file `out`, in the formats of their names; `out` appears complete or not
-/// at all. Returns what `out` has no place for, in words: "times", "temperature", ...
+/// at all. Returns the names of what `out` cannot hold: "times", "temperature", ...
 [[nodiscard]] Result<std::vector<std::string>> convert_frames(const std::string& in, const std::string& out,
                                                               const ConversionOptions& options = {});
 

@@ -15,7 +15,7 @@
 
 namespace dermis::recordings {
 
-/// What a file of frames holds; empty where its format cannot say.
+/// What a file of frames holds; empty if its format does not contain it.
 struct FrameFileInfo {
   FrameFormat format = FrameFormat::csv;
   std::uint64_t bytes = 0;  ///< 0 of a pipe.
@@ -29,15 +29,15 @@ struct FrameFileInfo {
   FrameNotes notes;
   std::string compression;  ///< Of a recording.
   std::string software;
-  std::vector<RecordedArrayInfo> arrays;  ///< Where there are several: shape and notes are then theirs.
+  std::vector<RecordedArrayInfo> arrays;  ///< If there are several: shape and notes are then theirs.
   std::vector<RecordingTopic> topics;
 
-  /// Frames a second of one array: several have rates of their own.
+  /// Frames a second; only for one array, because several have rates of their own.
   [[nodiscard]] std::optional<double> rate_hz() const;
 };
 
-/// Of a recording from its summary, where it has one; of other files by reading all frames. `shape`: that the frames
-/// must have, needed where the file does not tell it.
+/// For a recording from its summary, if it has one; for other files by reading all frames. A file without a frame is bad
+/// input. `shape`: required shape of the frames, needed if the file does not contain it.
 [[nodiscard]] Result<FrameFileInfo> frame_file_info(const std::string& path,
                                                     const std::optional<FrameShape>& shape = std::nullopt);
 

@@ -14,8 +14,8 @@
 #include "dermis/core/result.hpp"
 #include "dermis/recordings/hdf5_frames.hpp"
 
-/// Files of raw frames of every format, told by the ending of their names (docs/file-formats.md). Of a recording of
-/// several arrays, "rec.mcap#chest" is the one named 'chest'; the same holds of the other files that may have several.
+/// Files of raw frames of every format; the ending of the name gives the format (docs/file-formats.md). In a recording
+/// of several arrays, "rec.mcap#chest" is the one named 'chest'. Other files that may have several work alike.
 namespace dermis::recordings {
 
 enum class FrameFormat {
@@ -38,38 +38,39 @@ enum class FrameFormat {
 /// "frames.csv", "MCAP", "HDF5", "WiReSens HDF5", "NumPy", ...
 [[nodiscard]] const char* to_string(FrameFormat format);
 
-/// Else the times are those of FrameFileInput::rate_hz.
+/// If false, FrameFileInput::rate_hz gives the times.
 [[nodiscard]] bool has_times(FrameFormat format);
 
-/// By the ending of the name; pipes and devices such as /dev/stdin are frames.csv. Fails on a name with another ending,
-/// listing those that are known.
+/// Format by the ending of the name; pipes and devices such as /dev/stdin are frames.csv. Fails on another ending, and
+/// lists the known ones.
 [[nodiscard]] Result<FrameFormat> frame_format(const std::string& path);
 
-/// The same of a file that is to be written: fails on formats that are only read.
+/// The same for a file to write: fails on formats that are only read.
 [[nodiscard]] Result<FrameFormat> output_format(const std::string& path);
 
-/// Of a file that is there: HDF5 and text files are told apart by what they hold.
+/// Format of an existing file: the content distinguishes HDF5 and text files.
 [[nodiscard]] Result<FrameFormat> recognise_frames(const std::string& path);
 
 struct FrameFileInput {
-  std::optional<FrameShape> shape{};  ///< That the frames must have; empty: what the file says. 1x1 ... 1024x1024.
+  std::optional<FrameShape> shape{};  ///< Required shape of the frames; empty: that of the file. 1x1 ... 1024x1024.
   std::optional<double> rate_hz{};    ///< Frames a second of a file without times (has_times). > 0
-  std::function<void(const std::string&)> notice{};  ///< Told in one line what was left out: a frame that is cut.
+  std::function<void(const std::string&)> notice{};  ///< Receives one line on what a user should know of the frames.
+  std::function<void(const std::string&)> loss{};    ///< Receives one line at the end, if the file is cut off there.
 };
 
-/// The frames of a file, read one by one.
+/// The frames of a file, read one by one. Of a file that is cut off, all whole frames are given, then `loss` is told. A
+/// file without a frame is bad input: next() says so.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_frames(const std::string& path,
                                                                const FrameFileInput& input = {});
 
-/// What the file says of all of its frames.
+/// The notes of the file on all of its frames.
 [[nodiscard]] Result<FrameNotes> read_frame_notes(const std::string& path);
 
-/// A file of frames of `shape`, which appears complete or not at all. Formats that have no place for `notes` leave them
-/// out.
+/// A file of frames of `shape`, which appears complete or not at all. Formats without a place for `notes` omit them.
 [[nodiscard]] Result<std::unique_ptr<FrameSink>> create_frames(const std::string& path, FrameShape shape,
                                                                const FrameNotes& notes = {});
 
-/// All frames that are left of a source that ends.
+/// All remaining frames of a source that ends.
 [[nodiscard]] Result<std::vector<RawFrame>> read_frames(FrameSource& source);
 
 /// All frames of a file.

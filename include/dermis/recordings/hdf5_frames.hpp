@@ -15,7 +15,7 @@
 /// for each further member of RawFrame.
 namespace dermis::recordings {
 
-/// What a file of frames says of all of them; empty where it says nothing.
+/// Notes of a file on all of its frames; empty if it has none.
 struct FrameNotes {
   std::string name;        ///< Of the array.
   std::string array_toml;  ///< The array's description, as array.toml.
@@ -29,7 +29,7 @@ struct FrameNotes {
 /// Errors name the dataset and the frame. Not thread-safe.
 class Hdf5FramesReader final : public FrameSource {
  public:
-  /// Fails where the frames do not have the shape, if one is given.
+  /// Fails if the frames do not have the given shape.
   [[nodiscard]] static Result<std::unique_ptr<Hdf5FramesReader>> open(const std::string& path,
                                                                       std::optional<FrameShape> shape = {});
   ~Hdf5FramesReader() override;
@@ -45,9 +45,9 @@ class Hdf5FramesReader final : public FrameSource {
   std::unique_ptr<State> state_;
 };
 
-/// Writes frames with all that is known of them; counts as u16, or as f32 from the first frame on that u16 cannot hold
-/// (then the frames before are rewritten). Without commit(), nothing is left behind. The memory is that of one chunk,
-/// about 1 MiB. Not thread-safe.
+/// Writes frames with all that is known of them. Counts are u16. If u16 cannot hold a frame, all counts become f32, and
+/// earlier frames are rewritten. Without commit(), no file remains. The memory is that of one chunk, about 1 MiB. Not
+/// thread-safe.
 class Hdf5FramesWriter final : public FrameSink {
  public:
   [[nodiscard]] static Result<std::unique_ptr<Hdf5FramesWriter>> create(const std::string& path, FrameShape shape,

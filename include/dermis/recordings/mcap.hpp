@@ -27,7 +27,7 @@ enum class McapCompression : std::uint8_t { none, lz4, zstd };
 struct McapChannel {
   std::string topic;
   std::string encoding;         ///< Of the messages: "cdr".
-  std::string schema_name;      ///< "sensor_msgs/msg/Image"; empty where the topic has no schema.
+  std::string schema_name;      ///< "sensor_msgs/msg/Image"; empty if the topic has no schema.
   std::string schema_encoding;  ///< "ros2msg".
   std::string schema;
 
@@ -36,7 +36,7 @@ struct McapChannel {
 
 /// One message; times in nanoseconds since 1970.
 struct McapMessage {
-  std::uint16_t channel = 0;  ///< What McapWriter::add_channel() or the file calls it.
+  std::uint16_t channel = 0;  ///< Its number in the file, from McapWriter::add_channel().
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0;
   std::uint64_t publish_time = 0;
@@ -58,15 +58,15 @@ struct McapMetadata {
   bool operator==(const McapMetadata&) const = default;
 };
 
-/// Writes an MCAP file of the profile "ros2". The file lies beside its place until appear() or finish(). What was
-/// written with close_chunk() can be read whatever happens then to the process. The first write error is kept: the file
-/// is cut back to the last whole record, all that follows is dropped, and finish() adds the index if it has room.
-/// Memory: two chunks and those that wait, and about 150 bytes for each chunk written (and 10 for each
-/// topic in it). Not thread-safe.
+/// Writes an MCAP file of the profile "ros2". The file is beside its final place until appear() or finish(). What
+/// close_chunk() wrote can be read even if the process dies afterwards. After the first write error the file is cut
+/// back to the last whole record, and later data are dropped. finish() then adds the index if it has room. Memory: two
+/// chunks and those that wait, and about 150 bytes for each chunk written (and 10 for each topic in it). Not
+/// thread-safe.
 class McapWriter {
  public:
   [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path, McapCompression compression);
-  /// Without finish(), a file that has appeared stays, without its index; else nothing is left.
+  /// Without finish(), a file that has appeared stays, without its index; otherwise no file remains.
   ~McapWriter();
   McapWriter(const McapWriter&) = delete;
   McapWriter& operator=(const McapWriter&) = delete;
@@ -79,16 +79,15 @@ class McapWriter {
   /// Size of the open chunk, before it is compressed.
   [[nodiscard]] std::size_t chunk_bytes() const noexcept;
 
-  /// Writes all that was added so far to the file.
+  /// Writes everything added so far to the file.
   [[nodiscard]] Status close_chunk();
-  /// What was added so far becomes a chunk that waits in memory for write_sealed().
+  /// Everything added so far becomes a chunk that waits in memory for write_sealed().
   void seal_chunk();
-  /// Writes the first chunk that waits. May be called by another thread, by one at a time, while this one adds and
-  /// seals.
+  /// Writes the first waiting chunk. One other thread at a time may call it while this one adds and seals.
   [[nodiscard]] Status write_sealed();
-  /// Puts the file in its place, where it grows on.
+  /// Puts the file in its place, where it continues to grow.
   [[nodiscard]] Status appear();
-  /// Waits until what close_chunk() wrote is on the disk. May be called by another thread while this one writes.
+  /// Waits until the data of close_chunk() are on the disk. Another thread may call it while this one writes.
   [[nodiscard]] Status synchronise();
   /// Writes the open chunk and the index, and puts the file in its place. To be called once.
   [[nodiscard]] Status finish();
@@ -99,7 +98,7 @@ class McapWriter {
   std::unique_ptr<State> state_;
 };
 
-/// What the summary of a file says.
+/// The summary of a file.
 struct McapStatistics {
   std::uint64_t messages = 0;
   std::uint32_t chunks = 0;
@@ -108,8 +107,8 @@ struct McapStatistics {
   std::map<std::uint16_t, std::uint64_t> channel_messages;
 };
 
-/// Reads the messages of an MCAP file, in the order of the file; by the times of its chunks where those are indexed and
-/// stand in another order. A file that ends too early is read up to its last whole record. All CRCs are verified.
+/// Reads the messages of an MCAP file in the order of the file. If its chunks are indexed and not in the order of their
+/// times, their times decide. A file that ends too early is read up to its last whole record. All CRCs are verified.
 /// Errors name the byte. Memory: one chunk; chunks and messages may have up to 64 MiB. Not thread-safe.
 class McapReader {
  public:
@@ -129,14 +128,14 @@ class McapReader {
   /// Fills `message`, whose data are valid until the next call. Returns false at the end of the file.
   [[nodiscard]] Result<bool> next(McapMessage& message);
 
-  /// Chunks are read in the order of the file, whatever their times say. To be called before next().
+  /// Reads chunks in the order of the file, whatever their times. Call it before next().
   void read_as_written();
-  /// next() goes on with a message from which all of this log time and later ones are still to come, and few earlier
-  /// ones: the first of a chunk where chunks are indexed, else the first of the file.
+  /// next() continues at a message after which all messages of this log time and later still come, and few earlier
+  /// ones. With indexed chunks it is the first of a chunk, otherwise the first of the file.
   void seek(std::uint64_t log_time);
 
-  /// What was read so far of channels, attachments and metadata: of a file with an index, all of them. Attachments
-  /// above 16 MiB are left out.
+  /// Channels, attachments and metadata read so far; for a file with an index, all of them. Attachments above 16 MiB
+  /// are left out.
   [[nodiscard]] const std::map<std::uint16_t, McapChannel>& channels() const noexcept;
   [[nodiscard]] const std::vector<McapAttachment>& attachments() const noexcept;
   [[nodiscard]] const std::vector<McapMetadata>& metadata() const noexcept;

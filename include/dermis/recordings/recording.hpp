@@ -20,13 +20,13 @@
 /// Recordings of one array as MCAP files (docs/recordings.md).
 namespace dermis::recordings {
 
-/// A recording, and which of its arrays.
+/// A recording and one of its arrays.
 struct RecordingPlace {
   std::string path;
   std::string array;  ///< Empty: the only one.
 };
 
-/// "rec.mcap#chest" is the array 'chest' of rec.mcap, unless there is a file of the whole name.
+/// "rec.mcap#chest" is the array 'chest' of rec.mcap, unless a file has the whole name.
 [[nodiscard]] RecordingPlace recording_place(const std::string& text);
 
 struct RecordingOptions {
@@ -35,20 +35,20 @@ struct RecordingOptions {
   std::string model_hash;      ///< content_hash() of the model that gave the forces; empty: none.
   messages::Pitch pitch;       ///< Of the array, for the forces.
   McapCompression compression = McapCompression::lz4;
-  /// The file takes its place as soon as its first frames are in it, and whatever happens then to the process, frames
-  /// are in it 50 ms after write(); else it appears complete or not at all.
+  /// If true, the file takes its place with its first frames. Frames are then in it 50 ms after write(), even if the
+  /// process dies. If false, it appears complete or not at all.
   bool live = true;
 };
 
-/// Writes a recording. Frames are in the file 50 ms after write(), and the disk is asked to keep them once a second. A
-/// file that was there before is replaced when the first frames are written (at commit(), where the recording is not
-/// live), and left as it is where that does not come about. After a write error the file holds the frames that were
-/// written before. Not thread-safe: one writer; it has two threads of its own.
+/// Writes a recording. Frames are in the file 50 ms after write(), and once a second the disk is asked to keep them. An
+/// earlier file is replaced when the first frames are written, or at commit() if the recording is not live. If that
+/// never happens, it stays as it is. After a write error the file holds the frames that were written before. Not
+/// thread-safe: one writer; it has two threads of its own.
 class RecordingWriter final : public FrameSink {
  public:
   [[nodiscard]] static Result<std::unique_ptr<RecordingWriter>> create(const std::string& path, const FrameShape& shape,
                                                                        const RecordingOptions& options = {});
-  /// Without commit(), what was written of a live recording stays, without index.
+  /// Without commit(), the written part of a live recording stays, without index.
   ~RecordingWriter() override;
 
   [[nodiscard]] Status write(const RawFrame& frame) override;
@@ -61,12 +61,12 @@ class RecordingWriter final : public FrameSink {
   std::unique_ptr<SuitRecordingWriter> suit_;
 };
 
-/// Reads every RawFrame of a recording with the same bits. Of other MCAP files, the first topic of
+/// Reads every RawFrame of a recording with the same bits. From other MCAP files it reads the first topic of
 /// sensor_msgs/msg/Image in 16UC1, mono16 or 32FC1; time and arrival_utc are then the log times. A recording that ends
 /// too early is read up to there. Not thread-safe.
 class RecordingReader final : public FrameSource {
  public:
-  /// `array`: which, by its name. Fails with the names where there are several and none is given, or not this one.
+  /// `array`: the name of one array. If there are several, a missing or wrong name is an error that lists the names.
   [[nodiscard]] static Result<std::unique_ptr<RecordingReader>> open(const std::string& path,
                                                                      const std::string& array = {});
   /// The same from a stream that can seek; `name` stands for the path in messages.
@@ -76,15 +76,15 @@ class RecordingReader final : public FrameSource {
   ~RecordingReader() override;
 
   [[nodiscard]] Result<bool> next(RawFrame& frame) override;
-  /// Empty where the recording has no frame.
+  /// Empty if the recording has no frame.
   [[nodiscard]] std::optional<FrameShape> shape() const override;
   [[nodiscard]] SourceStatistics statistics() const override;
-  /// next() goes on with the first frame of this log time or a later one (SuitRecordingReader::seek()).
+  /// next() continues with the first frame of this log time or later (SuitRecordingReader::seek()).
   void seek(Nanos time);
 
   /// The recording was written to its end.
   [[nodiscard]] bool complete() const noexcept;
-  [[nodiscard]] const std::string& name() const noexcept;        ///< Of the array; empty where it is not said.
+  [[nodiscard]] const std::string& name() const noexcept;        ///< Of the array; empty if unknown.
   [[nodiscard]] const std::string& array_toml() const noexcept;  ///< Empty where there is none.
   [[nodiscard]] const std::string& model_hash() const noexcept;  ///< Empty where there is none.
 
@@ -105,8 +105,8 @@ struct RecordingTopic {
 
 /// What a recording holds of an array.
 struct RecordedArrayInfo {
-  std::string name;                 ///< Empty where it is not said.
-  std::optional<FrameShape> shape;  ///< Empty where the recording has no frame, and does not say it.
+  std::string name;                 ///< Empty if unknown.
+  std::optional<FrameShape> shape;  ///< Empty if the recording has no frame and does not contain it.
   std::uint64_t frames = 0;
   std::uint64_t lost = 0;  ///< Frames known to be missing between them.
   std::string array_toml;  ///< Empty where there is none.
@@ -119,14 +119,14 @@ struct RecordingInfo {
   std::uint64_t lost = 0;                 ///< Of all arrays.
   double duration_s = 0.0;                ///< From the time of the first to that of the last frame.
   Nanos start_utc{};                      ///< Time of the first, since 1970.
-  bool complete = false;                  ///< Written to its end; else dermis recover writes the index.
+  bool complete = false;                  ///< Written to its end; otherwise `dermis recover` writes the index.
   std::string compression;                ///< "none", "lz4", "zstd", or several with '+'.
-  std::string software_version;           ///< "dermis 0.1.0"; empty where it is not said.
+  std::string software_version;           ///< "dermis 0.1.0"; empty if unknown.
   std::vector<RecordedArrayInfo> arrays;  ///< One at least.
   std::vector<RecordingTopic> topics;
 };
 
-/// From the summary where there is one, else by reading all.
+/// From the summary if there is one, otherwise by reading everything.
 [[nodiscard]] Result<RecordingInfo> recording_info(const std::string& path);
 
 /// What a recovery found.
@@ -134,12 +134,12 @@ struct Recovery {
   bool was_complete = false;         ///< The file had its index already.
   std::uint64_t frames = 0;          ///< Kept.
   std::uint64_t messages = 0;        ///< Kept, those of the frames included.
-  std::uint64_t damaged_chunks = 0;  ///< Left out, because their bytes are not what was written.
-  std::uint64_t lost_messages = 0;   ///< Known to have been in them.
-  std::uint64_t lost_bytes = 0;      ///< Of the file, that are in no kept record.
+  std::uint64_t damaged_chunks = 0;  ///< Left out, because their bytes have changed.
+  std::uint64_t lost_messages = 0;   ///< Messages known to have been in them.
+  std::uint64_t lost_bytes = 0;      ///< Bytes of the file that are in no kept record.
 };
 
-/// Writes all that can be read of an MCAP file, whole or cut or damaged, as a complete one. `out` must not be `in`.
+/// Reads a whole, cut or damaged MCAP file, and writes everything readable as a complete one. `out` must not be `in`.
 [[nodiscard]] Result<Recovery> recover_recording(const std::string& in, const std::string& out);
 /// The same from a stream that can seek; `name` stands for the path in messages.
 [[nodiscard]] Result<Recovery> recover_recording(std::unique_ptr<std::istream> in, const std::string& name,

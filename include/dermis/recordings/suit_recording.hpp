@@ -29,7 +29,7 @@ struct RecordedArray {
   messages::Pitch pitch{};   ///< For the forces.
 };
 
-/// A message that belongs to no frame: what was recognised, a threat.
+/// A message that belongs to no frame: a recognition or a threat.
 struct RecordedEvent {
   std::string_view topic;  ///< "/chest/recognition"; of one type in a recording.
   const messages::MessageType& type;
@@ -46,20 +46,24 @@ struct SuitRecordingOptions {
 /// write(); the log times of each array rise. Thread-safe: each array may have a thread of its own that writes.
 class SuitRecordingWriter {
  public:
-  /// Fails where the topics of two arrays would have the same names.
+  /// Fails if the topics of two arrays would have the same names.
   [[nodiscard]] static Result<std::unique_ptr<SuitRecordingWriter>> create(const std::string& path,
                                                                            std::vector<RecordedArray> arrays,
                                                                            const SuitRecordingOptions& options = {});
   SuitRecordingWriter(const SuitRecordingWriter&) = delete;
   SuitRecordingWriter& operator=(const SuitRecordingWriter&) = delete;
-  /// Without commit(), what was written of a live recording stays, without index.
+  /// Without commit(), the written part of a live recording stays, without index.
   ~SuitRecordingWriter();
 
-  /// `array` is its place in the list of create().
+  /// `array` is its index in the list of create(). Waits where 64 MB wait for a disk that stalls.
   [[nodiscard]] Status write(std::size_t array, const RawFrame& frame);
   /// A frame with its forces.
   [[nodiscard]] Status write(std::size_t array, const RawFrame& frame, const ForceFrame& force);
   [[nodiscard]] Status write(const RecordedEvent& event);
+  /// As write(), but never waits: false where it would. Then the frame is not in the recording, and the next one of its
+  /// array says how many before it are lost. Events have as much room again, so that frames do not take it.
+  [[nodiscard]] Result<bool> try_write(std::size_t array, const RawFrame& frame);
+  [[nodiscard]] Result<bool> try_write(const RecordedEvent& event);
   /// To be called once, when no write() is under way or follows.
   [[nodiscard]] Status commit();
 
@@ -69,8 +73,8 @@ class SuitRecordingWriter {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// The array of a name, or the only one where the name is empty; else an error that lists the names. `path` stands for
-/// the recording in messages.
+/// The array of a name, or the only one if the name is empty; otherwise an error that lists the names. `path` stands
+/// for the recording in messages.
 [[nodiscard]] Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const std::string& path,
                                              const std::string& name);
 
@@ -86,16 +90,16 @@ class SuitRecordingReader {
   SuitRecordingReader& operator=(const SuitRecordingReader&) = delete;
   ~SuitRecordingReader();
 
-  /// As far as the file says; names may be empty, and so may the shape of an array without frames.
+  /// As far as the file contains them; names may be empty, and so may the shape of an array without frames.
   [[nodiscard]] const std::vector<RecordedArray>& arrays() const noexcept;
 
-  /// From now on, next() leaves out the frames of the others.
+  /// From now on, next() skips the frames of the other arrays.
   void read_only(std::size_t array);
-  /// Fills `frame` with the next frame, reusing its buffers, and `array` with the place of its array in arrays().
+  /// Fills `frame` with the next frame, reusing its buffers, and `array` with the index of its array in arrays().
   /// Returns false at the end.
   [[nodiscard]] Result<bool> next(std::size_t& array, RawFrame& frame);
-  /// next() goes on with the first frames of this log time or later ones: the time of the frame (docs/recordings.md).
-  /// A recording that has no index is read from its beginning.
+  /// next() continues with the first frames of this log time or later. The log time is the time of the frame
+  /// (docs/recordings.md). A recording without index is read from its beginning.
   void seek(Nanos time);
 
   /// The recording was written to its end.

@@ -11,17 +11,17 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 
-/// Recordings of the WiReSens toolkit as HDF5 (WiReSensPy, Sensor.py): `pressure` (N, ground wires, read wires), the
-/// raw readings of the ADC, which fall with pressure; `ts` (N), seconds of the local clock since 1970 as if it were
-/// UTC; `frame_count`; `predCount` and, in some, `packetNumber`, which are not read.
+/// Recordings of the WiReSens toolkit as HDF5 (WiReSensPy, Sensor.py). `pressure` (N, ground wires, read wires) holds
+/// the raw readings of the ADC, which fall with pressure. `ts` (N) holds seconds of the local clock since 1970, as if
+/// it were UTC. `frame_count` follows. `predCount` and, in some, `packetNumber` are not read.
 namespace dermis::recordings {
 
-/// Reads the frames that were recorded: the arrays are longer than that, `frame_count` is the index of the last frame,
-/// and entries that were never written lie between (their time is 0, and so are their readings). Rows are the ground
-/// wires. Times are taken as they are. Not thread-safe.
+/// Reads the recorded frames. The arrays are longer than the recording, and `frame_count` is the index of the last
+/// frame. Entries between that were never written are left out: their time and readings are 0. Rows are the ground
+/// wires. Times are not changed. Not thread-safe.
 class WiresensHdf5Reader final : public FrameSource {
  public:
-  /// Fails where the frames do not have the shape, if one is given.
+  /// Fails if the frames do not have the given shape.
   [[nodiscard]] static Result<std::unique_ptr<WiresensHdf5Reader>> open(const std::string& path,
                                                                         std::optional<FrameShape> shape = {});
   ~WiresensHdf5Reader() override;
@@ -36,7 +36,7 @@ class WiresensHdf5Reader final : public FrameSource {
 };
 
 /// Writes counts and times so that WiReSens reads all frames: the arrays are as long as `frame_count` says, and
-/// predCount is 0. Fails on counts that are not whole. Without commit(), nothing is left behind. Not thread-safe.
+/// predCount is 0. Fails on counts that are not whole. Without commit(), no file remains. Not thread-safe.
 class WiresensHdf5Writer final : public FrameSink {
  public:
   [[nodiscard]] static Result<std::unique_ptr<WiresensHdf5Writer>> create(const std::string& path, FrameShape shape);

@@ -14,10 +14,10 @@ namespace dermis::report {
 /// The page says in a sentence what could not be judged.
 [[nodiscard]] std::string evaluation_page(const calibration::Evaluation& evaluation, const pipeline::Model& model);
 
-/// Writes the page as DIR/index.html and each of its figures as an SVG file beside it (calibration_vs_output.svg,
-/// error_vs_force.svg, error_vs_temperature.svg, error_vs_supply.svg, error_vs_contacts.svg, tactile_1.svg, ...), as
-/// far as there is something to show. Creates the directory; every file appears complete or not at all, the page last.
-/// Errors: the directory cannot be made or written.
+/// Writes the page as DIR/index.html and each figure that has data as an SVG file beside it. The files are
+/// calibration_vs_output.svg, error_vs_force.svg, error_vs_temperature.svg, error_vs_supply.svg, error_vs_contacts.svg,
+/// tactile_1.svg, .... Creates the directory; every file appears complete or not at all, the page last. Errors: the
+/// directory cannot be made or written.
 [[nodiscard]] Status write_evaluation_report(const std::string& directory, const calibration::Evaluation& evaluation,
                                              const pipeline::Model& model);
 

@@ -12,8 +12,8 @@
 
 namespace dermis::report {
 
-/// One frame of an array as a picture: each measured taxel in the colour of a fixed scale with its unit, r0c0 at the
-/// top left; contacts as ellipses with their forces. Nothing is interpolated.
+/// One frame of an array as a picture. Each measured taxel has the colour of a fixed scale with its unit, r0c0 at the
+/// top left. Contacts are ellipses with their forces. Nothing is interpolated.
 struct FramePicture {
   std::string title;     ///< "chest"
   std::string subtitle;  ///< "12.340 s, total 23.4 N"

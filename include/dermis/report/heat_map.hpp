@@ -26,8 +26,8 @@ struct Colour {
 [[nodiscard]] Colour sequential_colour(double share) noexcept;
 
 /// A diverging colour map for signed quantities: dark blue over near white at 0 to dark orange. `share` is clamped to
-/// [-1, 1]; not NaN. Both arms darken linearly and alike (Oklab L from 0.965 to 0.39), so that a grey print shows the
-/// magnitude; blue (hue 260 degrees) against orange (45) tells the sign to readers with any colour vision.
+/// [-1, 1]; not NaN. Both arms darken linearly and alike (Oklab L from 0.965 to 0.39), so a grey print shows the
+/// magnitude. Blue (hue 260 degrees) and orange (45) show the sign to readers with any colour vision.
 [[nodiscard]] Colour diverging_colour(double share) noexcept;
 
 /// "#0d62ac"

@@ -17,8 +17,8 @@ enum class Scale { linear, logarithmic };
 /// of them (`most` >= 2). low < high, both finite.
 [[nodiscard]] std::vector<double> linear_ticks(double low, double high, std::size_t most);
 
-/// 1, 2 and 5 times the powers of ten inside [low, high]; only powers of ten, evenly thinned out, where that would be
-/// more than twelve. 0 < low < high, both finite.
+/// 1, 2 and 5 times the powers of ten inside [low, high]. If that is more than twelve, only powers of ten, evenly
+/// thinned out. 0 < low < high, both finite.
 [[nodiscard]] std::vector<double> log_ticks(double low, double high);
 
 /// One axis of a plot.
@@ -43,9 +43,9 @@ struct Point {
 };
 
 /// A plot with axes, grid and legend. Points with a NaN are left out; points beyond an axis are drawn on its edge.
-/// Series are told apart by colour and by the shape of their marks; `style` is the number of the series, from 0, and
-/// gives it the same look in every plot. A series that was added earlier lies above those that were added later, and
-/// all of them above regions and references.
+/// Series differ in colour and in the shape of their marks; `style` is the number of the series, from 0, and gives it
+/// the same look in every plot. A series that was added earlier lies above those that were added later, and all of them
+/// above regions and references.
 class Plot {
  public:
   /// Width and height in px, at least 200 each.

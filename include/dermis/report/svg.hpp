@@ -11,8 +11,8 @@
 /// "inf" reaches a picture. Lengths are CSS pixels.
 namespace dermis::report {
 
-/// Text for XML and HTML, in elements and in quoted attributes: & < > " ' are escaped; bytes that are not UTF-8 and
-/// control characters, which XML forbids, become U+FFFD.
+/// Text for XML and HTML, in elements and in quoted attributes. & < > " ' are escaped. Bytes that are not UTF-8, and
+/// control characters that XML forbids, become U+FFFD.
 [[nodiscard]] std::string escape_xml(std::string_view text);
 
 /// A finished picture. It carries no ids, so that any number of them may share a page.

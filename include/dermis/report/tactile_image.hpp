@@ -10,9 +10,9 @@
 
 namespace dermis::report {
 
-/// The tactile image of one frame at four stages: the reading as it comes, the conductance without crosstalk, the force
-/// by dermis and the true force, the last two on the same scale in newtons. r0c0 is at the top left, and taxels have
-/// the shape of the array's pitches. The vectors of `example` have the size of the array.
+/// The tactile image of one frame at four stages: the raw reading, the conductance without crosstalk, the force by
+/// dermis and the true force. The last two share one scale in newtons. r0c0 is at the top left, and taxels have the
+/// shape of the array's pitches. The vectors of `example` have the size of the array.
 [[nodiscard]] std::vector<Drawing> tactile_panels(const ArrayDescription& array,
                                                   const calibration::TactileExample& example);
 

@@ -47,15 +47,15 @@ struct LineFaults {
 /// Reads the table [faults]; keys are the field names.
 void read_line_faults(files::ConfigFile& file, LineFaults& faults);
 
-/// Readings of an array with faults, [rows, cols] over the supply, `frame` frames after the first of the recording:
-/// Kirchhoff's current law at every line, each scan a system of its own. Shorts have no resistance. Conventions as in
-/// ReadoutCircuit; a column at virtual ground that is shorted to the supply reads beyond any ADC. Thread-safe.
+/// Readings of an array with faults, [rows, cols] over the supply, `frame` frames after the first of the recording.
+/// Kirchhoff's current law holds at every line; each scan is its own system. Shorts have no resistance. Conventions are
+/// those of ReadoutCircuit. A column at virtual ground that is shorted to the supply reads beyond any ADC. Thread-safe.
 class FaultyCircuit {
  public:
   /// Errors: faults that do not suit the array; resistive lines, column switches and real amplifiers.
   [[nodiscard]] static Result<FaultyCircuit> create(const ArrayDescription& array, const LineFaults& faults);
 
-  /// Taxels that are stuck still read what the circuit gives: see stick().
+  /// Stuck taxels still have the reading of the circuit here: see stick().
   void ratios(std::span<const double> siemens, std::size_t frame, std::span<double> ratio) const;
 
   /// Overwrites the counts of the stuck taxels, after the ADC.

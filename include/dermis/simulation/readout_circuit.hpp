@@ -10,9 +10,9 @@
 
 namespace dermis::simulation {
 
-/// From taxel conductances to readings, crosstalk included, for every circuit of core/array_description.hpp: for each
-/// driven line the voltages of all lines follow from Kirchhoff's current law at every line (nodal analysis,
-/// docs/simulation.md). What is read, over the supply:
+/// From taxel conductances to readings, crosstalk included, for every circuit of core/array_description.hpp. For each
+/// driven line, Kirchhoff's current law at every line gives the voltages of all lines (nodal analysis,
+/// docs/simulation.md). The reading, over the supply, is
 ///   divider, flexitac: the voltage of the sensed line across its load_ohm
 ///   transimpedance:    r = (I load_ohm - o) / (1 + 1/amplifier_gain), with I the current into the amplifier over the
 ///                      supply and o its offset over the nominal supply_v: minus the amplifier's output. Its input is
@@ -27,8 +27,8 @@ class ReadoutCircuit {
 
   [[nodiscard]] static Result<ReadoutCircuit> create(const ArrayDescription& array);
 
-  /// `siemens` and `ratio` are [rows, cols]; conductances are finite and >= 0 [S]. ratio[i, j] is the reading over
-  /// the supply while the driven and the sensed line of the taxel in row i and column j are selected.
+  /// `siemens` and `ratio` are [rows, cols]; conductances are finite and >= 0 [S]. ratio[i, j] is the reading over the
+  /// supply while both lines of the taxel in row i and column j are selected.
   void ratios(std::span<const double> siemens, std::span<double> ratio) const;
 
   /// The same in single precision: a relative error of about 1e-6. Faster for a divider with grounded idle rows of up

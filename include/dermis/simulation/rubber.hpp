@@ -18,8 +18,8 @@ namespace dermis::simulation {
 /// Area of the discs of the paper (Fig. 1: 7 mm in diameter, 0.7 mm thick), the taxel area of its array [m2].
 inline constexpr double kPaperDiscAreaM2 = 38.48e-6;
 
-/// A piece of conductive rubber under one array. The defaults are the reference array of the project (the 10 % grade);
-/// where a value comes from, and what is assumed, is told in docs/simulation.md.
+/// A piece of conductive rubber under one array. The defaults are the reference array of the project (the 10 % grade).
+/// docs/simulation.md has the source of each value, and what is assumed.
 struct RubberOptions {
   std::uint64_t seed = 1;  ///< Identifies the piece: the same seed gives the same taxel scatter in every scene.
 
@@ -37,7 +37,7 @@ struct RubberOptions {
   double temperature_curvature = 0.0;           ///< Quadratic term of ln R [1/C^2], -0.001 ... 0.001.
 
   double hysteresis = 0.0;  ///< Gap between loading and unloading, relative to F, 0 ... 0.5. Interlink FSR: 0.10.
-  double creep = 0.0;       ///< Share of the force that is felt late, 0 ... 0.5. Assumed 0.05-0.10.
+  double creep = 0.0;       ///< Share of the force that acts late, 0 ... 0.5. Assumed 0.05-0.10.
   /// The memory of real rubber in the place of `hysteresis` and `creep`, which must then be 0.
   std::optional<RubberMemoryOptions> memory;
   double pink_noise = 1e-9;  ///< K of the PSD K/f of the relative conductance noise, 0 ... 1e-4. Assumed 1e-9-1e-8.
@@ -51,12 +51,13 @@ struct RubberOptions {
 
 /// The three carbon black grades of the paper: 5, 10 or 15 percent; 10 is the default above. The paper gives no
 /// numbers. The other two are scaled from the 10 % grade by percolation theory, conductivity ~ (p - pc)^2, with an
-/// assumed threshold pc = 3 %: all resistances are 12.3 times higher at 5 % and 0.34 times at 15 %. The noise goes with
-/// the resistance, and the exponent falls from 1.0 to 0.8 as the gauge factor of such rubbers falls with the content.
+/// assumed threshold pc = 3 %. All resistances are 12.3 times higher at 5 % and 0.34 times at 15 %. The noise is
+/// proportional to the resistance. The exponent falls from 1.0 to 0.8, like the gauge factor of such rubbers with the
+/// content.
 [[nodiscard]] Result<RubberOptions> rubber_grade(int carbon_percent);
 
-/// Switches the memory by its name: "simple" (hysteresis and creep above) or "rubber" (RubberMemory; what is there of
-/// its options stays). Fails on other names.
+/// Switches the memory by its name: "simple" (hysteresis and creep above) or "rubber" (RubberMemory; options already
+/// set stay). Fails on other names.
 [[nodiscard]] Status choose_memory(const std::string& name, RubberOptions& rubber);
 
 /// The state of all taxels of one array. With T in C, F in N and per-taxel a, b, alpha:
@@ -64,18 +65,18 @@ struct RubberOptions {
 ///   contact_ohm + a 10^-b = resistance_at_10n_ohm exp(resistance_spread N(0,1))
 ///   F_eff = [F (1 - creep) + creep mean(s_1, s_2, s_3)] (1 - hysteresis/2 m)
 /// s: Kelvin-Voigt elements of 0.1, 3 and 100 s that follow F. m: a stop (elastic-plastic) operator on ln(1 + F/1 N)
-/// with reach 0.5, from 0 on a new piece to +1 after loading (reads low) and -1 after unloading (reads high).
-/// n: 1/f noise, one Ornstein-Uhlenbeck process a decade with corners at 1 mHz ... 10 Hz. F: the force on the taxel
-/// after mechanical_spread. With RubberOptions::memory, F_eff and the unloaded conductance are those of RubberMemory.
-/// Exact for any time step. Const members are thread-safe, the others are not.
+/// with reach 0.5, from 0 on a new piece to +1 after loading (reads low) and -1 after unloading (reads high). n: 1/f
+/// noise, one Ornstein-Uhlenbeck process a decade with corners at 1 mHz ... 10 Hz. F: the force on the taxel, after
+/// mechanical_spread. With RubberOptions::memory, F_eff and the unloaded conductance are those of RubberMemory. Exact
+/// for any time step. Const members are thread-safe, the others are not.
 class ConductiveRubber {
  public:
   static constexpr double kCreepSeconds[3] = {0.1, 3.0, 100.0};  ///< Time constants of s_k [s].
   static constexpr double kHysteresisReach = 0.5;                ///< Change of ln(1 + F/1 N) that moves m by 1.
   static constexpr double kNoiseCornersHz[5] = {1e-3, 1e-2, 1e-1, 1e0, 1e1};  ///< Corner frequencies of n [Hz].
 
-  /// `noise_seed` drives the 1/f noise and the gains of touches. Fails on options that are out of range, or where the
-  /// scatter leaves a taxel with a resistance below contact_ohm or an exponent that is not positive.
+  /// `noise_seed` drives the 1/f noise and the gains of touches. Fails on options out of range. Also fails if the
+  /// scatter gives a taxel a resistance below contact_ohm or an exponent that is not positive.
   [[nodiscard]] static Result<ConductiveRubber> create(const RubberOptions& options, std::size_t rows, std::size_t cols,
                                                        std::uint64_t noise_seed);
 

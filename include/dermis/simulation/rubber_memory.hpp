@@ -12,19 +12,19 @@
 
 namespace dermis::simulation {
 
-/// How much a rubber remembers. The ranges hold what was measured on real sheets (docs/simulation.md).
+/// Strength of a rubber's memory. The ranges cover measurements on real sheets (docs/simulation.md).
 struct RubberMemoryOptions {
   double creep_per_decade = 0.10;  ///< Growth of a held reading per decade of time, 0.02 ... 0.30. Measured 0.08-0.31.
   double loop_gap = 0.08;          ///< Gap between loading and unloading, relative to the force, 0 ... 0.2. FSR: 0.10.
   double touch_gain = 0.05;        ///< Sd of the logarithm of the gain of a touch, 0 ... 0.3. Measured 0.06-0.10.
-  double release_dip = 0.35;       ///< Most that a release takes off the unloaded conductance, 0 ... 0.6. 0.2-0.4.
+  double release_dip = 0.35;       ///< Greatest loss of unloaded conductance by a release, 0 ... 0.6. 0.2-0.4.
 
   /// Names the first field that is out of its range, as "rubber.touch_gain: ...".
   [[nodiscard]] Status validate() const;
 };
 
-/// What loads of the past do to the taxels of a sheet of filled rubber between electrodes. Forward law of a taxel, with
-/// F the load on it now [N], c = creep_per_decade, E(t) = sum_k (1 - exp(-t/tau_k)) and z = sum_k s_k:
+/// Effect of past loads on the taxels of a sheet of filled rubber between electrodes. The forward law of a taxel uses
+/// its present load F [N], c = creep_per_decade, E(t) = sum_k (1 - exp(-t/tau_k)) and z = sum_k s_k:
 ///
 ///   compression  e = F (1 - c E(1 s)) + c z
 ///                tau_k ds_k/dt = F - s_k, tau_k = 0.01, 0.1 ... 1000 s
@@ -34,22 +34,23 @@ struct RubberMemoryOptions {
 ///   felt force   f = w g p, the force in the static law of ConductiveRubber
 ///   set          the unloaded conductance is multiplied by 1 - release_dip (1 - w) z/(z + 0.5 N)
 ///
-/// Compression: an elastic layer in series with one Kelvin-Voigt element per decade, all of the same compliance, so
-/// that creep goes with the logarithm of time as in filled rubber (Gent, J. Appl. Polym. Sci. 6:433, 1962). A held load
-/// on rested rubber reads e = F after one second and grows by c F (exp(-t/1000 s) - exp(-1000 t/1 s)) from t to 10 t:
-/// by c F within 1 % from 5 ms to 100 s.
+/// Compression: an elastic layer in series with one Kelvin-Voigt element per decade, all of the same compliance. So
+/// creep follows the logarithm of time as in filled rubber (Gent, J. Appl. Polym. Sci. 6:433, 1962). A held load on
+/// rested rubber reads e = F after one second. From t to 10 t it grows by c F (exp(-t/1000 s) - exp(-1000 t/1 s)). This
+/// is c F within 1 % from 5 ms to 100 s.
 ///
 /// Friction: filler slides against the polymer at three thresholds (stops of Prandtl, 1928). It follows the load, not
 /// time; p is loop_gap e lower on a long way up than on a long way down.
 ///
-/// Closing: rough surfaces conduct where a load closes them, and open at once when it goes: a sheet that is still
-/// compressed does not conduct for it.
+/// Closing: rough surfaces conduct where a load closes them, and open at once when it goes. So a sheet that is still
+/// compressed does not conduct for that reason.
 ///
-/// Set: what is still compressed after a release lifts off the electrodes that it was mounted against, and its unloaded
-/// path conducts less until it has crept back. On Velostat under a load cell, 20-40 % for more than ten seconds.
+/// Set: rubber that is still compressed after a release lifts off the electrodes that it was mounted against. Its
+/// unloaded path conducts less until it has crept back. On Velostat under a load cell it was 20-40 % for more than ten
+/// seconds.
 ///
-/// Gain: g = exp(touch_gain N(0,1)), drawn when a load comes onto an unloaded taxel: rubber sits down differently each
-/// time.
+/// Gain: g = exp(touch_gain N(0,1)), drawn when a load comes onto an unloaded taxel, because rubber settles differently
+/// each time.
 ///
 /// Exact for any time step while loads change in steps. Const members are thread-safe, press() is not.
 class RubberMemory {
@@ -68,7 +69,7 @@ class RubberMemory {
   /// f [N], >= 0.
   [[nodiscard]] double felt_force(std::size_t taxel) const;
 
-  /// What is left of the unloaded conductance, 1 - release_dip ... 1.
+  /// Remaining share of the unloaded conductance, 1 - release_dip ... 1.
   [[nodiscard]] double unloaded_share(std::size_t taxel) const;
 
  private:

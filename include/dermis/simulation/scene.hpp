@@ -34,8 +34,8 @@ enum class PatchShape {
   flat,   ///< p = p0: a stamp on a soft one.
 };
 
-/// A patch that touches the array in one frame, in the plane of core/contacts.hpp: the origin is the centre of taxel
-/// r0c0, x runs along the columns, y along the rows.
+/// A patch that touches the array in one frame, in the plane of core/contacts.hpp. The origin is the centre of taxel
+/// r0c0, x runs along the columns and y along the rows.
 struct AppliedContact {
   std::uint32_t id = 0;  ///< From 1 on, in order of onset; the same from onset to release.
   PatchShape shape = PatchShape::hertz;
@@ -43,19 +43,19 @@ struct AppliedContact {
   double y_m = 0.0;            ///< Centre [m].
   double diameter_m = 0.0;     ///< 2 a [m].
   double force_n = 0.0;        ///< Of the whole patch [N], > 0.
-  double taxel_force_n = 0.0;  ///< What of it lies on taxels [N]; the rest presses between and beside them.
+  double taxel_force_n = 0.0;  ///< Its part on taxels [N]; the rest presses between and beside them.
 
   bool operator==(const AppliedContact&) const = default;
 };
 
-/// What happens to the array until one frame is taken, and what is known about it. The frame is taken at the end.
+/// The loads on the array until one frame is taken, and what is known about them. The frame is taken at the end.
 struct SceneFrame {
-  double rest_s = 0.0;               ///< First unloaded for so long [s]; 0: the load changes at once.
-  double hold_s = 0.0;               ///< Then under force_n for so long [s].
+  double rest_s = 0.0;               ///< Time unloaded before [s]; 0: the load changes at once.
+  double hold_s = 0.0;               ///< Time under force_n after that [s].
   double temperature_celsius = 0.0;  ///< True temperature of the whole array [C].
   double supply_v = 0.0;             ///< True supply [V].
   std::vector<double> force_n;       ///< True force applied to each taxel [N], [rows, cols].
-  /// The labels of loads.csv; at least one, but for the frames of two_weights in which a hand moves.
+  /// The labels of loads.csv; at least one, except in the frames of two_weights in which a hand moves.
   std::vector<Load> loads;
   std::vector<AppliedContact> contacts;  ///< Of the scene "contacts", by id; empty in all others.
 };
@@ -97,17 +97,16 @@ class WeightScript;
 ///                    or as asked, one after another, two rounds; 0.2 s, which have no label,    x rate
 ///                    for each change; 22 C
 ///
-/// A press is 1 s of rest and 1 s of hold; uniform and multitouch change the load without rest, every 1 s; idle takes a
-/// frame every 10 s. The patches of contacts stay 2.5 pitches apart from centre to centre and a pitch from rim to rim;
-/// a taxel, a disc of taxel_area_m2 or of 0.7 pitches, carries the pressure on it. Each temperature of calibration,
-/// paper_calibration and uniform starts with 600 s of rest. touches and two_weights are continuous in time at their
-/// rate: all their frames are history of one piece. Thread-safe: frame() only reads, and a frame depends on the seed
-/// and its index alone (contacts: also on the number of frames; touches and two_weights: on the options).
+/// A press is 1 s of rest and 1 s of hold. uniform and multitouch change the load without rest, every 1 s. idle takes a
+/// frame every 10 s. The patches of contacts stay 2.5 pitches apart from centre to centre and a pitch from rim to rim.
+/// A taxel is a disc of taxel_area_m2 or of 0.7 pitches, and carries the pressure on it. Each temperature of
+/// calibration, paper_calibration and uniform starts with 600 s of rest. touches and two_weights are continuous in time
+/// at their rate: all their frames are history of one piece. Thread-safe, because frame() only reads. A frame depends
+/// only on the seed and its index (contacts: also on the number of frames; touches and two_weights: on the options).
 class Scene {
  public:
-  /// Fails on an unknown name, options out of range or of other scenes, a frame count for a scene of fixed length (or
-  /// one that is not 1 ... 200,000), and where the array does not suit: uniform needs taxel_area_m2, paper at least 16
-  /// taxels.
+  /// Fails on an unknown name, on options out of range or of other scenes, and on a frame count for a scene of fixed
+  /// length. The frame count must be 1 ... 200,000. uniform needs taxel_area_m2, paper at least 16 taxels.
   [[nodiscard]] static Result<Scene> create(std::string_view name, const ArrayDescription& array,
                                             const EnvironmentOptions& environment, std::uint64_t seed,
                                             std::optional<std::size_t> frames = {}, const SceneOptions& options = {});

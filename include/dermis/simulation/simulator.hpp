@@ -36,9 +36,9 @@ struct SimulationOptions {
 /// their defaults. `rubber.carbon_percent` (5, 10 or 15) sets the defaults of that grade. Unknown keys are errors.
 [[nodiscard]] Result<SimulationOptions> read_simulation_options(const std::string& path);
 
-/// A simulated array as a source of frames: scene -> rubber -> readout circuit -> ADC.
-/// The piece of rubber depends on RubberOptions::seed alone, so the same array can go through several scenes; `seed`
-/// drives contacts, supply, temperature and all noise. Not thread-safe: one reader.
+/// A simulated array as a source of frames: scene -> rubber -> readout circuit -> ADC. The piece of rubber depends only
+/// on RubberOptions::seed, so the same array can go through several scenes. `seed` drives contacts, supply, temperature
+/// and all noise. Not thread-safe: one reader.
 class Simulator final : public FrameSource {
  public:
   /// `frames`: number of frames of the scenes "multitouch", "contacts", "idle" and "touches". Fails as Scene::create

@@ -13,9 +13,9 @@ namespace dermis::sources {
 
 /// What a person at an array that is being calibrated is to do now.
 struct GuideWords {
-  bool press = false;        ///< The weight is to lie on the taxel; else nothing is to lie on the array.
-  bool other_taxel = false;  ///< Another taxel is pressed instead.
-  std::size_t taxel = 0;     ///< Row-major.
+  bool press = false;     ///< The weight is to lie on the taxel; else nothing is to lie on the array.
+  bool is_wrong = false;  ///< Something else is pressed than was asked for.
+  std::size_t taxel = 0;  ///< Row-major.
   double weight_n = 0.0;
   std::optional<std::size_t> together_with{};  ///< Another taxel, to be pressed at the same time with as much.
   Nanos hold_time{};                           ///< How long a weight is to lie.

@@ -23,23 +23,24 @@ struct SourceOptions {
   /// Set: a live source gives what was received, then next() returns false within 100 ms. A file is read on.
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string&)> notice{};  ///< Told what a user should know while it goes on; one line.
+  std::function<void(const std::string&)> loss{};    ///< Told in one line, at its end, that a file is cut off there.
   std::shared_ptr<GuideVoice> guide{};  ///< Whom the hand of sim:rehearsal obeys. Null: nobody, it presses nothing.
 };
 
-/// Opens what `from` names: a device or the simulator by its URI (docs/devices.md), or a file of frames by its path
-/// (recordings/frame_files.hpp), "rec.mcap#chest" for one array of a recording.
-/// Fails, with one line that says what to do, where the URI is wrong, where there is nothing of that name, and where
-/// the frames have not the shape of the array.
+/// Opens the source that `from` names. This is a device or the simulator by its URI (docs/devices.md), or a file of
+/// frames by its path (recordings/frame_files.hpp). "rec.mcap#chest" is one array of a recording. Fails if the URI is
+/// wrong, if nothing has that name, and if the frames do not have the shape of the array. The error says in one line
+/// what to do.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const std::string& from,
                                                                const SourceOptions& options = {});
 
 /// The same of a URI that was parsed before.
 ///
-/// sim:SCENE with a rate is a device that sends the frames of the scene over and over at that rate, with sequence and
-/// device time; frames that are not fetched within 500 ms are lost, as they would be in the buffers of a TCP
-/// connection; the scene "contacts" runs at its own speed whatever the rate. Without a rate, it is the scene once, as
-/// fast as it is read. The array is that of the URI, else that of the options, else the reference array of
-/// examples/chest, with the rows and cols of the URI.
+/// sim:SCENE with a rate is a device that repeats the frames of the scene at that rate, with sequence and device time.
+/// Frames that are not fetched within 500 ms are lost, as they would be in the buffers of a TCP connection. The scene
+/// "contacts" runs at its own speed whatever the rate. Without a rate, it is the scene once, as fast as it is read. The
+/// array is that of the URI, else that of the options, else the reference array of examples/chest, with the rows and
+/// cols of the URI.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const acquisition::SourceUri& uri,
                                                                const SourceOptions& options = {});
 

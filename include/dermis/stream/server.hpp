@@ -40,7 +40,7 @@ struct ServerOptions {
   std::size_t client_queue_bytes = 2U << 20U;
   std::function<void(const std::string&)> notice{};  ///< One line for the log; called on the server's thread.
 
-  /// Names the first field that is out of its range, as "--host: ...".
+  /// Names the first field that is out of its range, as "host: ...".
   [[nodiscard]] Status validate() const;
 };
 
@@ -54,8 +54,8 @@ struct Parameter {
   ParameterValue value;
 };
 
-/// Asked of the owner by clients. Called one at a time, with the services and the playback, on a thread of their own:
-/// what takes long delays the answers to clients, and not the stream.
+/// Requests of clients to the owner. They are called one at a time, with the services and the playback, on a separate
+/// thread. A slow one delays the answers to clients, but not the stream.
 struct Handlers {
   /// All parameters as they are now.
   std::function<std::vector<Parameter>()> parameters{};
@@ -85,12 +85,11 @@ struct ServerStatistics {
 };
 
 /// Serves the assets and streams channels to many clients, on a thread of its own. A client that is slow, sends garbage
-/// or says nothing costs the others nothing: its queue is bounded and its oldest data are dropped, and what is not the
-/// protocol closes its connection with one line in the log.
-/// Thread-safe.
+/// or is silent does not affect the others. Its queue is bounded, and its oldest data are dropped. Bytes that are not
+/// the protocol close its connection with one line in the log. Thread-safe.
 class Server {
  public:
-  /// Binds the port. Fails with what to do about it where the port is in use or not permitted.
+  /// Binds the port. If the port is in use or not permitted, the error says what to do.
   [[nodiscard]] static Result<std::unique_ptr<Server>> create(const ServerOptions& options, std::vector<Asset> assets,
                                                               Handlers handlers = {},
                                                               std::vector<Service> services = {},

@@ -69,7 +69,9 @@ struct Trial {
   const Kind* kind = nullptr;
   std::optional<CommonRatio> fit = {};  // empty: it cannot give them, or is not resolved
   double noise_share = 0.0;             // 0: it is resolved
-  FrameMisfit misfit = {std::numeric_limits<double>::infinity(), 0.0};
+  bool is_rough = false;                // what its lines differ by could not be compared
+  JudgedReadings readings = {};
+  FrameMisfit misfit = {std::numeric_limits<double>::infinity(), 0.0};  // of the readings that tell
 };
 
 std::vector<Trial> all_kinds() {
@@ -78,40 +80,62 @@ std::vector<Trial> all_kinds() {
   return trials;
 }
 
+Scatter lesser(Scatter a, const Scatter& b) {
+  a.noise_variance = std::min(a.noise_variance, b.noise_variance);
+  a.rubber_variance = std::min(a.rubber_variance, b.rubber_variance);
+  return a;
+}
+
+JudgedReadings judge(const CommonRatio& fit, const Scatter& scatter, const std::vector<const CircuitFrame*>& frames) {
+  return judge_frames(fit.array, fit.rubber, scatter, fit.inverted, frames);
+}
+
 /// All by the least scatter that one of them leaves.
 void judge(std::vector<Trial>& trials, const std::vector<const CircuitFrame*>& frames) {
   Scatter least;
   least.noise_variance = least.rubber_variance = std::numeric_limits<double>::infinity();
   for (const Trial& trial : trials) {
-    if (!trial.fit) continue;
-    least.noise_variance = std::min(least.noise_variance, trial.fit->scatter.noise_variance);
-    least.rubber_variance = std::min(least.rubber_variance, trial.fit->scatter.rubber_variance);
+    if (trial.fit) least = lesser(least, trial.fit->scatter);
   }
   for (Trial& trial : trials) {
     if (!trial.fit) continue;
-    trial.misfit = judge_frames(trial.fit->array, trial.fit->rubber, least, trial.fit->inverted, frames);
+    trial.readings = judge(*trial.fit, least, frames);
+    trial.misfit = misfit_beside(trial.readings, trial.readings);
   }
 }
 
 /// With resistances of each line's own. Where two circuits explain the frames nearly as well, what lines differ by may
 /// decide for the wrong one.
-void fit_lines(const ArrayDescription& array, const std::vector<const CircuitFrame*>& frames, Trial& trial) {
-  const LineParameters lines(as_kind(array, *trial.kind));
-  const Estimate start{lines.start(trial.fit->ratio), trial.fit->rubber, trial.fit->scatter};
-  const Result<Iteration> fitted = iterate(lines, frames, start, kEnough);
-  if (!fitted) return;
-  const ArrayDescription found = lines.array_at(fitted->estimate.parameters);
-  Result<InvertedFrames> inverted = invert_frames(found, frames);
-  if (!inverted) return;
-  const LineParameters known(found);
-  const Iteration laws = fit_laws(known, *inverted, frames, {{}, fitted->estimate.rubber, fitted->estimate.scatter});
-  trial.fit->array = found;
-  trial.fit->inverted = *std::move(inverted);
-  trial.fit->rubber = laws.estimate.rubber;
-  trial.fit->scatter = laws.estimate.scatter;
+Result<CommonRatio> with_lines(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
+                               const CommonRatio& common) {
+  const Result<Iteration> fitted =
+      iterate(lines, frames, {lines.start(common.ratio), common.rubber, common.scatter}, kEnough);
+  if (!fitted) return fitted.error();
+  CommonRatio result;
+  result.ratio = common.ratio;
+  result.array = lines.array_at(fitted->estimate.parameters);
+  Result<InvertedFrames> inverted = invert_frames(result.array, frames);
+  if (!inverted) return inverted.error();
+  result.inverted = *std::move(inverted);
+  const Iteration laws = fit_laws(LineParameters(result.array), result.inverted, frames,
+                                  {{}, fitted->estimate.rubber, fitted->estimate.scatter});
+  result.rubber = laws.estimate.rubber;
+  result.scatter = laws.estimate.scatter;
+  return result;
 }
 
-/// Those that are near the best of the circuits, where there are several.
+/// Empty where it leaves more than before: it has lost its way.
+std::optional<CommonRatio> refit(const ArrayDescription& array, const std::vector<const CircuitFrame*>& frames,
+                                 const Trial& trial) {
+  Result<CommonRatio> refit = with_lines(LineParameters(as_kind(array, *trial.kind)), frames, *trial.fit);
+  if (!refit) return std::nullopt;
+  const Scatter scatter = lesser(refit->scatter, trial.fit->scatter);
+  const double before = misfit_of(judge(*trial.fit, scatter, frames)).square;
+  if (misfit_of(judge(*refit, scatter, frames)).square > before) return std::nullopt;
+  return *std::move(refit);
+}
+
+/// Those that are near the best of the circuits, where there are several; all of them, or they would not compare.
 void fit_lines_of_rivals(const ArrayDescription& array, const std::vector<const CircuitFrame*>& frames,
                          std::vector<Trial>& trials) {
   double least = std::numeric_limits<double>::infinity();
@@ -124,7 +148,13 @@ void fit_lines_of_rivals(const ArrayDescription& array, const std::vector<const 
     if (is_circuit(trial) && trial.misfit.square <= kNearly * least) near.push_back(&trial);
   }
   if (near.size() < 2) return;
-  for (Trial* const trial : near) fit_lines(array, frames, *trial);
+  std::vector<std::optional<CommonRatio>> refits;
+  for (Trial* const trial : near) refits.push_back(refit(array, frames, *trial));
+  const bool all_fitted = std::all_of(refits.begin(), refits.end(), [](const auto& fit) { return fit.has_value(); });
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    near[k]->is_rough = !all_fitted;
+    if (all_fitted) near[k]->fit = std::move(refits[k]);
+  }
   judge(trials, frames);
 }
 
@@ -152,12 +182,47 @@ bool is_unresolved(const Trial& trial) {
   return trial.noise_share > 0.0;
 }
 
-bool has_less(const Trial& a, const Trial& b) {
-  return a.misfit.square < b.misfit.square;
+/// What two kinds leave of the readings that tell in both.
+struct Comparison {
+  FrameMisfit first;
+  FrameMisfit second;
+};
+
+Comparison compare(const Trial& first, const Trial& second) {
+  if (!first.fit || !second.fit) return {first.misfit, second.misfit};  // infinite where it cannot give the frames
+  return {misfit_beside(first.readings, second.readings), misfit_beside(second.readings, first.readings)};
 }
 
+bool has_less(const Trial& a, const Trial& b) {
+  const Comparison both = compare(a, b);
+  return both.first.square < both.second.square;
+}
+
+/// With lines whose differences could not be compared the odds must be far better.
 bool is_surely_less(const Trial& better, const Trial& worse) {
-  return better.misfit.square + sure_square(better.misfit) < worse.misfit.square;
+  constexpr double kMargin = 10.0;
+  const Comparison both = compare(better, worse);
+  const double margin = better.is_rough && worse.is_rough ? kMargin : 1.0;
+  return both.first.square + margin * sure_square(both.first) < both.second.square;
+}
+
+/// By a few frames, which leave the laws nearly free: they may take as much as they have terms.
+bool is_refuted(const Trial& worse, const Trial& better) {
+  if (!better.fit) return false;
+  const Comparison both = compare(better, worse);
+  const auto terms = static_cast<double>(kPressedTerms * static_cast<Eigen::Index>(better.fit->rubber.laws.size()));
+  const double scale = std::max(1.0, both.first.square / both.first.readings);
+  return both.first.square + (kSureSquare + terms) * scale < both.second.square;
+}
+
+/// Lines that taxels share have crosstalk. None is shown by presses that leave the idle taxels of their lines alone
+/// although the circuit says that they must not, where the laws of the pressed ones do not suffer from it.
+bool is_none_shown(const Trial& none, const Trial& circuit) {
+  if (!circuit.fit) return true;
+  const auto [of_none, of_circuit] = compare(none, circuit);
+  const double law_square = misfit_of(none.readings).pressed_square;
+  return is_surely_less(none, circuit) && law_square <= misfit_of(circuit.readings).pressed_square &&
+         of_none.crossed_square + sure_square(of_none) < of_circuit.crossed_square;
 }
 
 /// Under loads on the whole array alone, what a circuit does and a law of the rubber look alike.
@@ -170,8 +235,8 @@ bool presses_parts(const CircuitFrames& frames) {
   });
 }
 
-/// Lines that taxels share have crosstalk, however small: no circuit only where none of them is anywhere near. Where
-/// the true one may be among those that are not resolved, one of the others must be better than none, and not by a law.
+/// No circuit only where that is shown against all of them. Where the true one may be among those that are not
+/// resolved, one of the others must be better than none, and not by a law.
 const Trial& choose(const std::vector<Trial>& trials, const CircuitFrames& frames) {
   const auto none = std::find_if(trials.begin(), trials.end(),
                                  [](const Trial& trial) { return trial.kind->circuit == Circuit::none; });
@@ -180,12 +245,14 @@ const Trial& choose(const std::vector<Trial>& trials, const CircuitFrames& frame
   if (std::any_of(trials.begin(), trials.end(), is_unresolved)) {
     return is_surely_less(*best, *none) && presses_parts(frames) ? *best : *none;
   }
-  return is_surely_less(*none, *best) ? *none : *best;
+  const bool is_shown =
+      std::all_of(trials.begin(), none, [&](const Trial& circuit) { return is_none_shown(*none, circuit); });
+  return is_shown ? *none : *best;
 }
 
-/// "none" is no rival of a circuit, see choose().
+/// "none" is a rival of a circuit only where it leaves surely less.
 bool is_told(const Trial& trial, const Trial& chosen) {
-  return trial.kind->circuit == Circuit::none || is_surely_less(chosen, trial);
+  return trial.kind->circuit == Circuit::none ? !is_surely_less(trial, chosen) : is_surely_less(chosen, trial);
 }
 
 std::vector<PressPair> presses_to_tell(const std::vector<Trial>& trials, const Trial& chosen,
@@ -198,12 +265,12 @@ std::vector<PressPair> presses_to_tell(const std::vector<Trial>& trials, const T
   return telling_presses(circuits, frames, sure_square(chosen.misfit));
 }
 
-/// The chosen one, and what is not told from it.
+/// The chosen one, and what a few frames do not refute.
 std::vector<Trial> rivals(const std::vector<Trial>& trials, const CircuitFrames& frames) {
   const Trial& chosen = choose(trials, frames);
   std::vector<Trial> rivals;
   std::copy_if(trials.begin(), trials.end(), std::back_inserter(rivals), [&](const Trial& trial) {
-    return trial.kind == chosen.kind || is_unresolved(trial) || !is_told(trial, chosen);
+    return trial.kind == chosen.kind || is_unresolved(trial) || !is_refuted(trial, chosen);
   });
   return rivals;
 }

@@ -59,6 +59,7 @@ Result<CircuitFit> fit_circuit(const ArrayDescription& array, std::span<const Ra
   result.drive_error = std::move(fit->errors.drive);
   result.load_error = std::move(fit->errors.load);
   result.common_drive_error = fit->errors.common_drive;
+  result.driver_presses = std::move(fit->driver_presses);
   result.rubber_scatter = fit->rubber_scatter;
   return result;
 }

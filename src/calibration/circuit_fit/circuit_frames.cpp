@@ -110,7 +110,7 @@ std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<c
     Labelled next;
     next.celsius = conditioned.temperature_celsius;
     next.frame.ratio = conditioned.ratio;
-    next.frame.sigma_ratio = conditioned.sigma_ratio;
+    next.frame.sigma_ratio = next.frame.said_sigma = conditioned.sigma_ratio;
     next.frame.newtons = known_newtons(array, loads_of[k], conditioned);
     if (!unlabelled_between && !labelled.empty() && is_repetition(labelled.back(), next)) {
       average_into(labelled.back(), next);

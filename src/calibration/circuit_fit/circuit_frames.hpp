@@ -16,6 +16,7 @@ namespace dermis::calibration {
 struct CircuitFrame {
   std::vector<double> ratio;   ///< Reading / supply [taxels].
   double sigma_ratio = 0.0;    ///< Standard deviation of each, as repetitions show it.
+  double said_sigma = 0.0;     ///< Of one reading, as the description says it: what is averaged was cut at 0 with it.
   std::vector<float> newtons;  ///< [taxels]: 0 idle, NaN unknown or beside a pressed taxel, which may touch it too.
   double temperature = 0.0;    ///< In [-1, 1] over the recording; 0 where it is not an input.
   std::size_t averaged = 1;    ///< Frames in a row with the same loads, taken as one.

@@ -15,8 +15,7 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr double kWellKnown = 0.02;  // relative standard error below which a resistance counts as found
-constexpr double kUnknown = 0.5;     // and above which nothing can be said
+constexpr double kUnknown = 0.5;  // relative standard error of a resistance above which nothing can be said
 
 std::string describe_misfit(const CircuitCandidate& candidate) {
   if (candidate.noise_share > 0.0) return "not resolved";
@@ -87,10 +86,9 @@ void describe_drives(const ResistanceFit& fit, std::vector<std::string>& stateme
   if (drives.count > 1) {
     statements.back() += fmt::format(", {:.1f} % their mean", 100.0 * fit.errors.common_drive);
   }
-  if (drives.worst_error > kWellKnown) {
-    statements.emplace_back(
-        "drive_ohm: a few frames with heavy weights on several taxels of each row at once, or with a uniform load "
-        "on the whole array, determine it better than any number of single presses");
+  if (!fit.driver_presses.empty()) {
+    statements.push_back("drive_ohm: these frames leave it uncertain; a uniform load on the whole array tells it, or " +
+                         describe(fit.driver_presses, fit.array));
   }
 }
 

@@ -133,7 +133,7 @@ class RatioSearch {
 
  private:
   void judge(CommonRatio& trial) const {
-    trial.misfit = judge_frames(trial.array, trial.rubber, scatter_, trial.inverted, frames_).square;
+    trial.misfit = misfit_of(judge_frames(trial.array, trial.rubber, scatter_, trial.inverted, frames_)).square;
   }
 
   const LineParameters& lines_;

@@ -19,17 +19,31 @@ namespace dermis::calibration {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kMaxIterations = 8;
 constexpr double kLeastShare = 0.02;  // of a step
 constexpr double kSigmas = 3.0;       // of the cost, a sum of squares, by which it may rise
-constexpr int kLawIterations = 2;
+constexpr int kLawIterations = 3;
+
+/// What temperature does to an unloaded conductance is of the order of it at most, whatever the unit: 1 / level^2, of a
+/// level that is known to its standard error.
+MatrixXd unloaded_precision(const NormalEquations& idle, Index terms) {
+  MatrixXd precision = MatrixXd::Zero(terms, static_cast<Index>(idle.local.size()));
+  for (std::size_t taxel = 0; taxel < idle.local.size(); ++taxel) {
+    if (idle.readings[taxel] == 0.0) continue;
+    const double weight = idle.local[taxel](0, 0);
+    const double level = idle.local[taxel].row(0).tail(1).value() / weight;
+    precision.col(static_cast<Index>(taxel)).tail(terms - 1).setConstant(1.0 / (level * level + 1.0 / weight));
+  }
+  return precision;
+}
 
 Elimination eliminate_unloaded(const Measurements& measurements, const Estimate& estimate) {
   NormalEquations idle = measurements.idle;
   idle *= 1.0 / estimate.scatter.noise_variance;
-  return eliminate_laws(idle, VectorXd::Ones(estimate.rubber.unloaded_terms));
+  return eliminate_laws(idle, unloaded_precision(idle, estimate.rubber.unloaded_terms));
 }
 
 Elimination eliminate_pressed(const Measurements& measurements, const Elimination& idle, const Rubber& rubber,
@@ -37,7 +51,8 @@ Elimination eliminate_pressed(const Measurements& measurements, const Eliminatio
   constexpr double kFreePrecision = 1e-2;
   VectorXd precision(kPressedTerms);
   precision << VectorXd::Constant(kFreeTerms, kFreePrecision), scatter.shape_variance.cwiseInverse();
-  return eliminate_laws(pressed_equations(measurements.pressed, idle, rubber, scatter), precision);
+  const auto taxels = static_cast<Index>(rubber.laws.size());
+  return eliminate_laws(pressed_equations(measurements.pressed, idle, rubber, scatter), precision.replicate(1, taxels));
 }
 
 Rubber with_unloaded_laws(Rubber rubber, const Elimination& idle) {
@@ -51,7 +66,7 @@ Rubber with_pressed_laws(Rubber rubber, const Elimination& pressed, const Step& 
   const Index unknowns = step.solution.size();
   rubber.sheet = step.sheet();
   for (std::size_t taxel = 0; taxel < rubber.laws.size(); ++taxel) {
-    const Eigen::MatrixXd& law = pressed.laws[taxel];
+    const MatrixXd& law = pressed.laws[taxel];
     if (law.size() == 0) continue;
     rubber.laws[taxel].pressed = law.leftCols(unknowns) * step.solution + law.col(unknowns);
     rubber.laws[taxel].pressed.tail(kShapeTerms) += rubber.sheet.head(kShapeTerms);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,6 +18,8 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kMostSquare = 25.0;  // of a reading
+constexpr double kResolved = 5.0;     // a pressed conductance over its noise
+constexpr double kCutSigmas = 3.0;    // below, idle readings that are mostly cut at 0 tell nothing
 constexpr std::size_t kJudgedPerTask = 16;
 
 bool is_judged(const Rubber& rubber, std::size_t taxel, float newtons) {
@@ -24,27 +27,66 @@ bool is_judged(const Rubber& rubber, std::size_t taxel, float newtons) {
   return newtons == 0.0F ? law.unloaded.size() > 0 : newtons > 0.0F && law.pressed.size() > 0;
 }
 
+/// The rows and columns that a frame presses.
+class PressedLines {
+ public:
+  PressedLines(const CircuitFrame& frame, std::size_t cols)
+      : cols_(cols), is_row_(frame.newtons.size() / cols), is_col_(cols) {
+    for (std::size_t taxel = 0; taxel < frame.newtons.size(); ++taxel) {
+      if (!(frame.newtons[taxel] > 0.0F)) continue;
+      is_row_[taxel / cols] = is_col_[taxel % cols] = true;
+      ++pressed_;
+    }
+  }
+
+  [[nodiscard]] bool cross(std::size_t taxel) const { return is_row_[taxel / cols_] || is_col_[taxel % cols_]; }
+  [[nodiscard]] bool are_of_one_press() const { return pressed_ == 1; }
+
+ private:
+  std::size_t cols_;
+  std::vector<bool> is_row_;
+  std::vector<bool> is_col_;
+  std::size_t pressed_ = 0;
+};
+
+void add(const JudgedReading& reading, float variance, FrameMisfit& misfit) {
+  if (reading.taxel == JudgedReading::Taxel::unknown) return;
+  double square = static_cast<double>(reading.square) / static_cast<double>(variance);
+  if (!(square < kMostSquare)) square = kMostSquare;  // also where it is not a number
+  misfit.square += square;
+  misfit.readings += 1.0;
+  if (reading.taxel == JudgedReading::Taxel::pressed) misfit.pressed_square += square;
+  if (reading.taxel == JudgedReading::Taxel::crossed) misfit.crossed_square += square;
+}
+
 /// One circuit and its rubber. Idle taxels are judged by their readings, whose noise is the same in all circuits.
 class Judge {
  public:
   Judge(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter)
-      : rubber_(rubber), scatter_(scatter) {
+      : cols_(array.cols), rubber_(rubber), scatter_(scatter) {
     if (array.readout.circuit == Circuit::none) return;
     Result<compensation::CircuitModel> model = compensation::CircuitModel::create(array);
     if (model) model_.emplace(std::move(*model));
   }
 
-  /// `inverted`: empty where the circuit cannot give the frame.
-  [[nodiscard]] FrameMisfit misfit(const CircuitFrame& frame, const std::optional<InvertedFrame>& inverted) {
-    FrameMisfit misfit;
+  /// `inverted`: empty where the circuit cannot give the frame. `readings`: [taxels].
+  void judge(const CircuitFrame& frame, const std::optional<InvertedFrame>& inverted, JudgedReading* readings) {
     if (inverted) expect_readings(frame, *inverted);
+    const PressedLines lines(frame, cols_);
     for (std::size_t taxel = 0; taxel < frame.newtons.size(); ++taxel) {
       if (!is_judged(rubber_, taxel, frame.newtons[taxel])) continue;
-      misfit.readings += 1.0;
-      const double square = inverted ? square_of(frame, *inverted, taxel) : kMostSquare;
-      misfit.square += square < kMostSquare ? square : kMostSquare;  // also where it is not a number
+      JudgedReading& reading = readings[taxel];
+      const bool is_pressed = frame.newtons[taxel] > 0.0F;
+      if (!inverted) {
+        reading = {std::numeric_limits<float>::infinity(), 1.0F, {}, true};
+      } else {
+        reading = is_pressed ? judge_pressed(frame, *inverted, taxel) : judge_idle(frame, taxel);
+      }
+      if (is_pressed && lines.are_of_one_press()) reading.is_telling = false;
+      reading.taxel = is_pressed           ? JudgedReading::Taxel::pressed
+                      : lines.cross(taxel) ? JudgedReading::Taxel::crossed
+                                           : JudgedReading::Taxel::idle;
     }
-    return misfit;
   }
 
  private:
@@ -62,22 +104,29 @@ class Judge {
     expected_.assign(model_->ratio().begin(), model_->ratio().end());
   }
 
-  [[nodiscard]] double square_of(const CircuitFrame& frame, const InvertedFrame& inverted, std::size_t taxel) const {
-    const double siemens = inverted.siemens[taxel];
+  [[nodiscard]] JudgedReading judge_pressed(const CircuitFrame& frame, const InvertedFrame& inverted,
+                                            std::size_t taxel) const {
     const double sigma = inverted.sigma_siemens[taxel];
-    if (frame.newtons[taxel] == 0.0F) {
-      return std::pow((frame.ratio[taxel] - expected_[taxel]) / frame.sigma_ratio, 2) / scatter_.noise_variance;
-    }
     const double log_force = rubber_.force_scale.log_force(static_cast<double>(frame.newtons[taxel]));
     const PressedPoint point =
-        pressed_point({taxel, log_force, frame.temperature, siemens, sigma, {}}, rubber_, scatter_);
-    const double noise = sigma / rubber_.reference_siemens;
+        pressed_point({taxel, log_force, frame.temperature, inverted.siemens[taxel], sigma, {}}, rubber_, scatter_);
+    const double noise = std::sqrt(scatter_.noise_variance) * sigma / rubber_.reference_siemens;
     // No law is nearer to its rubber than this: what is beyond is not the circuit's.
-    const double rubber_variance = std::max(scatter_.rubber_variance, kRubberScatter * kRubberScatter);
-    const double variance = scatter_.noise_variance * noise * noise + rubber_variance * point.expected * point.expected;
-    return std::pow(point.excess - point.expected, 2) / variance;
+    const double rubber = std::max(std::sqrt(scatter_.rubber_variance), kRubberScatter) * point.expected;
+    return {static_cast<float>(std::pow((point.excess - point.expected) / noise, 2)),
+            static_cast<float>(1.0 + std::pow(rubber / noise, 2)),
+            {},
+            point.expected > kResolved * sigma / rubber_.reference_siemens};
   }
 
+  [[nodiscard]] JudgedReading judge_idle(const CircuitFrame& frame, std::size_t taxel) const {
+    const double cut = rubber_.laws[taxel].is_readable ? 0.0 : kCutSigmas * frame.said_sigma;
+    const double difference = std::max(frame.ratio[taxel], cut) - std::max(expected_[taxel], cut);
+    const double square = std::pow(difference / frame.sigma_ratio, 2) / scatter_.noise_variance;
+    return {static_cast<float>(square), 1.0F, {}, true};
+  }
+
+  std::size_t cols_;
   const Rubber& rubber_;
   const Scatter& scatter_;
   std::optional<compensation::CircuitModel> model_;  // empty: readings are conductances
@@ -86,16 +135,31 @@ class Judge {
 
 }  // namespace
 
-FrameMisfit judge_frames(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter,
-                         const InvertedFrames& inverted, const std::vector<const CircuitFrame*>& frames) {
-  std::vector<FrameMisfit> parts((frames.size() + kJudgedPerTask - 1) / kJudgedPerTask);
-  parallel_for(parts.size(), [&](std::size_t task) {
+JudgedReadings judge_frames(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter,
+                            const InvertedFrames& inverted, const std::vector<const CircuitFrame*>& frames) {
+  JudgedReadings readings(frames.size() * array.taxel_count());
+  parallel_for((frames.size() + kJudgedPerTask - 1) / kJudgedPerTask, [&](std::size_t task) {
     Judge judge(array, rubber, scatter);
     const std::size_t end = std::min(frames.size(), (task + 1) * kJudgedPerTask);
-    for (std::size_t k = task * kJudgedPerTask; k < end; ++k) parts[task] += judge.misfit(*frames[k], inverted[k]);
+    for (std::size_t k = task * kJudgedPerTask; k < end; ++k) {
+      judge.judge(*frames[k], inverted[k], &readings[k * array.taxel_count()]);
+    }
   });
+  return readings;
+}
+
+FrameMisfit misfit_of(const JudgedReadings& readings) {
   FrameMisfit all;
-  for (const FrameMisfit& part : parts) all += part;
+  for (const JudgedReading& reading : readings) add(reading, reading.variance, all);
+  return all;
+}
+
+FrameMisfit misfit_beside(const JudgedReadings& readings, const JudgedReadings& other) {
+  FrameMisfit all;
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const float variance = std::max(readings[k].variance, other[k].variance);
+    if (readings[k].is_telling && other[k].is_telling) add(readings[k], variance, all);
+  }
   return all;
 }
 

@@ -12,21 +12,37 @@
 
 namespace dermis::calibration {
 
-/// What a circuit leaves unexplained.
-struct FrameMisfit {
-  double square = 0.0;  ///< Sum over its readings, in their variances; no single reading decides.
-  double readings = 0.0;
+/// What a circuit leaves unexplained of a reading, in units of its noise, which is the same in all circuits.
+struct JudgedReading {
+  enum class Taxel : unsigned char { unknown, idle, crossed, pressed };  ///< crossed: idle, on a line of a pressed one.
+  float square = 0.0F;           ///< Infinite: the circuit cannot give its frame.
+  float variance = 1.0F;         ///< 1 and what the rubber scatters.
+  Taxel taxel = Taxel::unknown;  ///< unknown: not judged.
+  /// Of the circuit: not that of a taxel pressed alone, which the law of the taxel explains in any circuit, and not one
+  /// of whose conductance the noise leaves nothing in this circuit.
+  bool is_telling = false;
+};
+using JudgedReadings = std::vector<JudgedReading>;  ///< [frames, taxels]
 
-  FrameMisfit& operator+=(const FrameMisfit& other) {
-    square += other.square;
-    readings += other.readings;
-    return *this;
-  }
+/// Sums of squares over variances; no single reading decides.
+struct FrameMisfit {
+  double square = 0.0;
+  double readings = 0.0;
+  double pressed_square = 0.0;
+  double crossed_square = 0.0;
 };
 
 /// Idle taxels against their unloaded conductance, pressed ones against their laws, over all frames. `inverted`: of
 /// them in `array`, whose resistances are all known.
-[[nodiscard]] FrameMisfit judge_frames(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter,
-                                       const InvertedFrames& inverted, const std::vector<const CircuitFrame*>& frames);
+[[nodiscard]] JudgedReadings judge_frames(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter,
+                                          const InvertedFrames& inverted,
+                                          const std::vector<const CircuitFrame*>& frames);
+
+/// Of all readings that are judged.
+[[nodiscard]] FrameMisfit misfit_of(const JudgedReadings& readings);
+
+/// Of the readings that tell in both circuits, by the larger of their variances: the two compare by these. A circuit in
+/// which a reading hardly follows its taxel would else look worse than one that leaves it to the rubber.
+[[nodiscard]] FrameMisfit misfit_beside(const JudgedReadings& readings, const JudgedReadings& other);
 
 }  // namespace dermis::calibration

@@ -45,7 +45,10 @@ bool is_inverted_slowly(const ArrayDescription& array) {
 
 LineParameters::LineParameters(const ArrayDescription& array) : array_(array) {
   const Readout& readout = array.readout;
-  if (readout.circuit == Circuit::none) return;
+  if (readout.circuit == Circuit::none) {
+    reference_ohm_ = 1.0;  // readings are conductances
+    return;
+  }
   drives_ = unknown_lines(readout.drive_ohm);
   loads_ = unknown_lines(readout.load_ohm);
   known_drive_ohm_ = geometric_mean(readout.drive_ohm);

@@ -18,12 +18,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastIdleSigmas = 3.0;  // an idle reading below this is cut at 0 too often
-
-/// Idle readings tell something only where they are well above 0, where noise is cut.
-bool is_readable(const VectorXd& law, const VectorXd& basis, double reference_siemens, double sigma_siemens) {
-  if (law.size() == 0) return true;  // not known yet
-  return law.dot(basis) * reference_siemens >= kLeastIdleSigmas * sigma_siemens;
+/// Others give a first law, and tell nothing more.
+bool tells_when_idle(const TaxelLaw& law) {
+  return law.is_readable || law.unloaded.size() == 0;
 }
 
 void add_idle(const CircuitFrame& frame, const InvertedFrame& inverted, const Estimate& estimate,
@@ -34,10 +31,8 @@ void add_idle(const CircuitFrame& frame, const InvertedFrame& inverted, const Es
   MatrixXd rows(slopes + 1, inverted.slopes.rows());
   Index used = 0;
   for (std::size_t taxel = 0; taxel < rubber.laws.size(); ++taxel) {
-    const double sigma = inverted.sigma_siemens[taxel];
-    if (frame.newtons[taxel] != 0.0F) continue;
-    if (!is_readable(rubber.laws[taxel].unloaded, basis, rubber.reference_siemens, sigma)) continue;
-    const double relative_sigma = sigma / rubber.reference_siemens;
+    if (frame.newtons[taxel] != 0.0F || !tells_when_idle(rubber.laws[taxel])) continue;
+    const double relative_sigma = inverted.sigma_siemens[taxel] / rubber.reference_siemens;
     const double weight = 1.0 / (relative_sigma * relative_sigma);
     auto row = rows.col(used++);
     row.head(slopes) = inverted.slopes_of(taxel) / rubber.reference_siemens;

@@ -45,10 +45,10 @@ NormalEquations& NormalEquations::operator*=(double factor) {
   return *this;
 }
 
-Elimination eliminate_laws(const NormalEquations& equations, const VectorXd& prior_precision) {
+Elimination eliminate_laws(const NormalEquations& equations, const MatrixXd& prior_precision) {
   Elimination result;
   result.normal = equations.global.selfadjointView<Eigen::Lower>();
-  const Index terms = prior_precision.size();
+  const Index terms = prior_precision.rows();
   const Index columns = result.normal.cols();
   result.laws.resize(equations.local.size());
   result.covariance.resize(equations.local.size());
@@ -56,7 +56,7 @@ Elimination eliminate_laws(const NormalEquations& equations, const VectorXd& pri
     if (equations.readings[taxel] == 0.0) continue;
     const MatrixXd& local = equations.local[taxel];
     MatrixXd own = local.leftCols(terms);
-    own.diagonal() += prior_precision;
+    own.diagonal() += prior_precision.col(static_cast<Index>(taxel));
     const Eigen::LDLT<MatrixXd> factors(own);
     result.laws[taxel] = factors.solve(local.rightCols(columns));
     result.covariance[taxel] = factors.solve(MatrixXd::Identity(terms, terms));

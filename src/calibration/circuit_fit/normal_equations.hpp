@@ -37,7 +37,7 @@ struct Elimination {
   [[nodiscard]] double cost() const { return normal(normal.rows() - 1, normal.cols() - 1); }
 };
 
-/// `prior_precision` [terms] draws each term of a law to 0.
-[[nodiscard]] Elimination eliminate_laws(const NormalEquations& equations, const Eigen::VectorXd& prior_precision);
+/// `prior_precision` [terms, taxels] draws each term of a law to 0.
+[[nodiscard]] Elimination eliminate_laws(const NormalEquations& equations, const Eigen::MatrixXd& prior_precision);
 
 }  // namespace dermis::calibration

@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "calibration/circuit_fit/common_ratio.hpp"
+#include "calibration/circuit_fit/driver_presses.hpp"
 #include "calibration/circuit_fit/frame_selection.hpp"
 #include "calibration/circuit_fit/gauss_newton.hpp"
 #include "calibration/circuit_fit/line_parameters.hpp"
@@ -31,13 +32,16 @@ void keep_given_errors(const Readout& given, Readout& fitted) {
   }
 }
 
-ResistanceFit report(const Readout& given, const LineParameters& lines, const Iteration& last) {
+ResistanceFit report(const Readout& given, const LineParameters& lines, const Iteration& last,
+                     const CircuitFrames& frames) {
   ResistanceFit fit;
   fit.array = lines.array_at(last.estimate.parameters);
   fit.errors = standard_errors(lines, last.estimate.parameters, last.covariance);
   fit.array.readout.drive_error_ohm = fit.errors.drive_ohm;
   fit.array.readout.drive_error_correlation = fit.errors.correlation;
   keep_given_errors(given, fit.array.readout);
+  const Eigen::Index drives = lines.drive_count();
+  fit.driver_presses = driver_presses(lines, last.estimate, last.covariance.topLeftCorner(drives, drives), frames);
   fit.rubber_scatter = std::sqrt(last.estimate.scatter.rubber_variance);
   fit.sheet_scatter = last.estimate.scatter.sheet;
   fit.has_idle_readings = last.has_idle_readings;
@@ -64,7 +68,7 @@ Result<ResistanceFit> fit_resistances(const ArrayDescription& array, const Circu
     last = iterate(lines, select_frames(frames, most), last->estimate, kEnough);
   }
   if (!last) return last.error();
-  return report(array.readout, lines, *last);
+  return report(array.readout, lines, *last, frames);
 }
 
 }  // namespace dermis::calibration

@@ -6,6 +6,7 @@
 
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/standard_errors.hpp"
+#include "dermis/calibration/circuit_fit.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/result.hpp"
 
@@ -15,10 +16,11 @@ namespace dermis::calibration {
 struct ResistanceFit {
   ArrayDescription array;  ///< With numbers for all resistances.
   StandardErrors errors;
-  double rubber_scatter = 0.0;     ///< Of a pressed taxel about its law, relative.
-  double sheet_scatter = 0.0;      ///< Unloaded conductance from line to line, relative; 0: not compared.
-  bool has_idle_readings = false;  ///< That are large enough to tell something.
-  bool has_absolute = false;       ///< A resistance was given; if not, the loads' geometric mean is kNominalLoadOhm.
+  std::vector<PressPair> driver_presses;  ///< That would tell the fitted drivers, see driver_presses().
+  double rubber_scatter = 0.0;            ///< Of a pressed taxel about its law, relative.
+  double sheet_scatter = 0.0;             ///< Unloaded conductance from line to line, relative; 0: not compared.
+  bool has_idle_readings = false;         ///< That are large enough to tell something.
+  bool has_absolute = false;  ///< A resistance was given; if not, the loads' geometric mean is kNominalLoadOhm.
 };
 
 /// Fits the resistances of `array` that are kFitOhm. `array` has a circuit, not Circuit::automatic; where all is known

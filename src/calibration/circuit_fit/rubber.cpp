@@ -11,6 +11,26 @@ namespace {
 
 using Eigen::VectorXd;
 
+constexpr double kLeastIdleSigmas = 2.0;  // an idle reading below this is cut at 0 too often
+
+/// Where readings of idle taxels are well above 0 on average, whatever the circuit and the temperature.
+std::vector<bool> readable_taxels(const CircuitFrames& frames, std::size_t taxels) {
+  std::vector<double> sums(taxels);
+  std::vector<double> counts(taxels);
+  for (const CircuitFrame& frame : frames.frames) {
+    for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+      if (frame.newtons[taxel] != 0.0F) continue;
+      sums[taxel] += frame.ratio[taxel] / frame.said_sigma;
+      counts[taxel] += 1.0;
+    }
+  }
+  std::vector<bool> readable(taxels);
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
+    readable[taxel] = counts[taxel] > 0.0 && sums[taxel] >= kLeastIdleSigmas * counts[taxel];
+  }
+  return readable;
+}
+
 ForceScale force_scale(const CircuitFrames& frames) {
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
@@ -36,7 +56,8 @@ Rubber unknown_rubber(const CircuitFrames& frames, std::size_t taxels, double re
   rubber.reference_siemens = reference_siemens;
   rubber.force_scale = force_scale(frames);
   rubber.unloaded_terms = frames.has_temperature ? 3 : 1;
-  rubber.laws.resize(taxels);
+  const std::vector<bool> readable = readable_taxels(frames, taxels);
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) rubber.laws.push_back({{}, {}, readable[taxel]});
   return rubber;
 }
 
@@ -51,9 +72,16 @@ VectorXd pressed_basis(double x, double t) {
   return basis;
 }
 
-VectorXd common_basis(double x, double t, double excess) {
+SeriesLoss series_loss(const Rubber& rubber, double excess) {
+  constexpr double kMostShare = 0.8;  // of the resistance of a taxel
+  const double share = std::clamp(rubber.sheet[kSheetTerms - 1] * excess, 0.0, kMostShare);
+  const double rest = 1.0 - share;
+  return {std::log(rest) + share / rest, -excess / rest};
+}
+
+VectorXd common_basis(double x, double t, const SeriesLoss& series) {
   VectorXd basis(kCommonTerms);
-  basis << std::pow(x, 4), std::pow(x, 5), std::pow(x, 6), t * x * x, t * x * x * x, t * t * x, -excess;
+  basis << std::pow(x, 4), std::pow(x, 5), std::pow(x, 6), t * x * x, t * x * x * x, t * t * x, series.slope;
   return basis;
 }
 

@@ -12,8 +12,8 @@
 #include <optional>
 #include <utility>
 
+#include "calibration/circuit_fit/press_prediction.hpp"
 #include "dermis/compensation/circuit_model.hpp"
-#include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
 
 namespace dermis::calibration {
@@ -26,7 +26,7 @@ constexpr std::uint64_t kPairSeed = 3;
 /// What a fitted circuit would read.
 class Prediction {
  public:
-  explicit Prediction(const CommonRatio& fit) : fit_(fit), siemens_(fit.rubber.laws.size()) {
+  explicit Prediction(const CommonRatio& fit) : rubber_(fit.rubber) {
     if (fit.array.readout.circuit == Circuit::none) return;
     Result<compensation::CircuitModel> model = compensation::CircuitModel::create(fit.array);
     if (model) model_.emplace(std::move(*model));
@@ -34,46 +34,20 @@ class Prediction {
 
   /// Readings over the supply [taxels].
   [[nodiscard]] std::vector<double> readings(const PressPair& pair) {
-    for (std::size_t taxel = 0; taxel < siemens_.size(); ++taxel) {
-      const bool is_pressed = taxel == pair.first || taxel == pair.second;
-      siemens_[taxel] = fit_.rubber.reference_siemens * conductance(taxel, is_pressed ? pair.newtons : 0.0);
-    }
-    if (!model_) return siemens_;
-    model_->solve(siemens_);
+    std::vector<double> siemens = siemens_under(rubber_, pair);
+    if (!model_) return siemens;
+    model_->solve(siemens);
     return {model_->ratio().begin(), model_->ratio().end()};
   }
 
  private:
-  /// At the middle of the temperatures, over the reference.
-  [[nodiscard]] double conductance(std::size_t taxel, double newtons) const {
-    const Rubber& rubber = fit_.rubber;
-    const TaxelLaw& law = rubber.laws[taxel];
-    const double unloaded = law.unloaded.size() > 0 ? std::max(0.0, law.unloaded[0]) : 0.0;
-    if (newtons == 0.0) return unloaded;
-    const double log_force = rubber.force_scale.log_force(newtons);
-    const double open = law.pressed.dot(pressed_basis(log_force, 0.0)) +
-                        rubber.sheet.tail(kCommonTerms).dot(common_basis(log_force, 0.0, 0.0));
-    // What all have in series: ln g = open - r g.
-    double excess = std::exp(open);
-    const double series = rubber.sheet[kSheetTerms - 1];
-    constexpr int kSteps = 20;
-    for (int k = 0; k < kSteps; ++k) excess = std::sqrt(excess * std::exp(open - series * excess));
-    return unloaded + excess;
-  }
-
-  const CommonRatio& fit_;
-  std::vector<double> siemens_;
+  const Rubber& rubber_;
   std::optional<compensation::CircuitModel> model_;  // empty: readings are conductances
 };
 
-/// Taxels that all circuits have a law of, with the heaviest known load of each; 0: none.
+/// Of taxels that all circuits have a law of; 0: none.
 std::vector<double> heaviest_loads(const std::vector<const CommonRatio*>& circuits, const CircuitFrames& frames) {
-  std::vector<double> heaviest(circuits.front()->rubber.laws.size());
-  for (const CircuitFrame& frame : frames.frames) {
-    for (std::size_t taxel = 0; taxel < heaviest.size(); ++taxel) {
-      heaviest[taxel] = std::fmax(heaviest[taxel], static_cast<double>(frame.newtons[taxel]));
-    }
-  }
+  std::vector<double> heaviest = heaviest_loads(circuits.front()->rubber, frames);
   for (const CommonRatio* const circuit : circuits) {
     for (std::size_t taxel = 0; taxel < heaviest.size(); ++taxel) {
       if (circuit->rubber.laws[taxel].pressed.size() == 0) heaviest[taxel] = 0.0;
@@ -84,15 +58,11 @@ std::vector<double> heaviest_loads(const std::vector<const CommonRatio*>& circui
 
 /// Pairs that are no neighbours, all of them or as many as are looked at.
 std::vector<PressPair> possible_pairs(const ArrayDescription& array, const std::vector<double>& heaviest) {
-  const auto apart = [&](std::size_t a, std::size_t b) {
-    const auto between = [](std::size_t x, std::size_t y) { return x > y ? x - y : y - x; };
-    return std::max(between(a / array.cols, b / array.cols), between(a % array.cols, b % array.cols)) > 1;
-  };
   std::vector<PressPair> pairs;
   for (std::size_t a = 0; a < heaviest.size(); ++a) {
     if (heaviest[a] == 0.0) continue;
     for (std::size_t b = a + 1; b < heaviest.size(); ++b) {
-      if (heaviest[b] > 0.0 && apart(a, b)) pairs.push_back({a, b, std::min(heaviest[a], heaviest[b])});
+      if (heaviest[b] > 0.0 && are_apart(array.cols, a, b)) pairs.push_back({a, b, std::min(heaviest[a], heaviest[b])});
     }
   }
   Random random(kPairSeed);
@@ -101,17 +71,6 @@ std::vector<PressPair> possible_pairs(const ArrayDescription& array, const std::
   }
   pairs.resize(std::min(kMostPairs, pairs.size()));
   return pairs;
-}
-
-/// Presses that are asked for are kept like those that are there; unloaded frames are means of more.
-double noise_of_presses(const CircuitFrames& frames) {
-  std::vector<double> sigmas;
-  for (const CircuitFrame& frame : frames.frames) {
-    const bool is_pressed =
-        std::any_of(frame.newtons.begin(), frame.newtons.end(), [](float newtons) { return newtons > 0.0F; });
-    if (is_pressed) sigmas.push_back(frame.sigma_ratio);
-  }
-  return upper_median(std::move(sigmas));
 }
 
 struct Distance {

@@ -39,10 +39,12 @@ void SilentLineDetector::judge(const Observation& seen, FaultList& faults) noexc
 }
 
 bool SilentLineDetector::sees(Axis axis, std::size_t line) const noexcept {
+  const double least_sigmas = kRoundedToNone / array_.readout.adc_noise_counts;
   double per_frame = 0.0;
   for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
     const double unloaded_ratio = unloaded_.ratio()[taxel_on_line(array_, axis, line, k)];
     const double mean = kUnloadedShare * unloaded_ratio / last_sigma_ratio_;
+    if (mean < least_sigmas) continue;
     per_frame += std::min(floor_.information * mean * mean, static_cast<double>(kMostOfTaxel));
   }
   return last_sigma_ratio_ > 0.0 && per_frame >= kEvidence / kFoundWithinFrames;

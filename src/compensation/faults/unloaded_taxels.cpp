@@ -10,8 +10,8 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr double kMostCutOff = 0.05;    // of full scale: what readouts send as 0
-constexpr double kAboveSmallest = 1.5;  // times the smallest reading: an unloaded one that cannot have been cut off
+constexpr double kMostCutOff = 0.05;  // of full scale: what readouts send as 0
+constexpr double kOneCount = 1.5;     // less is no more than one: nothing but rounding cuts off below it
 
 }  // namespace
 
@@ -60,7 +60,11 @@ void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio, cons
 }
 
 void UnloadedTaxels::forget_what_may_be_cut_off(double sigma_ratio) noexcept {
-  const auto cut_off = static_cast<float>(kUnloadedShare * kAboveSmallest * smallest_reading_ / sigma_ratio);
+  const Readout& readout = array_.readout;
+  const double count_ratio = sigma_ratio / readout.adc_noise_counts;
+  const bool sends_one_count = readout.quantity == Quantity::counts && smallest_reading_ < kOneCount * count_ratio;
+  const double most_cut_off = sends_one_count ? kRoundedToNone * count_ratio : smallest_reading_;
+  const auto cut_off = static_cast<float>(most_cut_off / sigma_ratio);
   for (float& least : least_reading_) least = least > cut_off ? least : 0.0F;
 }
 

@@ -16,6 +16,7 @@
 namespace dermis::compensation {
 
 inline constexpr double kUnloadedShare = 0.3;  // of the unloaded conductance: temperature, memory, age leave at least
+inline constexpr double kRoundedToNone = 0.5;  // of a count, in every frame, however much noise there is said to be
 
 /// What taxels read that nothing presses.
 class UnloadedTaxels {

@@ -96,7 +96,7 @@ Result<PaperBank> read_paper_bank(const std::string& path) {
   if (!file) return file.error();
   const auto format = file->metadata.find("format");
   if (format == file->metadata.end() || format->second != kFormat) {
-    return bad_input(path + ": is not a bank of the paper; write one with 'dermis calibrate --bank'");
+    return bad_input(path + ": is not a bank of the paper; 'dermis calibrate' writes one");
   }
   Result<PaperBank> bank = bank_from(*file);
   if (!bank) return bad_input(path + ": " + bank.error().message);

@@ -15,7 +15,16 @@ const RING_PX = 4;
 
 type Area = ReturnType<typeof fitMap>;
 
-/** The array: presses of each taxel in colour, the taxel that is asked for, and the one that is pressed instead. */
+function askedFor({ taxel, togetherWith }: CalibrationState): number[] {
+  return togetherWith < 0 ? [taxel] : [taxel, togetherWith];
+}
+
+function colorOfTarget(taxel: number, { hint, missingTaxel }: CalibrationState): string {
+  if (hint === CalibrationHint.release) return "--good";
+  return taxel === missingTaxel ? "--warn" : "--accent";
+}
+
+/** The array: presses of each taxel in colour, the one or two that are asked for, and the one that is pressed instead. */
 export class ArrayPicture {
   readonly element: HTMLElement;
   readonly #canvas = element("canvas", { class: "layer", role: "img" });
@@ -52,7 +61,7 @@ export class ArrayPicture {
     this.#canvas.width = Math.round(width * ratio);
     this.#canvas.height = Math.round(height * ratio);
     context.scale(ratio, ratio);
-    const area = fitMap({ left: 0, top: 0, width, height }, this.#array);
+    const area = fitMap({ left: 0, top: RING_PX, width: width - RING_PX, height: height - RING_PX }, this.#array);
     this.#drawPresses(context, area, this.#array);
     this.#drawNumbers(context, area, this.#array);
     this.#drawTarget(context, area, this.#array);
@@ -62,7 +71,7 @@ export class ArrayPicture {
   #words(array: ArrayDescription): string {
     const state = this.#state;
     const presses = state?.taxelPresses.reduce((sum, count) => sum + count, 0) ?? 0;
-    const target = state?.stage === CalibrationStage.pressing ? `; press ${taxelName(state.taxel, array)}` : "";
+    const target = state?.stage === CalibrationStage.pressing ? `; press ${askedFor(state).map((taxel) => taxelName(taxel, array)).join(" and ")}` : "";
     return `${array.rows} rows, ${array.cols} columns, ${presses} presses${target}`;
   }
 
@@ -116,8 +125,7 @@ export class ArrayPicture {
     if (state === undefined || state.stage !== CalibrationStage.pressing) return;
     const wrong = state.hint === CalibrationHint.otherTaxel || state.hint === CalibrationHint.several;
     if (wrong && state.pressedTaxel >= 0) this.#ring(context, area, array, state.pressedTaxel, "--bad", true);
-    const done = state.hint === CalibrationHint.release;
-    this.#ring(context, area, array, state.taxel, done ? "--good" : "--accent", false);
+    for (const taxel of askedFor(state)) this.#ring(context, area, array, taxel, colorOfTarget(taxel, state), false);
   }
 
   /** Around a taxel, and its row and column as faint lines, so that it is found on the array; or crossed out. */

@@ -8,8 +8,7 @@ import { taxelName } from "../views/array/geometry";
 import { HoldRing } from "./hold_ring";
 import { inGrams } from "./plan";
 import { QualityPlot } from "./quality_plot";
-
-const MOST_READING_DECADES = 3;
+import { ReadingBar } from "./reading_bar";
 
 export interface WalkActions {
   skip(): void;
@@ -32,7 +31,7 @@ function levelOf({ stage, hint }: CalibrationState): "good" | "warn" | "bad" | "
   if (stage === CalibrationStage.done) return "good";
   if (stage !== CalibrationStage.pressing) return "";
   if (hint === CalibrationHint.release) return "good";
-  return hint >= CalibrationHint.otherTaxel ? "warn" : "";
+  return hint >= CalibrationHint.otherTaxel && hint !== CalibrationHint.oneOfTwo ? "warn" : "";
 }
 
 /** What to do now, how far it is, how good it is. */
@@ -43,10 +42,9 @@ export class WalkPanel {
   readonly #count = element("span", { class: "figure", "data-role": "count" });
   readonly #words = element("p", { class: "instruction", role: "status", "aria-live": "assertive", "data-role": "instruction" });
   readonly #ring = new HoldRing();
-  readonly #readingName = element("span");
-  readonly #reading = element("span", { class: "figure", "data-role": "reading" });
-  readonly #bar = element("div", { class: "reading-bar" });
-  readonly #readingRow: HTMLElement;
+  readonly #reading = new ReadingBar();
+  readonly #togetherReading = new ReadingBar();
+  readonly #readings: HTMLElement;
   readonly #quality = element("span", { class: "quality-figure", "data-role": "quality" });
   readonly #unpressed = element("p", { class: "dim", "data-role": "unpressed" });
   readonly #pressing: HTMLElement;
@@ -63,13 +61,8 @@ export class WalkPanel {
     this.#save = button("save", "Save and use", "Enter", () => actions.save());
     this.#save.classList.add("primary");
     this.#cancel = button("cancel", "Cancel", "", () => actions.cancel());
-    this.#readingRow = element(
-      "div",
-      { class: "reading" },
-      element("div", { class: "reading-head" }, this.#readingName, this.#reading),
-      element("div", { class: "reading-track" }, this.#bar),
-    );
-    this.#pressing = element("div", { class: "pressing" }, this.#ring.element, this.#readingRow);
+    this.#readings = element("div", { class: "readings" }, this.#reading.element, this.#togetherReading.element);
+    this.#pressing = element("div", { class: "pressing" }, this.#ring.element, this.#readings);
     this.element = element(
       "div",
       { class: "calibration-walk", "data-role": "walk" },
@@ -115,14 +108,15 @@ export class WalkPanel {
 
   #setPress(state: CalibrationState, array: ArrayDescription | undefined): void {
     const isPressing = state.stage === CalibrationStage.pressing;
+    const isPair = state.togetherWith >= 0;
     setHidden(this.#pressing, !isPressing && state.stage !== CalibrationStage.unloaded);
-    if (isPressing) this.#ring.set(state.holdShare, `${Number(state.weightN.toPrecision(4))} N`, inGrams(state.weightN));
+    if (isPressing) this.#ring.set(state.holdShare, `${Number(state.weightN.toPrecision(4))} N`, inGrams(state.weightN) + (isPair ? " each" : ""));
     else this.#ring.set(state.holdShare, "0 N", "nothing");
-    setHidden(this.#readingRow, !isPressing);
-    if (array !== undefined) setText(this.#readingName, `Reading of ${taxelName(state.taxel, array)}`);
-    setText(this.#reading, `${fixed(state.reading, state.reading < 9.95 ? 1 : 0)} \u00d7 unloaded`);
-    const share = Math.log10(Math.max(1, state.reading)) / MOST_READING_DECADES;
-    this.#bar.style.width = `${(100 * Math.min(1, share)).toFixed(1)}%`;
+    setHidden(this.#readings, !isPressing);
+    setHidden(this.#togetherReading.element, !isPair);
+    if (array === undefined) return;
+    this.#reading.set(taxelName(state.taxel, array), state.reading);
+    if (isPair) this.#togetherReading.set(taxelName(state.togetherWith, array), state.togetherReading);
   }
 
   #setButtons({ stage, pressesDone, message }: CalibrationState): void {

@@ -5,13 +5,13 @@ import { CdrReader } from "./cdr_reader";
 export const CalibrationStage = { none: 0, unloaded: 1, pressing: 2, fitting: 3, done: 4, failed: 5 } as const;
 
 /** What the person has to know besides the press that is asked for. */
-export const CalibrationHint = { none: 0, press: 1, hold: 2, release: 3, otherTaxel: 4, unsteady: 5, tooShort: 6, several: 7 } as const;
+export const CalibrationHint = { none: 0, press: 1, hold: 2, release: 3, otherTaxel: 4, unsteady: 5, tooShort: 6, several: 7, oneOfTwo: 8 } as const;
 
 const NO_TAXEL = 4294967295;
 
 const reader = new CdrReader();
 
-/** dermis_msgs/CalibrationState.msg; `pressedTaxel` is -1 where none is. */
+/** dermis_msgs/CalibrationState.msg; a taxel is -1 where there is none. */
 export function readCalibrationState(message: DataView) {
   return {
     stampS: reader.begin(message).header(),
@@ -29,6 +29,9 @@ export function readCalibrationState(message: DataView) {
     hint: reader.uint8(),
     pressedTaxel: readTaxel(),
     unpressedRelativeError: reader.float64(),
+    togetherWith: readTaxel(),
+    togetherReading: reader.float64(),
+    missingTaxel: readTaxel(),
   };
 }
 

@@ -189,8 +189,9 @@ describe("statistics, health and calibration", () => {
       stampS: 1234.5,
       taxelPresses: state["taxel_presses"],
     });
-    const alone = { ...state, header, pressed_taxel: 4294967295 };
-    expect(readCalibrationState(written("dermis_msgs/msg/CalibrationState", alone)).pressedTaxel).toBe(-1);
+    const none = 4294967295;
+    const alone = { ...state, header, pressed_taxel: none, together_with: none, missing_taxel: none };
+    expect(readCalibrationState(written("dermis_msgs/msg/CalibrationState", alone))).toMatchObject({ pressedTaxel: -1, togetherWith: -1, missingTaxel: -1 });
   });
 });
 

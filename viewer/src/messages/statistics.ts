@@ -25,6 +25,7 @@ export function readStatistics(message: DataView) {
     recordingFrames: reader.uint64(),
     clients: reader.uint32(),
     clientDrops: reader.uint64(),
+    recordingLeftOut: reader.uint64(),
   };
 }
 

@@ -13,7 +13,7 @@ const KEYS: readonly (readonly [string, string])[] = [
   ["Arrows", "on the maps: move the cursor; on the suit: turn it"],
   ["Enter", "on the maps: pin the taxel"],
   ["+  \u2212  Home", "on the suit: nearer, farther, all of it"],
-  ["S  R  F", "calibration: skip a press, repeat it, finish"],
+  ["S  R  Enter", "calibration: skip a press, do the last one again, save"],
   ["K", "recording: play, pause"],
   ["J  L", "recording: a second back, forward"],
   ["D", "light or dark"],

@@ -49,6 +49,12 @@ class ArrayRow {
   }
 }
 
+function recordingWords(server: Statistics | undefined): string {
+  if (server === undefined || !server.recording) return "off";
+  const leftOut = server.recordingLeftOut > 0 ? `, ${count(server.recordingLeftOut)} left out: the disk does not follow` : "";
+  return `${server.recordingFile}, ${count(server.recordingFrames)} frames${leftOut}`;
+}
+
 class HealthView implements View {
   readonly name = "health";
   readonly title = "Health";
@@ -118,7 +124,7 @@ class HealthView implements View {
       ["Connections lost", count(Math.max(0, stream.reconnects))],
       ["Clients of the server", server === undefined ? fixed(NaN, 0) : count(server.clients)],
       ["Messages slow clients missed", server === undefined ? fixed(NaN, 0) : count(server.clientDrops)],
-      ["Recording", server?.recording ? `${server.recordingFile}, ${count(server.recordingFrames)} frames` : "off"],
+      ["Recording", recordingWords(server)],
     ];
     this.#showPairs(pairs);
     this.#seen = { ms: nowMs, frames: display.framesDrawn, messages: stream.messages, bytes: stream.bytes };

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""Forces of a live array in the terminal, without further packages.
+
+    live_view.py sim:contacts?rate=100 chest.safetensors
+"""
+import sys
+import time
+
+import dermis
+
+SHADES = " .:-=+*#%@"
+FULL_SCALE_N = 20.0
+
+
+def show(force: dermis.ForceFrame, contacts: list[dermis.Contact]) -> None:
+    shades = (force.newtons / FULL_SCALE_N * len(SHADES)).clip(0, len(SHADES) - 1)
+    rows = ["".join(2 * SHADES[int(shade)] if shade == shade else "??" for shade in row) for row in shades]
+    touches = [f"{contact.id}: {contact.force_n:.1f} N" for contact in contacts]
+    print("\033[H\033[J" + "\n".join(rows + touches), flush=True)
+
+
+def main(uri: str, model_path: str, seconds: float = float("inf")) -> None:
+    model = dermis.read_model(model_path)
+    pipeline, tracker = dermis.Pipeline(model), dermis.ContactTracker(model)
+    end = time.monotonic() + seconds
+    next_picture = 0.0
+    with dermis.open(uri, model.array) as source:
+        for raw in source:
+            force = pipeline.process(raw)
+            contacts = tracker.process(force)
+            if time.monotonic() >= next_picture:
+                show(force, contacts)
+                next_picture = time.monotonic() + 0.05
+            if time.monotonic() >= end:
+                break
+
+
+if __name__ == "__main__":
+    try:
+        main(sys.argv[1], sys.argv[2], *map(float, sys.argv[3:]))
+    except KeyboardInterrupt:
+        pass

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+
+namespace dermis::fusion {
+
+/// What the material of a sheet remembers: how the force that it feels, which the networks give, follows the load. The
+/// same for all taxels, as it belongs to the rubber.
+struct MemoryLaw {
+  static constexpr std::array<double, 4> kCreepSeconds{0.1, 1.0, 10.0, 100.0};  ///< tau_k [s].
+  static constexpr std::array<float, 3> kStopReach{0.1F, 0.3F, 1.0F};           ///< r_j.
+
+  std::array<float, 4> creep{};  ///< c_k: shares of the load that are felt late, >= 0, together less than 0.9.
+  std::array<float, 3> gap{};    ///< h_j: gaps between loading and unloading, relative, >= 0, together less than 0.9.
+
+  /// Every number is in its range.
+  [[nodiscard]] bool is_consistent() const noexcept;
+
+  bool operator==(const MemoryLaw&) const = default;
+};
+
+/// Frees the forces of the networks from what the material remembers. Of a taxel that feels u [N], after the interval
+/// dt since the frame before, with a_k = 1 - exp(-dt / tau_k):
+///
+///   creep       f = max(0, u - sum_k c_k (1 - a_k) s_k) / (1 - sum_k c_k (1 - a_k)),   s_k <- s_k + a_k (f - s_k)
+///   hysteresis  m_j <- clamp(m_j + d ln(1 + f/1 N) / r_j, -1, 1),   newtons = f (1 + sum_j h_j m_j / 2)
+///
+/// The first inverts an elastic layer in series with a Kelvin-Voigt element for each tau_k, u = f (1 - sum c) + sum c
+/// s, exactly for any intervals, where the load of a frame lies on the taxel since the frame before. The second undoes
+/// stops (Prandtl 1928): the material reads low after loading and high after unloading.
+///
+/// The states are bounded by the heaviest load that was, whatever the frames are. What lies on the array in the first
+/// frame counts as lying there for long; a frame that is earlier than the one before it is the first of a recording
+/// that begins anew. A taxel without a force counts as carrying its last one, a rejected frame as none at all. Standard
+/// deviations grow as the noise does: by d newtons / d u.
+///
+/// Not thread-safe: one per stream.
+class MaterialMemory {
+ public:
+  /// `law` must be consistent.
+  MaterialMemory(const MemoryLaw& law, std::size_t taxels);
+
+  /// newtons and sigma_newtons of a frame of the array's size. Allocates nothing.
+  void process(ForceFrame& force) noexcept;
+
+ private:
+  void forget() noexcept;
+
+  MemoryLaw law_;
+  std::optional<Nanos> time_;     // of the frame before
+  std::vector<float> newtons_;    // f [taxels]
+  std::vector<float> logarithm_;  // ln(1 + f) [taxels]
+  std::vector<float> late_;       // s_k [4, taxels]
+  std::vector<float> stops_;      // m_j [3, taxels]
+};
+
+}  // namespace dermis::fusion

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/preprocessing/missing_readings.hpp"
+
+namespace dermis::pipeline {
+
+/// Counts the frames of a stream whose forces are not what a user expects. Not thread-safe.
+class FrameTroubles {
+ public:
+  /// `from`: what the frames come from, for messages; empty: those do not say it.
+  FrameTroubles(const ArrayDescription& array, const std::string& from);
+
+  /// What `pipeline` has just made of the next frame, `raw`. `source`: that gave it; null: only its number is told.
+  void add(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline, const FrameSource* source = nullptr);
+
+  /// The next frame of the source is not looked at.
+  void skip() noexcept { ++number_; }
+
+  /// Those that were added.
+  [[nodiscard]] std::size_t frames() const noexcept { return frames_; }
+
+  /// A line for each kind of trouble that there was.
+  [[nodiscard]] std::vector<std::string> describe() const;
+
+  /// Failed, with what is most likely wrong, where more than half of the frames have no force at all.
+  [[nodiscard]] Status verdict() const;
+
+ private:
+  [[nodiscard]] std::string cause() const;
+
+  std::string prefix_;  ///< Of messages: "frames.csv: ", or nothing.
+  preprocessing::MissingReadings missing_;
+  std::size_t number_ = 0;  ///< Of the last frame in its source, from 1.
+  std::size_t frames_ = 0;
+  std::size_t rejected_ = 0;
+  std::size_t unsolved_ = 0;
+  std::size_t faulty_ = 0;
+  std::size_t lost_ = 0;          ///< Without a force: rejected, or not solved.
+  std::size_t lost_outside_ = 0;  ///< Of these, with readings that are none of the ADC.
+  std::string first_rejection_;
+};
+
+}  // namespace dermis::pipeline

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""Newtons from resistive tactile arrays: raw counts in, calibrated force per taxel out.
+
+    import dermis
+    pipeline = dermis.Pipeline(dermis.read_model("chest.safetensors"))
+    for frame in dermis.open("serial:///dev/ttyACM0"):
+        print(pipeline.process(frame).newtons.sum())
+
+Arrays are (rows, cols), row-major; row = driven line, col = sensed line. Units are SI; temperatures are in Celsius, times
+in nanoseconds. The stub __init__.pyi says of every argument and result what it is; docs/python.md shows how they go together.
+"""
+import enum as _enum
+
+
+class Error(Exception):
+    """One line that names the place and the mend."""
+
+
+class BadInput(Error, ValueError):
+    """A file, an argument or a device said something that cannot be used."""
+
+
+class Failed(Error, RuntimeError):
+    """The work itself could not be done: a full disk, a device that was unplugged."""
+
+
+class FrameStatus(_enum.IntFlag):
+    """Outcome of a frame; OK is no flag."""
+
+    OK = 0
+    REJECTED = 1
+    SATURATED = 2
+    ABOVE_RANGE = 4
+    DEAD_TAXELS = 8
+    TEMPERATURE_UNKNOWN = 16
+    TEMPERATURE_CLAMPED = 32
+    NOT_CONVERGED = 64
+    LINE_FAULT = 128
+
+
+class TaxelStatus(_enum.IntEnum):
+    """What is known about one taxel of one frame."""
+
+    OK = 0
+    SATURATED = 1
+    ABOVE_RANGE = 2
+    DEAD = 3
+    LINE_FAULT = 4
+    INVALID = 5
+
+
+from dermis import circuit  # noqa: E402
+from dermis._dermis import (  # noqa: E402
+    ArrayDescription,
+    CalibrationReport,
+    Contact,
+    ContactTracker,
+    ForceFrame,
+    Forces,
+    Load,
+    Model,
+    Pipeline,
+    RawFrame,
+    Recording,
+    Server,
+    Source,
+    __version__,
+    calibrate,
+    evaluate_json as _evaluate_json,
+    open,
+    read_array,
+    read_loads,
+    read_model,
+    serve,
+)
+
+
+def evaluate(model, frames, loads):
+    """What `dermis evaluate --json` prints, as a dict."""
+    import json
+
+    return json.loads(_evaluate_json(model, frames, loads))
+
+
+__all__ = [
+    "ArrayDescription", "BadInput", "CalibrationReport", "Contact", "ContactTracker", "Error", "Failed", "ForceFrame",
+    "Forces", "FrameStatus", "Load", "Model", "Pipeline", "RawFrame", "Recording", "Server", "Source", "TaxelStatus",
+    "__version__", "calibrate", "circuit", "evaluate", "open", "read_array", "read_loads", "read_model", "serve",
+]

@@ -1,0 +1,345 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""Shapes are (rows, cols), row-major. A path is a str or an os.PathLike."""
+import enum
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from types import TracebackType
+from typing import Any, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from dermis import circuit as circuit
+
+_Path: TypeAlias = str | os.PathLike[str]
+
+__version__: str
+
+class Error(Exception):
+    """One line that names the place and the mend."""
+
+class BadInput(Error, ValueError):
+    """A file, an argument or a device said something that cannot be used."""
+
+class Failed(Error, RuntimeError):
+    """The work itself could not be done: a full disk, a device that was unplugged."""
+
+class FrameStatus(enum.IntFlag):
+    OK = 0
+    REJECTED = 1  # wrong shape, not a number, out of the ADC's range, time going backwards
+    SATURATED = 2  # at least one taxel
+    ABOVE_RANGE = 4  # at least one taxel is beyond its heaviest calibrated load
+    DEAD_TAXELS = 8
+    TEMPERATURE_UNKNOWN = 16  # the mean of the calibration is taken
+    TEMPERATURE_CLAMPED = 32  # outside the calibrated temperatures
+    NOT_CONVERGED = 64  # the crosstalk inversion
+    LINE_FAULT = 128  # a line or taxel is faulty and masked
+
+class TaxelStatus(enum.IntEnum):
+    OK = 0
+    SATURATED = 1  # the force is at least the one given
+    ABOVE_RANGE = 2  # extrapolated
+    DEAD = 3  # no force (NaN)
+    LINE_FAULT = 4  # no force (NaN)
+    INVALID = 5  # no force (NaN)
+
+class ArrayDescription:
+    """An array.toml (docs/file-formats.md)."""
+
+    @staticmethod
+    def from_toml(text: str) -> ArrayDescription: ...
+    def to_toml(self) -> str: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def rows(self) -> int: ...
+    @property
+    def cols(self) -> int: ...
+    @property
+    def row_pitch_m(self) -> float: ...
+    @property
+    def col_pitch_m(self) -> float: ...
+    @property
+    def taxel_area_m2(self) -> float | None: ...
+    @property
+    def circuit(self) -> str: ...
+    @property
+    def adc_bits(self) -> int: ...
+    def taxel_name(self, row: int, col: int) -> str: ...
+
+class Model:
+    """What turns the counts of one array into newtons: a model file of `dermis calibrate`."""
+
+    @property
+    def array(self) -> ArrayDescription: ...
+    @property
+    def provenance(self) -> dict[str, str]: ...
+    def write(self, path: _Path) -> None: ...
+
+def read_array(path: _Path) -> ArrayDescription: ...
+def read_model(path: _Path) -> Model: ...
+
+class RawFrame:
+    """Counts of one frame. `counts` is a view (rows, cols); it keeps the frame alive."""
+
+    @property
+    def time_ns(self) -> int: ...
+    @property
+    def temperature_celsius(self) -> float | None: ...
+    @property
+    def supply_v(self) -> float | None: ...
+    @property
+    def counts(self) -> NDArray[np.float32]: ...
+    @property
+    def sequence(self) -> int | None: ...
+    @property
+    def lost_before(self) -> int: ...
+
+class ForceFrame:
+    """Forces of one frame. The arrays are views (rows, cols); they keep the frame alive."""
+
+    @property
+    def time_ns(self) -> int: ...
+    @property
+    def status(self) -> FrameStatus: ...
+    @property
+    def newtons(self) -> NDArray[np.float32]: ...
+    @property
+    def sigma_newtons(self) -> NDArray[np.float32]: ...
+    @property
+    def signal_to_noise(self) -> NDArray[np.float32]: ...
+    @property
+    def taxels(self) -> NDArray[np.uint8]: ...
+
+class Recording:
+    """Frames of one array in memory, from and to any file of frames: .mcap, .csv, .h5, .npy and more.
+
+    counts: (frames, rows, cols). Give time_ns (frames,) or rate_hz. temperature_celsius [C] and supply_v [V] are (frames,), one
+    number for all frames, or None; NaN stands for a frame without.
+    """
+
+    def __init__(
+        self,
+        counts: ArrayLike,
+        *,
+        time_ns: ArrayLike | None = None,
+        rate_hz: float | None = None,
+        temperature_celsius: ArrayLike | None = None,
+        supply_v: ArrayLike | None = None,
+        array: ArrayDescription | _Path | None = None,
+    ) -> None: ...
+    @staticmethod
+    def read(path: _Path, *, rate_hz: float | None = None) -> Recording: ...
+    def write(self, path: _Path) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int, /) -> RawFrame: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def model_hash(self) -> str: ...
+    @property
+    def array(self) -> ArrayDescription | None: ...
+    @property
+    def time_ns(self) -> NDArray[np.int64]: ...
+    @property
+    def temperature_celsius(self) -> NDArray[np.float64]: ...
+    @property
+    def supply_v(self) -> NDArray[np.float64]: ...
+    @property
+    def counts(self) -> NDArray[np.float32]: ...
+
+class Forces:
+    """Forces of many frames: newtons, sigma_newtons [N] and taxels (TaxelStatus) are (frames, rows, cols), status (FrameStatus)
+    and time_ns (frames,)."""
+
+    def __len__(self) -> int: ...
+    @property
+    def time_ns(self) -> NDArray[np.int64]: ...
+    @property
+    def status(self) -> NDArray[np.uint8]: ...
+    @property
+    def newtons(self) -> NDArray[np.float32]: ...
+    @property
+    def sigma_newtons(self) -> NDArray[np.float32]: ...
+    @property
+    def taxels(self) -> NDArray[np.uint8]: ...
+
+class Pipeline:
+    """Counts in, newtons out. One for each stream of frames, in their order; raises where two threads use it at once."""
+
+    def __init__(self, model: Model) -> None: ...
+    @overload
+    def process(self, frame: RawFrame) -> ForceFrame: ...
+    @overload
+    def process(
+        self,
+        counts: ArrayLike,
+        temperature: float | None = None,
+        supply: float | None = None,
+        time_ns: int | None = None,
+    ) -> ForceFrame:
+        """counts (rows, cols); temperature [C]; supply [V]; time_ns: now, by the host's clock, where it is None."""
+    def run(self, frames: Recording | _Path) -> Forces:
+        """All frames. Other threads run meanwhile."""
+    def tare(self) -> None:
+        """Takes the next second, at least 10 frames, for unloaded."""
+    def follow_drift(self, follow: bool = True) -> None:
+        """Follows the offsets of idle taxels slowly (docs/tare-and-drift.md). Off at first."""
+
+class Contact:
+    """What touches the array in one place. Pairs are (x, y): x along the columns, y along the rows."""
+
+    @property
+    def id(self) -> int: ...
+    @property
+    def phase(self) -> str:
+        """'onset', 'held' or 'release'."""
+    @property
+    def onset_ns(self) -> int: ...
+    @property
+    def position_m(self) -> tuple[float, float]: ...
+    @property
+    def sigma_position_m(self) -> tuple[float, float]: ...
+    @property
+    def velocity_m_s(self) -> tuple[float, float]: ...
+    @property
+    def force_n(self) -> float: ...
+    @property
+    def sigma_force_n(self) -> float: ...
+    @property
+    def area_m2(self) -> float: ...
+    @property
+    def peak_pressure_pa(self) -> float: ...
+    @property
+    def mean_pressure_pa(self) -> float: ...
+    @property
+    def major_axis_m(self) -> float: ...
+    @property
+    def minor_axis_m(self) -> float: ...
+    @property
+    def angle_rad(self) -> float: ...
+    @property
+    def taxels(self) -> int: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+class ContactTracker:
+    """Follows contacts from frame to frame (docs/contacts.md). `model`: a Model, or the array it is of."""
+
+    def __init__(
+        self,
+        model: Model | ArrayDescription | _Path,
+        *,
+        onset_sigma: float = 5.0,
+        onset_force_n: float = 0.1,
+        release_share: float = 0.5,
+        most_contacts: int = 32,
+    ) -> None: ...
+    def process(self, force: ForceFrame) -> list[Contact]: ...
+    def forget(self) -> None: ...
+
+class Load:
+    """A load that was known while a frame was taken: newtons over all taxels of `where`, or pascals on each of them.
+
+    where: (row, col), or (first_row, first_col, last_row, last_col), both ends inclusive.
+    """
+
+    def __init__(
+        self,
+        frame: int,
+        where: tuple[int, int] | tuple[int, int, int, int],
+        *,
+        newtons: float | None = None,
+        pascals: float | None = None,
+    ) -> None: ...
+    @property
+    def frame(self) -> int: ...
+    @property
+    def where(self) -> tuple[int, int, int, int]: ...
+    @property
+    def newtons(self) -> float | None: ...
+    @property
+    def pascals(self) -> float | None: ...
+
+class CalibrationReport:
+    @property
+    def frames(self) -> int: ...
+    @property
+    def frames_rejected(self) -> int: ...
+    @property
+    def first_rejection(self) -> str: ...
+    @property
+    def remarks(self) -> list[str]: ...
+    @property
+    def circuit(self) -> list[str]: ...
+    @property
+    def choice(self) -> str: ...
+    @property
+    def median_fit_error(self) -> float: ...
+    @property
+    def lightest_newtons(self) -> float: ...
+    @property
+    def heaviest_newtons(self) -> float: ...
+
+def read_loads(path: _Path, array: ArrayDescription | _Path, frames: int) -> list[Load]:
+    """The loads of a loads.csv; `frames`: of the recording that it labels."""
+
+def calibrate(
+    array: ArrayDescription | _Path,
+    frames: Recording | _Path,
+    loads: Iterable[Load] | _Path,
+    *,
+    settle_s: float = 0.0,
+    progress: Callable[[str, float], Any] | None = None,
+) -> tuple[Model, CalibrationReport]:
+    """`dermis calibrate`. Frames that no load names are not labelled; progress(stage, share) hears how far it is."""
+
+def evaluate(model: Model, frames: Recording | _Path, loads: Iterable[Load] | _Path) -> dict[str, Any]:
+    """What `dermis evaluate --json` prints."""
+
+class Source:
+    """Frames of a device, a recording or the simulator, one after another. A device is read in the background: 4,096 frames
+    wait for a busy program, then the oldest are dropped. Ctrl-C ends a wait."""
+
+    def __iter__(self) -> Iterator[RawFrame]: ...
+    def __next__(self) -> RawFrame: ...
+    def __enter__(self) -> Source: ...
+    def __exit__(self, *error: type[BaseException] | BaseException | TracebackType | None) -> None: ...
+    def close(self) -> None: ...
+    @property
+    def shape(self) -> tuple[int, int] | None:
+        """(rows, cols); None where only the first frame will tell."""
+    @property
+    def is_live(self) -> bool: ...
+    @property
+    def dropped(self) -> int: ...
+    def notices(self) -> Sequence[str]:
+        """What a user should know, since the last call."""
+
+def open(uri: _Path, array: ArrayDescription | _Path | None = None) -> Source:
+    """A device or the simulator by its URI (docs/devices.md), or a file of frames by its path."""
+
+class Server:
+    """`dermis serve` in the background of this process."""
+
+    @property
+    def port(self) -> int: ...
+    @property
+    def url(self) -> str: ...
+    def stop(self) -> None: ...
+    def __enter__(self) -> Server: ...
+    def __exit__(self, *error: type[BaseException] | BaseException | TracebackType | None) -> None: ...
+
+def serve(
+    uri: _Path | None = None,
+    model: _Path | None = None,
+    *,
+    suit: _Path | None = None,
+    classes: _Path | None = None,
+    threats: _Path | None = None,
+    record: _Path | None = None,
+    host: str = "127.0.0.1",
+    port: int = 8080,
+    token: str = "",
+) -> Server:
+    """The page and the stream of an array (uri and model) or of a suit; port 0 is any that is free."""

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <memory>
+
+#include "bindings.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/pipeline/direct_model.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::python {
+
+void bind_array(py::module_& module) {
+  py::class_<ArrayDescription>(module, "ArrayDescription")
+      .def_static(
+          "from_toml",
+          [](const std::string& text) { return value_or_raise(files::array_from_toml(text, "array.toml")); },
+          py::arg("text"))
+      .def("to_toml", [](const ArrayDescription& array) { return files::array_to_toml(array); })
+      .def_readonly("name", &ArrayDescription::name)
+      .def_readonly("rows", &ArrayDescription::rows)
+      .def_readonly("cols", &ArrayDescription::cols)
+      .def_readonly("row_pitch_m", &ArrayDescription::row_pitch_m)
+      .def_readonly("col_pitch_m", &ArrayDescription::col_pitch_m)
+      .def_readonly("taxel_area_m2", &ArrayDescription::taxel_area_m2)
+      .def_property_readonly("circuit", [](const ArrayDescription& array) { return to_string(array.readout.circuit); })
+      .def_property_readonly("adc_bits", [](const ArrayDescription& array) { return array.readout.adc_bits; })
+      .def(
+          "taxel_name",
+          [](const ArrayDescription& array, std::size_t row, std::size_t col) {
+            if (row >= array.rows || col >= array.cols)
+              throw py::index_error("the array has no taxel " + taxel_name(row, col));
+            return taxel_name(row, col);
+          },
+          py::arg("row"), py::arg("col"))
+      .def("__repr__",
+           [](const ArrayDescription& array) {
+             return "<dermis.ArrayDescription '" + array.name + "' " + std::to_string(array.rows) + "x" +
+                    std::to_string(array.cols) + " " + to_string(array.readout.circuit) + ">";
+           })
+      .def(py::pickle(
+          [](const ArrayDescription& array) { return files::array_to_toml(array); },
+          [](const std::string& text) { return value_or_raise(files::array_from_toml(text, "array.toml")); }));
+
+  py::class_<pipeline::Model, std::shared_ptr<pipeline::Model>>(module, "Model")
+      .def_readonly("array", &pipeline::Model::array)
+      .def_readonly("provenance", &pipeline::Model::provenance)
+      .def(
+          "write",
+          [](const pipeline::Model& model, const py::object& path) {
+            raise_where_failed(pipeline::write_model(path_of(path), model));
+          },
+          py::arg("path"))
+      .def("__repr__", [](const pipeline::Model& model) {
+        return "<dermis.Model of '" + model.array.name + "' " + std::to_string(model.array.rows) + "x" +
+               std::to_string(model.array.cols) + ">";
+      });
+
+  module.def(
+      "read_array", [](const py::object& path) { return value_or_raise(files::read_array(path_of(path))); },
+      py::arg("path"));
+  module.def(
+      "read_model",
+      [](const py::object& path) {
+        return std::make_shared<pipeline::Model>(value_or_raise(pipeline::read_model(path_of(path))));
+      },
+      py::arg("path"));
+}
+
+}  // namespace dermis::python

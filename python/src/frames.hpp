@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bindings.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::python {
+
+/// A frame with its shape, which numpy needs.
+struct ShapedRaw {
+  FrameShape shape;
+  RawFrame frame;
+};
+struct ShapedForce {
+  FrameShape shape;
+  ForceFrame frame;
+};
+
+/// Frames side by side: what numpy wants to see. NaN stands for a temperature or a supply that is not there.
+struct Recording {
+  FrameShape shape;
+  std::vector<std::int64_t> time_ns;        // [frames]
+  std::vector<double> temperature_celsius;  // [frames]
+  std::vector<double> supply_v;             // [frames]
+  std::vector<float> counts;                // [frames, rows, cols]
+  std::string name;
+  std::string array_toml;
+  std::string model_hash;
+
+  [[nodiscard]] std::size_t size() const { return time_ns.size(); }
+  void append(const RawFrame& frame);
+  void read(std::size_t index, RawFrame& frame) const;
+  [[nodiscard]] std::vector<RawFrame> frames() const;
+};
+
+/// A Recording, or the path of a file of frames.
+Recording recording_of(const py::object& object);
+
+/// The forces of many frames side by side.
+struct Forces {
+  Forces(const FrameShape& array_shape, std::size_t frames);
+  void set(std::size_t index, const ForceFrame& frame);
+
+  FrameShape shape;
+  std::vector<std::int64_t> time_ns;  // [frames]
+  std::vector<std::uint8_t> status;   // [frames], flags of FrameStatus
+  std::vector<float> newtons;         // [frames, rows, cols]
+  std::vector<float> sigma_newtons;   // [frames, rows, cols]
+  std::vector<std::uint8_t> taxels;   // [frames, rows, cols], TaxelStatus
+};
+
+}  // namespace dermis::python

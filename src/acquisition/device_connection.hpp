@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "dermis/acquisition/byte_stream.hpp"
+#include "dermis/acquisition/source_uri.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::acquisition {
+
+/// The stream of a device that may not be there yet, or may go away and come back. A call takes 100 ms at most.
+/// Not thread-safe.
+class DeviceConnection {
+ public:
+  enum class State {
+    waiting,  ///< Nobody has connected yet.
+    open,
+    away,  ///< Unplugged or closed: it may come back.
+    over,
+  };
+  using Notice = std::function<void(const std::string&)>;
+
+  DeviceConnection(const SourceUri& uri, std::unique_ptr<ByteStream> stream, Notice notice);
+
+  [[nodiscard]] State state() const { return state_; }
+
+  /// One try to open a stream that is waiting or away. Fails where it can never open, and where it was away too long.
+  [[nodiscard]] Status try_open();
+
+  /// What arrives within 50 ms. Ends the connection where the stream ends.
+  /// `device_was_here`: who closes a connection without a frame before was not the device, so another is waited for.
+  [[nodiscard]] Result<std::size_t> read(std::span<std::uint8_t> into, bool device_was_here);
+
+  /// A request that is lost is no error: it is repeated.
+  void write(std::span<const std::uint8_t> bytes);
+
+  [[nodiscard]] std::string name() const { return stream_->name(); }
+  [[nodiscard]] std::uint64_t reconnections() const { return reconnections_; }
+
+ private:
+  Status end(ByteStream::End how, bool device_was_here);
+  Status wait_for_first();
+  Status wait_for_return();
+  Status give_up();
+  [[nodiscard]] std::string what_happened() const;
+  void enter(State state);
+
+  Transport transport_;
+  Nanos reconnect_;
+  std::unique_ptr<ByteStream> stream_;
+  Notice notice_;
+  State state_ = State::waiting;
+  Nanos since_;  // of the state
+  ByteStream::End how_it_ended_ = ByteStream::End::none;
+  bool waiting_noticed_ = false;
+  std::uint64_t reconnections_ = 0;
+};
+
+}  // namespace dermis::acquisition

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "acquisition/undecoded_bytes.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+
+#include "dermis/acquisition/protocol.hpp"
+
+namespace dermis::acquisition {
+namespace {
+
+constexpr Nanos kTooLong = std::chrono::seconds(5);
+constexpr std::size_t kMostKept = std::size_t{256} << 10U;
+constexpr std::size_t kUnknownFrameBytes = 4096;
+constexpr std::size_t kMostBytesPerTaxel = 6;  // "65535 "
+
+}  // namespace
+
+void UndecodedBytes::clear() {
+  first_.clear();
+  count_ = 0;
+}
+
+void UndecodedBytes::add(std::span<const std::uint8_t> bytes, Nanos arrival) {
+  if (first_.empty()) begin_ = arrival;
+  count_ += bytes.size();
+  const std::span<const std::uint8_t> kept = bytes.first(std::min(kMostKept - first_.size(), bytes.size()));
+  first_.insert(first_.end(), kept.begin(), kept.end());
+}
+
+bool UndecodedBytes::are_too_many(const std::optional<FrameShape>& shape, Nanos at) const {
+  const std::size_t frame = shape ? shape->taxel_count() * kMostBytesPerTaxel : kUnknownFrameBytes;
+  return count_ >= std::min(4 * frame, kMostKept) && at - begin_ >= kTooLong;
+}
+
+Error UndecodedBytes::error(const SourceUri& uri) const {
+  const ProtocolOptions& protocol = uri.protocol;
+  std::string text = "'" + uri.text + "': these bytes are not " + protocol.name;
+  if (protocol.name == "auto") text = "'" + uri.text + "': these bytes are of no known protocol";
+  if (protocol.shape) text += " " + shape_text(*protocol.shape);
+  const std::string looks_like = recognise_protocol(first_);
+  if (looks_like.empty()) {
+    const bool is_serial = uri.transport == Transport::serial;
+    return bad_input(text + ": check protocol=" + (is_serial ? " and baud=" + std::to_string(uri.baud) : ""));
+  }
+  if (looks_like != protocol.name)
+    return bad_input(text + "; they look like " + looks_like + ": protocol=" + looks_like);
+  return bad_input(text + "; they look like " + looks_like + " of another size: check rows and cols");
+}
+
+std::string shape_text(const FrameShape& shape) {
+  return std::to_string(shape.rows) + "x" + std::to_string(shape.cols);
+}
+
+}  // namespace dermis::acquisition

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/circuit_fit/rubber.hpp"
+#include "dermis/calibration/circuit_fit.hpp"
+
+namespace dermis::calibration {
+
+/// Conductances of all taxels while a pair is pressed, by their laws at the middle of the temperatures [taxels].
+[[nodiscard]] std::vector<double> siemens_under(const Rubber& rubber, const PressPair& pair);
+
+/// The heaviest known load of every taxel that `rubber` has a pressed law of; 0: none [N].
+[[nodiscard]] std::vector<double> heaviest_loads(const Rubber& rubber, const CircuitFrames& frames);
+
+/// No neighbours: rubber spreads a load to them.
+[[nodiscard]] bool are_apart(std::size_t cols, std::size_t a, std::size_t b);
+
+/// The noise of a typical pressed frame, over the supply: presses that are asked for are kept like those that are
+/// there, and unloaded frames are means of more.
+[[nodiscard]] double noise_of_presses(const CircuitFrames& frames);
+
+}  // namespace dermis::calibration

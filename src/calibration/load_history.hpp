@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dermis/calibration/sample_database.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// What the material of a sheet went through: the conductances of the frames of a recording, labelled or not.
+struct LoadHistory {
+  std::size_t taxels = 0;
+  std::vector<std::size_t> frame;                          ///< Numbers in the recording, rising [frames].
+  std::vector<Nanos> time;                                 ///< [frames]
+  std::vector<std::optional<double>> temperature_celsius;  ///< [frames]
+  std::vector<float> siemens;  ///< [frames, taxels]; NaN where a taxel or a frame has no reading.
+
+  [[nodiscard]] std::span<const float> siemens_of(std::size_t place) const {
+    return std::span(siemens).subspan(place * taxels, taxels);
+  }
+};
+
+/// All frames of the recording that `database` comes from; of very many those of its samples and, evenly, some of the
+/// others. Errors: those of Compensator::create().
+[[nodiscard]] Result<LoadHistory> read_history(const SampleDatabase& database, std::span<const RawFrame> frames);
+
+}  // namespace dermis::calibration

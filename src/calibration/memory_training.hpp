@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "dermis/calibration/force_training.hpp"
+#include "dermis/calibration/sample_database.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/fusion/material_memory.hpp"
+
+namespace dermis::calibration {
+
+/// What a recording tells of the memory of its material.
+struct LearnedMemory {
+  fusion::MemoryLaw law;
+  SampleDatabase felt;                ///< The same samples, with what the material felt of their forces,
+  ForceTraining training;             ///< and what is trained on them.
+  double error_without = 0.0;         ///< Mean relative errors on loads that the fits did not see, without the law
+  double error_with = 0.0;            ///< and with it.
+  double longest_hold_seconds = 0.0;  ///< So long the longest load lay still.
+  bool has_unloading = false;         ///< Loads got lighter without going.
+};
+
+/// "the material remembers: a load that lies still reads 12 % more after ten seconds than after one, ...", and what the
+/// recording cannot tell.
+[[nodiscard]] std::string describe(const LearnedMemory& memory);
+
+/// The frames are so close in time that most loads are seen as they come, lie and go.
+[[nodiscard]] bool is_continuous(std::span<const RawFrame> frames);
+
+/// Learns the law of MaterialMemory from a continuous recording with labels: networks give what the material feels in
+/// every frame, labelled or not; the law is what frees these forces best from their past where the load is known; and
+/// the networks are trained again on what the loads must have been felt as. Kept only where the errors on one half of
+/// the recording that neither networks nor law have seen, and then on the other, fall by 5 % or more. Empty also where
+/// there are too few loads. `frames`: the recording of `database`; `plain`: what was trained on it.
+[[nodiscard]] std::optional<LearnedMemory> learn_memory(const SampleDatabase& database,
+                                                        std::span<const RawFrame> frames, const ForceTraining& plain);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "fusion/memory_kernels.hpp"
+
+#include <cstddef>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "fusion/memory_kernels.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h comes first: it includes this file again for every instruction set.
+#include "hwy/contrib/math/math-inl.h"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace dermis::fusion::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr float kMostNewtons = 1e6F;  // that a taxel can remember: keeps the states finite
+
+template <class D>
+void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, float* sigma_newtons) {
+  const std::size_t taxels = step.newtons.size();
+  const auto one = hn::Set(d, 1.0F);
+  const auto felt = hn::LoadU(d, newtons + first);
+  const auto is_known = hn::Eq(felt, felt);
+  auto late = hn::Zero(d);
+  float of_load = 1.0F;
+  for (std::size_t k = 0; k < step.late.size(); ++k) {
+    late = hn::MulAdd(hn::Set(d, step.late[k]), hn::LoadU(d, step.late_newtons.data() + k * taxels + first), late);
+    of_load -= step.late[k];
+  }
+  const auto gain = hn::Set(d, 1.0F / of_load);
+  const auto told = hn::Mul(hn::Max(hn::Sub(felt, late), hn::Zero(d)), gain);
+  const auto last = hn::LoadU(d, step.newtons.data() + first);
+  const auto load = hn::IfThenElse(is_known, hn::Min(told, hn::Set(d, kMostNewtons)), last);
+  hn::StoreU(load, d, step.newtons.data() + first);
+  for (std::size_t k = 0; k < step.approach.size(); ++k) {
+    float* const at = step.late_newtons.data() + k * taxels + first;
+    const auto state = hn::LoadU(d, at);
+    hn::StoreU(hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(load, state), state), d, at);
+  }
+  const auto logarithm = hn::Log1p(d, load);
+  const auto change = hn::Sub(logarithm, hn::LoadU(d, step.logarithm.data() + first));
+  hn::StoreU(logarithm, d, step.logarithm.data() + first);
+  auto share = one;
+  for (std::size_t j = 0; j < step.half_gap.size(); ++j) {
+    float* const at = step.stops.data() + j * taxels + first;
+    const auto moved = hn::MulAdd(change, hn::Set(d, 1.0F / MemoryLaw::kStopReach[j]), hn::LoadU(d, at));
+    const auto stop = hn::Clamp(moved, hn::Neg(one), one);
+    hn::StoreU(stop, d, at);
+    share = hn::MulAdd(hn::Set(d, step.half_gap[j]), stop, share);
+  }
+  hn::StoreU(hn::IfThenElse(is_known, hn::Mul(load, share), felt), d, newtons + first);
+  const auto sigma = hn::LoadU(d, sigma_newtons + first);
+  hn::StoreU(hn::Mul(sigma, hn::Mul(share, gain)), d, sigma_newtons + first);
+}
+
+void step_all(const MemoryStep& step, float* newtons, float* sigma_newtons) {
+  const hn::ScalableTag<float> d;
+  const std::size_t taxels = step.newtons.size();
+  const std::size_t lanes = hn::Lanes(d);
+  std::size_t first = 0;
+  for (; first + lanes <= taxels; first += lanes) step_lanes(d, step, first, newtons, sigma_newtons);
+  for (; first < taxels; ++first) step_lanes(hn::CappedTag<float, 1>(), step, first, newtons, sigma_newtons);
+}
+
+}  // namespace dermis::fusion::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace dermis::fusion {
+
+HWY_EXPORT(step_all);
+
+void step_memory(const MemoryStep& step, std::span<float> newtons, std::span<float> sigma_newtons) noexcept {
+  HWY_DYNAMIC_DISPATCH(step_all)(step, newtons.data(), sigma_newtons.data());
+}
+
+}  // namespace dermis::fusion
+#endif

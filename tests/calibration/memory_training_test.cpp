@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/memory_training.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "calibration/simulated.hpp"
+#include "dermis/calibration/calibrate.hpp"
+#include "dermis/calibration/evaluation.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+simulation::SimulationOptions rubber(double touch_gain) {
+  simulation::SimulationOptions physics;
+  physics.rubber.memory.emplace().touch_gain = touch_gain;
+  return physics;
+}
+
+Recording two_weights(const ArrayDescription& array, simulation::SimulationOptions physics, std::uint64_t seed) {
+  physics.scene = {.rate_hz = 20.0, .taxels = array.taxel_count()};
+  return record(array, "two_weights", seed, physics);
+}
+
+Recording touches(const ArrayDescription& array, simulation::SimulationOptions physics, std::uint64_t seed) {
+  physics.scene = {.rate_hz = 50.0};
+  return record(array, "touches", seed, physics, 2000);
+}
+
+TEST(MemoryTraining, two_weights_teach_what_the_material_remembers) {
+  const ArrayDescription array = reference_array(2, 3);
+  for (const double touch_gain : {0.0, 0.05}) {
+    SCOPED_TRACE(testing::Message() << "gain of a touch +- " << touch_gain);
+    const simulation::SimulationOptions physics = rubber(touch_gain);
+    const Recording weights = two_weights(array, physics, 1);
+    const auto calibration = calibrate(array, weights.frames, weights.loads);
+    ASSERT_TRUE(calibration) << calibration.error().message;
+    ASSERT_TRUE(calibration->model.memory);
+    const fusion::MemoryLaw& law = *calibration->model.memory;
+    // 10 % of the force after one second a decade, of that after long 8 %; the loop is 8 % wide.
+    for (const float share : law.creep) EXPECT_NEAR(share, 0.08F, 0.035F);
+    EXPECT_NEAR(std::accumulate(law.gap.begin(), law.gap.end(), 0.0F), 0.08F, 0.035F);
+    EXPECT_NE(calibration->report.memory.find("the material remembers"), std::string::npos);
+    EXPECT_EQ(calibration->report.memory.find("not known"), std::string::npos) << calibration->report.memory;
+
+    const Recording test = touches(array, physics, 12);
+    const auto evaluation = evaluate(calibration->model, test.frames, test.loads);
+    ASSERT_TRUE(evaluation);
+    const EstimatorResult& dermis = evaluation->estimators.front();
+    EXPECT_LT(*dermis.relative_error.median, touch_gain > 0.0 ? 0.06 : 0.02);
+    EXPECT_LT(*dermis.relative_error.p95, touch_gain > 0.0 ? 0.21 : 0.15);
+    EXPECT_LT(*dermis.ghost_n.p99, 0.3);
+  }
+}
+
+TEST(MemoryTraining, a_material_without_memory_gets_the_same_model_as_ever) {
+  const ArrayDescription array = reference_array(2, 3);
+  const Recording weights = two_weights(array, {}, 3);
+  const auto database = build_sample_database(array, weights.frames, weights.loads);
+  ASSERT_TRUE(database);
+  const auto plain = calibrate(*database);
+  const auto calibration = calibrate(*database, weights.frames);
+  ASSERT_TRUE(plain && calibration);
+  EXPECT_FALSE(calibration->model.memory);
+  EXPECT_TRUE(calibration->report.memory.empty());
+  EXPECT_EQ(calibration->model.networks.parameters, plain->model.networks.parameters);
+  EXPECT_EQ(calibration->model.networks.relative_sigma, plain->model.networks.relative_sigma);
+}
+
+TEST(MemoryTraining, frames_that_are_far_apart_tell_nothing_of_memory) {
+  const ArrayDescription array = reference_array(2, 2);
+  EXPECT_FALSE(is_continuous(record(array, "calibration", 1).frames));
+  EXPECT_FALSE(is_continuous({}));
+  EXPECT_TRUE(is_continuous(touches(array, {}, 1).frames));
+}
+
+TEST(MemoryTraining, says_what_the_recording_cannot_tell) {
+  LearnedMemory memory;
+  memory.law.creep = {0.1F, 0.1F, 0.1F, 0.1F};
+  memory.longest_hold_seconds = 2.0;
+  const std::string text = describe(memory);
+  EXPECT_NE(text.find("no load lies still for more than 2 s"), std::string::npos) << text;
+  EXPECT_NE(text.find("unloading is not known"), std::string::npos) << text;
+}
+
+}  // namespace
+}  // namespace dermis::calibration

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/pipeline/frame_troubles.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "dermis/pipeline/direct_model.hpp"
+
+namespace dermis::pipeline {
+namespace {
+
+/// Two taxels without a circuit.
+ArrayDescription pair_of(Quantity quantity) {
+  ArrayDescription array;
+  array.rows = 1;
+  array.cols = 2;
+  array.readout.circuit = Circuit::none;
+  array.readout.quantity = quantity;
+  array.readout.adc_bits = quantity == Quantity::counts ? 12 : 24;
+  return array;
+}
+
+/// Frames of both taxels, 10 ms apart.
+std::vector<RawFrame> frames_of(const std::vector<std::vector<float>>& counts) {
+  std::vector<RawFrame> frames;
+  for (const std::vector<float>& of_frame : counts) {
+    RawFrame frame;
+    frame.time = std::chrono::milliseconds(10 * (1 + frames.size()));
+    frame.counts = of_frame;
+    frames.push_back(frame);
+  }
+  return frames;
+}
+
+/// Says that each frame stands in line 7.
+class Lines final : public FrameSource {
+ public:
+  Result<bool> next(RawFrame& /*frame*/) override { return false; }
+  [[nodiscard]] std::optional<FrameShape> shape() const override { return std::nullopt; }
+  [[nodiscard]] std::string place() const override { return "f.csv:7"; }
+};
+
+FrameTroubles troubles_of(const ArrayDescription& array, const std::vector<RawFrame>& frames,
+                          const FrameSource* source = nullptr) {
+  FrameTroubles troubles(array, "f.csv");
+  Result<Pipeline> pipeline = Pipeline::create(direct_model(array));
+  EXPECT_TRUE(pipeline) << pipeline.error().message;
+  ForceFrame force;
+  for (const RawFrame& frame : frames) {
+    pipeline->process(frame, force);
+    troubles.add(frame, force, *pipeline, source);
+  }
+  EXPECT_EQ(troubles.frames(), frames.size());
+  return troubles;
+}
+
+TEST(FrameTroubles, has_nothing_to_say_of_good_frames) {
+  const FrameTroubles troubles = troubles_of(pair_of(Quantity::force), frames_of({{0.0F, 1.0F}, {2.0F, 0.0F}}));
+  EXPECT_TRUE(troubles.describe().empty());
+  EXPECT_TRUE(troubles.verdict());
+}
+
+TEST(FrameTroubles, says_how_many_frames_were_rejected_and_where_the_first_stands) {
+  std::vector<RawFrame> frames = frames_of({{1.0F, 1.0F}, {1.0F, 1.0F}, {1.0F, 1.0F}, {1.0F, 1.0F}});
+  frames[2].time = frames[0].time;
+  const ArrayDescription array = pair_of(Quantity::force);
+  EXPECT_EQ(troubles_of(array, frames).describe(),
+            std::vector<std::string>{"1 of 4 frames rejected, the first: f.csv: frame 3: time going backwards"});
+  const Lines lines;
+  EXPECT_EQ(troubles_of(array, frames, &lines).describe(),
+            std::vector<std::string>{"1 of 4 frames rejected, the first: f.csv:7: time going backwards"});
+  EXPECT_TRUE(troubles_of(array, frames).verdict());
+}
+
+TEST(FrameTroubles, counts_the_frames_that_are_skipped) {
+  FrameTroubles troubles(pair_of(Quantity::force), "");
+  Result<Pipeline> pipeline = Pipeline::create(direct_model(pair_of(Quantity::force)));
+  ASSERT_TRUE(pipeline);
+  ForceFrame force;
+  const RawFrame frame = frames_of({{NAN, NAN}}).front();
+  pipeline->process(frame, force);
+  troubles.skip();
+  troubles.add(frame, force, *pipeline);
+  EXPECT_EQ(troubles.frames(), 1U);
+  ASSERT_EQ(troubles.describe().size(), 1U);
+  EXPECT_NE(troubles.describe().front().find("the first: frame 2: "), std::string::npos) << troubles.describe().front();
+}
+
+TEST(FrameTroubles, says_which_taxels_had_no_reading) {
+  const FrameTroubles troubles = troubles_of(pair_of(Quantity::force), frames_of({{0.0F, 1.0F}, {0.0F, NAN}}));
+  ASSERT_EQ(troubles.describe().size(), 1U);
+  EXPECT_NE(troubles.describe().front().find("r0c1 in 1 of 2 frames"), std::string::npos)
+      << troubles.describe().front();
+}
+
+TEST(FrameTroubles, fails_where_more_than_half_of_the_frames_have_no_force) {
+  const ArrayDescription array = pair_of(Quantity::force);
+  EXPECT_TRUE(troubles_of(array, frames_of({{0.0F, 1.0F}, {NAN, NAN}})).verdict());
+  const Status verdict = troubles_of(array, frames_of({{NAN, NAN}, {0.0F, 1.0F}, {NAN, NAN}})).verdict();
+  ASSERT_FALSE(verdict);
+  EXPECT_EQ(verdict.error().kind, ErrorKind::failed);
+  EXPECT_EQ(verdict.error().message,
+            "f.csv: 2 of 3 frames have no force: the first is rejected, f.csv: frame 1: more than half of the readings "
+            "are missing or outside the ADC range");
+}
+
+TEST(FrameTroubles, names_readings_that_no_ADC_of_so_many_bits_gives) {
+  const Status verdict =
+      troubles_of(pair_of(Quantity::counts), frames_of({{0.0F, 10.0F}, {5000.0F, 5000.0F}, {9000.0F, 8000.0F}}))
+          .verdict();
+  ASSERT_FALSE(verdict);
+  EXPECT_EQ(verdict.error().message,
+            "f.csv: 2 of 3 frames have no force: readings of 0 to 9000, but the ADC gives 0 to 4095 (adc_bits = 12)");
+}
+
+}  // namespace
+}  // namespace dermis::pipeline

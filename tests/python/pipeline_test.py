@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""Forces from Python are those of the command line, whatever holds the counts; what cannot be used is refused."""
+import csv
+import pickle
+import re
+import threading
+import unittest
+
+import numpy as np
+
+import dermis
+import workspace
+
+
+def forces_csv(path, rows, cols):
+    with open(path) as file:
+        lines = list(csv.reader(file))[1:]
+    newtons = [[float(cell) if cell else np.nan for cell in line[2:]] for line in lines]
+    return np.array(newtons, dtype=np.float32).reshape(-1, rows, cols)
+
+
+class Pipeline(workspace.CalibratedArray):
+    def setUp(self):
+        self.loaded = dermis.read_model(self.model)
+        self.recording = dermis.Recording.read(self.frames)
+
+    def test_whole_recordings_give_the_forces_of_the_command_line(self):
+        workspace.dermis("run", "--model", self.model, "--in", self.frames, "--out", self.folder / "forces.csv")
+        expected = forces_csv(self.folder / "forces.csv", 5, 4)
+        forces = dermis.Pipeline(self.loaded).run(self.recording)
+        np.testing.assert_array_equal(forces.newtons, expected)
+        self.assertEqual(len(forces), 60)
+
+    def test_frame_by_frame_gives_the_same_bits(self):
+        forces = dermis.Pipeline(self.loaded).run(self.recording)
+        one_by_one, by_frame = dermis.Pipeline(self.loaded), dermis.Pipeline(self.loaded)
+        for k, raw in enumerate(self.recording):
+            force = one_by_one.process(raw.counts, raw.temperature_celsius, raw.supply_v, raw.time_ns)
+            for result in (force, by_frame.process(raw)):
+                np.testing.assert_array_equal(result.newtons, forces.newtons[k])
+                np.testing.assert_array_equal(result.sigma_newtons, forces.sigma_newtons[k])
+                np.testing.assert_array_equal(result.taxels, forces.taxels[k])
+                self.assertEqual(result.status, forces.status[k])
+
+    def test_any_array_of_numbers_will_do(self):
+        raw = self.recording[5]
+        expected = dermis.Pipeline(self.loaded).process(raw).newtons
+        strided = np.zeros((10, 8))
+        strided[::2, ::2] = raw.counts
+        for counts in (raw.counts.astype(np.uint16), raw.counts.astype(np.float64), raw.counts.tolist(),
+                       np.asfortranarray(raw.counts), strided[::2, ::2], raw.counts.astype(">f4")):
+            force = dermis.Pipeline(self.loaded).process(counts, raw.temperature_celsius, raw.supply_v, raw.time_ns)
+            np.testing.assert_array_equal(force.newtons, expected)
+
+    def test_views_outlive_what_they_were_taken_from(self):
+        newtons = dermis.Pipeline(dermis.read_model(self.model)).process(self.recording[5]).newtons
+        counts = dermis.Recording.read(self.frames).counts
+        self.assertEqual((newtons.shape, newtons.dtype), ((5, 4), np.float32))
+        np.testing.assert_array_equal(counts, self.recording.counts)
+
+    def test_unusable_counts_are_refused_by_their_name(self):
+        pipeline = dermis.Pipeline(self.loaded)
+        for counts, error, text in ((np.zeros((4, 5)), ValueError, "counts: has the shape (4, 5), expected is (5, 4)"),
+                                    (np.zeros(20), ValueError, "counts: has the shape (20,)"),
+                                    (np.zeros((5, 4), complex), TypeError, "dtype complex128"),
+                                    ("counts", TypeError, "counts: "), (None, TypeError, "counts: "),
+                                    ([[1, 2], [3]], TypeError, "counts: ")):
+            with self.subTest(counts=counts), self.assertRaisesRegex(error, "^.*" + re.escape(text)):
+                pipeline.process(counts)
+
+    def test_a_frame_that_is_no_frame_is_told_by_its_status(self):
+        force = dermis.Pipeline(self.loaded).process(np.full((5, 4), np.nan))
+        self.assertIn(dermis.FrameStatus.REJECTED, force.status)
+        self.assertTrue(np.isnan(force.newtons).all())
+
+    def test_two_threads_in_one_pipeline_are_refused_and_others_run_meanwhile(self):
+        pipeline = dermis.Pipeline(self.loaded)
+        many = dermis.Recording(np.tile(self.recording.counts, (400, 1, 1)), rate_hz=100.0, supply_v=5.0)
+        worker = threading.Thread(target=pipeline.run, args=(many,))
+        worker.start()
+        refused = turns = 0
+        while worker.is_alive():
+            turns += 1
+            try:
+                pipeline.process(many[0])
+            except RuntimeError as error:
+                refused += "in another thread" in str(error)
+        worker.join()
+        self.assertGreater(refused, 0)
+        self.assertGreater(turns, 1)
+
+    def test_a_tracker_refuses_the_forces_of_another_array(self):
+        force = dermis.Pipeline(self.loaded).process(self.recording[5])
+        other = dermis.ArrayDescription.from_toml(workspace.ARRAY.replace("rows = 5", "rows = 9"))
+        with self.assertRaisesRegex(ValueError, "another shape"):
+            dermis.ContactTracker(other).process(force)
+
+    def test_results_can_be_pickled(self):
+        pipeline = dermis.Pipeline(self.loaded)
+        force = pipeline.process(self.recording[5])
+        contacts = dermis.ContactTracker(self.loaded).process(force)
+        self.assertTrue(contacts)
+        copied = pickle.loads(pickle.dumps(contacts))
+        self.assertEqual(copied, contacts)
+        self.assertEqual((copied[0].force_n, copied[0].position_m), (contacts[0].force_n, contacts[0].position_m))
+        for result, members in ((force, ("time_ns", "status", "newtons", "sigma_newtons", "signal_to_noise", "taxels")),
+                                (self.recording[3], ("time_ns", "temperature_celsius", "supply_v", "counts")),
+                                (self.recording, ("time_ns", "temperature_celsius", "supply_v", "counts", "name")),
+                                (pipeline.run(self.recording), ("time_ns", "status", "newtons", "taxels")),
+                                (self.loaded.array, ("name", "rows", "cols", "circuit", "taxel_area_m2"))):
+            back = pickle.loads(pickle.dumps(result))
+            for member in members:
+                np.testing.assert_array_equal(getattr(back, member), getattr(result, member), member)
+
+    def test_enumerations_are_those_of_the_library(self):
+        header = (workspace.Path(__file__).parents[2] / "include/dermis/core/frames.hpp").read_text()
+        for kind in (dermis.FrameStatus, dermis.TaxelStatus):
+            body = header.split(f"enum class {kind.__name__} ")[1].split("{", 1)[1].split("};")[0]
+            code = [line.split("//")[0].strip() for line in body.splitlines()]
+            names = [line.split(",")[0].split("=")[0].strip() for line in code if line]
+            self.assertEqual([member.name.lower() for member in kind.__members__.values()], names)
+
+
+class Circuit(workspace.CalibratedArray):
+    def test_inverting_what_the_circuit_gives_returns_conductances_that_read_the_same(self):
+        seed = int.from_bytes(np.random.bytes(4), "little")
+        siemens = 10.0 ** np.random.default_rng(seed).uniform(-6, -3, (5, 4))
+        ratio = dermis.circuit.forward(self.array, siemens)
+        inversion = dermis.circuit.invert(self.array, ratio)
+        hundredth_of_a_count = 0.01 / 4095
+        self.assertTrue(inversion.solved, f"seed {seed}")
+        self.assertLessEqual(inversion.residual_ratio, hundredth_of_a_count)
+        read_again = dermis.circuit.forward(self.array, inversion.siemens)
+        np.testing.assert_allclose(read_again, ratio, atol=1.01 * hundredth_of_a_count, err_msg=f"seed {seed}")
+
+    def test_impossible_conductances_are_refused(self):
+        for bad in (-1.0, np.nan, np.inf):
+            with self.assertRaisesRegex(ValueError, "siemens: "):
+                dermis.circuit.forward(self.array, np.full((5, 4), bad))
+
+
+if __name__ == "__main__":
+    workspace.main()
