@@ -7,9 +7,9 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <type_traits>
 #include <utility>
 
-#include "dermis/files/csv_table.hpp"
 #include "dermis/files/npy.hpp"
 #include "dermis/files/text.hpp"
 #include "recognition/names.hpp"
@@ -43,65 +43,6 @@ T value_or_none(const Result<T>& value, std::optional<Error>& first_error) {
   if (value) return *value;
   if (!first_error) first_error = value.error();
   return T{};
-}
-
-Result<std::vector<SensedArray>> read_arrays(const std::string& path) {
-  const Result<CsvTable> table = CsvTable::read(path);
-  if (!table) return table.error();
-  Columns columns(*table);
-  const std::size_t name = columns.needed("array");
-  const std::size_t rows = columns.needed("rows");
-  const std::size_t cols = columns.needed("cols");
-  const std::size_t first_column = columns.needed("first_column");
-  if (columns.first_error()) return *columns.first_error();
-  const std::optional<std::size_t> row_pitch = table->column("row_pitch_mm");
-  const std::optional<std::size_t> col_pitch = table->column("col_pitch_mm");
-  std::vector<SensedArray> arrays;
-  std::optional<Error> error;
-  for (std::size_t row = 0; row < table->rows(); ++row) {
-    SensedArray array{.name = table->at(row, name),
-                      .rows = value_or_none(table->count_at(row, rows), error),
-                      .cols = value_or_none(table->count_at(row, cols), error),
-                      .first_column = value_or_none(table->count_at(row, first_column), error)};
-    if (row_pitch) array.row_pitch_mm = value_or_none(table->number_at(row, *row_pitch), error);
-    if (col_pitch) array.col_pitch_mm = value_or_none(table->number_at(row, *col_pitch), error);
-    arrays.push_back(std::move(array));
-  }
-  if (error) return *error;
-  return arrays;
-}
-
-Result<std::vector<Label>> labels_of(const CsvTable& table, const std::string& label) {
-  Columns columns(table);
-  const std::size_t id = columns.needed("id");
-  const std::size_t first = columns.needed("first");
-  const std::size_t last = columns.needed("last");
-  const std::size_t name = columns.needed(label);
-  if (columns.first_error()) return *columns.first_error();
-  const std::optional<std::size_t> subject = table.column("subject");
-  const std::optional<std::size_t> session = table.column("session");
-  const std::optional<std::size_t> order = table.column("order");
-  std::vector<Label> labels;
-  std::optional<Error> error;
-  for (std::size_t row = 0; row < table.rows(); ++row) {
-    Label read{.id = table.at(row, id),
-               .first = value_or_none(table.count_at(row, first), error),
-               .last = value_or_none(table.count_at(row, last), error),
-               .name = table.at(row, name)};
-    const Status named = check_class_name(read.name);
-    if (!named && !error) error = table.error(row, named.error().message);
-    if (const auto group = subject ? subject : session) read.group = table.at(row, *group);
-    read.order = order ? value_or_none(table.number_at(row, *order), error) : static_cast<double>(read.first);
-    labels.push_back(std::move(read));
-  }
-  if (error) return *error;
-  return labels;
-}
-
-Result<std::vector<Label>> read_labels(const std::string& path, const std::string& label) {
-  const Result<CsvTable> table = CsvTable::read(path);
-  if (!table) return table.error();
-  return labels_of(*table, label);
 }
 
 /// Which of the recordings each line of the labels is of.
@@ -145,6 +86,14 @@ void append(LabelledFrames& data, LabelledFrames part) {
     label.last += before;
     data.labels.push_back(std::move(label));
   }
+}
+
+/// parse(table)
+template <typename Parse>
+auto read_table(const std::string& path, const Parse& parse) -> std::invoke_result_t<Parse, const CsvTable&> {
+  const Result<CsvTable> table = CsvTable::read(path);
+  if (!table) return table.error();
+  return parse(*table);
 }
 
 /// Lines of a table by the name of their split, in order.
@@ -192,11 +141,63 @@ void teach_all_others(Split& split, std::size_t label_count) {
 
 }  // namespace
 
+Result<std::vector<SensedArray>> arrays_of(const CsvTable& table) {
+  Columns columns(table);
+  const std::size_t name = columns.needed("array");
+  const std::size_t rows = columns.needed("rows");
+  const std::size_t cols = columns.needed("cols");
+  const std::size_t first_column = columns.needed("first_column");
+  if (columns.first_error()) return *columns.first_error();
+  const std::optional<std::size_t> row_pitch = table.column("row_pitch_mm");
+  const std::optional<std::size_t> col_pitch = table.column("col_pitch_mm");
+  std::vector<SensedArray> arrays;
+  std::optional<Error> error;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    SensedArray array{.name = table.at(row, name),
+                      .rows = value_or_none(table.count_at(row, rows), error),
+                      .cols = value_or_none(table.count_at(row, cols), error),
+                      .first_column = value_or_none(table.count_at(row, first_column), error)};
+    if (row_pitch) array.row_pitch_mm = value_or_none(table.number_at(row, *row_pitch), error);
+    if (col_pitch) array.col_pitch_mm = value_or_none(table.number_at(row, *col_pitch), error);
+    arrays.push_back(std::move(array));
+  }
+  if (error) return *error;
+  return arrays;
+}
+
+Result<std::vector<Label>> labels_of(const CsvTable& table, const std::string& label) {
+  Columns columns(table);
+  const std::size_t id = columns.needed("id");
+  const std::size_t first = columns.needed("first");
+  const std::size_t last = columns.needed("last");
+  const std::size_t name = columns.needed(label);
+  if (columns.first_error()) return *columns.first_error();
+  const std::optional<std::size_t> subject = table.column("subject");
+  const std::optional<std::size_t> session = table.column("session");
+  const std::optional<std::size_t> order = table.column("order");
+  std::vector<Label> labels;
+  std::optional<Error> error;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    Label read{.id = table.at(row, id),
+               .first = value_or_none(table.count_at(row, first), error),
+               .last = value_or_none(table.count_at(row, last), error),
+               .name = table.at(row, name)};
+    const Status named = check_class_name(read.name);
+    if (!named && !error) error = table.error(row, named.error().message);
+    if (const auto group = subject ? subject : session) read.group = table.at(row, *group);
+    read.order = order ? value_or_none(table.number_at(row, *order), error) : static_cast<double>(read.first);
+    labels.push_back(std::move(read));
+  }
+  if (error) return *error;
+  return labels;
+}
+
 Result<LabelledFrames> read_dataset(const DatasetFiles& files) {
   LabelledFrames data;
-  Result<std::vector<SensedArray>> arrays = read_arrays(files.arrays);
+  Result<std::vector<SensedArray>> arrays = read_table(files.arrays, arrays_of);
   if (!arrays) return arrays.error();
-  Result<std::vector<Label>> labels = read_labels(files.labels, files.label);
+  Result<std::vector<Label>> labels =
+      read_table(files.labels, [&](const CsvTable& table) { return labels_of(table, files.label); });
   if (!labels) return labels.error();
   Result<files::NpyTable> frames = files::read_npy_table(files.frames);
   if (!frames) return frames.error();
@@ -260,10 +261,8 @@ Result<LabelledFrames> label_recordings(const Layout& layout, std::vector<LoadRe
   return data;
 }
 
-Result<std::vector<Split>> read_splits(const std::string& path, const std::vector<Label>& labels) {
-  const Result<CsvTable> table = CsvTable::read(path);
-  if (!table) return table.error();
-  SplitReader reader(*table, labels);
+Result<std::vector<Split>> splits_of(const CsvTable& table, const std::vector<Label>& labels) {
+  SplitReader reader(table, labels);
   const Status read = reader.read([](Split& split, std::size_t, std::size_t label) -> Status {
     split.asked.push_back(label);
     return Done{};
@@ -273,28 +272,34 @@ Result<std::vector<Split>> read_splits(const std::string& path, const std::vecto
   return std::move(reader.splits());
 }
 
-Result<std::vector<Split>> read_open_splits(const std::string& path, const std::vector<Label>& labels) {
-  const Result<CsvTable> table = CsvTable::read(path);
-  if (!table) return table.error();
-  const Result<std::size_t> role_column = table->needed_column("role");
+Result<std::vector<Split>> read_splits(const std::string& path, const std::vector<Label>& labels) {
+  return read_table(path, [&](const CsvTable& table) { return splits_of(table, labels); });
+}
+
+Result<std::vector<Split>> open_splits_of(const CsvTable& table, const std::vector<Label>& labels) {
+  const Result<std::size_t> role_column = table.needed_column("role");
   if (!role_column) return role_column.error();
-  SplitReader reader(*table, labels);
+  SplitReader reader(table, labels);
   std::set<std::pair<std::string, std::size_t>> seen;  // splits and labels
   const Status read = reader.read([&](Split& split, std::size_t row, std::size_t label) -> Status {
     if (!seen.emplace(split.name, label).second) {
-      return table->error(row, "id " + files::in_quotes(labels[label].id) + " stands twice in split " +
-                                   files::in_quotes(split.name) + "; an example is learned from or answered for");
+      return table.error(row, "id " + files::in_quotes(labels[label].id) + " stands twice in split " +
+                                  files::in_quotes(split.name) + "; an example is learned from or answered for");
     }
-    const std::string& role = table->at(row, *role_column);
+    const std::string& role = table.at(row, *role_column);
     const bool is_asked = role == "known" || role == "unknown";
     if (!is_asked && role != "train") {
-      return table->error(row, "role " + files::in_quotes(role) + " is unknown; write train, known or unknown");
+      return table.error(row, "role " + files::in_quotes(role) + " is unknown; write train, known or unknown");
     }
     (is_asked ? split.asked : split.taught).push_back(label);
     return Done{};
   });
   if (!read) return read.error();
   return std::move(reader.splits());
+}
+
+Result<std::vector<Split>> read_open_splits(const std::string& path, const std::vector<Label>& labels) {
+  return read_table(path, [&](const CsvTable& table) { return open_splits_of(table, labels); });
 }
 
 }  // namespace dermis::recognition

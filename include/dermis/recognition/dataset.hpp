@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dermis/core/result.hpp"
+#include "dermis/files/csv_table.hpp"
 #include "dermis/recognition/examples.hpp"
 
 /// Labelled frames in plain files; docs/recognition.md describes them.
@@ -20,6 +21,10 @@ struct DatasetFiles {
   std::string label = "class";  ///< The column of labels.csv that names the class.
   double rate_hz = 0.0;         ///< Frames a second; 0 where it is not known.
 };
+
+/// What the tables of a data set say, each for itself: nothing is held against the frames.
+[[nodiscard]] Result<std::vector<SensedArray>> arrays_of(const files::CsvTable& table);
+[[nodiscard]] Result<std::vector<Label>> labels_of(const files::CsvTable& table, const std::string& label);
 
 /// Reads and validates. Errors name the file.
 [[nodiscard]] Result<LabelledFrames> read_dataset(const DatasetFiles& files);
@@ -47,9 +52,11 @@ struct Split {
 
 /// `split,id`: the ids to answer for; each split learns from all others. In the order of the file.
 [[nodiscard]] Result<std::vector<Split>> read_splits(const std::string& path, const std::vector<Label>& labels);
+[[nodiscard]] Result<std::vector<Split>> splits_of(const files::CsvTable& table, const std::vector<Label>& labels);
 
 /// `split,role,id`: role `train` is learned from, `known` and `unknown` are answered for; no
 /// id stands twice in a split.
 [[nodiscard]] Result<std::vector<Split>> read_open_splits(const std::string& path, const std::vector<Label>& labels);
+[[nodiscard]] Result<std::vector<Split>> open_splits_of(const files::CsvTable& table, const std::vector<Label>& labels);
 
 }  // namespace dermis::recognition
