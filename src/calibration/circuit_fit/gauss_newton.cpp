@@ -25,7 +25,7 @@ using Eigen::VectorXd;
 constexpr int kMaxIterations = 8;
 constexpr double kLeastShare = 0.02;  // of a step
 constexpr double kSigmas = 3.0;       // of the cost, a sum of squares, by which it may rise
-constexpr int kLawIterations = 3;
+constexpr int kLawIterations = 2;
 
 /// What temperature does to an unloaded conductance is of the order of it at most, whatever the unit: 1 / level^2, of a
 /// level that is known to its standard error.

@@ -11,18 +11,20 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr double kLeastLoss = 0.1;  // a resistance in series that is found to be negative gains ten times at most
-
 /// At the middle of the temperatures, over the reference.
 double conductance(const Rubber& rubber, std::size_t taxel, double newtons) {
   const TaxelLaw& law = rubber.laws[taxel];
   const double unloaded = law.unloaded.size() > 0 ? std::max(0.0, law.unloaded[0]) : 0.0;
   if (newtons == 0.0) return unloaded;
   const double log_force = rubber.force_scale.log_force(newtons);
-  const double open = std::exp(law.pressed.dot(pressed_basis(log_force, 0.0)) +
-                               rubber.sheet.tail(kCommonTerms).dot(common_basis(log_force, 0.0, {})));
+  const double open = law.pressed.dot(pressed_basis(log_force, 0.0)) +
+                      rubber.sheet.tail(kCommonTerms).dot(common_basis(log_force, 0.0, 0.0));
+  // What all have in series: ln g = open - r g.
+  double excess = std::exp(open);
   const double series = rubber.sheet[kSheetTerms - 1];
-  return unloaded + open / std::max(kLeastLoss, 1.0 + series * open);
+  constexpr int kSteps = 20;
+  for (int k = 0; k < kSteps; ++k) excess = std::sqrt(excess * std::exp(open - series * excess));
+  return unloaded + excess;
 }
 
 }  // namespace

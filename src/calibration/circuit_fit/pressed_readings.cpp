@@ -23,16 +23,15 @@ PressedPoint pressed_point(const PressedReading& reading, const Rubber& rubber, 
   if (law.unloaded.size() > 0) point.excess -= law.unloaded.dot(unloaded_basis(rubber, reading.temperature));
   const double sigma = reading.sigma_siemens / rubber.reference_siemens;
   const bool has_law = law.pressed.size() > 0;
-  const SeriesLoss series = series_loss(rubber, point.excess);
-  point.common = common_basis(reading.log_force, reading.temperature, series);
+  point.common = common_basis(reading.log_force, reading.temperature, point.excess);
   const double expected_logarithm =
       has_law ? law.pressed.dot(point.basis) + rubber.sheet.tail(kCommonTerms).dot(point.common) : 0.0;
   // The variance from the law, not from the reading: weights must not follow the noise.
-  point.expected = has_law ? std::exp(expected_logarithm + series.offset) : point.excess;
+  point.expected = has_law ? std::exp(expected_logarithm) : point.excess;
   point.usable = std::min(point.expected, point.excess) > kLeastPressSigmas * sigma;
   if (!point.usable) return point;
   point.relative_variance = scatter.noise_variance * std::pow(sigma / point.expected, 2);
-  point.logarithm = std::log(point.excess) + 0.5 * point.relative_variance - series.offset;
+  point.logarithm = std::log(point.excess) + 0.5 * point.relative_variance;
   point.residual = point.logarithm - expected_logarithm;
   return point;
 }

@@ -24,10 +24,10 @@ struct PressedReading {
 
 /// It against its law.
 struct PressedPoint {
-  bool usable = false;     ///< Large enough over the noise to take its logarithm.
-  double excess = 0.0;     ///< Over the unloaded conductance, over the reference conductance.
-  double expected = 0.0;   ///< Excess by the law; the reading's own where there is none.
-  double logarithm = 0.0;  ///< Of the reading's, without bias and without the offset of the resistance in series.
+  bool usable = false;             ///< Large enough over the noise to take its logarithm.
+  double excess = 0.0;             ///< Over the unloaded conductance, over the reference conductance.
+  double expected = 0.0;           ///< Excess by the law; the reading's own where there is none.
+  double logarithm = 0.0;          ///< Of it, without bias.
   double relative_variance = 0.0;  ///< From the noise of the readings.
   double residual = 0.0;           ///< From the law.
   Eigen::VectorXd basis;

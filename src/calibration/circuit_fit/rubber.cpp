@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kLeastIdleSigmas = 2.0;  // an idle reading below this is cut at 0 too often
+constexpr double kLeastIdleSigmas = 1.0;  // an idle reading below this is cut at 0 too often
 
 /// Where readings of idle taxels are well above 0 on average, whatever the circuit and the temperature.
 std::vector<bool> readable_taxels(const CircuitFrames& frames, std::size_t taxels) {
@@ -72,16 +72,9 @@ VectorXd pressed_basis(double x, double t) {
   return basis;
 }
 
-SeriesLoss series_loss(const Rubber& rubber, double excess) {
-  constexpr double kMostShare = 0.8;  // of the resistance of a taxel
-  const double share = std::clamp(rubber.sheet[kSheetTerms - 1] * excess, 0.0, kMostShare);
-  const double rest = 1.0 - share;
-  return {std::log(rest) + share / rest, -excess / rest};
-}
-
-VectorXd common_basis(double x, double t, const SeriesLoss& series) {
+VectorXd common_basis(double x, double t, double excess) {
   VectorXd basis(kCommonTerms);
-  basis << std::pow(x, 4), std::pow(x, 5), std::pow(x, 6), t * x * x, t * x * x * x, t * t * x, series.slope;
+  basis << std::pow(x, 4), std::pow(x, 5), std::pow(x, 6), t * x * x, t * x * x * x, t * t * x, -excess;
   return basis;
 }
 

@@ -21,8 +21,7 @@ inline constexpr Eigen::Index kSheetTerms = kShapeTerms + kCommonTerms;
 struct TaxelLaw {
   Eigen::VectorXd unloaded;  ///< u = a + b t + c t^2; empty: never seen idle.
   Eigen::VectorXd pressed;   ///< ln(g - u) = a + b x + c t + d x^2 + e x^3 + f t^2 + g t x; empty: never pressed.
-  bool is_readable =
-      false;  ///< When idle: its readings are well above 0, where noise is cut. The same in all circuits.
+  bool is_readable = false;  ///< When idle, in any circuit: its readings stand above the noise that is cut at 0.
 };
 
 /// x = (ln F - centre) / half_span.
@@ -48,16 +47,9 @@ struct Rubber {
 
 [[nodiscard]] Eigen::VectorXd pressed_basis(double x, double t);
 
-/// What a resistance r in series, over the reference, takes of the logarithm of a conductance e over the unloaded one:
-/// ln(1 - r e), linear about the r of `rubber` (0 where that is less): offset + r slope.
-struct SeriesLoss {
-  double offset = 0.0;
-  double slope = 0.0;
-};
-[[nodiscard]] SeriesLoss series_loss(const Rubber& rubber, double excess);
-
 /// What all taxels of a piece of rubber have in common. A contact resistance in series with each cannot be told from
 /// the mean of the drivers by the laws: without its column the fit would take a law that is not quite a cubic for it.
-[[nodiscard]] Eigen::VectorXd common_basis(double x, double t, const SeriesLoss& series);
+/// `excess`: conductance over the unloaded one.
+[[nodiscard]] Eigen::VectorXd common_basis(double x, double t, double excess);
 
 }  // namespace dermis::calibration

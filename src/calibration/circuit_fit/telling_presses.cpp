@@ -92,8 +92,11 @@ std::vector<PressPair> telling_presses(const std::vector<const CommonRatio*>& ci
     for (std::size_t k = 1; k < predictions.size(); ++k) {
       const std::vector<double> other = predictions[k].readings(pair);
       double square = 0.0;
-      for (std::size_t taxel = 0; taxel < first.size(); ++taxel) square += std::pow(first[taxel] - other[taxel], 2);
-      least = std::min(least, square / variance);
+      for (std::size_t taxel = 0; taxel < first.size(); ++taxel) {
+        const double rubber = taxel == pair.first || taxel == pair.second ? kRubberScatter * first[taxel] : 0.0;
+        square += std::pow(first[taxel] - other[taxel], 2) / (variance + rubber * rubber);
+      }
+      least = std::min(least, square);
     }
     distances.push_back({pair, least});
   }
