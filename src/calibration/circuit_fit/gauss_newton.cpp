@@ -27,8 +27,8 @@ constexpr double kLeastShare = 0.02;  // of a step
 constexpr double kSigmas = 3.0;       // of the cost, a sum of squares, by which it may rise
 constexpr int kLawIterations = 2;
 
-/// What temperature does to an unloaded conductance is a hundred times it at most, whatever the unit; its level is known
-/// to a standard error.
+/// What temperature does to an unloaded conductance is a hundred times it at most, whatever the unit; its level is
+/// known to a standard error.
 MatrixXd unloaded_precision(const NormalEquations& idle, Index terms) {
   constexpr double kPrecision = 1e-4;
   MatrixXd precision = MatrixXd::Zero(terms, static_cast<Index>(idle.local.size()));
