@@ -279,17 +279,35 @@ bool has_kind(const std::vector<Trial>& trials, const Kind* kind) {
   return std::any_of(trials.begin(), trials.end(), [&](const Trial& trial) { return trial.kind == kind; });
 }
 
-std::vector<CircuitCandidate> candidates_of(const std::vector<Trial>& trials, const Trial& chosen) {
-  std::vector<CircuitCandidate> candidates;
-  for (const Trial& trial : trials) {
-    const double misfit = std::sqrt(trial.misfit.square / std::max(1.0, trial.misfit.readings));
-    const bool is_chosen = trial.kind == chosen.kind;
-    candidates.push_back(
-        {trial.kind->name, misfit, is_chosen, !is_chosen && !is_told(trial, chosen), trial.noise_share});
-  }
+CircuitCandidate candidate_of(const Trial& trial) {
+  const double misfit = std::sqrt(trial.misfit.square / std::max(1.0, trial.misfit.readings));
+  return {.name = trial.kind->name, .misfit = misfit, .noise_share = trial.noise_share};
+}
+
+void sort_candidates(std::vector<CircuitCandidate>& candidates) {
   std::stable_sort(candidates.begin(), candidates.end(), [](const CircuitCandidate& a, const CircuitCandidate& b) {
     return a.chosen != b.chosen ? a.chosen : a.misfit < b.misfit;
   });
+}
+
+std::vector<CircuitCandidate> candidates_of(const std::vector<Trial>& trials, const Trial& chosen) {
+  std::vector<CircuitCandidate> candidates;
+  for (const Trial& trial : trials) {
+    candidates.push_back(candidate_of(trial));
+    candidates.back().chosen = trial.kind == chosen.kind;
+    candidates.back().indistinguishable = trial.kind != chosen.kind && !is_told(trial, chosen);
+  }
+  sort_candidates(candidates);
+  return candidates;
+}
+
+/// By fewer frames than those that are left, so that they do not compare with them any more.
+std::vector<CircuitCandidate> refuted_candidates(const std::vector<Trial>& trials, const std::vector<Trial>& left) {
+  std::vector<CircuitCandidate> candidates;
+  for (const Trial& trial : trials) {
+    if (!has_kind(left, trial.kind)) candidates.push_back(candidate_of(trial));
+  }
+  sort_candidates(candidates);
   return candidates;
 }
 
@@ -313,11 +331,8 @@ Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const Circui
   const Trial& chosen = choose(left, frames);
   if (!chosen.fit) return bad_input("readout: no circuit explains the calibration frames");
   std::vector<CircuitCandidate> candidates = candidates_of(left, chosen);
-  std::erase_if(trials, [&](const Trial& trial) { return has_kind(left, trial.kind); });
-  for (CircuitCandidate& refuted : candidates_of(trials, chosen)) {
-    refuted.indistinguishable = false;
-    candidates.push_back(std::move(refuted));
-  }
+  std::vector<CircuitCandidate> refuted = refuted_candidates(trials, left);
+  std::move(refuted.begin(), refuted.end(), std::back_inserter(candidates));
   return CircuitChoice{as_kind(array, *chosen.kind), std::move(candidates), presses_to_tell(left, chosen, frames)};
 }
 

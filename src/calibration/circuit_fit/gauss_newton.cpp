@@ -27,15 +27,16 @@ constexpr double kLeastShare = 0.02;  // of a step
 constexpr double kSigmas = 3.0;       // of the cost, a sum of squares, by which it may rise
 constexpr int kLawIterations = 2;
 
-/// What temperature does to an unloaded conductance is of the order of it at most, whatever the unit: 1 / level^2, of a
-/// level that is known to its standard error.
+/// What temperature does to an unloaded conductance is a hundred times it at most, whatever the unit; its level is
+/// known to a standard error.
 MatrixXd unloaded_precision(const NormalEquations& idle, Index terms) {
+  constexpr double kPrecision = 1e-4;
   MatrixXd precision = MatrixXd::Zero(terms, static_cast<Index>(idle.local.size()));
   for (std::size_t taxel = 0; taxel < idle.local.size(); ++taxel) {
     if (idle.readings[taxel] == 0.0) continue;
     const double weight = idle.local[taxel](0, 0);
     const double level = idle.local[taxel].row(0).tail(1).value() / weight;
-    precision.col(static_cast<Index>(taxel)).tail(terms - 1).setConstant(1.0 / (level * level + 1.0 / weight));
+    precision.col(static_cast<Index>(taxel)).tail(terms - 1).setConstant(kPrecision / (level * level + 1.0 / weight));
   }
   return precision;
 }
