@@ -21,9 +21,8 @@ using recognition::Layout;
 Result<std::vector<ArrayLoadInput>> arrays_of_suit(const LoadInput& input, const std::string& example) {
   const Result<SuitDescription> suit = files::read_suit(input.model);
   if (!suit) {
-    return bad_input(
-        fmt::format("{}: holds several arrays; name one, as '{}#{}', or give the suit.toml that names their models: {}",
-                    input.from, input.from, example, suit.error().message));
+    return bad_field("model", fmt::format("{} holds several arrays; name one, as '{}#{}', or give the suit.toml: {}",
+                                          input.from, input.from, example, suit.error().message));
   }
   std::vector<std::string> names = input.arrays;
   if (names.empty()) {
@@ -68,12 +67,11 @@ Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input) {
 
 Status check_loads(const Layout& examples, const std::string& classes, const std::string& model) {
   if (examples.has_forces() && model.empty()) {
-    return bad_input(classes + ": its classes were learned from forces; name the model of the array");
+    return bad_field("model", "the classes of " + classes + " were learned from forces; name the model of the array");
   }
   if (!examples.has_forces() && !model.empty()) {
-    return bad_input(
-        classes +
-        ": its classes were learned from readings, not from forces; leave the model out, or learn them with a model");
+    return bad_field("model", "the classes of " + classes +
+                                  " were learned from readings, not from forces; leave it out, or learn with a model");
   }
   return Done{};
 }

@@ -27,8 +27,8 @@ ArrayDescription array_of(const Layout& layout) {
 /// Whether these classes can name what comes from `input`.
 Status check_classes(const Classes& classes, const RecognitionInput& input) {
   if (classes.layout.extras > 0 && input.loads.extra.empty()) {
-    return bad_input(input.classes + ": its classes need " + std::to_string(classes.layout.extras) +
-                     " further readings beside each frame; name their table, or learn classes without");
+    return bad_field("extra", "the classes of " + input.classes + " need " + std::to_string(classes.layout.extras) +
+                                  " further readings beside each frame; name their table, or learn classes without");
   }
   if (Status checked = check_loads(classes.layout, input.classes, input.loads.model); !checked) return checked;
   if (classes.layout.rate_hz == 0.0 && input.rate_hz > 0.0) {

@@ -195,7 +195,7 @@ class Convert(FrameFiles):
             ((frames, self.work / "a.txt"), ["a.txt", ".csv, .mcap, .h5"]),
             ((self.written("a.xyz", ""), out), ["a.xyz", ".csv, .mcap, .h5"]),
             ((self.work / "none.csv", out), ["none.csv", "No such file"]),
-            ((npy, out), ["f.npy", "no times", "--rate"]),
+            ((npy, out), ["f.npy", "no times", "give a rate"]),
             ((npy, out, "--rate", "10"), ["f.npy", "6 numbers", "how many rows and cols"]),
             ((npy, out, "--rate", "0"), ["--rate", "more than 0"]),
             ((npy, out, "--rate", "nan"), ["--rate", "more than 0"]),

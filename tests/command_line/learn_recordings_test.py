@@ -167,11 +167,11 @@ class Forces(SmallArray):
 
     def test_examples_that_are_named_twice_or_not_at_all(self):
         labels, out = self.labels(3), self.work / "c.safetensors"
-        self.refuse(["learn", "--labels", labels, "--out", out], ["--in", "--frames"])
-        self.refuse(["learn", "--labels", labels, "--out", out, "--frames", labels], ["--arrays"])
+        self.refuse(["learn", "--labels", labels, "--out", out], ["name the examples", "recordings", "frames"])
+        self.refuse(["learn", "--labels", labels, "--out", out, "--frames", labels], ["with their arrays"])
         self.refuse(["learn", "--labels", labels, "--out", out, "--frames", labels, "--arrays", labels, "--tare"],
-                    ["--tare"])
-        self.refuse(self.learn(3, arguments=["--frames", labels]), ["--in", "--frames"])
+                    ["--frames", "tare"])
+        self.refuse(self.learn(3, arguments=["--frames", labels]), ["--in", "excludes frames"])
 
     def test_classes_and_sources_that_do_not_fit(self):
         self.succeed(*self.learn(3))

@@ -36,10 +36,10 @@ TEST(CheckLoads, wants_forces_for_classes_of_forces_and_readings_for_those_of_re
   EXPECT_TRUE(check_loads(layout(1.0), "c", ""));
   const Status without = check_loads(layout(recognition::kLeastNewtons), "c", "");
   ASSERT_FALSE(without);
-  EXPECT_EQ(without.error().message, "c: its classes were learned from forces; name the model of the array");
+  EXPECT_EQ(without.error().message, "model: the classes of c were learned from forces; name the model of the array");
   const Status with = check_loads(layout(1.0), "c", "model");
   ASSERT_FALSE(with);
-  EXPECT_NE(with.error().message.find("leave the model out"), std::string::npos);
+  EXPECT_NE(with.error().message.find("leave it out"), std::string::npos);
 }
 
 TEST(LoadSource, gives_the_frames_of_one_array) {
@@ -107,7 +107,8 @@ TEST(LoadSource, of_several_arrays_wants_a_suit_that_has_them) {
   const MatFiles mat;
   const std::string recording = mat.write_two("two.mcap", pressed({1.0F}), pressed({5.0F}));
   const std::string of_one = error_of(LoadSource::open({.from = recording, .model = mat.model()}));
-  EXPECT_EQ(of_one.find(recording + ": holds several arrays; name one, as '" + recording + "#left', or give the suit"),
+  EXPECT_EQ(of_one.find("model: " + recording + " holds several arrays; name one, as '" + recording +
+                        "#left', or give the suit"),
             0U)
       << of_one;
   EXPECT_EQ(error_of(LoadSource::open({.from = recording, .model = mat.suit(), .arrays = {"left", "top"}})),

@@ -73,10 +73,37 @@ std::vector<PressPair> possible_pairs(const ArrayDescription& array, const std::
   return pairs;
 }
 
-struct Distance {
+/// How far the readings of a pair under the first circuit are from those under each other one [variances of a reading].
+struct Distances {
   PressPair pair = {};
-  double square = 0.0;  // in variances of a reading
+  std::vector<double> squares;  // [circuits - 1]
 };
+
+Distances distances_of(std::vector<Prediction>& predictions, const PressPair& pair, double variance) {
+  const std::vector<double> first = predictions.front().readings(pair);
+  Distances distances{pair, {}};
+  for (std::size_t k = 1; k < predictions.size(); ++k) {
+    const std::vector<double> other = predictions[k].readings(pair);
+    double square = 0.0;
+    for (std::size_t taxel = 0; taxel < first.size(); ++taxel) {
+      const double rubber = taxel == pair.first || taxel == pair.second ? kRubberScatter * first[taxel] : 0.0;
+      square += std::pow(first[taxel] - other[taxel], 2) / (variance + rubber * rubber);
+    }
+    distances.squares.push_back(square);
+  }
+  return distances;
+}
+
+/// The sum of the kPresses pairs for which `square` is largest; these come first then.
+template <class Square>
+double sum_of_best(std::vector<Distances>& pairs, const Square& square) {
+  const std::size_t count = std::min(kPresses, pairs.size());
+  std::partial_sort(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(count), pairs.end(),
+                    [&](const Distances& a, const Distances& b) { return square(a) > square(b); });
+  double sum = 0.0;
+  for (std::size_t k = 0; k < count; ++k) sum += square(pairs[k]);
+  return sum;
+}
 
 }  // namespace
 
@@ -85,32 +112,25 @@ std::vector<PressPair> telling_presses(const std::vector<const CommonRatio*>& ci
   std::vector<Prediction> predictions;
   for (const CommonRatio* const circuit : circuits) predictions.emplace_back(*circuit);
   const double variance = std::pow(noise_of_presses(frames), 2) * circuits.front()->scatter.noise_variance;
-  std::vector<Distance> distances;
+  std::vector<Distances> pairs;
   for (const PressPair& pair : possible_pairs(circuits.front()->array, heaviest_loads(circuits, frames))) {
-    const std::vector<double> first = predictions.front().readings(pair);
+    pairs.push_back(distances_of(predictions, pair, variance));
+  }
+  // A circuit that no pair would tell from the first does not keep the others from being told.
+  std::vector<std::size_t> tellable;
+  for (std::size_t k = 0; k + 1 < predictions.size(); ++k) {
+    if (sum_of_best(pairs, [k](const Distances& pair) { return pair.squares[k]; }) >= sure_square)
+      tellable.push_back(k);
+  }
+  if (tellable.empty()) return {};
+  sum_of_best(pairs, [&](const Distances& pair) {
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 1; k < predictions.size(); ++k) {
-      const std::vector<double> other = predictions[k].readings(pair);
-      double square = 0.0;
-      for (std::size_t taxel = 0; taxel < first.size(); ++taxel) {
-        const double rubber = taxel == pair.first || taxel == pair.second ? kRubberScatter * first[taxel] : 0.0;
-        square += std::pow(first[taxel] - other[taxel], 2) / (variance + rubber * rubber);
-      }
-      least = std::min(least, square);
-    }
-    distances.push_back({pair, least});
-  }
-  std::sort(distances.begin(), distances.end(),
-            [](const Distance& a, const Distance& b) { return a.square > b.square; });
-  distances.resize(std::min(distances.size(), kPresses));
-  double sum = 0.0;
-  std::vector<PressPair> pairs;
-  for (const Distance& distance : distances) {
-    sum += distance.square;
-    pairs.push_back(distance.pair);
-  }
-  if (sum < sure_square) pairs.clear();
-  return pairs;
+    for (const std::size_t k : tellable) least = std::min(least, pair.squares[k]);
+    return least;
+  });
+  std::vector<PressPair> presses;
+  for (std::size_t k = 0; k < std::min(kPresses, pairs.size()); ++k) presses.push_back(pairs[k].pair);
+  return presses;
 }
 
 std::string describe(const std::vector<PressPair>& presses, const ArrayDescription& array) {
