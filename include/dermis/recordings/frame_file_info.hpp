@@ -36,8 +36,8 @@ struct FrameFileInfo {
   [[nodiscard]] std::optional<double> rate_hz() const;
 };
 
-/// For a recording from its summary, if it has one; for other files by reading all frames. A file without a frame is bad
-/// input. `shape`: required shape of the frames, needed if the file does not contain it.
+/// For a recording from its summary, if it has one; for other files by reading all frames. A file without a frame is
+/// bad input. `shape`: required shape of the frames, needed if the file does not contain it.
 [[nodiscard]] Result<FrameFileInfo> frame_file_info(const std::string& path,
                                                     const std::optional<FrameShape>& shape = std::nullopt);
 
