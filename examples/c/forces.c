@@ -13,13 +13,13 @@ static int failed(const char* what) {
 }
 
 int main(int argc, char** argv) {
-  dermis_model* model;
-  dermis_pipeline* pipeline;
-  dermis_source* source;
+  dermis_model* model = NULL;
+  dermis_pipeline* pipeline = NULL;
+  dermis_source* source = NULL;
   dermis_raw_frame raw;
   dermis_force_frame force;
-  dermis_status status;
-  size_t k;
+  dermis_status status = DERMIS_OK;
+  size_t k = 0;
   if (argc != 3) {
     fprintf(stderr, "usage: forces MODEL SOURCE\n");
     return 2;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: Apache-2.0 */
 /* SPDX-FileCopyrightText: 2026 The dermis authors */
 /* libdermis_c as another language loads it: by dlopen, with wrong arguments first, then with contacts. */
-#define _POSIX_C_SOURCE 200809L
+#define _POSIX_C_SOURCE 200809L  // NOLINT(readability-identifier-naming): its name
 #include <dermis.h>
 #include <dlfcn.h>
 #include <math.h>
@@ -18,6 +18,7 @@ static void check(int holds, const char* what) {
 static void* library;
 
 /* ISO C has no cast from an object's address to a function's; POSIX promises that the bytes are the same. */
+/* NOLINTBEGIN(bugprone-macro-parentheses): a name cannot be in any */
 #define FUNCTION(name)                             \
   __typeof__(&name) name##_;                       \
   {                                                \
@@ -25,16 +26,18 @@ static void* library;
     check(symbol != NULL, #name);                  \
     memcpy(&name##_, &symbol, sizeof symbol);      \
   }
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 int main(int argc, char** argv) {
   dermis_model* model = (dermis_model*)argv;
-  dermis_pipeline* pipeline;
-  dermis_tracker* tracker;
-  dermis_source* source;
+  dermis_pipeline* pipeline = NULL;
+  dermis_tracker* tracker = NULL;
+  dermis_source* source = NULL;
   dermis_raw_frame raw;
   dermis_force_frame force;
-  const dermis_contact* contacts;
-  size_t count, found = 0;
+  const dermis_contact* contacts = NULL;
+  size_t count = 0;
+  size_t found = 0;
   check(argc == 4, "usage: by_dlopen LIBRARY MODEL FRAMES");
   library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
   check(library != NULL, "dlopen");

@@ -182,10 +182,11 @@ class UnevenPad {
   static constexpr double kThreshold = 5e-3;    // below, a vendor's box says 0
 
   [[nodiscard]] double loaded_by(const std::vector<Load>& loads, std::size_t taxel) const {
+    const std::size_t row = taxel / array.cols;
     double reading = 0.0;
     for (const Load& load : loads) {
       const double dx = static_cast<double>(taxel % array.cols) - load.x_pitches;
-      const double dy = static_cast<double>(taxel / array.cols) - load.y_pitches;
+      const double dy = static_cast<double>(row) - load.y_pitches;
       reading += load.reading / (1.0 + std::exp((std::hypot(dx, dy) - load.radius_pitches) / 0.25));
     }
     return reading;
