@@ -8,10 +8,9 @@ namespace dermis::python {
 namespace {
 
 std::string expected(const std::vector<py::ssize_t>& shape) {
-  static constexpr const char* kAny[] = {"n"};
   std::string text = "(";
   for (std::size_t k = 0; k < shape.size(); ++k) {
-    text += (k == 0 ? "" : ", ") + (shape[k] < 0 ? std::string(kAny[0]) : std::to_string(shape[k]));
+    text += (k == 0 ? "" : ", ") + (shape[k] < 0 ? "n" : std::to_string(shape[k]));
   }
   return text + (shape.size() == 1 ? ",)" : ")");
 }
