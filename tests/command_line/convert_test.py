@@ -35,6 +35,17 @@ def csv_frames(path):
     return nanos, counts, named.get("temperature_celsius"), named.get("supply_v")
 
 
+def middle_chunk(mcap):
+    """Where the chunk in the middle of the file begins and ends: records are an opcode, 8 bytes of length, the content."""
+    chunks, at = [], 8
+    while at + 9 < len(mcap) - 8:
+        end = at + 9 + int.from_bytes(mcap[at + 1:at + 9], "little")
+        if mcap[at] == 0x06:
+            chunks.append((at, end))
+        at = end
+    return chunks[len(chunks) // 2]
+
+
 class FrameFiles(SmallArray):
     @classmethod
     def setUpClass(cls):
@@ -419,7 +430,8 @@ class Recover(FrameFiles):
 
     def test_a_damaged_chunk_is_left_out_and_told(self):
         damaged = bytearray(self.long.read_bytes())
-        damaged[len(damaged) // 2] ^= 0x10
+        begin, end = middle_chunk(damaged)
+        damaged[(begin + end) // 2] ^= 0x10
         (self.work / "damaged.mcap").write_bytes(damaged)
         text = self.succeed("recover", self.work / "damaged.mcap", "--out", self.work / "out.mcap")
         self.assertRegex(text, r"1 damaged chunk with \d+ messages is lost")
