@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "recognition/features/image_analysis.hpp"
+
+namespace dermis::recognition {
+
+inline constexpr std::size_t kPoseSize = 4;
+
+/// Where on the array the contact is, along its rows and columns, and which way it lies, the more it is elongated:
+/// (1 - minor/major) (cos 2 angle, sin 2 angle).
+void write_pose(const ImageAnalysis& analysis, std::span<double> out);
+
+}  // namespace dermis::recognition
