@@ -2,19 +2,13 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "serve/calibration_services.hpp"
 
-#include <fmt/chrono.h>
-#include <fmt/core.h>
-
-#include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "dermis/calibration/plan_request.hpp"
 #include "dermis/files/array_toml.hpp"
-#include "dermis/files/frames_csv.hpp"
 #include "dermis/files/loads_csv.hpp"
+#include "serve/json_request.hpp"
+#include "serve/saved_files.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -26,29 +20,17 @@ using calibration::GuideStage;
 
 constexpr const char* kNoCalibration = "no calibration is going on; begin with /calibration/start";
 
-std::string time_stamp() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  return fmt::format("{:%Y%m%d-%H%M%S}", fmt::gmtime(now));
-}
-
 Result<std::string> answer(const Status& status) {
   if (!status) return status.error();
   return std::string("{}");
 }
 
-Status write_frames(const std::string& path, const ArrayDescription& array, const std::vector<RawFrame>& frames) {
-  auto writer = files::FramesCsvWriter::create(path, {array.rows, array.cols});
-  if (!writer) return writer.error();
-  for (const RawFrame& frame : frames) {
-    if (Status written = (*writer)->write(frame); !written) return written;
-  }
-  return (*writer)->commit();
-}
-
 /// What `dermis calibrate` needs to make the model again, or a better one.
 Status write_data(const std::string& path, const ArrayDescription& array, const GuidedData& data) {
   if (Status written = files::write_array(path + ".array.toml", array); !written) return written;
-  if (Status written = write_frames(path + ".frames.csv", array, data.frames); !written) return written;
+  const auto fill = [&](std::size_t number, RawFrame& frame) { frame = data.frames[number]; };
+  const FrameShape shape{array.rows, array.cols};
+  if (Status written = write_frames(path + ".frames.csv", shape, data.frames.size(), fill); !written) return written;
   return files::write_loads(path + ".loads.csv", array, data.loads);
 }
 
@@ -61,7 +43,7 @@ sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_ti
   return {press, is_wrong, state.taxel, state.weight_n, state.together_with, hold_time};
 }
 
-CalibrationServices::CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model,
+CalibrationServices::CalibrationServices(ServiceArrays arrays, UseModel use_model,
                                          std::shared_ptr<sources::GuideVoice> guide_voice)
     : arrays_(std::move(arrays)), use_model_(std::move(use_model)), guide_voice_(std::move(guide_voice)) {}
 
@@ -102,18 +84,10 @@ Result<std::string> CalibrationServices::call(std::string_view service, std::str
   return bad_input("there is no such service");
 }
 
-Result<std::size_t> CalibrationServices::find_array(const std::string& name) const {
-  if (name.empty() && arrays_.size() == 1) return std::size_t{0};
-  const auto found =
-      std::find_if(arrays_.begin(), arrays_.end(), [&](const auto& array) { return array.name == name; });
-  if (found == arrays_.end()) return bad_input("array: there is none of that name");
-  return static_cast<std::size_t>(found - arrays_.begin());
-}
-
 Result<std::string> CalibrationServices::start(std::string_view text) {
   const Result<calibration::PlanRequest> request = calibration::plan_request_from_json(text);
   if (!request) return request.error();
-  const Result<std::size_t> array = find_array(request->array);
+  const Result<std::size_t> array = arrays_.find(request->array);
   if (!array) return array.error();
   const ArrayDescription& description = arrays_[*array].description;
   Result<calibration::CalibrationPlan> plan = request->plan(description);
@@ -145,9 +119,9 @@ Result<std::string> CalibrationServices::save() {
   const auto fit = present->calibration();
   const GuidedData data = present->data();
   if (!fit && present->state().stage != GuideStage::failed) return bad_input("the model is not ready; finish first");
-  const CalibratedArray& array = arrays_[last_.array];
-  const std::string name = array.name + "-" + time_stamp();
-  const std::string path = (std::filesystem::path(array.model).parent_path() / name).string();
+  const ServiceArray& array = arrays_[last_.array];
+  const std::string name = array.new_name();
+  const std::string path = array.path_of(name);
   if (Status written = write_data(path, array.description, data); !written) return written.error();
   if (!fit) return failed("no model could be fitted; what was measured is in " + name + ".frames.csv and .loads.csv");
   const std::string file = name + ".safetensors";
@@ -157,7 +131,7 @@ Result<std::string> CalibrationServices::save() {
     const std::lock_guard lock(mutex_);
     last_.saved_file = file;
   }
-  return nlohmann::json{{"file", file}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return json_text(nlohmann::json{{"file", file}});
 }
 
 Result<std::string> CalibrationServices::cancel() {

@@ -14,20 +14,13 @@
 #include <vector>
 
 #include "dermis/calibration/guided_calibration.hpp"
-#include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/sources/guide_voice.hpp"
+#include "serve/service_arrays.hpp"
 
 namespace dermis::serve {
-
-/// An array that can be calibrated.
-struct CalibratedArray {
-  std::string name;
-  ArrayDescription description;  ///< As calibration takes it: parts of the circuit may still be unknown.
-  std::string model;             ///< Path of its present model or array.toml: new files go into that folder.
-};
 
 /// What there is to tell of the calibration that is going on.
 struct CalibrationProgress {
@@ -45,8 +38,7 @@ class CalibrationServices {
   using UseModel = std::function<Status(std::size_t array, std::shared_ptr<const pipeline::Model>)>;
 
   /// `guide_voice`: what the calibration asks for is said to it, for simulated hands.
-  CalibrationServices(std::vector<CalibratedArray> arrays, UseModel use_model,
-                      std::shared_ptr<sources::GuideVoice> guide_voice);
+  CalibrationServices(ServiceArrays arrays, UseModel use_model, std::shared_ptr<sources::GuideVoice> guide_voice);
 
   /// "/calibration/start", ...
   [[nodiscard]] static const std::vector<std::string>& names();
@@ -74,11 +66,10 @@ class CalibrationServices {
   Result<std::string> start(std::string_view request);
   Result<std::string> save();
   Result<std::string> cancel();
-  [[nodiscard]] Result<std::size_t> find_array(const std::string& name) const;
   void replace(Calibration calibration);
   void say_what_to_do() const;
 
-  const std::vector<CalibratedArray> arrays_;
+  const ServiceArrays arrays_;
   const UseModel use_model_;
   const std::shared_ptr<sources::GuideVoice> guide_voice_;
   std::mutex calls_mutex_;    ///< One call at a time.

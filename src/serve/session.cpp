@@ -20,6 +20,7 @@
 #include "serve/live_parameters.hpp"
 #include "serve/models_in_use.hpp"
 #include "serve/recognition_publisher.hpp"
+#include "serve/service_arrays.hpp"
 #include "serve/status_publisher.hpp"
 #include "serve/suit_json.hpp"
 #include "serve/suit_recorder.hpp"
@@ -30,22 +31,9 @@ namespace dermis::serve {
 namespace {
 
 using Notice = std::function<void(const std::string&)>;
-using Listener = std::function<void(const live::ArrayResult&)>;
 
 constexpr int kErrorLevel = 2;
 constexpr std::int64_t kTicksToReport = std::int64_t{5} * StatusPublisher::kTicksPerSecond;
-
-std::vector<CalibratedArray> calibrated_arrays(const ServedSuit& suit) {
-  std::vector<CalibratedArray> arrays;
-  for (const ServedArray& one : suit.arrays) arrays.push_back({one.name, one.description, one.model_path});
-  return arrays;
-}
-
-std::vector<TaughtArray> taught_arrays(const ServedSuit& suit) {
-  std::vector<TaughtArray> arrays;
-  for (const ServedArray& array : suit.arrays) arrays.push_back({array.name, array.model->array, array.model_path});
-  return arrays;
-}
 
 std::vector<recordings::RecordedArray> recorded_arrays(const ServedSuit& suit, const ModelsInUse& models) {
   std::vector<recordings::RecordedArray> recorded;
@@ -70,106 +58,163 @@ std::optional<stream::PlaybackService> playback_service(live::Playback* playback
                                  [playback](const PlaybackCommand& command) { return playback->control(command); }};
 }
 
+/// What listens to every frame, in the order in which it is called.
+class FrameListeners {
+ public:
+  using Listener = std::function<void(const live::ArrayResult&)>;
+
+  /// Before the first frame.
+  void add(Listener listener) { listeners_.push_back(std::move(listener)); }
+  void call(const live::ArrayResult& result) const {
+    for (const Listener& listener : listeners_) listener(result);
+  }
+
+ private:
+  std::vector<Listener> listeners_;
+};
+
+/// What can fail before there is a session.
+struct SessionParts {
+  std::unique_ptr<stream::Server> server;
+  std::unique_ptr<FrameListeners> listeners;
+  std::unique_ptr<live::LiveSuit> live;
+  std::vector<threats::ThreatMonitor> monitors;
+};
+
+/// Takes the sources of the suit.
+Result<std::unique_ptr<live::LiveSuit>> make_live(ServedSuit& suit, const FrameListeners& listeners, Notice notice) {
+  std::vector<live::LiveArray> arrays;
+  for (ServedArray& array : suit.arrays) {
+    assert(array.source != nullptr && array.model != nullptr);
+    arrays.push_back({array.name, std::move(array.source), array.model, array.surface});
+  }
+  live::LiveOptions options;
+  options.on_result = [&listeners](const live::ArrayResult& result) { listeners.call(result); };
+  options.notice = std::move(notice);
+  return live::LiveSuit::create(std::move(arrays), std::move(options));
+}
+
+Result<SessionParts> make_parts(ServedSuit& suit, const SessionOptions& options) {
+  auto listeners = std::make_unique<FrameListeners>();
+  Result<std::unique_ptr<live::LiveSuit>> live = make_live(suit, *listeners, options.server.notice);
+  if (!live) return live.error();
+  Result<std::unique_ptr<stream::Server>> server =
+      stream::Server::create(options.server, options.page, playback_service(suit.playback.get()));
+  if (!server) return server.error();
+  Result<std::vector<threats::ThreatMonitor>> monitors = threat_monitors(suit);
+  if (!monitors) return monitors.error();
+  return SessionParts{*std::move(server), std::move(listeners), *std::move(live), *std::move(monitors)};
+}
+
 }  // namespace
 
 class Session::Implementation {
  public:
-  Implementation(ServedSuit suit, const SessionOptions& options);
+  Implementation(ServedSuit suit, SessionParts parts, const SessionOptions& options);
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
   ~Implementation();
 
+  /// Begins to answer clients and, where one is wanted, a recording.
   [[nodiscard]] Status start(const SessionOptions& options);
   [[nodiscard]] Status run(const std::atomic<bool>& stop);
   [[nodiscard]] std::uint16_t port() const noexcept { return server_->port(); }
 
  private:
-  [[nodiscard]] Status make_suit();
-  [[nodiscard]] Status make_server(const SessionOptions& options);
-  [[nodiscard]] Status make_publishers();
-  [[nodiscard]] std::vector<Listener> listeners_in_order();
+  void listen();
+  [[nodiscard]] stream::Handlers handlers();
+  [[nodiscard]] std::vector<stream::Service> services();
   [[nodiscard]] Status set_parameter(const stream::Parameter& parameter);
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
   [[nodiscard]] Status use_classes(std::size_t array, recognition::Classes classes);
+  void show_suit();
   void report_failed_recording(const std::string& why);
   void report_left_out();
+  void log(const std::string& line) const;
   void tell(const std::string& line);
 
   const Notice notice_;
   ServedSuit suit_;
   ModelsInUse models_;
+  std::unique_ptr<stream::Server> server_;
+  std::unique_ptr<FrameListeners> listeners_;
+  std::unique_ptr<live::LiveSuit> live_;
+  SuitRecorder recorder_;
+  Broadcaster broadcaster_;
+  RecognitionPublisher recognition_;
+  std::optional<ThreatPublisher> threats_;  // empty: nothing is limited
   CalibrationServices calibration_;
   TeachingServices teaching_;
-  SuitRecorder recorder_;
-  std::unique_ptr<live::LiveSuit> live_;
-  std::unique_ptr<stream::Server> server_;
-  std::optional<Broadcaster> broadcaster_;
-  std::optional<RecognitionPublisher> recognition_;
-  std::unique_ptr<ThreatPublisher> threats_;  // null: nothing is limited
-  std::optional<LiveParameters> parameters_;
-  std::optional<StatusPublisher> status_;
-  /// What listens to every frame, in this order: a threat is told before anything else is done with its frame, then
-  /// what clients see and hear, then what is learned of it. It is recorded last.
-  std::vector<Listener> listeners_;
+  LiveParameters parameters_;
+  StatusPublisher status_;
   std::uint64_t left_out_ = 0;  // frames of the recording, when they were told last
 };
 
-Session::Implementation::Implementation(ServedSuit suit, const SessionOptions& options)
+Session::Implementation::Implementation(ServedSuit suit, SessionParts parts, const SessionOptions& options)
     : notice_(options.server.notice),
       suit_(std::move(suit)),
       models_(suit_),
+      server_(std::move(parts.server)),
+      listeners_(std::move(parts.listeners)),
+      live_(std::move(parts.live)),
+      recorder_(
+          options.record, [this] { return recorded_arrays(suit_, models_); },
+          [this](const std::string& why) { report_failed_recording(why); }),
+      broadcaster_(suit_, *server_),
+      recognition_(suit_, *server_, recorder_),
       calibration_(
-          calibrated_arrays(suit_),
+          service_arrays(suit_),
           [this](std::size_t array, const std::shared_ptr<const pipeline::Model>& model) {
             return use_model(array, model);
           },
           suit_.guide),
       teaching_(
-          taught_arrays(suit_),
+          service_arrays(suit_),
           [this](std::size_t array, recognition::Classes classes) { return use_classes(array, std::move(classes)); }),
-      recorder_(
-          options.record, [this] { return recorded_arrays(suit_, models_); },
-          [this](const std::string& why) { report_failed_recording(why); }) {}
+      parameters_(suit_, *live_, broadcaster_, recorder_),
+      status_(SuitAtWork{suit_, models_, *live_, recorder_, calibration_, threats_}, *server_) {
+  if (suit_.threats) {
+    threats_.emplace(suit_, std::move(parts.monitors), *server_, recorder_,
+                     [this](const std::string& line) { log(line); });
+  }
+  listen();
+}
 
 Session::Implementation::~Implementation() {
   if (suit_.playback) suit_.playback->stop();
-  if (live_) live_->stop();
-  if (server_) server_->stop();
+  live_->stop();
+  server_->stop();
   static_cast<void>(recorder_.end());
 }
 
+/// A threat is told before anything else is done with its frame. Then clients see and hear what came, then it is
+/// learned of. It is recorded last.
+void Session::Implementation::listen() {
+  if (threats_) listeners_->add([this](const auto& result) { threats_->publish(result); });
+  listeners_->add([this](const auto& result) { broadcaster_.publish(result); });
+  listeners_->add([this](const auto& result) { recognition_.publish(result); });
+  listeners_->add([this](const auto& result) { calibration_.feed(result.array, result.raw); });
+  listeners_->add([this](const auto& result) { teaching_.feed(result); });
+  listeners_->add([this](const auto& result) { recorder_.write(result.array, result.raw); });
+}
+
 Status Session::Implementation::start(const SessionOptions& options) {
-  if (Status made = make_suit(); !made) return made;
-  if (Status made = make_server(options); !made) return made;
-  if (Status made = make_publishers(); !made) return made;
-  parameters_.emplace(suit_, *live_, *broadcaster_, recorder_);
-  status_.emplace(SuitAtWork{suit_, models_, *live_, recorder_, calibration_, threats_.get()}, *server_);
-  listeners_ = listeners_in_order();
-  server_->start();
+  for (std::size_t k = 0; k < suit_.arrays.size(); ++k) {
+    const std::optional<recognition::Classes>& classes = suit_.arrays[k].classes;
+    if (!classes) continue;
+    if (Status used = recognition_.use(k, *classes); !used) return used;
+  }
+  show_suit();
+  server_->start(handlers(), services());
   return options.record.empty() ? Status(Done{}) : recorder_.begin();
 }
 
-Status Session::Implementation::make_suit() {
-  std::vector<live::LiveArray> arrays;
-  for (ServedArray& array : suit_.arrays) {
-    assert(array.source != nullptr && array.model != nullptr);
-    arrays.push_back({array.name, std::move(array.source), array.model, array.surface});
-  }
-  live::LiveOptions options;
-  options.on_result = [this](const live::ArrayResult& result) {
-    for (const Listener& listener : listeners_) listener(result);
-  };
-  options.notice = notice_;
-  Result<std::unique_ptr<live::LiveSuit>> live = live::LiveSuit::create(std::move(arrays), std::move(options));
-  if (!live) return live.error();
-  live_ = *std::move(live);
-  return Done{};
+stream::Handlers Session::Implementation::handlers() {
+  return {.parameters = [this] { return parameters_.all(); },
+          .set_parameter = [this](const stream::Parameter& parameter) { return set_parameter(parameter); }};
 }
 
-Status Session::Implementation::make_server(const SessionOptions& options) {
-  stream::Handlers handlers;
-  handlers.parameters = [this] { return parameters_->all(); };
-  handlers.set_parameter = [this](const stream::Parameter& parameter) { return set_parameter(parameter); };
+std::vector<stream::Service> Session::Implementation::services() {
   std::vector<stream::Service> services;
   for (const std::string& name : CalibrationServices::names()) {
     services.push_back({name, [this, name](std::string_view request) { return calibration_.call(name, request); }});
@@ -177,47 +222,19 @@ Status Session::Implementation::make_server(const SessionOptions& options) {
   for (const std::string& name : TeachingServices::names()) {
     services.push_back({name, [this, name](std::string_view request) { return teaching_.call(name, request); }});
   }
-  if (suit_.threats) {
+  if (threats_) {
     services.push_back({"/threats/reset", [this](std::string_view request) { return threats_->reset(request); }});
   }
-  Result<std::unique_ptr<stream::Server>> server = stream::Server::create(
-      options.server, options.page, std::move(handlers), std::move(services), playback_service(suit_.playback.get()));
-  if (!server) return server.error();
-  server_ = *std::move(server);
+  return services;
+}
+
+/// /suit.json, as the suit is now.
+void Session::Implementation::show_suit() {
   server_->set_document("/suit.json", "application/json", suit_json(suit_, models_));
-  return Done{};
-}
-
-Status Session::Implementation::make_publishers() {
-  broadcaster_.emplace(suit_, *server_);
-  recognition_.emplace(suit_, *server_, recorder_);
-  for (std::size_t k = 0; k < suit_.arrays.size(); ++k) {
-    const std::optional<recognition::Classes>& classes = suit_.arrays[k].classes;
-    if (!classes) continue;
-    if (Status used = recognition_->use(k, *classes); !used) return used;
-  }
-  Result<std::unique_ptr<ThreatPublisher>> threats =
-      ThreatPublisher::create(suit_, *server_, recorder_, [this](const std::string& line) {
-        if (notice_) notice_(line);
-      });
-  if (!threats) return threats.error();
-  threats_ = *std::move(threats);
-  return Done{};
-}
-
-std::vector<Listener> Session::Implementation::listeners_in_order() {
-  std::vector<Listener> listeners;
-  if (threats_) listeners.emplace_back([this](const auto& result) { threats_->publish(result); });
-  listeners.emplace_back([this](const auto& result) { broadcaster_->publish(result); });
-  listeners.emplace_back([this](const auto& result) { recognition_->publish(result); });
-  listeners.emplace_back([this](const auto& result) { calibration_.feed(result.array, result.raw); });
-  listeners.emplace_back([this](const auto& result) { teaching_.feed(result); });
-  listeners.emplace_back([this](const auto& result) { recorder_.write(result.array, result.raw); });
-  return listeners;
 }
 
 Status Session::Implementation::set_parameter(const stream::Parameter& parameter) {
-  Status set = parameters_->set(parameter);
+  Status set = parameters_.set(parameter);
   // Others change with it: the file of a recording, the tare of each array.
   if (set && std::holds_alternative<bool>(parameter.value)) server_->parameters_changed();
   return set;
@@ -226,16 +243,16 @@ Status Session::Implementation::set_parameter(const stream::Parameter& parameter
 Status Session::Implementation::use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model) {
   if (Status used = live_->set_model(array, model); !used) return used;
   models_.replace(array, model);
-  parameters_->forget_tare(array);
-  server_->set_document("/suit.json", "application/json", suit_json(suit_, models_));
+  parameters_.forget_tare(array);
+  show_suit();
   server_->parameters_changed();
   return Done{};
 }
 
 Status Session::Implementation::use_classes(std::size_t array, recognition::Classes classes) {
-  if (Status used = recognition_->use(array, classes); !used) return used;
+  if (Status used = recognition_.use(array, classes); !used) return used;
   suit_.arrays[array].classes = std::move(classes);
-  server_->set_document("/suit.json", "application/json", suit_json(suit_, models_));
+  show_suit();
   return Done{};
 }
 
@@ -244,9 +261,13 @@ void Session::Implementation::report_failed_recording(const std::string& why) {
   server_->parameters_changed();
 }
 
+void Session::Implementation::log(const std::string& line) const {
+  if (notice_) notice_(line);
+}
+
 /// The log and all clients.
 void Session::Implementation::tell(const std::string& line) {
-  if (notice_) notice_(line);
+  log(line);
   server_->status(kErrorLevel, line);
 }
 
@@ -264,8 +285,8 @@ Status Session::Implementation::run(const std::atomic<bool>& stop) {
   if (suit_.playback) suit_.playback->control({.play = true});
   const auto begin = std::chrono::steady_clock::now();
   for (std::int64_t tick = 0; !stop; ++tick) {
-    broadcaster_->publish_points();
-    status_->publish(tick);
+    broadcaster_.publish_points();
+    status_.publish(tick);
     if (tick % kTicksToReport == 0) report_left_out();
     std::this_thread::sleep_until(begin + Nanos((tick + 1) * 1'000'000'000 / StatusPublisher::kTicksPerSecond));
   }
@@ -276,7 +297,9 @@ Status Session::Implementation::run(const std::atomic<bool>& stop) {
 }
 
 Result<std::unique_ptr<Session>> Session::create(ServedSuit suit, const SessionOptions& options) {
-  auto implementation = std::make_unique<Implementation>(std::move(suit), options);
+  Result<SessionParts> parts = make_parts(suit, options);
+  if (!parts) return parts.error();
+  auto implementation = std::make_unique<Implementation>(std::move(suit), *std::move(parts), options);
   if (Status started = implementation->start(options); !started) return started.error();
   return std::unique_ptr<Session>(new Session(std::move(implementation)));
 }

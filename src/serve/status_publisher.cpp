@@ -64,7 +64,7 @@ void StatusPublisher::publish_health() {
   for (std::size_t k = 0; k < work_.suit.arrays.size(); ++k) {
     diagnoses.push_back(diagnosis_message(work_.suit.arrays[k].name, *work_.models.of(k), work_.live.statistics(k)));
   }
-  if (work_.threats != nullptr) std::ranges::move(work_.threats->diagnoses(), std::back_inserter(diagnoses));
+  if (work_.threats) std::ranges::move(work_.threats->diagnoses(), std::back_inserter(diagnoses));
   messages::encode_diagnostics(diagnoses, now(), kSuitFrame, message_);
   publish_message(channels_.health);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "dermis/core/frames.hpp"
@@ -24,7 +25,7 @@ struct SuitAtWork {
   const live::LiveSuit& live;
   const SuitRecorder& recorder;
   const CalibrationServices& calibration;
-  const ThreatPublisher* threats = nullptr;  ///< nullptr: nothing is limited
+  const std::optional<ThreatPublisher>& threats;  ///< Empty: nothing is limited.
 };
 
 /// The channels of docs/stream.md that tell how the work goes, and where a playback is. Not thread-safe.

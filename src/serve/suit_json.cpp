@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "serve/json_request.hpp"
+
 namespace dermis::serve {
 namespace {
 
@@ -74,7 +76,7 @@ std::string suit_json(const ServedSuit& suit, const ModelsInUse& models) {
     if (suit.threats) array["limits"] = limits_of(suit.arrays[k], *suit.threats);
     json["arrays"].push_back(std::move(array));
   }
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return json_text(json);
 }
 
 }  // namespace dermis::serve

@@ -2,11 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "serve/suit_recorder.hpp"
 
-#include <fmt/chrono.h>
 #include <fmt/core.h>
 
 #include <filesystem>
 #include <utility>
+
+#include "serve/saved_files.hpp"
 
 namespace dermis::serve {
 
@@ -14,9 +15,8 @@ std::string recording_name(const std::string& wanted, bool is_first, std::chrono
   if (is_first && !wanted.empty()) return wanted;
   const std::filesystem::path pattern(wanted.empty() ? "dermis.mcap" : wanted);
   const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch());
-  const std::string stamp = fmt::format(
-      "{:%Y%m%d-%H%M%S}-{:03}", fmt::gmtime(std::chrono::system_clock::to_time_t(now)), since_epoch.count() % 1000);
-  const std::string name = pattern.stem().string() + "-" + stamp + pattern.extension().string();
+  const std::string name = fmt::format("{}-{}-{:03}{}", pattern.stem().string(), time_stamp(now),
+                                       since_epoch.count() % 1000, pattern.extension().string());
   return (pattern.parent_path() / name).string();
 }
 

@@ -17,6 +17,7 @@
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/frames_csv.hpp"
 #include "dermis/recognition/dataset.hpp"
+#include "serve/saved_files.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -30,18 +31,14 @@ using recognition::Label;
 using recognition::LabelledFrames;
 using recognition::SensedArray;
 
-Status write_frames(const std::string& path, const LabelledFrames& data) {
+Status write_touches(const std::string& path, const LabelledFrames& data) {
   const SensedArray& array = data.layout.arrays.front();
-  auto writer = files::FramesCsvWriter::create(path, {array.rows, array.cols});
-  if (!writer) return writer.error();
-  RawFrame frame;
-  for (std::size_t number = 0; number < data.frame_count(); ++number) {
+  const auto fill = [&](std::size_t number, RawFrame& frame) {
     const auto begin = data.frames.begin() + static_cast<std::ptrdiff_t>(number * data.layout.readings);
     frame.time = Nanos(static_cast<std::int64_t>(1e9 * static_cast<double>(number) / data.layout.rate_hz));
     frame.counts.assign(begin, begin + static_cast<std::ptrdiff_t>(data.layout.readings));
-    if (Status written = (*writer)->write(frame); !written) return written;
-  }
-  return (*writer)->commit();
+  };
+  return write_frames(path, {array.rows, array.cols}, data.frame_count(), fill);
 }
 
 /// The array, as one whose readings are newtons.
@@ -88,7 +85,7 @@ Result<recognition::LoadRecording> read_frames(const std::string& path, const re
 }  // namespace
 
 Status write_taught(const std::string& path, const ArrayDescription& array, const LabelledFrames& data) {
-  if (Status written = write_frames(path + ".frames.csv", data); !written) return written;
+  if (Status written = write_touches(path + ".frames.csv", data); !written) return written;
   if (Status written = files::write_array(path + ".array.toml", array_of_newtons(array)); !written) return written;
   return write_labels(path + kLabelsSuffix, data);
 }

@@ -47,22 +47,23 @@ messages::Diagnosis diagnosis_of(const std::string& array, const ThreatLimit& li
   return diagnosis;
 }
 
-Result<std::unique_ptr<ThreatPublisher>> ThreatPublisher::create(const ServedSuit& suit, stream::Server& server,
-                                                                 SuitRecorder& recorder, Log log) {
-  if (!suit.threats) return std::unique_ptr<ThreatPublisher>();
-  std::unique_ptr<ThreatPublisher> publisher(new ThreatPublisher(
-      *suit.threats, EventTopic("/threat", messages::threat_type(), server, recorder), std::move(log)));
+Result<std::vector<threats::ThreatMonitor>> threat_monitors(const ServedSuit& suit) {
+  std::vector<threats::ThreatMonitor> monitors;
+  if (!suit.threats) return monitors;
   for (const ServedArray& array : suit.arrays) {
     Result<threats::ThreatMonitor> monitor =
         threats::ThreatMonitor::create(*suit.threats, array.name, array.model->array);
     if (!monitor) return bad_input(fmt::format("array '{}': {}", array.name, monitor.error().message));
-    publisher->arrays_.emplace_back(*std::move(monitor), array.name);
+    monitors.push_back(*std::move(monitor));
   }
-  return publisher;
+  return monitors;
 }
 
-ThreatPublisher::ThreatPublisher(const threats::ThreatLimits& limits, EventTopic topic, Log log)
-    : limits_(limits), topic_(std::move(topic)), log_(std::move(log)) {}
+ThreatPublisher::ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors,
+                                 stream::Server& server, SuitRecorder& recorder, Log log)
+    : limits_(*suit.threats), topic_("/threat", messages::threat_type(), server, recorder), log_(std::move(log)) {
+  for (std::size_t k = 0; k < monitors.size(); ++k) arrays_.emplace_back(std::move(monitors[k]), suit.arrays[k].name);
+}
 
 void ThreatPublisher::publish(const live::ArrayResult& result) {
   Watched& watched = arrays_[result.array];

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -23,16 +22,18 @@
 
 namespace dermis::serve {
 
+/// One of each array; none where nothing is limited. Fails, as "array 'chest': ...", where a limit does not fit one.
+[[nodiscard]] Result<std::vector<threats::ThreatMonitor>> threat_monitors(const ServedSuit& suit);
+
 /// The topic /threat of docs/stream.md and a line for the log of each threat. Thread-safe: each array on a thread of
 /// its own.
 class ThreatPublisher {
  public:
   using Log = std::function<void(const std::string& line)>;
 
-  /// All must outlive it. Fails, as "array 'chest': ...", where a limit does not fit an array. Without limits there is
-  /// no topic.
-  [[nodiscard]] static Result<std::unique_ptr<ThreatPublisher>> create(const ServedSuit& suit, stream::Server& server,
-                                                                       SuitRecorder& recorder, Log log);
+  /// `monitors`: threat_monitors() of the suit, which has limits. The others must outlive it.
+  ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors, stream::Server& server,
+                  SuitRecorder& recorder, Log log);
 
   void publish(const live::ArrayResult& result);
 
@@ -57,7 +58,6 @@ class ThreatPublisher {
         : monitor(std::move(its_monitor)), array(its_array) {}
   };
 
-  ThreatPublisher(const threats::ThreatLimits& limits, EventTopic topic, Log log);
   void tell(Watched& watched, Nanos time, bool all);
   static void keep_standing(Watched& watched);
   void log(Watched& watched, const threats::ThreatState& state, Nanos time) const;

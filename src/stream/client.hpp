@@ -21,9 +21,9 @@ namespace dermis::stream {
 
 /// What clients can ask of: the owner of the server, and what it offers.
 struct Offer {
-  Handlers handlers;
-  std::vector<Service> services;
-  std::optional<PlaybackService> playback;
+  Handlers handlers{};
+  std::vector<Service> services{};
+  std::optional<PlaybackService> playback{};
 };
 
 /// Told when the number of subscriptions to a channel changes, by +1 or -1.

@@ -72,9 +72,9 @@ Status ServerOptions::validate() const {
 
 class Server::Implementation final : public SessionOwner {
  public:
-  Implementation(ServerOptions options, std::vector<Asset> assets, Offer offer)
+  Implementation(ServerOptions options, std::vector<Asset> assets, std::optional<PlaybackService> playback)
       : options_(std::move(options)),
-        offer_(std::move(offer)),
+        offer_{.playback = std::move(playback)},
         site_(options_, std::move(assets)),
         subscribers_(kMostChannels),
         notices_(options_.notice) {}
@@ -83,7 +83,7 @@ class Server::Implementation final : public SessionOwner {
   ~Implementation() override { stop(); }
 
   Status listen();
-  void start();
+  void start(Handlers handlers, std::vector<Service> services);
   void stop();
   [[nodiscard]] std::uint16_t port() const { return port_; }
   ChannelId add_channel(std::string topic, std::string schema_name, std::string schema);
@@ -120,7 +120,7 @@ class Server::Implementation final : public SessionOwner {
   void count(const ServerStatistics& more);
 
   const ServerOptions options_;
-  const Offer offer_;
+  Offer offer_;  // Complete when the server starts.
   Site site_;
   const std::string session_name_ = random_session();
   std::vector<std::atomic<int>> subscribers_;  // [channel]; outlives the sessions that the context still holds
@@ -155,7 +155,9 @@ Status Server::Implementation::listen() {
   return Done{};
 }
 
-void Server::Implementation::start() {
+void Server::Implementation::start(Handlers handlers, std::vector<Service> services) {
+  offer_.handlers = std::move(handlers);
+  offer_.services = std::move(services);
   accept();
   thread_ = std::thread([this] { context_.run(); });
 }
@@ -326,11 +328,9 @@ Server::Server(std::unique_ptr<Implementation> implementation) : implementation_
 Server::~Server() = default;
 
 Result<std::unique_ptr<Server>> Server::create(const ServerOptions& options, std::vector<Asset> assets,
-                                               Handlers handlers, std::vector<Service> services,
                                                std::optional<PlaybackService> playback) {
   if (Status valid = options.validate(); !valid) return valid.error();
-  auto implementation = std::make_unique<Implementation>(
-      options, std::move(assets), Offer{std::move(handlers), std::move(services), std::move(playback)});
+  auto implementation = std::make_unique<Implementation>(options, std::move(assets), std::move(playback));
   if (Status listening = implementation->listen(); !listening) return listening.error();
   return std::unique_ptr<Server>(new Server(std::move(implementation)));
 }
@@ -339,8 +339,8 @@ std::uint16_t Server::port() const noexcept {
   return implementation_->port();
 }
 
-void Server::start() {
-  implementation_->start();
+void Server::start(Handlers handlers, std::vector<Service> services) {
+  implementation_->start(std::move(handlers), std::move(services));
 }
 
 void Server::stop() {

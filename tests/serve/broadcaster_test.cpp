@@ -56,14 +56,12 @@ class Broadcasting : public testing::Test {
   void SetUp() override {
     stream::ServerOptions options;
     options.port = 0;
-    Result<std::unique_ptr<stream::Server>> created = stream::Server::create(
-        options, {},
-        {[] { return std::vector<stream::Parameter>{}; }, [](const stream::Parameter&) { return Done{}; }});
+    Result<std::unique_ptr<stream::Server>> created = stream::Server::create(options, {});
     ASSERT_TRUE(created) << created.error().message;
     server_ = *std::move(created);
     broadcaster_.emplace(suit_, *server_);
     end_ = server_->add_channel("/end", "none", "");
-    server_->start();
+    server_->start({[] { return std::vector<stream::Parameter>{}; }, [](const stream::Parameter&) { return Done{}; }});
   }
 
   void listen_to(std::vector<std::string> topics) {

@@ -71,7 +71,7 @@ class Calibrations : public testing::Test {
   std::shared_ptr<const pipeline::Model> model_in_use_;
   Status use_ = Done{};
   CalibrationServices services_{
-      {{"left", left_, folder_.file("left.toml")}, {"right", right_, folder_.file("right.toml")}},
+      ServiceArrays({{"left", left_, folder_.file("left.toml")}, {"right", right_, folder_.file("right.toml")}}),
       [this](std::size_t array, std::shared_ptr<const pipeline::Model> model) {
         array_in_use_ = array;
         model_in_use_ = std::move(model);
@@ -160,7 +160,8 @@ TEST_F(Calibrations, say_when_the_new_model_cannot_be_used) {
 }
 
 TEST(CalibrationServices, the_only_array_needs_no_name) {
-  CalibrationServices services({{"chest", array_of(2, 2), ""}}, use_none, std::make_shared<sources::GuideVoice>());
+  CalibrationServices services(ServiceArrays({{"chest", array_of(2, 2), ""}}), use_none,
+                               std::make_shared<sources::GuideVoice>());
   EXPECT_TRUE(services.call("/calibration/start", "{}"));
   EXPECT_EQ(services.progress()->array, "chest");
 }
@@ -168,7 +169,7 @@ TEST(CalibrationServices, the_only_array_needs_no_name) {
 TEST(CalibrationServices, a_hand_that_listens_is_told_what_to_press) {
   const auto voice = std::make_shared<sources::GuideVoice>();
   voice->listen();
-  CalibrationServices services({{"chest", array_of(2, 2), ""}}, use_none, voice);
+  CalibrationServices services(ServiceArrays({{"chest", array_of(2, 2), ""}}), use_none, voice);
   ASSERT_TRUE(
       services.call("/calibration/start", R"({"taxels": [3], "weights_n": [2], "unloaded_s": 0.2, "hold_s": 0.25})"));
   EXPECT_FALSE(voice->words().press);

@@ -77,7 +77,7 @@ struct Walk {
 Walk rehearse(const ArrayDescription& array, std::uint64_t seed) {
   const auto voice = std::make_shared<sources::GuideVoice>();
   CalibrationServices services(
-      {{"hand", without_circuit(array), ""}},
+      ServiceArrays({{"hand", without_circuit(array), ""}}),
       [](std::size_t, const std::shared_ptr<const pipeline::Model>&) { return Done{}; }, voice);
   EXPECT_TRUE(services.call("/calibration/start",
                             R"({"taxels": {"stride": 2}, "weights_n": [2, 6, 20], "unloaded_s": 1, "hold_s": 0.4})"));

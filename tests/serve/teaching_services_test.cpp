@@ -67,13 +67,13 @@ class Teaching : public testing::Test {
 
   const support::TemporaryFolder folder_;
   std::optional<recognition::Classes> used_;
-  TeachingServices services_{
-      {{"other", support::reference_array(3, 4), ""}, {"skin", touched_array(), folder_.file("model.safetensors")}},
-      [this](std::size_t array, recognition::Classes classes) {
-        EXPECT_EQ(array, 1U);
-        used_ = std::move(classes);
-        return Status(Done{});
-      }};
+  TeachingServices services_{ServiceArrays({{"other", support::reference_array(3, 4), ""},
+                                            {"skin", touched_array(), folder_.file("model.safetensors")}}),
+                             [this](std::size_t array, recognition::Classes classes) {
+                               EXPECT_EQ(array, 1U);
+                               used_ = std::move(classes);
+                               return Status(Done{});
+                             }};
   Random random_{11};
   Nanos time_{};
 };
@@ -155,7 +155,7 @@ class AnotherDay : public Teaching {
     return answer ? json::parse(*answer) : json(answer.error().message);
   }
 
-  TeachingServices again_{{{"skin", touched_array(), folder_.file("model.safetensors")}},
+  TeachingServices again_{ServiceArrays({{"skin", touched_array(), folder_.file("model.safetensors")}}),
                           [](std::size_t, const recognition::Classes&) { return Status(Done{}); }};
 };
 

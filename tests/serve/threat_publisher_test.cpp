@@ -7,6 +7,7 @@
 #include <atomic>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,18 +49,17 @@ class Watching : public testing::Test {
     suit_.threats = limits(latched);
     stream::ServerOptions options;
     options.port = 0;
-    const auto none = [] { return std::vector<stream::Parameter>{}; };
-    Result<std::unique_ptr<stream::Server>> created =
-        stream::Server::create(options, {}, {none, [](const stream::Parameter&) { return Done{}; }});
+    Result<std::unique_ptr<stream::Server>> created = stream::Server::create(options, {});
     ASSERT_TRUE(created) << created.error().message;
     server_ = *std::move(created);
     ASSERT_TRUE(recorder_.begin());
-    auto publisher = ThreatPublisher::create(suit_, *server_, recorder_,
-                                             [this](const std::string& line) { lines_.push_back(line); });
-    ASSERT_TRUE(publisher) << publisher.error().message;
-    publisher_ = *std::move(publisher);
+    auto monitors = threat_monitors(suit_);
+    ASSERT_TRUE(monitors) << monitors.error().message;
+    publisher_.emplace(suit_, *std::move(monitors), *server_, recorder_,
+                       [this](const std::string& line) { lines_.push_back(line); });
     end_ = server_->add_channel("/end", "none", "");
-    server_->start();
+    const auto none = [] { return std::vector<stream::Parameter>{}; };
+    server_->start({none, [](const stream::Parameter&) { return Done{}; }});
     client_ = std::make_unique<StreamClient>(server_->port());
     client_->subscribe({"/threat", "/end"});
   }
@@ -100,7 +100,7 @@ class Watching : public testing::Test {
                            return std::vector<recordings::RecordedArray>{{.name = "chest", .shape = {kRows, kCols}}};
                          },
                          [](const std::string& why) { ADD_FAILURE() << why; }};
-  std::unique_ptr<ThreatPublisher> publisher_;
+  std::optional<ThreatPublisher> publisher_;
   stream::ChannelId end_ = 0;
   std::unique_ptr<StreamClient> client_;
   std::vector<std::string> lines_;

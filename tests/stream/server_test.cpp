@@ -81,10 +81,10 @@ struct StreamServer : testing::Test {
                         value = set.value;
                         return Done{};
                       }};
-    Result<std::unique_ptr<Server>> created = Server::create(options, assets, std::move(handlers));
+    Result<std::unique_ptr<Server>> created = Server::create(options, assets);
     ASSERT_TRUE(created) << created.error().message;
     server = std::move(*created);
-    server->start();
+    server->start(std::move(handlers));
   }
 
   tcp::socket connect() {

@@ -91,8 +91,6 @@ class Server {
  public:
   /// Binds the port. If the port is in use or not permitted, the error says what to do.
   [[nodiscard]] static Result<std::unique_ptr<Server>> create(const ServerOptions& options, std::vector<Asset> assets,
-                                                              Handlers handlers = {},
-                                                              std::vector<Service> services = {},
                                                               std::optional<PlaybackService> playback = {});
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
@@ -102,7 +100,7 @@ class Server {
   [[nodiscard]] std::uint16_t port() const noexcept;
 
   /// Begins to serve: from now on the handlers and services may be called. To be called once.
-  void start();
+  void start(Handlers handlers = {}, std::vector<Service> services = {});
 
   /// Closes all connections; waits for the handler or service that is at work, and calls none from then on.
   void stop();

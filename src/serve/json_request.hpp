@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "dermis/core/result.hpp"
+
+namespace dermis::serve {
+
+/// What a client sends with the call of a service: a JSON object of at most 4 KiB.
+class JsonRequest {
+ public:
+  static constexpr std::size_t kMostBytes = 4096;
+  static constexpr std::size_t kMostNameBytes = 60;
+
+  [[nodiscard]] static Result<JsonRequest> parse(std::string_view text);
+
+  /// A text without control characters, commas and quotes; empty where there is no such field.
+  [[nodiscard]] Result<std::string> text(const char* field, std::size_t most_bytes = kMostNameBytes) const;
+  /// A whole number from 0 on; empty where there is no such field. `wanted`: what the field must be, for the error.
+  [[nodiscard]] Result<std::optional<std::uint64_t>> number(const char* field, const char* wanted) const;
+
+ private:
+  explicit JsonRequest(nlohmann::json object);
+
+  nlohmann::json object_;
+};
+
+/// On one line. Bytes that are not UTF-8 are replaced.
+template <typename Json>
+[[nodiscard]] std::string json_text(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace dermis::serve

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/saved_files.hpp"
+
+#include <fmt/chrono.h>
+
+#include "dermis/files/frames_csv.hpp"
+
+namespace dermis::serve {
+
+std::string time_stamp(std::chrono::system_clock::time_point time) {
+  return fmt::format("{:%Y%m%d-%H%M%S}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
+}
+
+Status write_frames(const std::string& path, FrameShape shape, std::size_t count,
+                    const std::function<void(std::size_t number, RawFrame& frame)>& fill) {
+  auto writer = files::FramesCsvWriter::create(path, shape);
+  if (!writer) return writer.error();
+  RawFrame frame;
+  for (std::size_t number = 0; number < count; ++number) {
+    fill(number, frame);
+    if (Status written = (*writer)->write(frame); !written) return written;
+  }
+  return (*writer)->commit();
+}
+
+}  // namespace dermis::serve

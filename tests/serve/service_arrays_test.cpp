@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/service_arrays.hpp"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "support/reference_array.hpp"
+
+namespace dermis::serve {
+namespace {
+
+const ServiceArray kSkin{"skin", support::reference_array(2, 2), "models/skin.safetensors"};
+const ServiceArray kBack{"back", support::reference_array(2, 2), ""};
+
+TEST(ServiceArrays, are_found_by_name) {
+  const ServiceArrays arrays({kSkin, kBack});
+  EXPECT_EQ(arrays.find("back").value(), 1U);
+  EXPECT_EQ(arrays.find("chest").error().message, "array: there is none of that name");
+  EXPECT_EQ(arrays.find("").error().message, "array: there is none of that name") << "which of two?";
+}
+
+TEST(ServiceArrays, a_single_one_needs_no_name) {
+  const ServiceArrays arrays({kSkin});
+  EXPECT_EQ(arrays.find("").value(), 0U);
+  EXPECT_FALSE(arrays.find("back"));
+}
+
+TEST(ServiceArrays, new_files_lie_beside_the_model_and_have_the_time_in_their_names) {
+  EXPECT_TRUE(std::regex_match(kSkin.new_name(), std::regex("skin-[0-9]{8}-[0-9]{6}"))) << kSkin.new_name();
+  EXPECT_TRUE(std::regex_match(kSkin.new_name("touches"), std::regex("skin-touches-[0-9]{8}-[0-9]{6}")));
+  EXPECT_EQ(kSkin.path_of("a"), "models/a");
+  EXPECT_EQ(kBack.path_of("a"), "a");
+}
+
+}  // namespace
+}  // namespace dermis::serve
