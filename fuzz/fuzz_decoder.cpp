@@ -20,7 +20,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr std::array kProtocols = {"dermis",   "flexitac", "m1616",        "pressure-mat", "wuji", "3dvitac",
-                                   "wiresens", "stag",     "tactileglove", "csv",          "auto"};
+                                   "wiresens", "stag",     "tactileglove", "csv",          "auto", "json"};
 
 void require(bool is_so) {
   if (!is_so) std::abort();

@@ -28,7 +28,7 @@ ParsedLine parse(std::span<const std::uint8_t> line, std::span<float> values) {
     if (*at == ' ') ++at;
   }
   if (*at == '\r') ++at;
-  return at == &line.back() ? ParsedLine{LineKind::row, count} : ParsedLine{};
+  return at == &line.back() ? ParsedLine{LineKind::row, count, 0.0, 0} : ParsedLine{};
 }
 
 class ThreeDViTacEncoder final : public Encoder {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 // Numbers as text, as sketches for the Arduino print them: a line per row and a separator line between frames, or a
-// line per frame. Values are divided by commas, semicolons, spaces or tabs.
+// line per frame. Values are divided by commas, semicolons, spaces or tabs. A time may be the first of a line.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,9 +18,8 @@
 namespace dermis::acquisition {
 namespace {
 
-constexpr std::uint32_t kMaxValue = (1U << 24U) - 1;  // of the widest converters, and exact as float
 constexpr std::ptrdiff_t kMaxDigits = 8;
-constexpr std::ptrdiff_t kMaxDecimals = 8;
+constexpr std::ptrdiff_t kMaxClockDigits = 15;
 constexpr std::string_view kRule = "-----\r\n";
 
 constexpr bool is_blank(std::uint8_t byte) noexcept {
@@ -51,43 +50,29 @@ LineKind kind_without_numbers(std::span<const std::uint8_t> line) noexcept {
   return has_words ? LineKind::text : LineKind::separator;
 }
 
-/// The digits behind a decimal point, as a value below 1.
-std::optional<float> read_fraction(const std::uint8_t*& at) noexcept {
-  static constexpr std::array<float, kMaxDecimals + 1> kUnit = {1,     1e-1F, 1e-2F, 1e-3F, 1e-4F,
-                                                                1e-5F, 1e-6F, 1e-7F, 1e-8F};
-  const std::uint8_t* const first = at;
-  const std::uint32_t value = read_digits(at);
-  if (at == first || at - first > kMaxDecimals) return std::nullopt;
-  return static_cast<float>(value) * kUnit[static_cast<std::size_t>(at - first)];
-}
-
-bool read_value(const std::uint8_t*& at, float& value) noexcept {
-  const std::uint8_t* const first = at;
-  const std::uint32_t whole = read_digits(at);
-  if (at == first || at - first > kMaxDigits || whole > kMaxValue) return false;
-  value = static_cast<float>(whole);
-  if (*at != '.') return true;
-  const std::optional<float> decimals = read_fraction(++at);
-  value += decimals.value_or(0.0F);
-  return decimals.has_value();
+/// A reading, or the time that the first number of a line may be.
+bool read_value(const std::uint8_t*& at, bool is_first, double& value) noexcept {
+  if (is_first) return read_decimal(at, kMaxClockDigits, value);
+  return read_decimal(at, kMaxDigits, value) && std::floor(value) <= kMaxTextReading;
 }
 
 ParsedLine parse(std::span<const std::uint8_t> line, std::span<float> values) {
   if (line.back() != '\n') return {};
   const std::uint8_t* at = after_blanks(line.data());
   if (digit(*at) > 9) return {kind_without_numbers(line)};
-  std::size_t count = 0;
+  ParsedLine row{LineKind::row};
   while (true) {
-    float value = 0.0F;
-    if (!read_value(at, value)) return {};
-    if (count < values.size()) values[count] = value;
-    ++count;
+    double value = 0.0;
+    if (!read_value(at, row.values == 0, value)) return {};
+    if (row.values == 0) row.first = value;
+    if (row.values < values.size()) values[row.values] = static_cast<float>(value);
+    ++row.values;
     const std::uint8_t* const behind = std::exchange(at, after_divider(at));
     if (*at == '\r' || *at == '\n') break;
     if (at == behind) return {};
   }
   if (*at == '\r') ++at;
-  return at == &line.back() ? ParsedLine{LineKind::row, count} : ParsedLine{};
+  return at == &line.back() ? row : ParsedLine{};
 }
 
 /// "CFG,rows,cols".
@@ -115,7 +100,8 @@ class CsvEncoder final : public Encoder {
     for (std::size_t row = 0; row < shape_.rows; ++row) {
       for (std::size_t col = 0; col < shape_.cols; ++col) {
         if (col > 0) bytes.push_back(',');
-        append_decimal(static_cast<std::uint32_t>(to_wire(frame.counts[row * shape_.cols + col], 0, kMaxValue)), bytes);
+        append_decimal(static_cast<std::uint32_t>(to_wire(frame.counts[row * shape_.cols + col], 0, kMaxTextReading)),
+                       bytes);
       }
       bytes.insert(bytes.end(), {'\r', '\n'});
     }
@@ -128,16 +114,10 @@ class CsvEncoder final : public Encoder {
 
 }  // namespace
 
-Result<std::unique_ptr<Decoder>> make_csv_decoder(const ProtocolOptions& options) {
-  constexpr RowSyntax kSyntax = {
-      .parse = parse, .announced_shape = announced_shape, .single_lines = SingleLines::of_square};
-  return std::unique_ptr<Decoder>(std::make_unique<RowDecoder>(kSyntax, options.shape));
-}
-
-std::unique_ptr<Decoder> make_csv_decoder_of_any_line() {
-  constexpr RowSyntax kSyntax = {
-      .parse = parse, .announced_shape = announced_shape, .single_lines = SingleLines::of_any};
-  return std::make_unique<RowDecoder>(kSyntax, std::nullopt);
+std::unique_ptr<Decoder> make_csv_decoder(const ProtocolOptions& options, bool any_size) {
+  const RowSyntax syntax = {
+      .parse = parse, .announced_shape = announced_shape, .single_lines = SingleLines::allowed, .any_size = any_size};
+  return std::make_unique<RowDecoder>(syntax, options.shape);
 }
 
 Result<std::unique_ptr<Encoder>> make_csv_encoder(const ProtocolOptions& options) {

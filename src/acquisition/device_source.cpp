@@ -82,6 +82,8 @@ class DeviceSource final : public FrameSource {
 
   [[nodiscard]] Result<bool> finished() const {
     const bool never_comes_back = uri_.transport == Transport::file || uri_.transport == Transport::standard_input;
+    const std::string advice = decoder_->advice();
+    if (frames_ > 0 && !advice.empty()) return bad_input("'" + uri_.text + "': " + advice);
     if (frames_ > 0 || !never_comes_back) return false;
     if (clock_.received_bytes() == 0) return bad_input("'" + uri_.text + "': there is not a single byte");
     return undecoded_.error(uri_);

@@ -12,11 +12,17 @@
 namespace dermis::acquisition {
 namespace {
 
+template <std::unique_ptr<Decoder> (*Make)(const ProtocolOptions&, bool)>
+Result<std::unique_ptr<Decoder>> make_text_decoder(const ProtocolOptions& options) {
+  return Make(options, false);
+}
+
 constexpr std::array kProtocols = {
     ProtocolEntry{"3dvitac", std::nullopt, make_3dvitac_decoder, make_3dvitac_encoder},
-    ProtocolEntry{"csv", std::nullopt, make_csv_decoder, make_csv_encoder},
+    ProtocolEntry{"csv", std::nullopt, make_text_decoder<make_csv_decoder>, make_csv_encoder},
     ProtocolEntry{"dermis", std::nullopt, make_dermis_decoder, make_dermis_encoder},
     ProtocolEntry{"flexitac", std::nullopt, make_flexitac_decoder, make_flexitac_encoder},
+    ProtocolEntry{"json", std::nullopt, make_text_decoder<make_json_decoder>, make_json_encoder},
     ProtocolEntry{"m1616", FrameShape{16, 16}, make_m1616_decoder, make_m1616_encoder},
     ProtocolEntry{"pressure-mat", FrameShape{56, 28}, make_pressure_mat_decoder, make_pressure_mat_encoder},
     ProtocolEntry{"stag", std::nullopt, make_stag_decoder, make_stag_encoder},

@@ -34,10 +34,11 @@ Result<std::unique_ptr<Encoder>> make_wuji_encoder(const ProtocolOptions& option
 
 Result<std::unique_ptr<Decoder>> make_3dvitac_decoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Encoder>> make_3dvitac_encoder(const ProtocolOptions& options);
-Result<std::unique_ptr<Decoder>> make_csv_decoder(const ProtocolOptions& options);
-/// Takes lines of any number of values for frames, as one row each: to recognise them.
-std::unique_ptr<Decoder> make_csv_decoder_of_any_line();
+/// `any_size` takes lines of any number of values for frames, as one row each: to recognise them.
+std::unique_ptr<Decoder> make_csv_decoder(const ProtocolOptions& options, bool any_size);
 Result<std::unique_ptr<Encoder>> make_csv_encoder(const ProtocolOptions& options);
+std::unique_ptr<Decoder> make_json_decoder(const ProtocolOptions& options, bool any_size);
+Result<std::unique_ptr<Encoder>> make_json_encoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Decoder>> make_stag_decoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Encoder>> make_stag_encoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Decoder>> make_tactileglove_decoder(const ProtocolOptions& options);

@@ -24,9 +24,9 @@ struct Trait {
   bool has_checksum;
 };
 constexpr std::array kByStrictness = {
-    Trait{"dermis", true},        Trait{"wuji", true},   Trait{"3dvitac", false},
-    Trait{"csv", false},          Trait{"stag", false},  Trait{"tactileglove", false},
-    Trait{"pressure-mat", false}, Trait{"m1616", false}, Trait{"flexitac", false},
+    Trait{"dermis", true}, Trait{"wuji", true},      Trait{"3dvitac", false},      Trait{"csv", false},
+    Trait{"json", false},  Trait{"stag", false},     Trait{"tactileglove", false}, Trait{"pressure-mat", false},
+    Trait{"m1616", false}, Trait{"flexitac", false},
 };
 
 struct Candidate {
@@ -57,7 +57,8 @@ class Recogniser {
       ProtocolOptions other_shift = known_;
       other_shift.bit_shift = 6;
       add({"stag", false}, other_shift);
-      candidates_.push_back({"csv", kFramesWithoutChecksum, known_, make_csv_decoder_of_any_line()});
+      candidates_.push_back({"csv", kFramesWithoutChecksum, known_, make_csv_decoder(known_, true)});
+      candidates_.push_back({"json", kFramesWithoutChecksum, known_, make_json_decoder(known_, true)});
     }
   }
 
@@ -172,6 +173,7 @@ class AutoDecoder final : public Decoder {
   [[nodiscard]] std::string_view request() const noexcept override {
     return chosen_ ? chosen_->request() : "start_reading\n";
   }
+  [[nodiscard]] std::string advice() const override { return chosen_ ? chosen_->advice() : std::string(); }
   [[nodiscard]] std::string_view recognised() const noexcept override { return name_; }
 
  private:

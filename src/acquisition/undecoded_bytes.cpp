@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <string>
 
 #include "dermis/acquisition/protocol.hpp"
@@ -15,6 +16,20 @@ constexpr Nanos kTooLong = std::chrono::seconds(5);
 constexpr std::size_t kMostKept = std::size_t{256} << 10U;
 constexpr std::size_t kUnknownFrameBytes = 4096;
 constexpr std::size_t kMostBytesPerTaxel = 6;  // "65535 "
+
+/// What the decoder of that name says of the bytes.
+std::string advice_of(const std::string& name, ProtocolOptions options, std::span<const std::uint8_t> bytes) {
+  options.name = name;
+  const Result<std::unique_ptr<Decoder>> decoder = make_decoder(options);
+  if (!decoder) return {};
+  RawFrame frame;
+  for (std::size_t at = 0; at < bytes.size(); at += Decoder::kMaxPush) {
+    (*decoder)->push(bytes.subspan(at, std::min(Decoder::kMaxPush, bytes.size() - at)));
+    while ((*decoder)->next(frame)) {
+    }
+  }
+  return (*decoder)->advice();
+}
 
 }  // namespace
 
@@ -37,16 +52,21 @@ bool UndecodedBytes::are_too_many(const std::optional<FrameShape>& shape, Nanos 
 
 Error UndecodedBytes::error(const SourceUri& uri) const {
   const ProtocolOptions& protocol = uri.protocol;
-  std::string text = "'" + uri.text + "': these bytes are not " + protocol.name;
-  if (protocol.name == "auto") text = "'" + uri.text + "': these bytes are of no known protocol";
-  if (protocol.shape) text += " " + shape_text(*protocol.shape);
+  const bool is_auto = protocol.name == "auto";
   const std::string looks_like = recognise_protocol(first_);
+  const std::string advice = is_auto || looks_like == protocol.name ? advice_of(looks_like, protocol, first_) : "";
+  const std::string place = "'" + uri.text + "': ";
+  if (!advice.empty()) return bad_input(place + "these bytes are " + looks_like + ", but " + advice);
+
+  std::string text = place + "these bytes are " + (is_auto ? "of no known protocol" : "not " + protocol.name);
+  if (protocol.shape) text += " " + shape_text(*protocol.shape);
   if (looks_like.empty()) {
     const bool is_serial = uri.transport == Transport::serial;
     return bad_input(text + ": check protocol=" + (is_serial ? " and baud=" + std::to_string(uri.baud) : ""));
   }
-  if (looks_like != protocol.name)
+  if (looks_like != protocol.name) {
     return bad_input(text + "; they look like " + looks_like + ": protocol=" + looks_like);
+  }
   return bad_input(text + "; they look like " + looks_like + " of another size: check rows and cols");
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// What is particular to 3dvitac and csv; what holds for all protocols is in protocol_test.cpp.
+// What is particular to 3dvitac, csv and json; what holds for all protocols is in protocol_test.cpp.
 #include <gtest/gtest.h>
 
+#include <sstream>
 #include <string>
 
 #include "acquisition/decoding.hpp"
@@ -44,6 +45,24 @@ std::string write(const Counts& frames, std::size_t cols, const Dialect& dialect
     }
     text += dialect.after_frame;
   }
+  return text;
+}
+
+/// `start`, and 20 more for each `lines_per_frame` lines, before each line that is not empty.
+std::string with_time(const std::string& text, std::size_t lines_per_frame, std::uint64_t start) {
+  std::string timed;
+  std::istringstream lines(text);
+  std::string line;
+  for (std::size_t k = 0; std::getline(lines, line); ++k) {
+    if (!line.empty()) timed += std::to_string(start + 20 * (k / lines_per_frame)) + ",";
+    timed += line + "\n";
+  }
+  return timed;
+}
+
+std::string repeated(const std::string& line, std::size_t times) {
+  std::string text;
+  for (std::size_t k = 0; k < times; ++k) text.append(line).append("\n");
   return text;
 }
 
@@ -169,6 +188,87 @@ TEST(Csv, ignores_a_first_frame_of_which_it_saw_only_the_end) {
   const auto decoder = decoder_for({.name = "csv"});
   EXPECT_EQ(counts_of(decode_all(*decoder, bytes_of(text.substr(20)))), Counts(frames.begin() + 1, frames.end()));
   EXPECT_EQ(decoder->shape(), (FrameShape{8, 4}));
+}
+
+TEST(Csv, takes_a_number_that_rises_from_frame_to_frame_for_a_time_and_not_for_a_reading) {
+  for (const std::uint64_t start : {0ULL, 4'294'000'000ULL, 1'732'512'345'000ULL}) {
+    SCOPED_TRACE(start);
+    const Counts frames = random_counts(12, 120, 5);
+    const std::string lines = with_time(write(frames, 120, {"", ",", "\n", "", ""}), 1, start);
+    EXPECT_EQ(decode_text({.name = "csv", .shape = FrameShape{12, 10}}, lines), frames);
+    EXPECT_TRUE(decode_text({.name = "csv"}, lines).empty()) << "121 values are not 11x11";
+
+    const std::string rows = with_time(write(frames, 10, {"", ",", "\n", "", "\n"}), 13, start);
+    EXPECT_EQ(decode_text({.name = "csv", .shape = FrameShape{12, 10}}, rows), frames);
+    EXPECT_EQ(decode_text({.name = "csv"}, rows), frames);
+
+    const Counts squares = random_counts(12, 64, 5);
+    EXPECT_EQ(decode_text({.name = "csv"}, with_time(write(squares, 64, {"", ",", "\n", "", ""}), 1, start)), squares);
+  }
+}
+
+TEST(Csv, takes_a_first_number_that_stops_rising_for_a_reading) {
+  Counts frames = random_counts(200, 16, 5);
+  for (std::size_t k = 0; k < 60; ++k) frames[k][0] = static_cast<float>(10 * k);
+  EXPECT_EQ(decode_text({.name = "csv"}, write(frames, 16, {"", ",", "\n", "", ""})), frames);
+}
+
+TEST(Csv, does_not_take_rows_without_a_separator_for_frames) {
+  Counts frames = random_counts(1, 256, 5);
+  frames.resize(50, frames[0]);
+  const std::string text = write(frames, 16, {"", ",", "\n", "", ""});
+  const auto unknown = decoder_for({.name = "csv"});
+  EXPECT_TRUE(decode_all(*unknown, bytes_of(text)).empty());
+  for (const std::string boot : {"", "ready\n"}) {
+    const auto given = decoder_for({.name = "csv", .shape = FrameShape{16, 16}});
+    EXPECT_TRUE(push_all(*given, bytes_of(boot + text)).empty());
+    EXPECT_NE(given->advice().find("print an empty line between frames"), std::string::npos) << given->advice();
+  }
+}
+
+TEST(Csv, says_that_separators_are_missing_where_only_the_first_came) {
+  const std::string text = "\n" + write(random_counts(9, 6, 5), 3, {"", ",", "\n", "", ""});
+  const auto decoder = decoder_for({.name = "csv", .shape = FrameShape{2, 3}});
+  push_all(*decoder, bytes_of(text));
+  EXPECT_NE(decoder->advice().find("print an empty line between frames"), std::string::npos) << decoder->advice();
+  push_all(*decoder, bytes_of("\n1,2,3\n4,5,6\n\n"));
+  EXPECT_EQ(decoder->advice(), "");
+}
+
+TEST(Csv, asks_for_rows_and_cols_where_a_line_is_no_square) {
+  const auto decoder = decoder_for({.name = "csv"});
+  EXPECT_TRUE(push_all(*decoder, bytes_of(write(random_counts(30, 120, 5), 120, {"", ",", "\n", "", ""}))).empty());
+  EXPECT_NE(decoder->advice().find("rows=12&cols=10"), std::string::npos) << decoder->advice();
+}
+
+TEST(Json, reads_the_only_array_of_a_line) {
+  for (const std::string line :
+       {"[[1,2],[3,4],[5,6.5]]", R"({"t":17,"data":[[1,2],[3,4],[5,6.5]]})", R"({"d" : [[1, 2], [3, 4], [5, 6.5]] } )",
+        R"({"a":{"name":"m\"]","on":true},"data":[[1,2],[3,4],[5,6.5]],"v":-1.5e3})"}) {
+    SCOPED_TRACE(line);
+    const auto decoder = decoder_for({.name = "json"});
+    EXPECT_EQ(counts_of(push_all(*decoder, bytes_of("boot\n" + repeated(line, 3)))), Counts(3, {1, 2, 3, 4, 5, 6.5F}));
+    EXPECT_EQ(decoder->shape(), (FrameShape{3, 2}));
+  }
+}
+
+TEST(Json, drops_lines_that_cannot_be) {
+  for (const std::string line :
+       {"[1,2,3,4,5]", "[1,2,3,4,5,6", "[1,2,3,4,5,6]]", "[[1,2],[3,4],[5,6]]", "[1,2,3,4,5,-6]", "[1,2,3,4,5,null]",
+        R"({"a":[1,2,3,4,5,6],"b":[1]})", R"({"a":[1,2,3,4,5,6])", "{}", "[]", "[[1,2],[3]]", "[1,2,3,4,5,16777216]",
+        "[16777216,2,3,4,5,6]"}) {
+    SCOPED_TRACE(line);
+    const auto decoder = decoder_for({.name = "json", .shape = FrameShape{2, 3}});
+    EXPECT_EQ(counts_of(decode_all(*decoder, bytes_of(repeated("[1,2,3,4,5,6]\n" + line, 2)))),
+              Counts(2, {1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(decoder->counts().damaged_frames, 2U);
+  }
+}
+
+TEST(Json, asks_for_rows_and_cols_where_a_list_is_no_square) {
+  const auto decoder = decoder_for({.name = "json"});
+  EXPECT_TRUE(push_all(*decoder, bytes_of("[1,2,3,4,5,6]\n[1,2,3,4,5,6]\n[1,2,3,4,5,6]\n[1,2,3,4,5,6]\n")).empty());
+  EXPECT_NE(decoder->advice().find("rows=3&cols=2"), std::string::npos) << decoder->advice();
 }
 
 TEST(ThreeDViTac, reads_what_the_sketch_prints) {

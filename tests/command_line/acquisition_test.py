@@ -326,6 +326,27 @@ class Refused(Devices):
         path.write_bytes(data)
         self.refuse(self.record(f"file:{path}?protocol=wuji"), ["not wuji", "protocol=dermis"])
 
+    def test_text_that_lacks_something(self):
+        row = ",".join(map(str, range(10))) + "\n"
+        line = ",".join(map(str, range(120))) + "\n"
+        times = [f"{20 * k}," for k in range(40)]
+        separators = ["rows of 10 readings", "print an empty line between frames, or whole frames in one line"]
+        for text, query, words in [
+                (line * 40, "", ["120 readings", "rows=12&cols=10"]),
+                ("".join(time + line for time in times), "", ["a time and 120 readings", "rows=12&cols=10"]),
+                (row * 120, "", ["10 readings", "print an empty line between frames"]),
+                (row * 120, "?rows=12&cols=10", separators),
+                ("ready\n" + row * 120, "?rows=12&cols=10", separators),
+                ("\n" + row * 120, "?rows=12&cols=10", separators),
+                ("[" + line[:-1] + "]\n", "", ["json", "120 readings", "rows=12&cols=10"])]:
+            path = self.work / "bytes"
+            path.write_text(text * 5 if text.startswith("[") else text)
+            with self.subTest(text=text[:30], query=query):
+                result = dermis(*self.record(f"file:{path}{query}"))
+                self.assertEqual(result.returncode, 2, result.stderr)
+                for word in words:
+                    self.assertIn(word, result.stderr.splitlines()[-1])
+
     def test_garbage_on_a_line_that_goes_on(self):
         link = self.work / "tty"
         terminal = Terminal(link)

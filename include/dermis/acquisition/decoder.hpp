@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "dermis/core/frame_source.hpp"
@@ -62,6 +63,9 @@ class Decoder {
   /// Bytes that the device needs before it sends its next frame. Send them when a connection opens, after each frame,
   /// and after a second of silence. Empty for devices that send on their own, and while they do.
   [[nodiscard]] virtual std::string_view request() const noexcept { return {}; }
+
+  /// What bytes that hold no frame lack, and the mend; empty where nothing is known.
+  [[nodiscard]] virtual std::string advice() const { return {}; }
 
   /// The name of the protocol that "auto" has recognised; empty until then, and for decoders of one protocol.
   [[nodiscard]] virtual std::string_view recognised() const noexcept { return {}; }

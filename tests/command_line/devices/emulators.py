@@ -7,6 +7,7 @@ Data imitate the marks of their protocol wherever the coding allows it: AA 55 am
 number of a WiReSens packet that reads "wr", FF FE FE FF on a pressure mat."""
 import binascii
 import itertools
+import json
 import struct
 import zlib
 from array import array
@@ -253,18 +254,36 @@ class Csv:
     boot: bytes = b""
     trailing: bool = False
     width: int = 0
+    first_time: int = None  # of millis() or micros(), printed before each line
+    time_step: int = 20
 
     def __call__(self, device, random, frames):
         if self.boot:
             yield Piece(self.boot)
+        time = self.first_time
         for number, frame in enumerate(frames):
             rows = rows_of(device, frame) if self.frame_end else [frame.counts]
+            if time is not None:
+                time += self.time_step + random.randint(-1, 1)
+                rows = [[time, *row] for row in rows]
             text = "".join(self.line(row) for row in rows)
             yield Piece((text + self.frame_end).encode(), (number,))
 
     def line(self, values):
         text = self.separator.join(f"{value:{self.width}d}" for value in values)
         return text + (self.separator if self.trailing else "") + self.line_end
+
+
+# JSON lines, as ArduinoJson and MicroPython print them.
+def json_rows(device, random, frames):
+    for number, frame in enumerate(frames):
+        line = {"t": 20 * number, "id": "mat [1]", "data": [list(row) for row in rows_of(device, frame)]}
+        yield Piece(json.dumps(line).encode() + b"\n", (number,))
+
+
+def json_list(device, random, frames):
+    for number, frame in enumerate(frames):
+        yield Piece(json.dumps(list(frame.counts), separators=(",", ":")).encode() + b"\r\n", (number,))
 
 
 # dermis's own protocol (docs/wire-protocol.md).
@@ -359,6 +378,13 @@ DEVICES = [
     Device("csv, line, learnt", "csv", 10, 10, baud(230_400), Csv(" ", boot=BOOT), 1023, shape_is_known=True),
     Device("csv, semicolons", "csv", 4, 6, baud(921_600), Csv(";", trailing=True, line_end="\n"), 4095),
     Device("csv, CFG", "csv", 12, 16, baud(921_600), Csv(",", boot=b"CFG,12,16\r\n"), 4095, shape_is_known=True),
+    Device("csv, millis and a line", "csv", 12, 10, baud(115_200), Csv(",", boot=BOOT, first_time=1234), 1023),
+    Device("csv, micros and a square line", "csv", 10, 10, baud(230_400),
+           Csv(",", first_time=3_000_000_000, time_step=20_000), 1023, shape_is_known=True),
+    Device("csv, millis and rows", "csv", 12, 10, baud(115_200), Csv(",", "\r\n", first_time=0), 1023,
+           shape_is_known=True),
+    Device("json, rows", "json", 12, 10, baud(115_200), json_rows, 1023, shape_is_known=True),
+    Device("json, a list", "json", 5, 8, baud(115_200), json_list, 4095),
     Device("dermis 12x32", "dermis", 12, 32, baud(2_000_000), DermisWire(2**32 - 300, 2**32 - 10**6), 65535,
            checksum=True, shape_is_known=True, transports=("serial", "tcp", "udp")),
     Device("dermis 16x16, skipping", "dermis", 16, 16, baud(921_600), DermisWire(skipping=0.1), 65535, checksum=True,
