@@ -109,6 +109,9 @@ function(build_library target)
   set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
   set_headers(${target} PUBLIC)
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+  # Of headers alone, nothing is left to be linked by who uses an installed dermis.
+  list(TRANSFORM MODULE_PRIVATE REPLACE "^(Boost::headers|Eigen3::Eigen|nlohmann_json::nlohmann_json|fmt::fmt-header-only)$"
+       "$<BUILD_INTERFACE:\\1>")
   target_link_libraries(${target} PUBLIC ${ARGN} PRIVATE $<BUILD_INTERFACE:dermis_build_flags> ${MODULE_PRIVATE})
 endfunction()
 

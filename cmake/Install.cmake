@@ -9,10 +9,13 @@ if(TARGET dermis_c)
 endif()
 if(TARGET dermis_cli)
   install(TARGETS dermis_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR})
 endif()
 install(DIRECTORY include/dermis ${PROJECT_BINARY_DIR}/include/dermis DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT dermis-targets NAMESPACE dermis:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/dermis)
 
+list(TRANSFORM modules REPLACE "^dermis_" "" OUTPUT_VARIABLE DERMIS_COMPONENTS)
+list(JOIN DERMIS_COMPONENTS " " DERMIS_COMPONENTS)
 configure_package_config_file(cmake/dermis-config.cmake.in ${PROJECT_BINARY_DIR}/dermis-config.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/dermis)
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/dermis-config-version.cmake COMPATIBILITY SameMinorVersion)

@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <system_error>
 #include <type_traits>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "dermis/core/version.hpp"
+#include "reference.hpp"
 
 namespace dermis::app {
 namespace {
@@ -52,6 +54,21 @@ std::string names_of(std::span<const CommandEntry> commands) {
     names += (&command == &commands.back() ? " or " : ", ") + std::string(command.name);
   }
   return names;
+}
+
+/// For those who make packages, so --help does not name it.
+void add_reference(CLI::App& app, Action& chosen) {
+  CLI::App& command = *app.add_subcommand("reference", "Write the manual pages and the completion of bash and zsh");
+  command.group("");
+  auto prefix = std::make_shared<std::string>();
+  command.add_option("prefix", *prefix, "Folder whose share/ is written to, such as ~/.local")->required();
+  command.callback([&app, &chosen, prefix] {
+    chosen = [table = command_table(app), prefix]() -> Result<int> {
+      const Status written = write_reference(table, *prefix);
+      if (!written) return written.error();
+      return 0;
+    };
+  });
 }
 
 }  // namespace
@@ -123,6 +140,7 @@ Result<Action> parse_command_line(int argc, char** argv, std::span<const Command
   app.set_version_flag("--version", DERMIS_VERSION);
   app.require_subcommand(0, 1);
   Action chosen;
+  add_reference(app, chosen);
   for (const CommandEntry& entry : commands) {
     Command command(*app.add_subcommand(entry.name, entry.summary), chosen);
     entry.add(command);

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "dermis/calibration/calibrate.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "support/healthy_arrays.hpp"
 
@@ -181,8 +181,8 @@ int main(int argc, char** argv) {
   std::array<std::size_t, kKnowledges> masked{};
   for (std::size_t first = 0; first < arrays; first += kArraysAtOnce) {
     std::vector<Outcome> outcomes(std::min(kArraysAtOnce, arrays - first));
-    dermis::parallel_for(outcomes.size(),
-                         [&](std::size_t k) { outcomes[k] = watch(first_seed + first + k, most_frames); });
+    dermis::calibration::parallel_for(outcomes.size(),
+                                      [&](std::size_t k) { outcomes[k] = watch(first_seed + first + k, most_frames); });
     for (std::size_t k = 0; k < outcomes.size(); ++k) {
       const auto knowledge = static_cast<std::size_t>(outcomes[k].knowledge);
       if (!outcomes[k].refusal.empty()) {

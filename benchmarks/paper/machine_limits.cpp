@@ -10,7 +10,7 @@
 #include <functional>
 #include <numeric>
 
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "benchmarks/paper/machine_limits.cpp"
@@ -142,7 +142,7 @@ double operations_per_second(int threads) {
   };
   std::vector<Slot> slots(static_cast<std::size_t>(threads));
   const auto all = [&] {
-    parallel_for(slots.size(), [&](std::size_t t) {
+    calibration::parallel_for(slots.size(), [&](std::size_t t) {
       slots[t].result = Real{0.5};
       slots[t].operations = multiply_add(kRounds, slots[t].result);
     });
@@ -191,7 +191,7 @@ float sum(std::span<const float> values, int threads) {
   constexpr std::size_t kPiece = std::size_t{1} << 17U;  // the threads stay close together
   std::vector<float> sums(static_cast<std::size_t>(threads));
   std::atomic<std::size_t> next = 0;
-  parallel_for(sums.size(), [&](std::size_t t) {
+  calibration::parallel_for(sums.size(), [&](std::size_t t) {
     float own = 0.0F;
     for (std::size_t first = next.fetch_add(kPiece); first < values.size(); first = next.fetch_add(kPiece)) {
       own += HWY_DYNAMIC_DISPATCH(sum_of)(values.data() + first, std::min(kPiece, values.size() - first));

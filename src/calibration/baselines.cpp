@@ -7,7 +7,7 @@
 
 #include "calibration/level_table.hpp"
 #include "calibration/unloaded_fit.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 
 namespace dermis::calibration {
 namespace {

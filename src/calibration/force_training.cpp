@@ -19,7 +19,7 @@
 #include "calibration/table_choice.hpp"
 #include "calibration/taxel_training.hpp"
 #include "calibration/unloaded_fit.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/core/quantile.hpp"
 
 namespace dermis::calibration {

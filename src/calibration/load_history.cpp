@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/compensation/crosstalk.hpp"
-#include "dermis/core/parallel.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 
 namespace dermis::calibration {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "calibration/even_choice.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
 
 namespace dermis::calibration {

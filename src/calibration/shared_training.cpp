@@ -10,7 +10,7 @@
 
 #include "calibration/force_levels.hpp"
 #include "calibration/shared_loads.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
 
 namespace dermis::calibration {

@@ -13,7 +13,7 @@
 #include "calibration/force_levels.hpp"
 #include "calibration/level_table.hpp"
 #include "calibration/unloaded_fit.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/core/quantile.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/fusion/force_fusion.hpp"

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "calibration/even_choice.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/compensation/crosstalk.hpp"
-#include "dermis/core/parallel.hpp"
 #include "dermis/core/quantile.hpp"
 #include "dermis/fusion/force_fusion.hpp"
 

@@ -5,8 +5,8 @@ import re
 import subprocess
 import sys
 
-# TBB shares work, Highway chooses the instruction set, toml++ reads array.toml; the others are those of every C++ program.
-ALLOWED = {"linux-vdso", "ld-linux", "libc", "libgcc_s", "libm", "libstdc++", "libtbb", "libhwy", "libtomlplusplus"}
+# Highway chooses the instruction set, toml++ reads array.toml; the others are those of every C++ program.
+ALLOWED = {"linux-vdso", "ld-linux", "libc", "libgcc_s", "libm", "libstdc++", "libhwy", "libtomlplusplus"}
 
 listing = subprocess.run(["ldd", sys.argv[1]], check=True, capture_output=True, text=True).stdout
 linked = {re.split(r"\.so|-x86-64|-aarch64", line.split()[0].rsplit("/", 1)[-1])[0] for line in listing.splitlines()}

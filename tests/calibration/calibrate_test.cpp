@@ -14,8 +14,8 @@
 
 #include "calibration/simulated.hpp"
 #include "dermis/calibration/evaluation.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/compensation/crosstalk.hpp"
-#include "dermis/core/parallel.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 #include "dermis/recordings/frame_files.hpp"

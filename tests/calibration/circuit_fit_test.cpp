@@ -13,7 +13,7 @@
 #include "calibration/simulated_user.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/evaluation.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "support/shared_data.hpp"

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/paper/initialisation.hpp"
 #include "dermis/paper/levenberg_marquardt.hpp"
@@ -607,7 +607,7 @@ TEST(Training, trainings_side_by_side_give_the_bits_of_one_after_the_other) {
       return trained(kDeep, data, options);
     };
     std::vector<TrainingState<float>> side_by_side(8);
-    parallel_for(8, [&](std::size_t k) { side_by_side[k] = train_one(k); });
+    calibration::parallel_for(8, [&](std::size_t k) { side_by_side[k] = train_one(k); });
     for (std::size_t k = 0; k < 8; ++k) EXPECT_EQ(side_by_side[k], train_one(k));
   }
 }

@@ -11,9 +11,9 @@
 #include <memory>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
-#include "dermis/core/parallel.hpp"
 #include "support/reference_array.hpp"
 
 namespace dermis::simulation {
@@ -51,7 +51,11 @@ TEST(Simulator, gives_as_many_frames_as_the_scene_has) {
 TEST(Simulator, same_seed_gives_the_same_frames_in_any_thread) {
   const ArrayDescription array = reference_array(5, 5);
   std::vector<std::vector<RawFrame>> runs(8);
-  parallel_for(runs.size(), [&](std::size_t i) { runs[i] = record(*simulate(array, "multitouch", i / 2, 40)); });
+  std::vector<std::jthread> threads;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    threads.emplace_back([&, i] { runs[i] = record(*simulate(array, "multitouch", i / 2, 40)); });
+  }
+  threads.clear();
   for (std::size_t frame = 0; frame < 40; ++frame) {
     for (std::size_t i = 0; i < runs.size(); i += 2) EXPECT_TRUE(same_frame(runs[i][frame], runs[i + 1][frame]));
     EXPECT_FALSE(same_frame(runs[0][frame], runs[2][frame]));

@@ -16,7 +16,7 @@
 #include "calibration/circuit_fit/judge_frames.hpp"
 #include "calibration/circuit_fit/resolution.hpp"
 #include "calibration/circuit_fit/telling_presses.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 
 namespace dermis::calibration {
 namespace {

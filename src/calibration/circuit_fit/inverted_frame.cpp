@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "calibration/circuit_fit/line_parameters.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 
 namespace dermis::calibration {
 namespace {

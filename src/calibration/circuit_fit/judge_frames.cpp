@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "calibration/circuit_fit/pressed_readings.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/compensation/circuit_model.hpp"
-#include "dermis/core/parallel.hpp"
 
 namespace dermis::calibration {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "calibration/circuit_fit/sloped_inversion.hpp"
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 
 namespace dermis::calibration {
 namespace {

@@ -11,8 +11,8 @@
 #include <numeric>
 #include <utility>
 
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/calibration/sample_temperatures.hpp"
-#include "dermis/core/parallel.hpp"
 #include "dermis/paper/initialisation.hpp"
 #include "dermis/paper/structured_start.hpp"
 
@@ -146,7 +146,7 @@ void BankTraining::fill_patterns(const SampleDatabase& database) {
 }
 
 void BankTraining::start(BankStart start) {
-  parallel_for(bank_.taxel_count(), [&](std::size_t taxel) {
+  calibration::parallel_for(bank_.taxel_count(), [&](std::size_t taxel) {
     Random random = Random::stream(seed_, taxel);
     bank_.networks().set_parameters(taxel, start_parameters(start, random.bits()));
     choices_[taxel].random = random;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/paper/initialisation.hpp"
 #include "dermis/paper/levenberg_marquardt.hpp"
@@ -111,7 +111,7 @@ void try_starts(const PeaksExperiment& experiment, std::size_t first, std::size_
                 HiddenLayerFit& result, Fit& best) {
   for (; first < last && best.mse > goal; first += kStartsAtOnce) {
     std::vector<Fit> fits(std::min(kStartsAtOnce, last - first));
-    parallel_for(fits.size(), [&](std::size_t k) {
+    calibration::parallel_for(fits.size(), [&](std::size_t k) {
       fits[k] = experiment.levenberg_marquardt(result.hidden, first + k, iterations);
     });
     result.starts += fits.size();
@@ -176,7 +176,7 @@ TrainingCurve drawn(const ErrorCurve& curve, std::string name) {
 void reproduce_adaptive_rate(const PeaksExperiment& experiment, const PeaksEffort& effort, Fit& best,
                              HiddenLayerFit& fit_of_paper_size, PeaksReproduction& found) {
   std::vector<TrainingState<double>> states(effort.adaptive_rate_starts);
-  parallel_for(states.size(), [&](std::size_t start) {
+  calibration::parallel_for(states.size(), [&](std::size_t start) {
     states[start] = experiment.adaptive_rate(start, effort.adaptive_rate_epochs);
   });
   const auto& winner = *std::min_element(states.begin(), states.end(),

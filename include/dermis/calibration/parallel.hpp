@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <functional>
 
-namespace dermis {
+namespace dermis::calibration {
 
 /// Calls body(0) ... body(count - 1) on all cores, in any order; returns when all are done.
 /// Bodies must not share what they write: results then do not depend on the number of threads.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
-}  // namespace dermis
+}  // namespace dermis::calibration

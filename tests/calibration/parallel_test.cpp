@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "dermis/core/parallel.hpp"
+#include "dermis/calibration/parallel.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace dermis {
+namespace dermis::calibration {
 namespace {
 
 TEST(ParallelFor, calls_every_index_once) {
@@ -26,4 +26,4 @@ TEST(ParallelFor, nests) {
 }
 
 }  // namespace
-}  // namespace dermis
+}  // namespace dermis::calibration

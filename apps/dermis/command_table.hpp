@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "command_line.hpp"
+
+namespace dermis::app {
+
+/// An option or an argument as --help shows it.
+struct OptionRow {
+  std::vector<std::string> names;  ///< "-h" and "--help"; of an argument its one name, "in".
+  std::string value;               ///< What its value is, "TEXT"; empty for a flag.
+  std::string default_value;       ///< Empty where none is shown.
+  std::string help;
+  std::vector<std::string> needs;     ///< Options that must be given, too.
+  std::vector<std::string> excludes;  ///< Options that must not be given, too.
+  int values = 1;                     ///< How many it takes; 0 for a flag.
+  bool is_repeated = false;           ///< Takes any number of values.
+  bool is_required = false;
+};
+
+/// A command with what it takes, as --help shows it.
+struct CommandTable {
+  std::string name;  ///< With those of the commands above it: "dermis circuit invert".
+  std::string summary;
+  std::vector<OptionRow> options;
+  std::vector<OptionRow> arguments;
+  std::vector<CommandTable> commands;
+};
+
+/// What --help knows of a command and of all that are below it.
+[[nodiscard]] CommandTable command_table(const CLI::App& app);
+
+}  // namespace dermis::app
