@@ -273,7 +273,6 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   if (!database && array.readout.circuit == Circuit::automatic && known.readout.circuit != Circuit::none) {
     circuit->statements.push_back("the circuit that was found does not do: " + database.error().message +
                                   "; readings are taken as they are");
-    circuit->telling_presses.clear();
     circuit->array = without_circuit(known);
     database = invert_frames(circuit->array, frames, loads, settle_time, progress);
   }

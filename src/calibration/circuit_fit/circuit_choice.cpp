@@ -190,7 +190,12 @@ struct Comparison {
 
 Comparison compare(const Trial& first, const Trial& second) {
   if (!first.fit || !second.fit) return {first.misfit, second.misfit};  // infinite where it cannot give the frames
-  return {misfit_beside(first.readings, second.readings), misfit_beside(second.readings, first.readings)};
+  if (!first.is_rough && !second.is_rough) {
+    return {misfit_beside(first.readings, second.readings), misfit_beside(second.readings, first.readings)};
+  }
+  const std::size_t taxels = first.fit->array.taxel_count();
+  return {rough_misfit_beside(first.readings, second.readings, taxels),
+          rough_misfit_beside(second.readings, first.readings, taxels)};
 }
 
 bool has_less(const Trial& a, const Trial& b) {

@@ -39,9 +39,9 @@ std::optional<std::string> describe_doubt(const ArrayDescription& array,
     if (candidate.indistinguishable) names += (names.empty() ? "\"" : ", \"") + candidate.name + "\"";
   }
   if (names.empty()) return std::nullopt;
-  const std::string mend =
-      telling_presses.empty() ? "two taxels at once with these weights would not either, and forces hardly depend on it"
-                              : describe(telling_presses, array);
+  const std::string mend = telling_presses.empty() ? "two taxels at once with these weights would not either, and "
+                                                     "forces of one or two presses hardly depend on it"
+                                                   : describe(telling_presses, array);
   return "these frames do not tell the chosen circuit from " + names + "; " + mend;
 }
 
@@ -77,14 +77,15 @@ void describe_drives(const ResistanceFit& fit, std::vector<std::string>& stateme
   if (drives.count == 0) return;
   if (drives.worst_error > kUnknown) {
     statements.push_back(fmt::format(
-        "drive_ohm: too small for these frames to tell, at most about {:.3g} ohm; what is left of its crosstalk is as "
-        "small, and forces hardly depend on it",
-        drives.most_ohm + 2.0 * *std::max_element(fit.errors.drive_ohm.begin(), fit.errors.drive_ohm.end())));
-    return;
-  }
-  statements.push_back(describe("drive_ohm", drives));
-  if (drives.count > 1) {
-    statements.back() += fmt::format(", {:.1f} % their mean", 100.0 * fit.errors.common_drive);
+        "drive_ohm: too small for these frames to tell, at most about {:.3g} ohm{}",
+        drives.most_ohm + 2.0 * *std::max_element(fit.errors.drive_ohm.begin(), fit.errors.drive_ohm.end()),
+        fit.driver_presses.empty() ? "; what is left of its crosstalk is as small, and forces hardly depend on it"
+                                   : ""));
+  } else {
+    statements.push_back(describe("drive_ohm", drives));
+    if (drives.count > 1) {
+      statements.back() += fmt::format(", {:.1f} % their mean", 100.0 * fit.errors.common_drive);
+    }
   }
   if (!fit.driver_presses.empty()) {
     statements.push_back("drive_ohm: these frames leave it uncertain; a uniform load on the whole array tells it, or " +

@@ -23,8 +23,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int kMaxIterations = 8;
-constexpr double kLeastShare = 0.02;  // of a step
-constexpr double kSigmas = 3.0;       // of the cost, a sum of squares, by which it may rise
+constexpr double kLeastShare = 0.02;     // of a step
+constexpr double kSigmas = 3.0;          // of the cost, a sum of squares, by which it may rise
+constexpr std::size_t kMayBeLost = 200;  // one frame in so many
 constexpr int kLawIterations = 2;
 
 /// What temperature does to an unloaded conductance is a hundred times it at most, whatever the unit; its level is
@@ -133,22 +134,24 @@ Iteration follow(const LineParameters& lines, const Linearisation& here, const M
 }  // namespace
 
 // Where a conductance is what little a reading leaves of the supply, a step may be far too long: it is halved until it
-// leads uphill by no more than chance would, all steps together, and where it never does, the fit ends.
+// leads uphill by no more than chance would, all steps together, and loses no frames. Where it never does, the fit
+// ends.
 Result<Iteration> iterate(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
                           const Estimate& start, double enough) {
   Result<Measurements> measurements = measure(lines, frames, start);
   if (!measurements) return measurements.error();
+  const std::size_t most_lost = measurements->lost_frames + frames.size() / kMayBeLost;
   Linearisation here = linearise(lines, *measurements, start);
   Iteration last = follow(lines, here, *measurements, start, 1.0);
   Estimate before = start;
   const double chance = kSigmas * std::sqrt(2.0 * readings_of(here));
   double allowed = chance;
-  for (int k = 1; k < kMaxIterations && (k == 1 || last.step >= enough); ++k) {
+  for (int k = 1;; ++k) {
     for (double share = 0.5;; share *= 0.5) {
       Result<Measurements> next = measure(lines, frames, last.estimate);
       if (!next) return next.error();
       const double rise = rise_from(here, lines, *next, last.estimate, before.scatter);
-      if (!(rise > allowed)) {
+      if (next->lost_frames <= most_lost && !(rise > allowed)) {
         allowed = std::min(chance, allowed - rise);
         measurements = std::move(next);
         break;
@@ -156,11 +159,11 @@ Result<Iteration> iterate(const LineParameters& lines, const std::vector<const C
       if (share < kLeastShare) return follow(lines, here, *measurements, before, 0.0);
       last = follow(lines, here, *measurements, before, share);
     }
+    if (k == kMaxIterations || (k > 1 && last.step < enough)) return last;
     before = last.estimate;
     here = linearise(lines, *measurements, before);
     last = follow(lines, here, *measurements, before, 1.0);
   }
-  return last;
 }
 
 Iteration fit_laws(const LineParameters& known, const InvertedFrames& inverted,

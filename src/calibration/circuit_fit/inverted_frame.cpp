@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
+#include "calibration/circuit_fit/cut_readings.hpp"
 #include "calibration/circuit_fit/line_parameters.hpp"
 #include "dermis/calibration/parallel.hpp"
 
@@ -42,6 +44,19 @@ std::optional<SmoothFrame> without_idle_noise(SlopedInversion& inversion, const 
   return smooth;
 }
 
+/// Idle readings without what cutting them at 0 adds to their mean; those that tell nothing have no end of noise.
+void correct_for_cut(const CircuitFrame& frame, const SmoothFrame& smooth, const Rubber& rubber,
+                     InvertedFrame& inverted) {
+  for (std::size_t taxel = 0; taxel < inverted.siemens.size(); ++taxel) {
+    if (frame.newtons[taxel] != 0.0F || rubber.laws[taxel].unloaded.size() == 0) continue;
+    const double expected = smooth.ratio[taxel];
+    double& sigma = inverted.sigma_siemens[taxel];
+    const double added = mean_above(0.0, expected, frame.sigma_ratio) - expected;
+    inverted.siemens[taxel] -= added * sigma / frame.sigma_ratio;
+    if (expected < trusted_above(frame)) sigma = std::numeric_limits<double>::infinity();
+  }
+}
+
 /// false: as invert_frame().
 bool add_slopes(SlopedInversion& inversion, const CircuitFrame& frame, const Rubber& rubber, InvertedFrame& inverted) {
   const std::optional<SmoothFrame> smooth = without_idle_noise(inversion, frame, inverted, rubber);
@@ -49,6 +64,7 @@ bool add_slopes(SlopedInversion& inversion, const CircuitFrame& frame, const Rub
   for (std::size_t taxel = 0; taxel < inverted.siemens.size(); ++taxel) {
     if (frame.newtons[taxel] != 0.0F) inverted.siemens[taxel] = smooth->siemens[taxel];
   }
+  correct_for_cut(frame, *smooth, rubber, inverted);
   return inversion.differentiate(smooth->ratio, smooth->siemens, inverted.slopes);
 }
 

@@ -18,8 +18,8 @@ namespace dermis::calibration {
 /// A frame's taxels in one circuit.
 struct InvertedFrame {
   std::vector<double> siemens;
-  std::vector<double> sigma_siemens;
-  Eigen::MatrixXd slopes;  ///< d siemens / d parameter [taxels, parameters or 0].
+  std::vector<double> sigma_siemens;  ///< Infinite: a reading that tells nothing.
+  Eigen::MatrixXd slopes;             ///< d siemens / d parameter [taxels, parameters or 0].
 
   [[nodiscard]] Eigen::VectorXd slopes_of(std::size_t taxel) const {
     if (slopes.cols() == 0) return {};  // a matrix without columns has no memory to point a row at

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/circuit_fit/cut_readings.hpp"
 #include "calibration/circuit_fit/pressed_readings.hpp"
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/compensation/circuit_model.hpp"
@@ -55,8 +56,23 @@ void add(const JudgedReading& reading, float variance, FrameMisfit& misfit) {
   if (!(square < kMostSquare)) square = kMostSquare;  // also where it is not a number
   misfit.square += square;
   misfit.readings += 1.0;
-  if (reading.taxel == JudgedReading::Taxel::pressed) misfit.pressed_square += square;
+  if (reading.taxel == JudgedReading::Taxel::pressed) {
+    misfit.pressed_square += square;
+    misfit.pressed_readings += 1.0;
+  }
   if (reading.taxel == JudgedReading::Taxel::crossed) misfit.crossed_square += square;
+}
+
+void add_beside(const JudgedReading& reading, const JudgedReading& other, FrameMisfit& misfit) {
+  if (reading.is_telling && other.is_telling) add(reading, std::max(reading.variance, other.variance), misfit);
+}
+
+/// What pressed taxels leave within their noise and scatter is taken as so much.
+FrameMisfit with_scatter(FrameMisfit frame) {
+  const double scattered = std::max(frame.pressed_square, frame.pressed_readings);
+  frame.square += scattered - frame.pressed_square;
+  frame.pressed_square = scattered;
+  return frame;
 }
 
 /// One circuit and its rubber. Idle taxels are judged by their readings, whose noise is the same in all circuits.
@@ -120,9 +136,10 @@ class Judge {
   }
 
   [[nodiscard]] JudgedReading judge_idle(const CircuitFrame& frame, std::size_t taxel) const {
-    const double cut = rubber_.laws[taxel].is_readable ? 0.0 : kCutSigmas * frame.said_sigma;
-    const double difference = std::max(frame.ratio[taxel], cut) - std::max(expected_[taxel], cut);
-    const double square = std::pow(difference / frame.sigma_ratio, 2) / scatter_.noise_variance;
+    const double cut = rubber_.laws[taxel].is_readable ? trusted_above(frame) : kCutSigmas * frame.said_sigma;
+    const double sigma = frame.sigma_ratio * std::sqrt(scatter_.noise_variance);
+    const double difference = std::max(frame.ratio[taxel], cut) - mean_above(cut, expected_[taxel], sigma);
+    const double square = std::pow(difference / sigma, 2);
     return {static_cast<float>(square), 1.0F, {}, true};
   }
 
@@ -134,6 +151,15 @@ class Judge {
 };
 
 }  // namespace
+
+FrameMisfit& FrameMisfit::operator+=(const FrameMisfit& other) {
+  square += other.square;
+  readings += other.readings;
+  pressed_square += other.pressed_square;
+  pressed_readings += other.pressed_readings;
+  crossed_square += other.crossed_square;
+  return *this;
+}
 
 JudgedReadings judge_frames(const ArrayDescription& array, const Rubber& rubber, const Scatter& scatter,
                             const InvertedFrames& inverted, const std::vector<const CircuitFrame*>& frames) {
@@ -156,9 +182,16 @@ FrameMisfit misfit_of(const JudgedReadings& readings) {
 
 FrameMisfit misfit_beside(const JudgedReadings& readings, const JudgedReadings& other) {
   FrameMisfit all;
-  for (std::size_t k = 0; k < readings.size(); ++k) {
-    const float variance = std::max(readings[k].variance, other[k].variance);
-    if (readings[k].is_telling && other[k].is_telling) add(readings[k], variance, all);
+  for (std::size_t k = 0; k < readings.size(); ++k) add_beside(readings[k], other[k], all);
+  return all;
+}
+
+FrameMisfit rough_misfit_beside(const JudgedReadings& readings, const JudgedReadings& other, std::size_t taxels) {
+  FrameMisfit all;
+  for (std::size_t first = 0; first < readings.size(); first += taxels) {
+    FrameMisfit frame;
+    for (std::size_t k = first; k < first + taxels; ++k) add_beside(readings[k], other[k], frame);
+    all += with_scatter(frame);
   }
   return all;
 }

@@ -29,7 +29,10 @@ struct FrameMisfit {
   double square = 0.0;
   double readings = 0.0;
   double pressed_square = 0.0;
+  double pressed_readings = 0.0;
   double crossed_square = 0.0;
+
+  FrameMisfit& operator+=(const FrameMisfit& other);
 };
 
 /// Idle taxels against their unloaded conductance, pressed ones against their laws, over all frames. `inverted`: of
@@ -44,5 +47,10 @@ struct FrameMisfit {
 /// Of the readings that tell in both circuits, by the larger of their variances: the two compare by these. A circuit in
 /// which a reading hardly follows its taxel would else look worse than one that leaves it to the rubber.
 [[nodiscard]] FrameMisfit misfit_beside(const JudgedReadings& readings, const JudgedReadings& other);
+
+/// The same of circuits whose lines are not known singly. What the pressed taxels of a frame leave within their noise
+/// and scatter does not count: many that are pressed alike would else decide by the shape of their laws.
+[[nodiscard]] FrameMisfit rough_misfit_beside(const JudgedReadings& readings, const JudgedReadings& other,
+                                              std::size_t taxels);
 
 }  // namespace dermis::calibration

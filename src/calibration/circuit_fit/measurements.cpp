@@ -32,6 +32,7 @@ void add_idle(const CircuitFrame& frame, const InvertedFrame& inverted, const Es
   Index used = 0;
   for (std::size_t taxel = 0; taxel < rubber.laws.size(); ++taxel) {
     if (frame.newtons[taxel] != 0.0F || !tells_when_idle(rubber.laws[taxel])) continue;
+    if (!std::isfinite(inverted.sigma_siemens[taxel])) continue;
     const double relative_sigma = inverted.sigma_siemens[taxel] / rubber.reference_siemens;
     const double weight = 1.0 / (relative_sigma * relative_sigma);
     auto row = rows.col(used++);
@@ -54,12 +55,15 @@ void add_pressed(const CircuitFrame& frame, const InvertedFrame& inverted, const
 }
 
 Measurements no_measurements(const Rubber& rubber, Index parameters) {
-  return {NormalEquations(rubber.laws.size(), rubber.unloaded_terms, parameters + 1), {}};
+  return {NormalEquations(rubber.laws.size(), rubber.unloaded_terms, parameters + 1), {}, 0};
 }
 
 void add(const CircuitFrame& frame, const std::optional<InvertedFrame>& inverted, const Estimate& estimate,
          Measurements& measurements) {
-  if (!inverted) return;
+  if (!inverted) {
+    ++measurements.lost_frames;
+    return;
+  }
   add_idle(frame, *inverted, estimate, measurements.idle);
   add_pressed(frame, *inverted, estimate.rubber.force_scale, measurements.pressed);
 }
@@ -68,6 +72,7 @@ Measurements merge(std::vector<Measurements> parts) {
   Measurements all = std::move(parts.front());
   for (std::size_t k = 1; k < parts.size(); ++k) {
     all.idle += parts[k].idle;
+    all.lost_frames += parts[k].lost_frames;
     std::move(parts[k].pressed.begin(), parts[k].pressed.end(), std::back_inserter(all.pressed));
   }
   return all;

@@ -19,6 +19,7 @@ namespace dermis::calibration {
 struct Measurements {
   NormalEquations idle;  ///< Columns: parameters, conductance over the reference; by the noise that is said of them.
   std::vector<PressedReading> pressed;
+  std::size_t lost_frames = 0;  ///< That the circuit cannot give.
 };
 
 /// Inverts the frames on all cores. Errors: a circuit that cannot be inverted.

@@ -40,6 +40,9 @@ class Prediction {
     return {model_->ratio().begin(), model_->ratio().end()};
   }
 
+  /// Of a taxel that is the only one pressed.
+  [[nodiscard]] double alone(std::size_t taxel, double newtons) { return readings({taxel, taxel, newtons})[taxel]; }
+
  private:
   const Rubber& rubber_;
   std::optional<compensation::CircuitModel> model_;  // empty: readings are conductances
@@ -79,6 +82,7 @@ struct Distances {
   std::vector<double> squares;  // [circuits - 1]
 };
 
+/// Of its pressed taxels only what the other press changes: what they read alone, laws explain in all circuits.
 Distances distances_of(std::vector<Prediction>& predictions, const PressPair& pair, double variance) {
   const std::vector<double> first = predictions.front().readings(pair);
   Distances distances{pair, {}};
@@ -86,8 +90,11 @@ Distances distances_of(std::vector<Prediction>& predictions, const PressPair& pa
     const std::vector<double> other = predictions[k].readings(pair);
     double square = 0.0;
     for (std::size_t taxel = 0; taxel < first.size(); ++taxel) {
-      const double rubber = taxel == pair.first || taxel == pair.second ? kRubberScatter * first[taxel] : 0.0;
-      square += std::pow(first[taxel] - other[taxel], 2) / (variance + rubber * rubber);
+      const bool is_pressed = taxel == pair.first || taxel == pair.second;
+      const double alone =
+          is_pressed ? predictions.front().alone(taxel, pair.newtons) - predictions[k].alone(taxel, pair.newtons) : 0.0;
+      const double rubber = is_pressed ? kRubberScatter * first[taxel] : 0.0;
+      square += std::pow(first[taxel] - other[taxel] - alone, 2) / (variance + rubber * rubber);
     }
     distances.squares.push_back(square);
   }
