@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "calibration/memory_training.hpp"
+#include "calibration/memory/memory_training.hpp"
 #include "dermis/calibration/baselines.hpp"
 
 namespace dermis::calibration {

@@ -18,6 +18,14 @@ def allowed_includes(architecture):
     return {module: {module} | set(re.findall(r"`(\w+)`", cell)) for module, cell in rows}
 
 
+def folder_tables(architecture):
+    """Of each module with a heading "Folders of": folder -> folders whose private headers it may include."""
+    for section in architecture.split("\n### Folders of `")[1:]:
+        module, text = section.split("`", 1)
+        rows = re.findall(r"^\| `(\w+)` \|[^|]*\|([^|]*)\|$", text.split("\n## ", 1)[0], re.MULTILINE)
+        yield module, {folder: {folder} | set(re.findall(r"`(\w+)`", cell)) for folder, cell in rows}
+
+
 def sources(root):
     """(path, module) of every C++ file that the table is about; apps count as the module `apps`."""
     for folder in ("include/dermis", "src"):
@@ -45,6 +53,20 @@ def include_violations(root, allowed):
                     yield f"{place}: {module} must not include {parts[1]} ({name})"
             elif bracket == '"' and parts[0] in allowed and parts[0] != module and not is_shared(name, allowed[module]):
                 yield f"{place}: {name} is private to the module {parts[0]}"
+
+
+def folder_violations(root, architecture):
+    for module, allowed in folder_tables(architecture):
+        home = root / "src" / module
+        for path in sorted(home.glob("*/**/*.[ch]pp")):
+            place, folder = path.relative_to(root), path.relative_to(home).parts[0]
+            if folder not in allowed:
+                yield f"{place}: the folder {folder} is not in the table of ARCHITECTURE.md"
+                continue
+            for _, name in INCLUDE.findall(path.read_text()):
+                parts = name.split("/")
+                if parts[0] == module and len(parts) > 2 and parts[1] not in allowed[folder]:
+                    yield f"{place}: the folder {folder} must not include {parts[1]} ({name})"
 
 
 def header_violations(root):
@@ -101,8 +123,10 @@ def version_violations(root):
 
 
 def violations(root):
-    allowed = allowed_includes((root / "ARCHITECTURE.md").read_text())
+    architecture = (root / "ARCHITECTURE.md").read_text()
+    allowed = allowed_includes(architecture)
     yield from include_violations(root, allowed)
+    yield from folder_violations(root, architecture)
     yield from header_violations(root)
     yield from licence_violations(root)
     yield from message_violations(root)

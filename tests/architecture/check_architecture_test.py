@@ -10,6 +10,13 @@ from check_architecture import SPDX, violations
 HEADER = SPDX + "#pragma once\n"
 TABLE = """# Architecture
 
+### Folders of `fusion`
+
+| folder | what it does | may include |
+|---|---|---|
+| `tables` | look up | |
+| `fit` | learns | `tables` |
+
 ## Dependencies
 
 | module | may include |
@@ -36,6 +43,7 @@ class Rules(unittest.TestCase):
         self.write("include/dermis/fusion/force.hpp", HEADER + '#include "dermis/core/frames.hpp"\n')
         self.write("src/fusion/force.cpp", SPDX + '#include "dermis/core/frames.hpp"\n#include "fusion/table.hpp"\n#include <tbb/tbb.h>\n')
         self.write("src/fusion/table.hpp", HEADER)
+        self.write("src/fusion/fit/fit.cpp", SPDX + '#include "fusion/table.hpp"\n#include "fusion/tables/knots.hpp"\n')
         self.write("apps/dermis/main.cpp", SPDX + '#include "dermis/fusion/force.hpp"\n')
         self.write("tests/core/frames_test.cpp", SPDX)
         self.write("tests/fusion/force_test.cpp", SPDX)
@@ -54,16 +62,26 @@ class Rules(unittest.TestCase):
     def test_accepts_a_tree_that_keeps_them(self):
         self.expect()
 
+    def test_a_folder_includes_one_that_its_row_does_not_name(self):
+        self.write("src/fusion/tables/knots.cpp", SPDX + '#include "fusion/fit/fit.hpp"\n')
+        self.expect("tables must not include fit")
+
+    def test_a_folder_is_not_in_the_table(self):
+        self.write("src/fusion/plots/plot.cpp", SPDX)
+        self.expect("the folder plots is not in the table")
+
     def test_a_module_includes_one_that_the_table_does_not_allow(self):
         self.write("src/simulation/scene.cpp", SPDX + '#include "dermis/fusion/force.hpp"\n')
         self.expect("simulation must not include fusion")
 
     def test_a_private_header_of_another_module(self):
+        self.write("src/fusion/fit/fit.cpp", SPDX + '#include "fusion/table.hpp"\n#include "fusion/tables/knots.hpp"\n')
         self.write("apps/dermis/main.cpp", SPDX + '#include "fusion/table.hpp"\n')
         self.expect("private to the module fusion")
 
     def test_kernels_are_shared_with_the_modules_whose_row_names_theirs(self):
         self.write("src/fusion/table-inl.hpp", HEADER)
+        self.write("src/fusion/fit/fit.cpp", SPDX + '#include "fusion/table.hpp"\n#include "fusion/tables/knots.hpp"\n')
         self.write("apps/dermis/main.cpp", SPDX + '#include "fusion/table-inl.hpp"\n')
         self.expect()
         self.write("src/simulation/scene.cpp", SPDX + '#include "fusion/table-inl.hpp"\n')
@@ -78,6 +96,7 @@ class Rules(unittest.TestCase):
         self.expect("must not include <Eigen/Core>")
 
     def test_a_permission_that_nobody_uses(self):
+        self.write("src/fusion/fit/fit.cpp", SPDX + '#include "fusion/table.hpp"\n#include "fusion/tables/knots.hpp"\n')
         self.write("apps/dermis/main.cpp", SPDX)
         self.expect("apps makes no use of fusion")
 

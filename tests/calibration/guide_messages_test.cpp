@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "calibration/guide_messages.hpp"
+#include "calibration/guided/guide_messages.hpp"
 
 #include <gtest/gtest.h>
 

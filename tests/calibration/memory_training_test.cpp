@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "calibration/memory_training.hpp"
+#include "calibration/memory/memory_training.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "calibration/press_recogniser.hpp"
+#include "calibration/guided/press_recogniser.hpp"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/flicker.hpp"
+#include "calibration/labels/flicker.hpp"
 #include "calibration/simulated.hpp"
 #include "dermis/core/random.hpp"
 

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "calibration/monotone_knots.hpp"
+#include "calibration/tables/monotone_knots.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/fusion/contact.hpp"

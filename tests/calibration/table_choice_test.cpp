@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "calibration/table_choice.hpp"
+#include "calibration/training/table_choice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <numeric>
 #include <utility>
 
-#include "calibration/level_table.hpp"
-#include "calibration/monotone_knots.hpp"
 #include "calibration/press_bench.hpp"
 #include "calibration/simulated.hpp"
+#include "calibration/tables/level_table.hpp"
+#include "calibration/tables/monotone_knots.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/pipeline/pipeline.hpp"

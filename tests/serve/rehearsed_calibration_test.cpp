@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "calibration/press_recogniser.hpp"
+#include "calibration/guided/press_recogniser.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 #include "serve/calibration_services.hpp"

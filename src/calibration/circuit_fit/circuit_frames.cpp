@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-#include "calibration/labels.hpp"
+#include "calibration/labels/labels.hpp"
 #include "dermis/core/neighbours.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 #include "dermis/preprocessing/phase.hpp"

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/evaluation/judgement.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "calibration/evaluation/contact_count.hpp"
+#include "calibration/evaluation/error_summary.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+void add_taxels(std::size_t frame, const RawFrame& raw, const Sample& truth, const EstimatorRow& row,
+                Judgement& judgement) {
+  const ArrayDescription& array = row.array();
+  const std::size_t contacts = count_contacts(truth.known_newtons, array.rows, array.cols);
+  for (std::size_t taxel = 0; taxel < truth.known_newtons.size(); ++taxel) {
+    const double newtons = truth.known_newtons[taxel];
+    if (newtons == 0.0) {
+      for (std::size_t k = 0; k < row.newtons().size(); ++k) {
+        const float ghost = row.newtons()[k][taxel];
+        if (!std::isnan(ghost)) judgement.ghost_n[k].push_back(ghost);  // no force is no ghost
+      }
+    } else if (newtons >= row.judged_from_n()) {
+      JudgedTaxel judged{frame, taxel, newtons, raw.temperature_celsius, raw.supply_v, contacts, {}, 0.0F};
+      for (const std::vector<float>& forces : row.newtons()) judged.newtons.push_back(forces[taxel]);
+      judged.sigma_newtons = row.force().sigma_newtons[taxel];
+      judgement.taxels.push_back(std::move(judged));
+    }
+  }
+}
+
+void add_totals(std::size_t frame, const RawFrame& raw, const Sample& truth, const EstimatorRow& row,
+                Judgement& judgement) {
+  for (const TotalForce& total : truth.totals) {
+    JudgedTotal judged{frame, total.newtons, raw.temperature_celsius, {}};
+    for (const std::vector<float>& forces : row.newtons()) {
+      double sum = 0.0;
+      for (const std::size_t taxel : total.taxels) {
+        const auto newtons = static_cast<double>(forces[taxel]);
+        if (!std::isnan(newtons)) sum += newtons;  // a dead taxel carries what it carries: the total is short of it
+      }
+      judged.newtons.push_back(sum);
+    }
+    judgement.totals.push_back(std::move(judged));
+  }
+}
+
+}  // namespace
+
+void Judgement::add(std::size_t frame, const RawFrame& raw, const Sample& truth, const EstimatorRow& row) {
+  add_taxels(frame, raw, truth, row, *this);
+  add_totals(frame, raw, truth, row, *this);
+}
+
+EstimatorResult Judgement::result(std::size_t estimator, std::string name) const {
+  std::vector<double> of_taxels;
+  for (const JudgedTaxel& taxel : taxels) {
+    of_taxels.push_back(relative_error(static_cast<double>(taxel.newtons[estimator]), taxel.true_newtons));
+  }
+  std::vector<double> of_totals_n;
+  std::vector<double> of_totals;
+  for (const JudgedTotal& total : totals) {
+    of_totals_n.push_back(total.newtons[estimator] - total.true_newtons);
+    of_totals.push_back(relative_error(total.newtons[estimator], total.true_newtons));
+  }
+  EstimatorResult result;
+  result.name = std::move(name);
+  result.relative_error = summarise(std::move(of_taxels));
+  result.ghost_n = summarise(ghost_n[estimator]);
+  result.totals_judged = totals.size();
+  result.total_rmse_n = root_mean_square(of_totals_n);
+  result.total_relative_error = summarise(std::move(of_totals));
+  return result;
+}
+
+}  // namespace dermis::calibration

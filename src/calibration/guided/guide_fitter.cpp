@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/guided/guide_fitter.hpp"
+
+#include <utility>
+
+#include "dermis/calibration/circuit_fit.hpp"
+
+namespace dermis::calibration {
+
+GuideFitter::GuideFitter(ArrayDescription array, std::function<void(Outcome)> on_outcome)
+    : array_(std::move(array)), on_outcome_(std::move(on_outcome)), thread_([this] { work(); }) {}
+
+GuideFitter::~GuideFitter() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+void GuideFitter::fit(Job job) {
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_ = std::move(job);
+  }
+  wake_.notify_one();
+}
+
+void GuideFitter::work() {
+  for (;;) {
+    Job job;
+    {
+      std::unique_lock lock(mutex_);
+      wake_.wait(lock, [this] { return is_ending_ || waiting_; });
+      if (is_ending_) return;
+      job = *std::exchange(waiting_, std::nullopt);
+    }
+    on_outcome_(run(job));
+  }
+}
+
+GuideFitter::Outcome GuideFitter::run(const Job& job) const {
+  const GuidedData data = labelled_frames(array_, *job.unloaded, job.presses);
+  Outcome outcome;
+  if (job.is_last) {
+    outcome.calibration = calibrate(array_, data.frames, data.loads);
+    if (!*outcome.calibration) return outcome;
+    const ArrayDescription& array = outcome.calibration->value().model.array;
+    outcome.error = error_on_left_out_presses(array, *job.unloaded, job.presses);
+    outcome.unpressed_error = error_on_left_out_taxels(array, *job.unloaded, job.presses);
+  } else if (!array_.has_unknown_circuit()) {
+    outcome.error = error_on_left_out_presses(array_, *job.unloaded, job.presses);
+  } else if (const Result<CircuitFit> circuit = fit_circuit(array_, data.frames, data.loads)) {
+    outcome.error = error_on_left_out_presses(circuit->array, *job.unloaded, job.presses);
+  }
+  return outcome;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+
+#include "calibration/guided/held_out_presses.hpp"
+#include "dermis/calibration/calibrate.hpp"
+#include "dermis/calibration/guided_calibration.hpp"
+#include "dermis/core/array_description.hpp"
+
+namespace dermis::calibration {
+
+/// "5 N (510 g)".
+[[nodiscard]] std::string describe_weight(double newtons);
+
+/// What a person is to do in the stage `unloaded`.
+[[nodiscard]] std::string describe_quiet(bool is_disturbed);
+
+/// What a person is to do in the stage `pressing`.
+[[nodiscard]] std::string describe_press(const GuideState& state, const ArrayDescription& array);
+
+/// What goes on in the stage `fitting`.
+[[nodiscard]] std::string describe_fitting(const GuidedPresses& presses);
+
+/// What a finished calibration reached and what it holds for.
+[[nodiscard]] std::string describe_result(const Calibration& calibration, const GuideState& state,
+                                          const GuidedPresses& presses);
+
+}  // namespace dermis::calibration

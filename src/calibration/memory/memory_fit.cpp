@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/memory/memory_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "calibration/even_choice.hpp"
+#include "dermis/calibration/parallel.hpp"
+#include "dermis/network/levenberg_marquardt.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+constexpr std::size_t kFramesPerTask = 1024;
+constexpr std::size_t kMostLoads = 20'000;  // to fit seven numbers to
+constexpr double kStep = 2e-3;              // of a derivative by differences
+constexpr double kMostError = 1.0;          // relative; counts as this
+constexpr int kMaxIterations = 25;
+constexpr double kRelativeReduction = 1e-3;
+constexpr double kPriorWeight = 0.05;   // of the prior against all loads
+constexpr double kUnlikeShare = 0.05;   // of a creep element or a stop, from the mean of them
+constexpr double kExpectedShare = 0.5;  // of all of them
+
+constexpr std::size_t kParameters = fusion::MemoryLaw::kCreepSeconds.size() + fusion::MemoryLaw::kStopReach.size();
+
+/// The free parameters are roots of the shares, which are not negative.
+fusion::MemoryLaw law_of(std::span<const double> free) {
+  fusion::MemoryLaw law;
+  std::size_t k = 0;
+  for (float& share : law.creep) share = static_cast<float>(free[k] * free[k]), ++k;
+  for (float& share : law.gap) share = static_cast<float>(free[k] * free[k]), ++k;
+  return law;
+}
+
+std::vector<double> free_of(const fusion::MemoryLaw& law) {
+  constexpr float kLeast = 1e-3F;  // at zero the derivative is zero
+  std::vector<double> free;
+  for (const float share : law.creep) free.push_back(std::sqrt(std::max(share, kLeast)));
+  for (const float share : law.gap) free.push_back(std::sqrt(std::max(share, kLeast)));
+  return free;
+}
+
+/// Which gain a load has: that of its taxel, or that of all totals.
+std::vector<std::size_t> gain_groups(std::span<const KnownLoad> loads, std::size_t taxels) {
+  std::vector<std::size_t> groups;
+  for (const KnownLoad& load : loads) groups.push_back(load.total ? taxels : load.taxels.front());
+  return groups;
+}
+
+std::vector<KnownLoad> some_of(std::span<const KnownLoad> loads) {
+  std::vector<KnownLoad> chosen;
+  for (const std::size_t k : even_choice(loads.size(), kMostLoads)) chosen.push_back(loads[k]);
+  return chosen;
+}
+
+class MemoryProblem {
+ public:
+  MemoryProblem(const FeltHistory& felt, std::vector<KnownLoad> loads)
+      : felt_(felt), loads_(std::move(loads)), groups_(gain_groups(loads_, felt.taxels)) {
+    double log_newtons = 0.0;
+    for (const KnownLoad& load : loads_) log_newtons += std::log(load.newtons) / static_cast<double>(loads_.size());
+    floor_newtons_ = kFloorShare * std::exp(log_newtons);
+  }
+
+  [[nodiscard]] std::size_t residual_count() const { return loads_.size() + kParameters; }
+
+  /// Of each load, about relative.
+  void errors(const fusion::MemoryLaw& law, std::span<double> errors) const {
+    const std::vector<FreedLoad> freed = freed_loads(felt_, loads_, law);
+    const std::vector<double> gain = gains(freed);
+    for (std::size_t k = 0; k < loads_.size(); ++k) {
+      const double error = weight(k) * (gain[groups_[k]] * freed[k].newtons - loads_[k].newtons);
+      errors[k] = kMostError * std::tanh(error / kMostError);
+    }
+  }
+
+  [[nodiscard]] double misfit(const fusion::MemoryLaw& law) const {
+    std::vector<double> errors(loads_.size());
+    this->errors(law, errors);
+    double square = 0.0;
+    for (const double error : errors) square += error * error;
+    return std::sqrt(square / static_cast<double>(errors.size()));
+  }
+
+  void residuals(std::span<const double> free, std::span<double> residuals) const {
+    const fusion::MemoryLaw law = law_of(free);
+    if (!law.is_consistent()) {
+      std::fill(residuals.begin(), residuals.end(), std::numeric_limits<double>::infinity());
+      return;
+    }
+    errors(law, residuals.first(loads_.size()));
+    prior(law.creep, residuals.subspan(loads_.size(), law.creep.size()));
+    prior(law.gap, residuals.subspan(loads_.size() + law.creep.size()));
+  }
+
+ private:
+  /// Material creeps with the logarithm of time, and slides with that of force: shares are alike where the loads do not
+  /// tell, and small.
+  template <typename Shares>
+  void prior(const Shares& shares, std::span<double> residuals) const {
+    const double scale = kPriorWeight * kExpectedError * std::sqrt(static_cast<double>(loads_.size()));
+    double mean = 0.0;
+    for (const float share : shares) mean += static_cast<double>(share) / static_cast<double>(shares.size());
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      residuals[k] = scale * ((static_cast<double>(shares[k]) - mean) / kUnlikeShare + mean / kExpectedShare);
+    }
+  }
+
+  static constexpr double kFloorShare = 0.1;      // of a typical load: lighter ones count less
+  static constexpr double kExpectedError = 0.05;  // relative
+
+  [[nodiscard]] double weight(std::size_t k) const { return 1.0 / (loads_[k].newtons + floor_newtons_); }
+
+  /// Of each taxel, and of the totals.
+  [[nodiscard]] std::vector<double> gains(const std::vector<FreedLoad>& freed) const {
+    std::vector<double> above(felt_.taxels + 1);
+    std::vector<double> below(felt_.taxels + 1);
+    for (std::size_t k = 0; k < loads_.size(); ++k) {
+      const double square = std::pow(weight(k), 2);
+      above[groups_[k]] += square * freed[k].newtons * loads_[k].newtons;
+      below[groups_[k]] += square * freed[k].newtons * freed[k].newtons;
+    }
+    for (std::size_t k = 0; k < above.size(); ++k) above[k] = below[k] > 0.0 ? above[k] / below[k] : 1.0;
+    return above;
+  }
+
+  const FeltHistory& felt_;
+  std::vector<KnownLoad> loads_;
+  std::vector<std::size_t> groups_;  // [loads]
+  double floor_newtons_ = 0.0;
+};
+
+}  // namespace
+
+FeltHistory felt_history(const LoadHistory& history, const fusion::ForceNetworks& networks) {
+  const std::size_t frames = history.time.size();
+  FeltHistory felt;
+  felt.time = history.time;
+  felt.taxels = history.taxels;
+  felt.newtons.resize(frames * history.taxels);
+  parallel_for((frames + kFramesPerTask - 1) / kFramesPerTask, [&](std::size_t task) {
+    fusion::ForceFusion fusion(networks);
+    ConductanceFrame conductance;
+    conductance.sigma_siemens.assign(history.taxels, 0.0);
+    conductance.taxels.assign(history.taxels, TaxelStatus::ok);
+    ForceFrame force;
+    const std::size_t end = std::min(frames, (task + 1) * kFramesPerTask);
+    for (std::size_t k = task * kFramesPerTask; k < end; ++k) {
+      const std::span<const float> siemens = history.siemens_of(k);
+      conductance.siemens.assign(siemens.begin(), siemens.end());
+      conductance.temperature_celsius = history.temperature_celsius[k];
+      fusion.process(conductance, force);
+      std::copy(force.newtons.begin(), force.newtons.end(),
+                felt.newtons.begin() + static_cast<std::ptrdiff_t>(k * history.taxels));
+    }
+  });
+  return felt;
+}
+
+std::vector<KnownLoad> known_loads(const SampleDatabase& database, const LoadHistory& history) {
+  std::vector<KnownLoad> loads;
+  for (std::size_t k = 0; k < database.samples.size(); ++k) {
+    const Sample& sample = database.samples[k];
+    const auto found = std::lower_bound(history.frame.begin(), history.frame.end(), sample.frame);
+    if (found == history.frame.end() || *found != sample.frame) continue;
+    const auto place = static_cast<std::size_t>(found - history.frame.begin());
+    for (std::size_t taxel = 0; taxel < sample.known_newtons.size(); ++taxel) {
+      const auto newtons = static_cast<double>(sample.known_newtons[taxel]);
+      if (newtons > 0.0) loads.push_back({k, place, {taxel}, newtons, std::nullopt});
+    }
+    for (std::size_t total = 0; total < sample.totals.size(); ++total) {
+      const auto& [taxels, newtons, felt_share] = sample.totals[total];
+      if (newtons > 0.0) loads.push_back({k, place, taxels, newtons, total});
+    }
+  }
+  return loads;
+}
+
+std::vector<FreedLoad> freed_loads(const FeltHistory& felt, std::span<const KnownLoad> loads,
+                                   const fusion::MemoryLaw& law) {
+  // Only the taxels that are asked for.
+  std::vector<std::size_t> column(felt.taxels, felt.taxels);
+  std::vector<std::size_t> asked;
+  for (const KnownLoad& load : loads) {
+    for (const std::size_t taxel : load.taxels) {
+      if (column[taxel] != felt.taxels) continue;
+      column[taxel] = asked.size();
+      asked.push_back(taxel);
+    }
+  }
+  fusion::MaterialMemory memory(law, asked.size());
+  ForceFrame frame;
+  frame.sigma_newtons.assign(asked.size(), 0.0F);
+  std::vector<FreedLoad> freed(loads.size());
+  std::size_t next = 0;
+  for (std::size_t place = 0; place < felt.time.size() && next < loads.size(); ++place) {
+    const float* const row = felt.newtons.data() + place * felt.taxels;
+    frame.time = felt.time[place];
+    frame.newtons.clear();
+    for (const std::size_t taxel : asked) frame.newtons.push_back(row[taxel]);
+    memory.process(frame);
+    for (; next < loads.size() && loads[next].place == place; ++next) {
+      for (const std::size_t taxel : loads[next].taxels) {
+        if (std::isnan(row[taxel])) continue;
+        freed[next].felt_newtons += static_cast<double>(row[taxel]);
+        freed[next].newtons += static_cast<double>(frame.newtons[column[taxel]]);
+      }
+    }
+  }
+  return freed;
+}
+
+double memory_misfit(const FeltHistory& felt, std::span<const KnownLoad> loads, const fusion::MemoryLaw& law) {
+  return MemoryProblem(felt, some_of(loads)).misfit(law);
+}
+
+fusion::MemoryLaw fit_memory(const FeltHistory& felt, std::span<const KnownLoad> loads,
+                             const fusion::MemoryLaw& start) {
+  const MemoryProblem problem(felt, some_of(loads));
+  const auto function = [&](std::span<const double> free, std::span<double> residuals, std::span<double> jacobian) {
+    if (jacobian.empty()) return problem.residuals(free, residuals);
+    const std::size_t count = problem.residual_count();
+    std::array<std::vector<double>, kParameters + 1> moved;  // by a step of each parameter, and the one that is asked
+    parallel_for(moved.size(), [&](std::size_t k) {
+      std::vector<double> there(free.begin(), free.end());
+      if (k < kParameters) there[k] += kStep;
+      moved[k].resize(count);
+      problem.residuals(there, moved[k]);
+    });
+    std::copy(moved.back().begin(), moved.back().end(), residuals.begin());
+    for (std::size_t row = 0; row < count; ++row) {
+      for (std::size_t k = 0; k < kParameters; ++k) {
+        jacobian[row * kParameters + k] = (moved[k][row] - residuals[row]) / kStep;
+      }
+    }
+  };
+  network::LevenbergMarquardtOptions options;
+  options.max_iterations = kMaxIterations;
+  options.relative_reduction = kRelativeReduction;
+  std::vector<double> free = free_of(start);
+  network::minimise(function, problem.residual_count(), free, options);
+  fusion::MemoryLaw law = law_of(free);
+  return law.is_consistent() ? law : start;
+}
+
+}  // namespace dermis::calibration

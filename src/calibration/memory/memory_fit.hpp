@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "calibration/memory/load_history.hpp"
+#include "dermis/calibration/sample_database.hpp"
+#include "dermis/fusion/force_fusion.hpp"
+#include "dermis/fusion/material_memory.hpp"
+
+namespace dermis::calibration {
+
+/// The forces that networks give over a history: what the material feels.
+struct FeltHistory {
+  std::vector<Nanos> time;     ///< [frames]
+  std::vector<float> newtons;  ///< [frames, taxels]; NaN where there is none.
+  std::size_t taxels = 0;
+};
+
+[[nodiscard]] FeltHistory felt_history(const LoadHistory& history, const fusion::ForceNetworks& networks);
+
+/// A known force above zero on one taxel, or on several that share it, at a place in a history.
+struct KnownLoad {
+  std::size_t sample = 0;            ///< In the database.
+  std::size_t place = 0;             ///< In the history.
+  std::vector<std::size_t> taxels;   ///< That carry it.
+  double newtons = 0.0;              ///< > 0
+  std::optional<std::size_t> total;  ///< Number of it among the totals of the sample; empty: of one taxel.
+};
+
+/// Those of a database whose samples are in the history, by rising place.
+[[nodiscard]] std::vector<KnownLoad> known_loads(const SampleDatabase& database, const LoadHistory& history);
+
+/// Felt and freed forces of known loads, sums over their taxels [N].
+struct FreedLoad {
+  double felt_newtons = 0.0;
+  double newtons = 0.0;
+};
+
+/// What a law makes of the loads.
+[[nodiscard]] std::vector<FreedLoad> freed_loads(const FeltHistory& felt, std::span<const KnownLoad> loads,
+                                                 const fusion::MemoryLaw& law);
+
+/// Root mean square relative error of the loads by a law, each taxel and all totals with a gain of their own: networks
+/// may be wrong by one.
+[[nodiscard]] double memory_misfit(const FeltHistory& felt, std::span<const KnownLoad> loads,
+                                   const fusion::MemoryLaw& law);
+
+/// The law whose misfit is the least, from `start`.
+[[nodiscard]] fusion::MemoryLaw fit_memory(const FeltHistory& felt, std::span<const KnownLoad> loads,
+                                           const fusion::MemoryLaw& start);
+
+}  // namespace dermis::calibration

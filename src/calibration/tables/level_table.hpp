@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "calibration/tables/monotone_knots.hpp"
+
+namespace dermis::calibration {
+
+/// Signal of one taxel at a known force.
+struct LevelPoint {
+  double newtons = 0.0;
+  double signal = 0.0;
+  double temperature_offset = 0.0;  ///< From the reference [C].
+};
+
+/// The k of signal * (1 + k dT) that makes the signals of equal force agree best; `points` by rising force.
+[[nodiscard]] double temperature_coefficient(std::span<LevelPoint> points);
+
+/// Newtons and signal at the reference, both rising: a knot at every force of `points`, which are by rising force (at
+/// most 64, in equal shares beyond), the mean signal there, neighbours that fall pooled.
+[[nodiscard]] std::vector<Knot> level_table(std::vector<LevelPoint> points, double coefficient);
+
+}  // namespace dermis::calibration

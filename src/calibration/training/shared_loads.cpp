@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/training/shared_loads.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dermis::calibration {
+namespace {
+
+constexpr std::size_t kMostPresses = 12;  // of one taxel alone; more tell little about all
+
+}  // namespace
+
+SharedLoads::SharedLoads(const SampleDatabase& database, const SampleTemperatures& temperatures,
+                         const UnloadedFit& unloaded, const std::vector<bool>& dead)
+    : database_(database), temperatures_(temperatures), unloaded_(unloaded), dead_(dead) {
+  for (std::size_t k = 0; k < database.samples.size(); ++k) {
+    for (const TotalForce& total : database.samples[k].totals) add(k, total.taxels, total.newtons, total.felt_share);
+  }
+  add_presses();
+}
+
+/// At most kMostPresses of the presses on each taxel alone, evenly.
+void SharedLoads::add_presses() {
+  std::vector<std::vector<Press>> presses(dead_.size());
+  for (std::size_t k = 0; k < database_.samples.size(); ++k) {
+    for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
+      const double newtons = database_.samples[k].known_newtons[taxel];
+      if (newtons > 0.0) presses[taxel].push_back({k, newtons});
+    }
+  }
+  for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
+    const std::vector<Press>& of_taxel = presses[taxel];
+    const std::size_t count = std::min(of_taxel.size(), kMostPresses);
+    for (std::size_t k = 0; k < count; ++k) {
+      const Press& press = of_taxel[k * of_taxel.size() / count];
+      const std::vector<float>& felt_share = database_.samples[press.sample].felt_share;
+      add(press.sample, {taxel}, press.newtons, felt_share.empty() ? 1.0 : static_cast<double>(felt_share[taxel]));
+    }
+  }
+}
+
+void SharedLoads::add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons, double felt_share) {
+  if (std::isnan(felt_share)) return;
+  const Sample& sample = database_.samples[index];
+  MeasuredLoad load;
+  load.sample = index;
+  load.newtons = felt_share * newtons;
+  load.load_newtons = newtons;
+  load.temperature = normalised_temperature(sample, temperatures_);
+  bool is_felt = false;
+  for (const std::size_t taxel : taxels) {
+    if (dead_[taxel]) continue;
+    const double excess = excess_siemens(sample, taxel, unloaded_, temperatures_);
+    if (excess <= 0.0) continue;
+    load.excess.emplace_back(taxel, excess);
+    is_felt = is_felt || excess > kFeltSigmas * unloaded_.noise_siemens[taxel];
+  }
+  if (is_felt) loads_.push_back(std::move(load));
+}
+
+std::vector<MeasuredLoad> SharedLoads::loads(std::size_t most_shares) const {
+  std::size_t shares = 0;
+  for (const MeasuredLoad& load : loads_) shares += load.excess.size();
+  if (shares <= most_shares) return loads_;
+  const std::size_t count = std::max<std::size_t>(loads_.size() * most_shares / shares, 1);
+  std::vector<MeasuredLoad> kept;
+  for (std::size_t k = 0; k < count; ++k) kept.push_back(loads_[k * loads_.size() / count]);
+  return kept;
+}
+
+}  // namespace dermis::calibration

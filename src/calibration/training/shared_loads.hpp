@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "calibration/samples/unloaded_fit.hpp"
+#include "dermis/calibration/sample_database.hpp"
+#include "dermis/calibration/sample_temperatures.hpp"
+
+namespace dermis::calibration {
+
+inline constexpr double kFeltSigmas = 3.0;  // standard deviations of the unloaded reading
+
+/// A load with the excess conductances of its taxels.
+struct MeasuredLoad {
+  std::size_t sample = 0;                              ///< In the database.
+  std::vector<std::pair<std::size_t, double>> excess;  ///< Taxel, siemens > 0.
+  double temperature = 0.0;                            ///< As an input of a network, in [-1, 1].
+  double newtons = 0.0;                                ///< What the material felt of it.
+  double load_newtons = 0.0;
+};
+
+/// The loads of a database that one network of all taxels learns from: those on several taxels, and some of the presses
+/// on each taxel alone, where a taxel that is not dead feels them.
+class SharedLoads {
+ public:
+  SharedLoads(const SampleDatabase& database, const SampleTemperatures& temperatures, const UnloadedFit& unloaded,
+              const std::vector<bool>& dead);
+
+  /// All loads, or as many of them, evenly, as hold about `most_shares` taxels.
+  [[nodiscard]] std::vector<MeasuredLoad> loads(std::size_t most_shares) const;
+
+ private:
+  struct Press {
+    std::size_t sample;
+    double newtons;
+  };
+
+  void add_presses();
+  void add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons, double felt_share);
+
+  const SampleDatabase& database_;
+  const SampleTemperatures& temperatures_;
+  const UnloadedFit& unloaded_;
+  const std::vector<bool>& dead_;
+  std::vector<MeasuredLoad> loads_;
+};
+
+}  // namespace dermis::calibration

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/training/shared_training.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "calibration/training/force_levels.hpp"
+#include "calibration/training/shared_loads.hpp"
+#include "dermis/calibration/parallel.hpp"
+#include "dermis/network/levenberg_marquardt.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+constexpr std::size_t kMostHiddenUnits = 3;
+constexpr std::size_t kLevelsPerHiddenUnit = 7;
+constexpr std::size_t kStarts = 6;
+constexpr int kMaxIterations = 120;
+constexpr std::size_t kMostSharesForStart = 15'000;  // taxels of all loads together, thinned out evenly beyond:
+constexpr std::size_t kMostShares = 200'000;         // to choose among the starts, and for the final training
+constexpr double kGainDeviation = 0.15;              // of a gain: docs/derivations.md, "Spread of the taxels"
+constexpr double kMostGain = 4.0;
+constexpr std::size_t kLeastTaxelsForScatter = 5;
+constexpr int kGainRounds = 3;
+constexpr std::size_t kFolds = 5;
+constexpr std::uint64_t kSeed = 20;
+// A residual is the error over newtons + typical load: about half the relative error of a typical load.
+constexpr double kRelativeErrorOfResidual = 2.0;
+constexpr double kExpectedResidual = 0.05 / kRelativeErrorOfResidual;  // scale of the prior, before the data say better
+
+/// The part of a load that one taxel carries.
+struct Share {
+  std::size_t taxel = 0;
+  ForceNetwork::Inputs inputs;
+};
+
+/// A load as the training sees it: the sum over `shares` is to be `newtons`.
+struct SharedLoad {
+  std::vector<Share> shares;
+  double newtons = 0.0;
+  double weight = 0.0;  // 1 / (newtons + typical load)
+};
+
+/// Different forces; a load on several taxels is one of its own.
+std::size_t levels_of(const std::vector<MeasuredLoad>& loads) {
+  std::vector<double> single;
+  for (const MeasuredLoad& load : loads) {
+    if (load.excess.size() == 1) single.push_back(load.load_newtons);
+  }
+  std::sort(single.begin(), single.end());
+  return loads.size() - single.size() + count_levels(single);
+}
+
+/// Single taxels under about the same force: that they differ is their scatter, and says nothing of their law.
+bool are_one_load(const std::vector<MeasuredLoad>& loads) {
+  const auto [lightest, heaviest] = std::minmax_element(
+      loads.begin(), loads.end(), [](const auto& a, const auto& b) { return a.load_newtons < b.load_newtons; });
+  return heaviest->load_newtons < kLeastForceRange * lightest->load_newtons &&
+         std::all_of(loads.begin(), loads.end(), [](const MeasuredLoad& load) { return load.excess.size() == 1; });
+}
+
+/// The scatter of readings within a load says nothing of the law between loads: that of material with memory would
+/// make the law a stair.
+PowerPrior power_prior(const std::vector<MeasuredLoad>& loads) {
+  if (are_one_load(loads)) return PowerPrior::held;
+  return levels_of(loads) < kLeastLevelsOfBend ? PowerPrior::straight : PowerPrior::free;
+}
+
+/// The least-squares problem for given gains; its parameters are the free values of the network.
+class SharedProblem {
+ public:
+  SharedProblem(const std::vector<MeasuredLoad>& raw, const UnloadedFit& unloaded)
+      : power_(power_prior(raw)), gain_(unloaded.noise_siemens.size(), 1.0) {
+    double log_newtons = 0.0;
+    double active = 0.0;
+    double active_siemens = 0.0;
+    for (const MeasuredLoad& load : raw) {
+      log_newtons += std::log(load.newtons) / static_cast<double>(raw.size());
+      for (const auto& [taxel, siemens] : load.excess) {
+        heaviest_siemens_ = std::max(heaviest_siemens_, siemens);
+        if (siemens <= kFeltSigmas * unloaded.noise_siemens[taxel]) continue;
+        active += 1.0;
+        active_siemens += siemens;
+      }
+    }
+    const double typical_newtons = std::exp(log_newtons);
+    reference_siemens_ = active_siemens / active;
+    typical_share_newtons_ = typical_newtons * static_cast<double>(raw.size()) / active;
+    ForceNetwork scale;
+    scale.reference_siemens = reference_siemens_;
+    for (const MeasuredLoad& load : raw) {
+      SharedLoad& shared = loads_.emplace_back();
+      shared.newtons = load.newtons;
+      shared.weight = 1.0 / (load.newtons + typical_newtons);
+      for (const auto& [taxel, siemens] : load.excess) {
+        shared.shares.push_back({taxel, scale.inputs(siemens, load.temperature)});
+      }
+    }
+  }
+
+  [[nodiscard]] const std::vector<SharedLoad>& loads() const { return loads_; }
+  [[nodiscard]] const std::vector<double>& gain() const { return gain_; }
+  void set_gain(std::vector<double> gain) { gain_ = std::move(gain); }
+
+  [[nodiscard]] ForceNetwork network(const network::PerceptronShape& shape, std::span<const double> free) const {
+    ForceNetwork network;
+    network.shape = shape;
+    network.reference_siemens = reference_siemens_;
+    network.heaviest_siemens = heaviest_siemens_;
+    network.heaviest_newtons = std::numeric_limits<double>::infinity();
+    network.parameters.resize(shape.parameter_count());
+    network::monotone::parameters(shape, free, network.parameters);
+    return network;
+  }
+
+  [[nodiscard]] std::vector<double> start(const network::PerceptronShape& shape, std::uint64_t seed) const {
+    Random random(seed);
+    return random_start(shape, typical_share_newtons_, random);
+  }
+
+  /// Residuals of the loads, then of the prior.
+  [[nodiscard]] network::ResidualFunction residual_function(const network::PerceptronShape& shape) const {
+    return [this, shape, gradient = std::vector<double>(shape.parameter_count())](
+               std::span<const double> free, std::span<double> residuals, std::span<double> jacobian) mutable {
+      const std::size_t n = shape.parameter_count();
+      const ForceNetwork network = this->network(shape, free);
+      for (std::size_t k = 0; k < loads_.size(); ++k) {
+        const SharedLoad& load = loads_[k];
+        const std::span<double> row = jacobian.empty() ? jacobian : jacobian.subspan(k * n, n);
+        std::fill(row.begin(), row.end(), 0.0);
+        double sum = 0.0;
+        for (const Share& share : load.shares) {
+          const double log_newtons = network.log_newtons(share.inputs, row.empty() ? row : std::span<double>(gradient));
+          const double newtons = gain_[share.taxel] * std::exp(log_newtons);
+          sum += newtons;
+          for (std::size_t p = 0; p < row.size(); ++p) row[p] += load.weight * newtons * gradient[p];
+        }
+        residuals[k] = load.weight * (sum - load.newtons);
+      }
+      prior_residuals(network, kExpectedResidual, residuals.subspan(loads_.size(), n),
+                      jacobian.empty() ? jacobian : jacobian.subspan(loads_.size() * n), n, power_);
+    };
+  }
+
+ private:
+  std::vector<SharedLoad> loads_;
+  PowerPrior power_;
+  std::vector<double> gain_;  // [taxels]
+  double reference_siemens_ = 1.0;
+  double heaviest_siemens_ = 0.0;
+  double typical_share_newtons_ = 1.0;
+};
+
+/// A trained set of free parameters.
+struct Candidate {
+  network::PerceptronShape shape;
+  std::vector<double> free;
+  double error = std::numeric_limits<double>::infinity();          // of the training
+  double leave_one_out = std::numeric_limits<double>::infinity();  // mean square
+};
+
+bool has_lower_error(const Candidate& a, const Candidate& b) {
+  return a.error < b.error;
+}
+bool generalises_better(const Candidate& a, const Candidate& b) {
+  return a.leave_one_out < b.leave_one_out;
+}
+
+void train(const SharedProblem& problem, Candidate& candidate) {
+  const auto function = problem.residual_function(candidate.shape);
+  const std::size_t loads = problem.loads().size();
+  const std::size_t residuals = loads + candidate.free.size();
+  network::LevenbergMarquardtOptions options;
+  options.relative_reduction = 1e-6;
+  options.max_iterations = kMaxIterations;
+  candidate.error = network::minimise(function, residuals, candidate.free, options).final_error;
+  candidate.leave_one_out = network::leave_one_out_mean_square(function, loads, residuals, candidate.free);
+}
+
+/// Hidden units that loads of so few different forces allow. With a handful of weights, each on many taxels, a network
+/// that can bend learns a stair with the weights as its steps: it is right on every load that is left out, because the
+/// other taxels carried the same weight, and wrong between the weights.
+std::size_t most_hidden_units(const std::vector<MeasuredLoad>& loads) {
+  return std::min(kMostHiddenUnits, levels_of(loads) / kLevelsPerHiddenUnit);
+}
+
+/// The best of several starts for every number of hidden units.
+std::vector<Candidate> best_starts(const SharedProblem& problem, bool uses_temperature, std::size_t most_hidden) {
+  std::vector<Candidate> candidates((most_hidden + 1) * kStarts);
+  parallel_for(candidates.size(), [&](std::size_t k) {
+    candidates[k].shape = force_shape(uses_temperature, k / kStarts);
+    candidates[k].free = problem.start(candidates[k].shape, kSeed + k % kStarts);
+    train(problem, candidates[k]);
+  });
+  std::vector<Candidate> best;
+  for (auto first = candidates.begin(); first != candidates.end(); first += kStarts) {
+    best.push_back(std::move(*std::min_element(first, first + kStarts, has_lower_error)));
+  }
+  return best;
+}
+
+/// Trains every size on, and gives the one that generalises best.
+Candidate choose_size(const SharedProblem& problem, std::vector<Candidate>& candidates) {
+  parallel_for(candidates.size(), [&](std::size_t k) { train(problem, candidates[k]); });
+  return *std::min_element(candidates.begin(), candidates.end(), generalises_better);
+}
+
+/// Gains for a given network: ridge regression of the loads on the forces of their taxels.
+class GainFit {
+ public:
+  GainFit(const SharedProblem& problem, const ForceNetwork& network, double residual)
+      : problem_(problem), ridge_(std::pow(residual / kGainDeviation, 2)) {
+    for (const SharedLoad& load : problem.loads()) {
+      std::vector<double>& row = forces_.emplace_back();
+      for (const Share& share : load.shares)
+        row.push_back(load.weight * std::exp(network.log_newtons(share.inputs, {})));
+    }
+  }
+
+  /// Fitted to the loads that are not in fold `held_out` of kFolds; kFolds holds out none.
+  [[nodiscard]] std::vector<double> gains(std::size_t held_out) const {
+    const std::size_t taxels = problem_.gain().size();
+    Eigen::MatrixXd normal = ridge_ * Eigen::MatrixXd::Identity(index(taxels), index(taxels));
+    Eigen::VectorXd right = Eigen::VectorXd::Constant(index(taxels), ridge_);
+    for (std::size_t k = 0; k < forces_.size(); ++k) {
+      if (k % kFolds == held_out) continue;
+      const SharedLoad& load = problem_.loads()[k];
+      for (std::size_t i = 0; i < load.shares.size(); ++i) {
+        const Eigen::Index row = index(load.shares[i].taxel);
+        right[row] += forces_[k][i] * load.weight * load.newtons;
+        for (std::size_t j = 0; j <= i; ++j) {  // shares are in rising order: the lower triangle
+          normal(row, index(load.shares[j].taxel)) += forces_[k][i] * forces_[k][j];
+        }
+      }
+    }
+    const Eigen::VectorXd solution = normal.selfadjointView<Eigen::Lower>().llt().solve(right);
+    std::vector<double> gains(solution.begin(), solution.end());
+    for (double& gain : gains) gain = std::clamp(gain, 1.0 / kMostGain, kMostGain);
+    return gains;
+  }
+
+  /// Mean square residual of loads that the gains were not fitted to.
+  [[nodiscard]] double held_out_mean_square() const {
+    std::vector<double> squares(kFolds);
+    parallel_for(kFolds, [&](std::size_t fold) { squares[fold] = mean_square(gains(fold), fold); });
+    double sum = 0.0;
+    for (const double square : squares) sum += square;
+    return sum / static_cast<double>(forces_.size());
+  }
+
+ private:
+  static Eigen::Index index(std::size_t value) { return static_cast<Eigen::Index>(value); }
+
+  [[nodiscard]] double mean_square(const std::vector<double>& gains, std::size_t fold) const {
+    double sum = 0.0;
+    for (std::size_t k = fold; k < forces_.size(); k += kFolds) {
+      const SharedLoad& load = problem_.loads()[k];
+      double residual = -load.weight * load.newtons;
+      for (std::size_t i = 0; i < load.shares.size(); ++i) residual += gains[load.shares[i].taxel] * forces_[k][i];
+      sum += residual * residual;
+    }
+    return sum;
+  }
+
+  const SharedProblem& problem_;
+  double ridge_;
+  std::vector<std::vector<double>> forces_;  // weighted, of every share
+};
+
+/// The errors of the loads as if each were left out. The leverage knows of the network's parameters but not of the
+/// gains: the errors are scaled to the mean square that held-out loads have with them.
+std::vector<TestedLoad> tested_loads(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
+                                     const Candidate& chosen, double mean_square) {
+  const std::size_t count = raw.size();
+  const std::vector<network::FittedResidual> fitted = network::fitted_residuals(
+      problem.residual_function(chosen.shape), count, count + chosen.free.size(), chosen.free);
+  const double scale = std::max(std::sqrt(mean_square / chosen.leave_one_out), 1.0);
+  std::vector<TestedLoad> tested;
+  for (std::size_t k = 0; k < count; ++k) {
+    TestedLoad& load = tested.emplace_back();
+    load.sample = raw[k].sample;
+    for (const auto& [taxel, siemens] : raw[k].excess) load.taxels.push_back(taxel);
+    load.newtons = raw[k].newtons;
+    load.noise_n = scale * fitted[k].as_noise() / problem.loads()[k].weight;
+    load.error_n = scale * fitted[k].as_new_error() / problem.loads()[k].weight;
+    load.leverage = fitted[k].leverage;
+  }
+  return tested;
+}
+
+/// The most that one taxel carried; never more than its load.
+double heaviest_share(const SharedProblem& problem, const ForceNetwork& network) {
+  double heaviest = 0.0;
+  for (const SharedLoad& load : problem.loads()) {
+    for (const Share& share : load.shares) {
+      const double newtons = problem.gain()[share.taxel] * std::exp(network.log_newtons(share.inputs, {}));
+      heaviest = std::max(heaviest, std::min(newtons, load.newtons));
+    }
+  }
+  return heaviest;
+}
+
+/// The errors of the loads on single taxels as those of taxels that were never pressed: the network alone, without the
+/// gain. If their mean square over the n taxels is m, the variance is m n / (n - 1), that of a new taxel larger by
+/// 1 + 1/n, and because it is itself uncertain, the 68 % point of Student's distribution is that of (n - 1) / (n - 2)
+/// times it.
+std::vector<TestedLoad> tested_as_unpressed(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
+                                            const ForceNetwork& network) {
+  std::vector<TestedLoad> tested;
+  std::set<std::size_t> taxels;
+  for (std::size_t k = 0; k < raw.size(); ++k) {
+    const SharedLoad& load = problem.loads()[k];
+    if (load.shares.size() != 1) continue;
+    const Share& share = load.shares.front();
+    taxels.insert(share.taxel);
+    const double estimate = std::exp(network.log_newtons(share.inputs, {}));
+    const double relative_error = 1.0 - load.newtons / estimate;  // the standard deviation is a share of the estimate
+    tested.push_back({raw[k].sample, {share.taxel}, load.newtons, 0.0, relative_error * load.newtons, 0.0});
+  }
+  const auto count = static_cast<double>(taxels.size());
+  const bool tells = taxels.size() >= kLeastTaxelsForScatter;
+  for (TestedLoad& load : tested) {
+    load.error_n = tells ? load.error_n * std::sqrt((count + 1.0) / (count - 2.0)) : kGainDeviation * load.newtons;
+  }
+  return tested;
+}
+
+}  // namespace
+
+SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatures& temperatures,
+                           const UnloadedFit& unloaded, const std::vector<bool>& dead) {
+  const SharedLoads all(database, temperatures, unloaded, dead);
+  const std::vector<MeasuredLoad> loads = all.loads(kMostShares);
+  SharedNetwork shared;
+  shared.gain.assign(dead.size(), 1.0);
+  if (loads.empty()) return shared;
+
+  SharedProblem problem(loads, unloaded);
+  const SharedProblem thinned(all.loads(kMostSharesForStart), unloaded);
+  std::vector<Candidate> candidates = best_starts(thinned, temperatures.is_input, most_hidden_units(loads));
+  Candidate chosen = choose_size(problem, candidates);
+  double mean_square = chosen.leave_one_out;
+  for (int round = 0; round < kGainRounds; ++round) {
+    const GainFit fit(problem, problem.network(chosen.shape, chosen.free), std::sqrt(mean_square));
+    const double with_gains = fit.held_out_mean_square();
+    if (with_gains >= mean_square) break;
+    mean_square = with_gains;
+    shared.has_gains = true;
+    problem.set_gain(fit.gains(kFolds));
+    chosen = choose_size(problem, candidates);
+  }
+  shared.network = problem.network(chosen.shape, chosen.free);
+  shared.gain = problem.gain();
+  shared.heaviest_newtons = heaviest_share(problem, shared.network);
+  shared.tested = tested_loads(loads, problem, chosen, mean_square);
+  shared.tested_unpressed = tested_as_unpressed(loads, problem, shared.network);
+  shared.leave_one_out_error = kRelativeErrorOfResidual * std::sqrt(mean_square);
+  return shared;
+}
+
+}  // namespace dermis::calibration
