@@ -28,7 +28,7 @@ struct EvaluateOptions {
   std::string report;
   std::string bank;
   std::string classes;
-  operation::ExampleOptions examples;  // of the classes; --model and --frames are above
+  recognising::ExampleOptions examples;  // of the classes; --model and --frames are above
   bool json = false;
 };
 
@@ -105,7 +105,7 @@ Status evaluate(const EvaluateOptions& options) {
   if (!options.loads.empty() || !options.bank.empty() || !options.report.empty()) {
     return bad_input("--classes: excludes --loads, --bank and --report, which are of forces");
   }
-  operation::ExampleOptions examples = options.examples;
+  recognising::ExampleOptions examples = options.examples;
   examples.model = options.model;
   examples.data.frames = options.frames;
   return evaluate_classes(options.classes, examples, options.json);

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "confusion_table.hpp"
-#include "dermis/operation/load_source.hpp"
+#include "dermis/recognising/load_source.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recognition/evaluation.hpp"
 #include "source_options.hpp"
@@ -42,15 +42,15 @@ void print_text(const Classes& classes, const ClassesEvaluation& evaluation) {
 
 }  // namespace
 
-Status evaluate_classes(const std::string& path, operation::ExampleOptions examples, bool json) {
+Status evaluate_classes(const std::string& path, recognising::ExampleOptions examples, bool json) {
   const Result<Classes> classes = recognition::read_classes(path);
   if (!classes) return classes.error();
   if (examples.data.labels.empty()) return bad_input("--labels is required: which frames are of which class");
   if (!examples.in.empty()) {
-    if (Status checked = operation::check_loads(classes->layout, path, examples.model); !checked) return checked;
+    if (Status checked = recognising::check_loads(classes->layout, path, examples.model); !checked) return checked;
   }
   examples.arrays = recognition::names_of(classes->layout.arrays);
-  Result<recognition::LabelledFrames> data = operation::read_examples(examples, source_options());
+  Result<recognition::LabelledFrames> data = recognising::read_examples(examples, source_options());
   if (!data) return data.error();
   if (examples.data.rate_hz == 0.0) data->layout.rate_hz = classes->layout.rate_hz;
   const Result<ClassesEvaluation> evaluation = recognition::evaluate_classes(*classes, *data);

@@ -5,11 +5,11 @@
 #include <string>
 
 #include "dermis/core/result.hpp"
-#include "dermis/operation/labelled_examples.hpp"
+#include "dermis/recognising/labelled_examples.hpp"
 
 namespace dermis::app {
 
 /// 'dermis evaluate --classes': prints what the classes of a file answer to labelled examples.
-[[nodiscard]] Status evaluate_classes(const std::string& classes, operation::ExampleOptions examples, bool json);
+[[nodiscard]] Status evaluate_classes(const std::string& classes, recognising::ExampleOptions examples, bool json);
 
 }  // namespace dermis::app

@@ -4,7 +4,7 @@
 
 namespace dermis::app {
 
-Option add_example_options(Command& command, operation::ExampleOptions& examples) {
+Option add_example_options(Command& command, recognising::ExampleOptions& examples) {
   recognition::DatasetFiles& data = examples.data;
   command.option("--in", examples.in, "Recordings, or other files of frames, whose frames the labels count");
   command.flag("--tare", examples.tare, "Take the first second of each --in as zero load: nothing may touch then");

@@ -3,12 +3,12 @@
 #pragma once
 
 #include "command_line.hpp"
-#include "dermis/operation/labelled_examples.hpp"
+#include "dermis/recognising/labelled_examples.hpp"
 
 namespace dermis::app {
 
 /// Declares --in, --tare, --arrays, --extra, --label and --labels, which it returns; `examples` must live as long as
 /// the action.
-Option add_example_options(Command& command, operation::ExampleOptions& examples);
+Option add_example_options(Command& command, recognising::ExampleOptions& examples);
 
 }  // namespace dermis::app

@@ -12,9 +12,9 @@
 
 #include "commands.hpp"
 #include "dermis/files/atomic_file.hpp"
-#include "dermis/operation/array_view.hpp"
-#include "dermis/operation/view_pictures.hpp"
 #include "dermis/report/frame_picture.hpp"
+#include "dermis/views/array_view.hpp"
+#include "dermis/views/view_pictures.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
@@ -22,8 +22,8 @@
 namespace dermis::app {
 namespace {
 
-using operation::ArrayView;
-using operation::PictureRange;
+using views::ArrayView;
+using views::PictureRange;
 
 struct ImageOptions {
   std::string in;
@@ -71,7 +71,7 @@ std::string bytes_of(const ImageOptions& options, const std::vector<report::Fram
   report::AnimatedPng moving;
   for (const report::FramePicture& picture : pictures) {
     moving.add(report::frame_pixels(picture),
-               static_cast<unsigned>(operation::kPictureTime / std::chrono::milliseconds(1)));
+               static_cast<unsigned>(views::kPictureTime / std::chrono::milliseconds(1)));
   }
   return std::move(moving).take();
 }
@@ -83,7 +83,7 @@ Status image(const ImageOptions& options) {
   const Result<std::unique_ptr<ArrayView>> view = ArrayView::open(options.in, options.model, source_options());
   if (!view) return view.error();
   const Result<std::vector<report::FramePicture>> pictures =
-      operation::draw_pictures(**view, *range, options.high, &stop_flag());
+      views::draw_pictures(**view, *range, options.high, &stop_flag());
   if (!pictures) return pictures.error();
   Result<files::AtomicFile> file = files::AtomicFile::create(options.out);
   if (!file) return file.error();

@@ -37,7 +37,7 @@ using recognition::Split;
 using Clock = std::chrono::steady_clock;
 
 struct LearnOptions {
-  operation::ExampleOptions examples;
+  recognising::ExampleOptions examples;
   std::string out;
   std::string splits;
   std::string predictions;
@@ -124,7 +124,7 @@ Status write_model(const LearnOptions& options, const LabelledFrames& data, cons
 
 Status learn(const LearnOptions& options) {
   if (Status checked = check_options(options); !checked) return checked;
-  const Result<LabelledFrames> data = operation::read_examples(options.examples, source_options());
+  const Result<LabelledFrames> data = recognising::read_examples(options.examples, source_options());
   if (!data) return data.error();
   std::vector<Split> splits;
   std::vector<Split> open_splits;

@@ -10,16 +10,16 @@
 #include "commands.hpp"
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/text.hpp"
-#include "dermis/operation/source_recogniser.hpp"
+#include "dermis/recognising/source_recogniser.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
 
-using operation::RecognitionInput;
-using operation::SourceRecogniser;
-using operation::SourceRecognition;
+using recognising::RecognitionInput;
+using recognising::SourceRecogniser;
+using recognising::SourceRecognition;
 using recognition::Classes;
 using recognition::Verdict;
 

@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "commands.hpp"
-#include "dermis/operation/array_view.hpp"
-#include "dermis/operation/view_player.hpp"
 #include "dermis/report/terminal_picture.hpp"
+#include "dermis/views/array_view.hpp"
+#include "dermis/views/view_player.hpp"
 #include "source_options.hpp"
 #include "stop_flag.hpp"
 
@@ -68,10 +68,10 @@ class OtherScreen {
   ~OtherScreen() { put("\x1b[0m\x1b[?25h\x1b[?1049l"); }
 };
 
-Status show(operation::ArrayView& view, const TopOptions& options) {
+Status show(views::ArrayView& view, const TopOptions& options) {
   const report::TerminalColours colours = colours_of_terminal();
   const OtherScreen screen;
-  const operation::ViewPlayer player(view, stop_flag(), options.high);
+  const views::ViewPlayer player(view, stop_flag(), options.high);
   while (!stop_flag().load()) {
     const report::TerminalPicture picture = player.picture();
     const std::string screen_text = picture.values.empty()
@@ -92,8 +92,8 @@ Status top(const TopOptions& options) {
     return bad_input("--high: must be more than 0");
   }
   static_cast<void>(stop_flag());  // from here on, Ctrl-C ends the show and not the process
-  const Result<std::unique_ptr<operation::ArrayView>> view =
-      operation::ArrayView::open(options.from, options.model, source_options());
+  const Result<std::unique_ptr<views::ArrayView>> view =
+      views::ArrayView::open(options.from, options.model, source_options());
   if (!view) return view.error();
   return show(**view, options);
 }

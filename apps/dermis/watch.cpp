@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "child_process.hpp"
 #include "commands.hpp"
-#include "dermis/operation/child_process.hpp"
 #include "dermis/operation/operation.hpp"
 #include "dermis/operation/threat_watch.hpp"
 #include "dermis/threats/threat_limits.hpp"
@@ -27,7 +27,6 @@ namespace dermis::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using operation::ChildProcess;
 using operation::Operation;
 using operation::ThreatEvent;
 using operation::ThreatWatch;

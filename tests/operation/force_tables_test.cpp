@@ -8,10 +8,15 @@
 
 #include "dermis/pipeline/direct_model.hpp"
 #include "dermis/pipeline/pipeline.hpp"
-#include "force_mat.hpp"
+#include "support/force_mat.hpp"
 
 namespace dermis::operation {
 namespace {
+
+using support::error_of;
+using support::force_mat;
+using support::MatFiles;
+using support::pressed;
 
 std::vector<ForceFrame> forces_of(const pipeline::Model& model, const std::vector<RawFrame>& frames) {
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);

@@ -10,10 +10,16 @@
 #include "dermis/pipeline/direct_model.hpp"
 #include "dermis/recordings/frame_file_info.hpp"
 #include "dermis/sources/open_source.hpp"
-#include "force_mat.hpp"
+#include "support/force_mat.hpp"
 
 namespace dermis::operation {
 namespace {
+
+using support::error_of;
+using support::force_mat;
+using support::kShape;
+using support::MatFiles;
+using support::pressed;
 
 TEST(CreateRecording, of_a_model_keeps_frames_forces_and_what_is_known_of_the_array) {
   const MatFiles mat;

@@ -4,11 +4,17 @@
 
 #include <gtest/gtest.h>
 
-#include "force_mat.hpp"
+#include "support/force_mat.hpp"
 #include "support/hand_made_model.hpp"
 
 namespace dermis::operation {
 namespace {
+
+using support::error_of;
+using support::kPressed;
+using support::kShape;
+using support::MatFiles;
+using support::pressed;
 
 TEST(Operation, computes_the_forces_of_a_source_by_its_model) {
   const MatFiles mat;

@@ -8,10 +8,15 @@
 #include <optional>
 
 #include "dermis/acquisition/protocol.hpp"
-#include "force_mat.hpp"
+#include "support/force_mat.hpp"
 
 namespace dermis::operation {
 namespace {
+
+using support::error_of;
+using support::kShape;
+using support::MatFiles;
+using support::pressed;
 
 /// A watch on the frames of a source, for contacts beyond a limit [N], and what it logs: "hard begins at 10 ms".
 class Watched {

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/operation/operation.hpp"
+#include "dermis/pipeline/frame_troubles.hpp"
+#include "dermis/recognition/segment.hpp"
+#include "dermis/sources/open_source.hpp"
+
+namespace dermis::recognising {
+
+/// What was told longer ago tells nothing of now.
+inline constexpr Nanos kLongestSilence = std::chrono::milliseconds(500);
+
+/// Frames of one array, and how they become loads.
+struct ArrayLoadInput {
+  std::string from;                 ///< As for sources::open_source().
+  std::string model{};              ///< As for pipeline::read_model(); empty: the readings are the loads.
+  bool tare = false;                ///< The first second is unloaded.
+  sources::SourceOptions source{};  ///< With a model, the array is that of the model.
+  std::string name{};               ///< What the array is called; empty: as its model says, or "array".
+};
+
+/// Mean of each reading over the first second, and at least 10 frames, but at most 10 s.
+class UnloadedReadings {
+ public:
+  /// Whether the frame is one of those. Once one is not, none is any more.
+  bool add(const RawFrame& frame);
+  void subtract_from(std::vector<float>& readings) const;
+
+ private:
+  std::vector<double> sum_;
+  std::vector<double> count_;
+  std::size_t frames_ = 0;
+  Nanos first_time_{};
+  bool is_done_ = false;
+};
+
+/// Frames of an array as loads: newtons of a model, or readings, tared if asked. Where there is no load to tell, 0.
+/// Not thread-safe.
+class ArrayLoads {
+ public:
+  [[nodiscard]] static Result<ArrayLoads> open(const ArrayLoadInput& input);
+
+  /// Takes the next frame; false at the end of the source, after telling its options' `loss` where most frames had no
+  /// force.
+  [[nodiscard]] Result<bool> next();
+
+  /// Whether the frame belongs to the tare; its loads are 0.
+  [[nodiscard]] bool is_tare() const noexcept { return is_tare_; }
+  [[nodiscard]] const std::vector<float>& loads() const noexcept { return loads_; }
+  [[nodiscard]] Nanos time() const noexcept { return raw_.time; }
+
+  /// The array as far as it is known: with the pitch by a model; empty where only the first frame will tell.
+  [[nodiscard]] std::optional<recognition::SensedArray> array() const;
+  [[nodiscard]] bool is_live() const { return frames_->is_live(); }
+
+ private:
+  ArrayLoads() = default;
+  void process_forces();
+  void process_readings();
+  void tell_loss();
+
+  std::unique_ptr<FrameSource> frames_;
+  std::optional<operation::ModelAtWork> work_;
+  std::optional<pipeline::FrameTroubles> troubles_;  ///< Of the forces.
+  std::function<void(const std::string&)> loss_;
+  std::optional<UnloadedReadings> unloaded_;
+  std::string name_;
+  RawFrame raw_;
+  ForceFrame force_;
+  std::vector<float> loads_;
+  bool is_tare_ = false;
+};
+
+/// What an array shows at the times of another one: its last frame until then. Not thread-safe.
+class HeldLoads {
+ public:
+  /// Reads its first frame; fails where there is none.
+  [[nodiscard]] static Result<HeldLoads> open(const ArrayLoadInput& input);
+
+  /// Goes on to a time, which may not fall.
+  [[nodiscard]] Status move_to(Nanos time);
+
+  /// 0 where there was no frame for kLongestSilence.
+  [[nodiscard]] const std::vector<float>& loads() const noexcept { return loads_; }
+  /// Whether the array is still being tared.
+  [[nodiscard]] bool is_tare() const noexcept { return is_tare_; }
+  /// At how many times there was no frame for kLongestSilence, beginning with the first time.
+  [[nodiscard]] std::size_t silent() const noexcept { return silent_; }
+  [[nodiscard]] recognition::SensedArray array() const { return array_.array().value_or(recognition::SensedArray{}); }
+
+ private:
+  HeldLoads(ArrayLoads array, bool is_tare);
+
+  ArrayLoads array_;      ///< One frame ahead,
+  bool has_next_ = true;  ///< if there is one.
+  bool is_tare_;          ///< Of the frame that is held, as what follows.
+  std::optional<Nanos> last_;
+  std::vector<float> loads_;
+  std::size_t silent_ = 0;
+};
+
+}  // namespace dermis::recognising

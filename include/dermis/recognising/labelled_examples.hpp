@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/recognition/dataset.hpp"
+#include "dermis/recognition/examples.hpp"
+#include "dermis/sources/open_source.hpp"
+
+namespace dermis::recognising {
+
+/// Where labelled examples are: in recordings, or in plain files.
+struct ExampleOptions {
+  recognition::DatasetFiles data;
+  std::vector<std::string> in;  ///< Recordings; then `data` has no frames and arrays, and its extras are
+                                ///< as for FurtherReadings::read().
+  std::string model;            ///< Of the recordings: as for LoadInput, like the next two.
+  bool tare = false;
+  std::vector<std::string> arrays;  ///< Empty: those of the first recording.
+};
+
+/// Recordings must be of the same arrays at one rate and have names of their own; `source`: how they are opened.
+/// Validates.
+/// Errors name the file or, as the commands call it, the option.
+[[nodiscard]] Result<recognition::LabelledFrames> read_examples(const ExampleOptions& options,
+                                                                const sources::SourceOptions& source = {});
+
+}  // namespace dermis::recognising
