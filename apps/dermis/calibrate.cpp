@@ -206,7 +206,7 @@ Status calibrate(const CalibrateOptions& options) {
   if (!positions) return positions.error();
   const double read_s = seconds_since(start);
 
-  Progress progress;
+  Progress progress(array->name);
   progress.show("circuit", 0.0);
   start = Clock::now();
   const auto database = calibration::build_sample_database(*array, *frames, *loads, *settle,

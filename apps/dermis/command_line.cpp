@@ -12,11 +12,14 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
 #include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "dermis/core/nearest_name.hpp"
 #include "dermis/core/version.hpp"
 #include "reference.hpp"
 
@@ -45,6 +48,42 @@ void check_whole_number(CLI::Option& option, const std::optional<Value>& /*value
 
 std::string first_line(const std::string& text) {
   return text.substr(0, text.find('\n'));
+}
+
+std::set<std::string> options_of(const CLI::App& command) {
+  std::set<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.insert("--" + name);
+  }
+  return names;
+}
+
+std::set<std::string> commands_of(const CLI::App& command) {
+  std::set<std::string> names;
+  for (const CLI::App* each : command.get_subcommands(nullptr)) names.insert(each->get_name());
+  return names;
+}
+
+/// The last command that was named.
+const CLI::App& chosen_command(const CLI::App& app) {
+  const std::vector<CLI::App*> named = app.get_subcommands();
+  return named.empty() ? app : chosen_command(*named.back());
+}
+
+/// What is wrong with an argument that nothing takes, and the name that may have been meant.
+std::string unknown(const std::string& argument, const CLI::App& command) {
+  const bool is_option = argument.starts_with('-');
+  const std::set<std::string> known = is_option ? options_of(command) : commands_of(command);
+  if (known.empty()) return fmt::format("'{}' is one argument too many", argument);
+  const std::string name = argument.substr(0, argument.find('='));
+  const std::string nearest = nearest_name(name, known);
+  const std::string what = fmt::format("unknown {} '{}'", is_option ? "option" : "command", name);
+  return nearest.empty() ? what : fmt::format("{}; did you mean '{}'?", what, nearest);
+}
+
+std::string message_of(const CLI::ParseError& error, const CLI::App& app) {
+  const std::vector<std::string> nobody_took = app.remaining(true);
+  return nobody_took.empty() ? first_line(error.what()) : unknown(nobody_took.front(), chosen_command(app));
 }
 
 /// "simulate, calibrate, ... or serve"
@@ -148,7 +187,7 @@ Result<Action> parse_command_line(int argc, char** argv, std::span<const Command
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) return bad_input(first_line(error.what()) + " (see dermis --help)");
+    if (error.get_exit_code() != 0) return bad_input(message_of(error, app) + " (see dermis --help)");
     app.exit(error);  // prints what was asked for
     return Action();
   }

@@ -37,7 +37,7 @@ constexpr std::array kCommands{
     CommandEntry{"info", "Show what a recording or another file of frames holds", add_info},
     CommandEntry{"recover", "Repair a cut or damaged recording, and say what is lost", add_recover},
     CommandEntry{"image", "Draw a frame as PNG or SVG, or some seconds as an animated PNG", add_image},
-    CommandEntry{"top", "Show a live heat map in the terminal, until Ctrl-C", add_top},
+    CommandEntry{"top", "Show a live heat map in the terminal, until q or Ctrl-C", add_top},
     CommandEntry{"watch", "Compare forces with limits, and stop a program if one is crossed", add_watch},
     CommandEntry{"serve", "Show an array or a suit live in the browser and stream it", add_serve},
 };

@@ -75,12 +75,14 @@ Status record(const RecordOptions& options) {
   const ArrayDescription* array = known->array ? &*known->array : nullptr;
   operation::FrameOutput output{options.out, array, known->model ? &*known->model : nullptr, options.model, {}};
   if (Status possible = operation::check_output(output); !possible) return possible;
-  Result<std::unique_ptr<FrameSource>> source = sources::open_source(options.from, source_options(array));
+  LiveLine line;
+  sources::SourceOptions source_is = source_options(array);
+  source_is.simulated = [&](double share) { line.show(fmt::format("simulating the scene: {:.0f} %", 100.0 * share)); };
+  Result<std::unique_ptr<FrameSource>> source = sources::open_source(options.from, source_is);
   if (!source) return source.error();
   output.notes = operation::notes_of_source(**source, options.from);
   recorder.source_stops = (*source)->is_live();
 
-  LiveLine line;
   recorder.progress = [&](const acquisition::RecorderProgress& progress) { line.show(with_queue(progress)); };
   acquisition::RecorderProgress last;
   Status recorded = acquisition::record(

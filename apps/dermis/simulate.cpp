@@ -102,7 +102,7 @@ Status simulate(const SimulateOptions& options) {
       files::FramesCsvWriter::create((folder / "frames.csv").string(), FrameShape{array->rows, array->cols});
   if (!frames) return frames.error();
 
-  Progress progress;
+  Progress progress(array->name);
   Truth truth;
   RawFrame frame;
   const std::size_t count = (*simulator)->frame_count();

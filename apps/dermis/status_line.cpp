@@ -66,10 +66,10 @@ void Progress::show(const std::string& stage, double share) {
   if (step <= last_shown_) return;
   last_shown_ = step;
   const std::string left = time_left(start_, share);
-  if (!line_.is_terminal()) return say(fmt::format("{}: {} %{}", stage, step * 100 / kPlainSteps, left));
+  if (!line_.is_terminal()) return say(fmt::format("{}{}: {} %{}", prefix_, stage, step * 100 / kPlainSteps, left));
   const int filled = step * kBarWidth / kTerminalSteps;
-  line_.redraw(
-      fmt::format("{:<12} [{:#<{}}{:.<{}}] {:3} %{:<16}", stage, "", filled, "", kBarWidth - filled, step, left));
+  line_.redraw(fmt::format("{:<12} [{:#<{}}{:.<{}}] {:3} %{:<16}", prefix_ + stage, "", filled, "", kBarWidth - filled,
+                           step, left));
 }
 
 void LiveLine::show(const std::string& text) {

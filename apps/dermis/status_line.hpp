@@ -37,11 +37,16 @@ class StatusLine {
 /// How far long work is and how long it still takes: a bar, or a plain line every quarter where there is no terminal.
 class Progress {
  public:
+  Progress() = default;
+  /// `of`: whose work it is, such as the name of an array.
+  explicit Progress(const std::string& of) : prefix_(of + ", ") {}
+
   /// `share` in [0, 1] of `stage`.
   void show(const std::string& stage, double share);
 
  private:
   StatusLine line_;
+  std::string prefix_;
   std::string stage_;
   int last_shown_ = -1;
   std::chrono::steady_clock::time_point start_{};  // of the stage

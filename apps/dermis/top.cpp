@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -68,11 +69,42 @@ class OtherScreen {
   ~OtherScreen() { put("\x1b[0m\x1b[?25h\x1b[?1049l"); }
 };
 
+/// Keys as they are pressed, without an echo; the terminal is as before at the end.
+class Keys {
+ public:
+  Keys() : is_terminal_(::tcgetattr(STDIN_FILENO, &before_) == 0) {
+    if (!is_terminal_) return;
+    termios raw = before_;
+    raw.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+    raw.c_cc[VMIN] = 0;
+    raw.c_cc[VTIME] = 0;
+    ::tcsetattr(STDIN_FILENO, TCSANOW, &raw);
+  }
+  Keys(const Keys&) = delete;
+  Keys& operator=(const Keys&) = delete;
+  ~Keys() {
+    if (is_terminal_) ::tcsetattr(STDIN_FILENO, TCSANOW, &before_);
+  }
+
+  /// Whether `key` was pressed since the last call.
+  [[nodiscard]] bool pressed(char key) const {
+    bool found = false;
+    char next = 0;
+    while (is_terminal_ && ::read(STDIN_FILENO, &next, 1) == 1) found = found || next == key;
+    return found;
+  }
+
+ private:
+  termios before_{};
+  bool is_terminal_;
+};
+
 Status show(views::ArrayView& view, const TopOptions& options) {
   const report::TerminalColours colours = colours_of_terminal();
   const OtherScreen screen;
+  const Keys keys;
   const views::ViewPlayer player(view, stop_flag(), options.high);
-  while (!stop_flag().load()) {
+  while (!stop_flag().load() && !keys.pressed('q')) {
     const report::TerminalPicture picture = player.picture();
     const std::string screen_text = picture.values.empty()
                                         ? "waiting for the first frame\x1b[K"

@@ -73,8 +73,23 @@ Result<FrameFileInfo> info_of_frames(const std::string& path, FrameFormat format
     add(frame, info);
   }
   if (is_timed) info.duration_s = std::chrono::duration<double>(info.frames > 0 ? frame.time - first : Nanos{}).count();
-  if (format == FrameFormat::hdf5) info.lost = (*source)->statistics().lost_frames;
+  if (format == FrameFormat::hdf5 || format == FrameFormat::mcap) info.lost = (*source)->statistics().lost_frames;
   return info;
+}
+
+Result<FrameFileInfo> info_of_one_array(const std::string& path, const std::optional<FrameShape>& shape) {
+  Result<FrameFileInfo> info = info_of_frames(path, FrameFormat::mcap, shape);
+  if (!info) return info;
+  const Result<RecordingInfo> recording = recording_info(recording_place(path).path);
+  if (!recording) return recording.error();
+  info->compression = recording->compression;
+  info->software = recording->software_version;
+  return info;
+}
+
+Result<FrameFileInfo> info_of(const std::string& path, FrameFormat format, const std::optional<FrameShape>& shape) {
+  if (format != FrameFormat::mcap) return info_of_frames(path, format, shape);
+  return recording_place(path).array.empty() ? info_of_recording(path) : info_of_one_array(path, shape);
 }
 
 }  // namespace
@@ -88,8 +103,7 @@ std::optional<double> FrameFileInfo::rate_hz() const {
 Result<FrameFileInfo> frame_file_info(const std::string& path, const std::optional<FrameShape>& shape) {
   const Result<FrameFormat> format = recognise_frames(path);
   if (!format) return format.error();
-  Result<FrameFileInfo> info =
-      *format == FrameFormat::mcap ? info_of_recording(path) : info_of_frames(path, *format, shape);
+  Result<FrameFileInfo> info = info_of(path, *format, shape);
   if (!info) return info;
   if (shape && info->shape && *info->shape != *shape) {
     return bad_input(path + ": has frames of " + files::size_text(*info->shape) + " taxels");

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -15,6 +16,9 @@
 
 namespace dermis::sources {
 
+/// Told which share of a scene is simulated.
+using TellShare = std::function<void(double share)>;
+
 /// The scene "contacts" to be read at any moment, over and over: simulated beforehand at 100 frames/s without the noise
 /// of the instruments, interpolated in between, and with fresh noise at each reading. Not thread-safe.
 class ContactLoop {
@@ -22,7 +26,8 @@ class ContactLoop {
   /// `frames`: length of the scene; by default 2000 (20 s), or fewer of more than 6000 taxels.
   [[nodiscard]] static Result<ContactLoop> create(const ArrayDescription& array, std::uint64_t seed,
                                                   std::optional<std::size_t> frames,
-                                                  const simulation::RubberOptions& rubber = {});
+                                                  const simulation::RubberOptions& rubber = {},
+                                                  const TellShare& tell = {});
 
   /// Counts, temperature and supply `seconds` >= 0 after the beginning of the first loop.
   void read(double seconds, RawFrame& frame);

@@ -133,10 +133,11 @@ Result<MakeFrame> continuous_scene(const acquisition::SourceUri& uri, const Arra
 
 /// The first frames of a scene, over and over.
 Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescription& array,
-                             const simulation::RubberOptions& rubber) {
+                             const simulation::RubberOptions& rubber, const TellShare& tell) {
   const Result<std::unique_ptr<simulation::Simulator>> simulator = simulate_scene(uri, array, rubber);
   if (!simulator) return simulator.error();
   const std::size_t most = std::clamp(kMaxTaxelFrames / array.taxel_count(), kLeastFrames, kMaxFrames);
+  const std::size_t length = std::min(most, (*simulator)->frame_count());
   std::vector<RawFrame> frames;
   while (frames.size() < most) {
     RawFrame frame;
@@ -144,6 +145,7 @@ Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescr
     if (!more) return more.error();
     if (!*more) break;
     frames.push_back(std::move(frame));
+    if (tell) tell(static_cast<double>(frames.size()) / static_cast<double>(length));
   }
   return MakeFrame([frames = std::move(frames)](std::uint64_t number, RawFrame& frame) {
     const RawFrame& simulated = frames[number % frames.size()];
@@ -154,8 +156,8 @@ Result<MakeFrame> scene_loop(const acquisition::SourceUri& uri, const ArrayDescr
 }
 
 Result<MakeFrame> contact_loop(const acquisition::SourceUri& uri, const ArrayDescription& array,
-                               const simulation::RubberOptions& rubber) {
-  Result<ContactLoop> created = ContactLoop::create(array, uri.seed, uri.frames, rubber);
+                               const simulation::RubberOptions& rubber, const TellShare& tell) {
+  Result<ContactLoop> created = ContactLoop::create(array, uri.seed, uri.frames, rubber, tell);
   if (!created) return created.error();
   return MakeFrame([loop = *std::move(created), rate_hz = *uri.rate_hz](std::uint64_t number, RawFrame& frame) mutable {
     loop.read(static_cast<double>(number) / rate_hz, frame);
@@ -175,7 +177,8 @@ Result<MakeFrame> frames_of(const acquisition::SourceUri& uri, const ArrayDescri
                             const SourceOptions& options, const simulation::RubberOptions& rubber) {
   if (uri.path == kRehearsal) return rehearsal(uri, array, options.guide, rubber);
   if (simulation::takes_rate(uri.path)) return continuous_scene(uri, array, rubber);
-  return uri.path == "contacts" ? contact_loop(uri, array, rubber) : scene_loop(uri, array, rubber);
+  if (uri.path == "contacts") return contact_loop(uri, array, rubber, options.simulated);
+  return scene_loop(uri, array, rubber, options.simulated);
 }
 
 Result<std::unique_ptr<FrameSource>> open_scene(const acquisition::SourceUri& uri, const ArrayDescription& array,

@@ -72,6 +72,12 @@ bool is_same_origin(std::string_view origin, std::string_view host) {
   return false;
 }
 
+bool is_known_tool(std::string_view origin) {
+  constexpr std::array<std::string_view, 3> kOrigins = {"https://app.foxglove.dev", "https://studio.foxglove.dev",
+                                                        "https://lichtblick-suite.github.io"};
+  return std::find(kOrigins.begin(), kOrigins.end(), origin) != kOrigins.end();
+}
+
 std::string_view path_of(std::string_view target) {
   return target.substr(0, target.find('?'));
 }

@@ -28,6 +28,9 @@ namespace dermis::stream {
 /// The page that asks came from this server, or it is no page at all: its Origin is empty or has the Host's authority.
 [[nodiscard]] bool is_same_origin(std::string_view origin, std::string_view host);
 
+/// The page is Foxglove's or Lichtblick's, on the web.
+[[nodiscard]] bool is_known_tool(std::string_view origin);
+
 /// The value of a key in "/path?key=value&...", empty where there is none.
 [[nodiscard]] std::string_view query_value(std::string_view target, std::string_view key);
 

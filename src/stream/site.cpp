@@ -95,8 +95,9 @@ std::shared_ptr<const Site::Document> Site::find_document(std::string_view path)
 std::optional<Response> Site::refuse_upgrade(const Request& request) const {
   if (names_other_host(request)) return make_refusal(request, http::status::forbidden, kOtherHost);
   if (!has_token(request)) return make_refusal(request, http::status::unauthorized, kNoToken);
-  const bool is_of_here = is_same_origin(view(request[http::field::origin]), view(request[http::field::host]));
-  if (options_.token.empty() && !is_of_here) {
+  const std::string_view origin = view(request[http::field::origin]);
+  const bool is_welcome = is_same_origin(origin, view(request[http::field::host])) || is_known_tool(origin);
+  if (options_.token.empty() && !is_welcome) {
     return make_refusal(request, http::status::forbidden,
                         "a page of another origin; to allow it, serve with a token and give it to the page");
   }

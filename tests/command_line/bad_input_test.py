@@ -13,10 +13,14 @@ class Usage(SmallArray):
         self.refuse([], ["name a command"])
 
     def test_unknown_command(self):
-        self.refuse(["calibrat"], ["calibrat"])
+        self.refuse(["calibrat"], ["unknown command 'calibrat'", "did you mean 'calibrate'?"])
+        self.refuse(["circuit", "forwards"], ["unknown command 'forwards'", "did you mean 'forward'?"])
+        self.refuse(["xyzzy"], ["unknown command 'xyzzy'"])
 
     def test_unknown_option(self):
-        self.refuse([*self.run_arguments(self.work / "f.csv"), "--fast"], ["--fast"])
+        self.refuse([*self.run_arguments(self.work / "f.csv"), "--fast"], ["unknown option '--fast'"])
+        self.refuse(["run", "--modle", self.model], ["unknown option '--modle'", "did you mean '--model'?"])
+        self.refuse(["run", "--model=m", "frames.csv"], ["'frames.csv' is one argument too many"])
 
     def test_missing_options(self):
         for command, option in (("simulate", "--array"), ("calibrate", "--array"), ("run", "--model"),

@@ -175,6 +175,11 @@ class Top(SmallArray):
             self.assertLessEqual(max(len(line.replace("\x1b[J", "")) for line in screen), columns, screen)
         self.assertEqual(terminal.end()[1], 0)
 
+    def test_q_ends_it(self):
+        terminal = Terminal(24, 80, "top", "--from", SOURCE)
+        terminal.read_until(rb"frames/s")
+        self.assertEqual(terminal.end(b"xq")[1], 0)
+
     def test_errors_are_shown_on_the_own_screen(self):
         terminal = Terminal(24, 80, "top", "--from", "nothing.mcap")
         shown, status = terminal.end(b"")
@@ -194,6 +199,13 @@ class Top(SmallArray):
         terminal.read_until(rb"frames/s")
         os.kill(terminal.pid, signal.SIGTERM)
         self.assertEqual(terminal.end(b"")[1], 0)
+
+    def test_record_shows_how_far_a_scene_is_simulated(self):
+        terminal = Terminal(24, 80, "record", "--from", "sim:contacts?rows=4&cols=5&rate=100", "--out",
+                            self.work / "r.mcap")
+        terminal.read_until(rb"simulating the scene: \d+ %")
+        terminal.read_until(rb"[1-9]\d* frames, ")
+        self.assertEqual(terminal.end()[1], 0)
 
 
 if __name__ == "__main__":

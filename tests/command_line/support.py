@@ -14,7 +14,7 @@ from pathlib import Path
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 BINARY = None
-PROGRESS = re.compile(r"\w+: \d+ %(, \d+ s left)?")  # "networks: 25 %, 3 s left"
+PROGRESS = re.compile(r"(.+, )?\w+: \d+ %(, \d+ s left)?")  # "chest, networks: 25 %, 3 s left"
 
 ARRAY = """[array]
 name = "small"

@@ -111,6 +111,15 @@ TEST(FrameFileInfo, several_arrays_have_shapes_and_rates_of_their_own) {
   EXPECT_EQ(info->arrays.size(), 2U);
   EXPECT_FALSE(info->shape);
   EXPECT_FALSE(info->rate_hz());
+
+  const Result<FrameFileInfo> one = frame_file_info(path + "#back");
+  ASSERT_TRUE(one) << one.error().message;
+  EXPECT_EQ(one->frames, 3U);
+  EXPECT_EQ(one->notes.name, "back");
+  EXPECT_EQ(one->shape, (FrameShape{3, 4}));
+  EXPECT_DOUBLE_EQ(one->rate_hz().value_or(0.0), 100.0);
+  EXPECT_EQ(one->compression, "lz4");
+  EXPECT_NE(frame_file_info(path + "#bock").error().message.find("'back'"), std::string::npos);
 }
 
 TEST(FrameFileInfo, a_file_that_is_not_there_is_named) {

@@ -36,6 +36,17 @@ TEST(Access, pages_of_this_server_and_programs_have_the_same_origin) {
   EXPECT_FALSE(is_same_origin("file://127.0.0.1:8080", "127.0.0.1:8080"));
 }
 
+TEST(Access, foxglove_and_lichtblick_are_known_by_their_whole_origin) {
+  for (const char* origin :
+       {"https://app.foxglove.dev", "https://studio.foxglove.dev", "https://lichtblick-suite.github.io"}) {
+    EXPECT_TRUE(is_known_tool(origin)) << origin;
+  }
+  for (const char* origin : {"", "null", "http://app.foxglove.dev", "https://app.foxglove.dev.evil.org",
+                             "https://evil.github.io", "https://app.foxglove.dev:8443"}) {
+    EXPECT_FALSE(is_known_tool(origin)) << origin;
+  }
+}
+
 TEST(Access, finds_the_token) {
   EXPECT_EQ(query_value("/?token=abc", "token"), "abc");
   EXPECT_EQ(query_value("/x?a=1&token=abc&b=2", "token"), "abc");

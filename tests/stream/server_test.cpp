@@ -250,6 +250,7 @@ TEST_F(StreamServer, asks_for_the_token) {
   };
   EXPECT_EQ(status("/", ""), 401U);
   EXPECT_EQ(status("/?token=no", ""), 401U);
+  EXPECT_EQ(status("/", "https://app.foxglove.dev"), 401U);
   EXPECT_EQ(status("/?token=secret-1", ""), 101U);
   EXPECT_EQ(status("/?token=secret-1", "https://app.foxglove.dev"), 101U) << "who has the token may come from anywhere";
 }
@@ -261,6 +262,8 @@ TEST_F(StreamServer, refuses_foreign_pages_names_and_protocols) {
   };
   const std::string good = "foxglove.sdk.v1";
   EXPECT_EQ(status({"127.0.0.1:1", "http://127.0.0.1:1", {}}, good), 101U);
+  EXPECT_EQ(status({"127.0.0.1:1", "https://app.foxglove.dev", {}}, good), 101U);
+  EXPECT_EQ(status({"127.0.0.1:1", "https://lichtblick-suite.github.io", {}}, good), 101U);
   EXPECT_EQ(status({"127.0.0.1:1", "http://evil.org", {}}, good), 403U);
   EXPECT_EQ(status({"127.0.0.1:1", "null", {}}, good), 403U);
   EXPECT_EQ(status({"evil.org", "http://evil.org", {}}, good), 403U) << "DNS rebinding";

@@ -56,6 +56,19 @@ function hasDrawnColours() {
   );
 }
 
+/** In the page: how well two colours are told apart, 1 to 21 (WCAG). */
+function contrast(colors) {
+  const pen = document.createElement("canvas").getContext("2d");
+  const luminance = (color) => {
+    pen.fillStyle = color;
+    pen.fillRect(0, 0, 1, 1);
+    const [red, green, blue] = [...pen.getImageData(0, 0, 1, 1).data].map((byte) => (byte <= 10 ? byte / 3294.6 : ((byte / 255 + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+  };
+  const [dark, light] = colors.map(luminance).sort((a, b) => a - b);
+  return (light + 0.05) / (dark + 0.05);
+}
+
 const number = (text) => Number(text.replace("\u2212", "-").replace(/[^-\d.]/g, ""));
 
 describe("a recording", () => {
@@ -118,6 +131,23 @@ describe("each view", () => {
       const words = await page.locator("[data-role=plot-totals] .legend").textContent();
       await page.waitForTimeout(400);
       assert.equal(await page.locator("[data-role=plot-totals] .legend").textContent(), words);
+    });
+  });
+
+  it("of the array stands still as a whole while paused, and its button can be read under the pointer", async () => {
+    await shown(loop(), "array", async (page) => {
+      await page.locator("[data-contact]").first().waitFor();
+      const pause = page.locator("[data-role=pause]");
+      await pause.click();
+      await page.waitForTimeout(300);
+      const figures = () => page.locator(".readouts").innerText();
+      const still = await figures();
+      await page.waitForTimeout(500);
+      assert.equal(await figures(), still);
+      const [ink, ground] = await pause.evaluate((button) => [getComputedStyle(button).color, getComputedStyle(button).backgroundColor]);
+      assert.ok(await page.evaluate(contrast, [ink, ground]) >= 4.5, `${ink} on ${ground}`);
+      await pause.click();
+      await eventually(page, (before) => document.querySelector(".readouts").innerText !== before, still);
     });
   });
 

@@ -23,10 +23,10 @@ const LEVELS = ["good", "warn", "bad"] as const;
 export class App implements ViewContext {
   readonly suit = new Suit();
   readonly stream = new Stream(new URL(window.location.href), (suit) => this.#described(suit));
-  readonly live = new LiveData(this.stream, this.suit);
+  readonly paused = new Signal(false);
+  readonly live = new LiveData(this.stream, this.suit, this.paused);
   readonly theme = new Theme();
   readonly display = new DisplayStatistics();
-  readonly paused = new Signal(false);
   readonly #views: readonly View[];
   readonly #bar: Bar;
   readonly #transport = new Transport(this.stream);
@@ -42,6 +42,7 @@ export class App implements ViewContext {
     this.#views = VIEWS.map((create) => create(this));
     this.#bar = new Bar(this, this.#views, {
       toggleRecording: () => this.#toggle("/recording"),
+      togglePause: () => this.togglePause(),
       tare: () => this.#toggle("/tare"),
       showThresholds: () => this.#thresholds.showModal(),
       showHelp: () => this.#help.showModal(),
@@ -57,6 +58,12 @@ export class App implements ViewContext {
     this.#route();
     this.stream.connect();
     requestAnimationFrame(this.#drawNext);
+  }
+
+  /** A recording that is played has one pause, the server's. */
+  togglePause(): void {
+    if (this.#transport.isThere) this.#transport.toggle();
+    else this.paused.value = !this.paused.value;
   }
 
   open(view: string, array = this.suit.selected.value?.name): void {
@@ -121,7 +128,7 @@ export class App implements ViewContext {
   #act(event: KeyboardEvent): boolean {
     const view = this.#views[Number(event.key) - 1];
     if (view !== undefined) this.open(view.name);
-    else if (event.key === " " && !(event.target instanceof HTMLButtonElement)) this.paused.value = !this.paused.value;
+    else if (event.key === " " && !(event.target instanceof HTMLButtonElement)) this.togglePause();
     else if (event.key === "[") this.#step(-1);
     else if (event.key === "]") this.#step(1);
     else if (event.key === "t") this.#toggle("/tare");

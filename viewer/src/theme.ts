@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+import { cssGradient } from "./render/color_map";
 import type { Rgb } from "./render/heat_maps";
 import { setting } from "./settings";
 import { Signal } from "./signal";
@@ -14,7 +15,10 @@ export class Theme {
 
   constructor() {
     this.shown = new Signal(this.#resolve());
-    this.shown.follow((name) => (document.documentElement.dataset["theme"] = name));
+    this.shown.follow((name) => {
+      document.documentElement.dataset["theme"] = name;
+      document.documentElement.style.setProperty("--color-scale", cssGradient(name === "light"));
+    });
     this.#choice.follow(() => (this.shown.value = this.#resolve()));
     this.#system.addEventListener("change", () => (this.shown.value = this.#resolve()));
   }

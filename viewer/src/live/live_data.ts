@@ -19,7 +19,11 @@ export class ArrayLive {
   readonly slots = new ContactSlots();
 }
 
-/** What is followed from the beginning, as every view needs it: contacts, threats, statistics, health. */
+/** Messages that wait for the end of a pause: a minute of a suit. */
+const MOST_HELD = 20000;
+
+/** What is followed from the beginning, as every view needs it: contacts, threats, statistics, health. Contacts stand
+ *  still while the picture is paused, with all that is drawn of them; threats do not. */
 export class LiveData {
   arrays: ArrayLive[] = [];
   readonly statistics = new Signal<Statistics | undefined>(undefined);
@@ -29,10 +33,12 @@ export class LiveData {
   latestS = 0;
   version = 0;
   #names: string[] = [];
+  readonly #held: DataView[] = [];
 
-  constructor(stream: Stream, suit: Suit) {
+  constructor(stream: Stream, suit: Suit, paused: Signal<boolean>) {
     suit.description.follow(({ arrays }) => this.#restart(arrays.map(({ name }) => name)));
-    stream.subscribe("/contacts", (message) => this.#receive(message));
+    stream.subscribe("/contacts", (message) => (paused.value ? this.#hold(message) : this.#receive(message)));
+    paused.follow((isPaused) => !isPaused && this.#held.splice(0).forEach((message) => this.#receive(message)));
     stream.subscribe("/threat", (message) => this.threats.add(readThreat(message)));
     stream.serverInfo.follow(() => this.threats.restart());
     stream.subscribe("/statistics", (message) => (this.statistics.value = readStatistics(message)));
@@ -43,6 +49,11 @@ export class LiveData {
     if (names.join("/") === this.#names.join("/")) return;
     this.#names = names;
     this.arrays = names.map(() => new ArrayLive());
+  }
+
+  #hold(message: DataView): void {
+    this.#held.push(message);
+    if (this.#held.length > 2 * MOST_HELD) this.#held.splice(0, MOST_HELD);
   }
 
   #receive(message: DataView): void {

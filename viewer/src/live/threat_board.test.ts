@@ -33,6 +33,17 @@ describe("the board of threats", () => {
     expect(board.log.value.length).toBe(200);
   });
 
+  it("begins its log with what stands, and says that once", () => {
+    const board = new ThreatBoard();
+    board.add(threat("a", active));
+    board.add(threat("b", clear));
+    board.add(threat("a", active));
+    expect(board.log.value.map(({ name, state }) => [name, state])).toEqual([["a", active]]);
+    board.restart();
+    board.add(threat("a", active));
+    expect(board.log.value.length).toBe(1);
+  });
+
   it("logs an end whose message was lost, and forgets at another connection what stood", () => {
     const board = new ThreatBoard();
     board.add(threat("a", active, true));

@@ -5,7 +5,7 @@ import { Signal } from "../signal";
 
 const MOST_ENTRIES = 200;
 
-/** How every limit stands, and what began and ended since the page was opened. */
+/** How every limit stands, what stood when the page was opened, and what began and ended since. */
 export class ThreatBoard {
   /** Of each array and limit the newest message, in the order in which they came first. */
   readonly limits = new Signal<readonly Threat[]>([]);
@@ -18,8 +18,12 @@ export class ThreatBoard {
     const before = this.#byLimit.get(key);
     this.#byLimit.set(key, threat);
     this.limits.value = [...this.#byLimit.values()];
-    const wasMissed = before !== undefined && stands(before) !== stands(threat);
+    const wasMissed = before === undefined ? stands(threat) && !this.#isLogged(threat) : stands(before) !== stands(threat);
     if (threat.changed || wasMissed) this.log.value = [threat, ...this.log.value].slice(0, MOST_ENTRIES);
+  }
+
+  #isLogged({ name, array, crossedS }: Threat): boolean {
+    return this.log.value.some((entry) => stands(entry) && entry.name === name && entry.array === array && entry.crossedS === crossedS);
   }
 
   /** Another connection: what stood before may have ended. The log stays. */

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 /**
+ * The light theme reads it backwards: there an empty map is pale.
+ *
  * From ink through red to pale yellow, in equal steps to the eye: lightness and distance in OKLab rise evenly, so a map shows
  * no edge that the forces have not, and reads the same in grey. Rows: coefficients of share^0, share^1, ... for red, green,
  * blue in sRGB.
@@ -33,17 +35,21 @@ export function colorOf(share: number): string {
   return `rgb(${Math.round(255 * red)} ${Math.round(255 * green)} ${Math.round(255 * blue)})`;
 }
 
-export function cssGradient(direction: string): string {
-  const stops = Array.from({ length: 25 }, (_, index) => colorOf(index / 24));
-  return `linear-gradient(${direction}, ${stops.join(", ")})`;
+/** The scale from left to right. */
+export function cssGradient(fromLight: boolean): string {
+  const stops = Array.from({ length: 25 }, (_, index) => colorOf((fromLight ? 24 - index : index) / 24));
+  return `linear-gradient(to right, ${stops.join(", ")})`;
 }
 
-/** GLSL: vec3 color_map(float share). */
+/** GLSL: vec3 color_map(float share), and the uniform from_light. */
 export function shaderSource(): string {
   const vectors = COEFFICIENTS.map((row) => `vec3(${row.map((value) => value.toFixed(4)).join(", ")})`);
   const horner = vectors.reduceRight((inner, vector) => (inner === "" ? vector : `${vector} + x * (${inner})`), "");
-  return `vec3 color_map(float share) {
+  return `uniform bool from_light;
+
+vec3 color_map(float share) {
   float x = clamp(share, 0.0, 1.0);
+  if (from_light) x = 1.0 - x;
   return clamp(${horner}, 0.0, 1.0);
 }`;
 }

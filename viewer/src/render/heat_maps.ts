@@ -62,7 +62,7 @@ void main() {
   } else {
     float value = interpolated ? between_taxels(place - 0.5) : texelFetch(values, taxel, 0).r;
     shade = color_map(value / scale_end);
-    if (status > 0u && inside.x + inside.y < 0.45 * min(cell_pixels.x, cell_pixels.y)) shade = vec3(1.0);
+    if (status > 0u && inside.x + inside.y < 0.45 * min(cell_pixels.x, cell_pixels.y)) shade = vec3(dot(shade, vec3(0.3, 0.6, 0.1)) > 0.5 ? 0.0 : 1.0);
   }
   bool on_line = !interpolated && min(cell_pixels.x, cell_pixels.y) > 6.0 * pixel_ratio &&
                  min(inside.x, inside.y) < pixel_ratio;
@@ -75,6 +75,8 @@ export interface HeatMapColors {
   line: Rgb;
   fault: Rgb;
   faultStripe: Rgb;
+  /** An empty map is light. */
+  fromLight: boolean;
 }
 
 /** Where a map is on the canvas, in CSS pixels. */
@@ -119,7 +121,7 @@ export class HeatMaps {
   readonly #gl: WebGL2RenderingContext;
   readonly #maps: Map[] = [];
   #uniforms: Record<string, WebGLUniformLocation | null> = {};
-  #colors: HeatMapColors = { line: [0, 0, 0], fault: [0.5, 0.5, 0.5], faultStripe: [0, 0, 0] };
+  #colors: HeatMapColors = { line: [0, 0, 0], fault: [0.5, 0.5, 0.5], faultStripe: [0, 0, 0], fromLight: false };
   #pixelRatio = 1;
 
   constructor(canvas: HTMLCanvasElement, count: number, onRestored: () => void) {
@@ -143,7 +145,7 @@ export class HeatMaps {
     gl.enable(gl.SCISSOR_TEST);
     gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
     this.#uniforms = {};
-    for (const name of ["size", "area", "scale_end", "interpolated", "line", "fault", "fault_stripe", "pixel_ratio"]) {
+    for (const name of ["size", "area", "scale_end", "interpolated", "line", "fault", "fault_stripe", "pixel_ratio", "from_light"]) {
       this.#uniforms[name] = gl.getUniformLocation(program, name);
     }
     gl.uniform1i(gl.getUniformLocation(program, "values"), 0);
@@ -213,13 +215,14 @@ export class HeatMaps {
 
   draw(): void {
     const gl = this.#gl;
-    const { line, fault, faultStripe } = this.#colors;
+    const { line, fault, faultStripe, fromLight } = this.#colors;
     gl.scissor(0, 0, this.canvas.width, this.canvas.height);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT);
     gl.uniform1i(this.#uniforms["interpolated"]!, this.interpolated ? 1 : 0);
     gl.uniform1f(this.#uniforms["pixel_ratio"]!, this.#pixelRatio);
+    gl.uniform1i(this.#uniforms["from_light"]!, fromLight ? 1 : 0);
     gl.uniform3f(this.#uniforms["line"]!, line[0], line[1], line[2]);
     gl.uniform3f(this.#uniforms["fault"]!, fault[0], fault[1], fault[2]);
     gl.uniform3f(this.#uniforms["fault_stripe"]!, faultStripe[0], faultStripe[1], faultStripe[2]);

@@ -6,6 +6,7 @@ import { ConnectionPill } from "./connection_pill";
 
 export interface BarActions {
   toggleRecording(): void;
+  togglePause(): void;
   tare(): void;
   showThresholds(): void;
   showHelp(): void;
@@ -32,7 +33,7 @@ export class Bar {
       element("span", { class: "stretch" }),
       this.#pill.element,
       makeRecord(context, actions),
-      makePause(context),
+      makePause(context, actions),
       makeTare(context, actions),
       element("button", { class: "button", "data-role": "show-thresholds", onclick: () => actions.showThresholds() }, "Thresholds"),
       element("button", { class: "button icon", "data-role": "theme", "aria-label": "Light or dark", title: "Light or dark (D)", onclick: () => context.theme.toggle() }, "\u25d0"),
@@ -98,8 +99,13 @@ function makeRecord({ stream, live }: ViewContext, actions: BarActions): HTMLEle
   return element("span", { class: "record-group" }, button, file);
 }
 
-function makePause({ paused }: ViewContext): HTMLElement {
-  const button = element("button", { class: "button", "data-role": "pause", title: "Stop the picture, go on (Space)", onclick: () => (paused.value = !paused.value) });
+function makePause({ paused, stream }: ViewContext, actions: BarActions): HTMLElement {
+  const button = element("button", { class: "button", "data-role": "pause", title: "Stop the picture, go on (Space)", onclick: () => actions.togglePause() });
+  stream.serverInfo.follow((info) => {
+    const isPlayback = info?.capabilities.includes("playbackControl") === true;
+    if (isPlayback) paused.value = false;
+    setHidden(button, isPlayback);
+  });
   paused.follow((isPaused) => {
     button.setAttribute("aria-pressed", String(isPaused));
     setText(button, isPaused ? "Paused" : "Pause");

@@ -33,7 +33,8 @@ function words({ name, array, zone, quantity, state, value, worst, limit, unit }
   const place = zone === "" ? array : `${array}, ${zone}`;
   const what = quantity.replaceAll("_", " ");
   const now = state === ThreatState.latched ? `was ${withUnit(worst, unit)}` : withUnit(value, unit);
-  return `${name} (${place}): ${what} ${now}, limit ${withUnit(limit, unit)}`;
+  const isHeld = state === ThreatState.active && value < limit;
+  return `${name} (${place}): ${what} ${now}, ${isHeld ? "was above" : "limit"} ${withUnit(limit, unit)}`;
 }
 
 async function resetThreats(stream: Stream): Promise<void> {

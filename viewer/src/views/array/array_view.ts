@@ -171,6 +171,7 @@ class ArrayView implements View {
       line: rgbColor("--map-line"),
       fault: rgbColor("--fault"),
       faultStripe: rgbColor("--fault-stripe"),
+      fromLight: this.#context.theme.shown.value === "light",
     });
     this.#overlay.readColors();
     this.#layoutDue = true;
@@ -262,7 +263,7 @@ class ArrayView implements View {
 
   #drawContacts(array: ArrayDescription): void {
     const live = this.#context.live.arrays[this.#context.suit.indexOf(array.name)];
-    const hasNews = live !== undefined && live.version !== this.#contactsVersion && !this.#context.paused.value;
+    const hasNews = live !== undefined && live.version !== this.#contactsVersion;
     if (!hasNews && !this.#overlayDue) return;
     this.#contactsVersion = live?.version ?? -1;
     this.#overlayDue = false;
@@ -278,7 +279,7 @@ class ArrayView implements View {
     setData(this.element, "stamp", fixed(force.stampS, 6));
     setData(this.element, "frames", String(this.#context.display.framesDrawn));
     const live = this.#context.live.arrays[this.#context.suit.indexOf(array.name)];
-    if (live === undefined || this.#context.paused.value) return;
+    if (live === undefined) return;
     this.#contacts.show(live);
     this.#summary.show(array, live, force);
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setText } from "../../dom";
-import { cssGradient } from "../../render/color_map";
 import { setting } from "../../settings";
 import type { Signal } from "../../signal";
 import type { ArrayDescription } from "../../suit";
@@ -29,7 +28,7 @@ export class MapPanel {
       "data-role": `scale-${quantity.name}`,
       onchange: () => (this.end.value = Number(this.#select.value)),
     });
-    const strip = element("div", { class: "scale-strip", style: `background: ${cssGradient("to right")}` });
+    const strip = element("div", { class: "scale-strip" });
     const ticks = element("div", { class: "scale-ticks figure" });
     for (let tick = 0; tick <= TICKS; ++tick) {
       const label = element("span", { style: `left: ${(100 * tick) / TICKS}%` });

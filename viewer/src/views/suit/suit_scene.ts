@@ -157,7 +157,7 @@ export class SuitScene {
     this.#scene.background = new three.Color(cssColor("--surface"));
     this.#arrows.setColor(cssColor("--accent"));
     this.#zoneInk.color.set(cssColor("--bad"));
-    this.#cloud?.setColors(rgbColor("--fault"), rgbColor("--fault-stripe"), rgbColor("--accent"), rgbColor("--rim"));
+    this.#cloud?.setColors(rgbColor("--fault"), rgbColor("--fault-stripe"), rgbColor("--accent"), rgbColor("--rim"), document.documentElement.dataset["theme"] === "light");
     this.#isDue = true;
   }
 

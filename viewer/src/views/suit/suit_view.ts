@@ -3,7 +3,6 @@
 import { element, setHidden, setText } from "../../dom";
 import { fixed } from "../../format";
 import { type PointsFrame, readPoints } from "../../messages/grids";
-import { cssGradient } from "../../render/color_map";
 import { setting } from "../../settings";
 import type { View, ViewContext, ViewFactory } from "../../view";
 import type { SuitScene } from "./suit_scene";
@@ -30,6 +29,11 @@ class ArrayLabel {
   show(newtons: number): void {
     setText(this.#force, `${fixed(newtons, 1)} N`);
   }
+}
+
+/** An arrow is not longer than the scale. */
+function forceText(newtons: number, scaleEnd: number): string {
+  return `${fixed(newtons, 1)} N${newtons > scaleEnd ? " (beyond the scale)" : ""}`;
 }
 
 /** Above the middle of what is seen of these points. */
@@ -114,12 +118,13 @@ class SuitView implements View {
       scene.setForces(this.#frame);
       display.drawn(this.#frame.stampS);
     }
-    if (!paused.value && live.version !== this.#contactsVersion) {
+    if (live.version !== this.#contactsVersion) {
       this.#contactsVersion = live.version;
       scene.setContacts(live.arrays.map(({ contacts }) => contacts), this.#end.value);
+      this.#forces.forEach((label, index) => setText(label, forceText(scene.arrowForce(index), this.#end.value)));
     }
     if (scene.draw()) this.#placeLabels(scene);
-    if (nowMs - this.#labelMs >= LABEL_PERIOD_MS) this.#showLabels(nowMs);
+    if (nowMs - this.#labelMs >= LABEL_PERIOD_MS) this.#showTotals(nowMs);
   }
 
   async #load(): Promise<void> {
@@ -137,7 +142,7 @@ class SuitView implements View {
       { class: "field compact", "aria-label": "End of the force scale", onchange: () => (this.#end.value = Number(select.value)) },
       ...ENDS_N.map((end) => element("option", { value: end, selected: end === this.#end.value }, `0 \u2013 ${end} N`)),
     );
-    const strip = element("div", { class: "scale-strip", style: `background: ${cssGradient("to right")}` });
+    const strip = element("div", { class: "scale-strip" });
     return element(
       "div",
       { class: "toolbar" },
@@ -185,10 +190,8 @@ class SuitView implements View {
     });
   }
 
-  #showLabels(nowMs: number): void {
+  #showTotals(nowMs: number): void {
     this.#labelMs = nowMs;
-    if (this.#context.paused.value) return;
-    this.#forces.forEach((label, index) => setText(label, `${fixed(this.#scene?.arrowForce(index) ?? NaN, 1)} N`));
     this.#labels.forEach((label, index) => label.show(this.#context.live.arrays[index]?.contacts.totalForceN ?? NaN));
   }
 

@@ -123,16 +123,18 @@ export class TaxelCloud {
         stripe_color: { value: new three.Vector3() },
         chosen_color: { value: new three.Vector3() },
         rim_color: { value: new three.Vector3() },
+        from_light: { value: false },
       },
     });
   }
 
-  setColors(fault: Rgb, stripe: Rgb, chosen: Rgb, rim: Rgb): void {
+  setColors(fault: Rgb, stripe: Rgb, chosen: Rgb, rim: Rgb, fromLight: boolean): void {
     const { uniforms } = this.mesh.material;
     uniforms["fault_color"]!.value.set(...fault);
     uniforms["stripe_color"]!.value.set(...stripe);
     uniforms["chosen_color"]!.value.set(...chosen);
     uniforms["rim_color"]!.value.set(...rim);
+    uniforms["from_light"]!.value = fromLight;
   }
 
   setScale(end: number): void {

@@ -56,8 +56,8 @@ class TimeView implements View {
   }
 
   draw(nowMs: number): void {
-    const { live, paused } = this.#context;
-    const isNew = live.version !== this.#version && !paused.value && nowMs - this.#drawnMs >= PERIOD_MS;
+    const { live } = this.#context;
+    const isNew = live.version !== this.#version && nowMs - this.#drawnMs >= PERIOD_MS;
     if (!this.#isShown || (!isNew && !this.#linesDue)) return;
     if (this.#linesDue) this.#setLines();
     this.#version = live.version;
