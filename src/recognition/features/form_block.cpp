@@ -167,10 +167,10 @@ void FormBlock::put_directions(const ImageAnalysis& analysis, std::span<double> 
   for (std::size_t taxel = 0; taxel < analysis.lattice().taxels(); ++taxel) {
     const double size = analysis.steepness()[taxel];
     const double place = analysis.direction()[taxel] * static_cast<double>(kDirections);
-    const double below = std::floor(place);
-    const std::size_t bin = static_cast<std::size_t>(below) % kDirections;
-    histogram[bin] += size * (1.0 - (place - below));
-    histogram[(bin + 1) % kDirections] += size * (place - below);
+    const auto below = static_cast<std::size_t>(place);
+    const double upper = size * (place - static_cast<double>(below));
+    histogram[below % kDirections] += size - upper;
+    histogram[(below + 1) % kDirections] += upper;
     sum += size;
   }
   const double scale = sum > 0.0 ? 1.0 / sum : 0.0;

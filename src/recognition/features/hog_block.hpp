@@ -11,6 +11,14 @@
 
 namespace dermis::recognition {
 
+/// How much of a cell a line of taxels makes up, and of the next one, in which its rest may lie: a cell has two lines
+/// or more.
+struct CellShares {
+  std::size_t cell = 0;
+  double of_cell = 0.0;
+  double of_next = 0.0;
+};
+
 /// Where edges are and how they run: histograms of oriented gradients over a grid of cells, which share a taxel that
 /// lies in several by its area. Not thread-safe.
 class HogBlock {
@@ -26,9 +34,9 @@ class HogBlock {
  private:
   std::size_t row_cells_;
   std::size_t col_cells_;
-  std::vector<double> row_shares_;  ///< [rows, row cells]: how much of a cell a row makes up.
-  std::vector<double> col_shares_;
-  std::vector<double> of_row_;  ///< [column cells, orientations]
+  std::vector<CellShares> row_shares_;  ///< Of each row.
+  std::vector<CellShares> col_shares_;  ///< Of each column.
+  std::vector<double> of_row_;          ///< [column cells, orientations]
 };
 
 }  // namespace dermis::recognition

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "recognition/features/image_analysis.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -43,6 +44,17 @@ std::vector<std::size_t> mirrored_places(std::size_t count, std::size_t taps) {
     places.push_back(mirrored(static_cast<std::ptrdiff_t>(i) - reach, count));
   }
   return places;
+}
+
+/// out = sum of kernel[tap] line_at(tap), [count]. Lines that weigh the same are added first: the kernel is symmetric.
+template <typename LineAt>
+void blend(std::span<const double> kernel, const LineAt& line_at, std::size_t count, double* out) {
+  const auto length = static_cast<Eigen::Index>(count);
+  const auto line = [&](std::size_t tap) { return Eigen::Map<const Eigen::ArrayXd>(line_at(tap), length); };
+  const std::size_t middle = kernel.size() / 2;
+  Eigen::Map<Eigen::ArrayXd> sums(out, length);
+  sums = kernel[middle] * line(middle);
+  for (std::size_t tap = 0; tap < middle; ++tap) sums += kernel[tap] * (line(tap) + line(kernel.size() - 1 - tap));
 }
 
 /// Of a line of `count` values `stride` apart, at `place`: central, one-sided at the ends.
@@ -112,26 +124,16 @@ GaussianBlur::GaussianBlur(const Lattice& lattice, double sigma)
       col_kernel_(gaussian_kernel(sigma / lattice.col_step, lattice.cols)),
       row_places_(mirrored_places(rows_, row_kernel_.size())),
       col_places_(mirrored_places(cols_, col_kernel_.size())),
-      between_(lattice.taxels()),
+      between_(cols_),
       padded_(col_places_.size()) {}
 
 void GaussianBlur::apply(std::span<const double> image, std::span<double> out) {
-  std::fill(between_.begin(), between_.end(), 0.0);
   for (std::size_t row = 0; row < rows_; ++row) {
-    double* const sums = between_.data() + row * cols_;
-    for (std::size_t tap = 0; tap < row_kernel_.size(); ++tap) {
-      const double* const values = image.data() + row_places_[row + tap] * cols_;
-      for (std::size_t col = 0; col < cols_; ++col) sums[col] += row_kernel_[tap] * values[col];
-    }
-  }
-  std::fill(out.begin(), out.end(), 0.0);
-  for (std::size_t row = 0; row < rows_; ++row) {
-    const double* const values = between_.data() + row * cols_;
-    for (std::size_t place = 0; place < padded_.size(); ++place) padded_[place] = values[col_places_[place]];
-    double* const sums = out.data() + row * cols_;
-    for (std::size_t tap = 0; tap < col_kernel_.size(); ++tap) {
-      for (std::size_t col = 0; col < cols_; ++col) sums[col] += col_kernel_[tap] * padded_[col + tap];
-    }
+    const auto row_at = [&](std::size_t tap) { return image.data() + row_places_[row + tap] * cols_; };
+    blend(row_kernel_, row_at, cols_, between_.data());
+    for (std::size_t place = 0; place < padded_.size(); ++place) padded_[place] = between_[col_places_[place]];
+    const auto shifted = [&](std::size_t tap) { return padded_.data() + tap; };
+    blend(col_kernel_, shifted, cols_, out.data() + row * cols_);
   }
 }
 

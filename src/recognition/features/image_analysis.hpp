@@ -49,8 +49,8 @@ class GaussianBlur {
   std::vector<double> col_kernel_;
   std::vector<std::size_t> row_places_;  ///< Rows from the reach of the kernel above the first on, mirrored.
   std::vector<std::size_t> col_places_;
-  std::vector<double> between_;
-  std::vector<double> padded_;
+  std::vector<double> between_;  ///< A row, blurred across the rows.
+  std::vector<double> padded_;   ///< The same, mirrored at both ends.
 };
 
 /// One image and what several blocks of features are computed from. Allocates only when made. Not thread-safe.

@@ -11,32 +11,39 @@ namespace {
 
 constexpr double kOuterRadius = 2.5;  // of the contact's radius
 
-/// 0 outside of the array.
-double taxel_or_nothing(const Lattice& lattice, std::span<const double> image, double row, double col) {
-  const bool is_inside =
-      row >= 0.0 && col >= 0.0 && row < static_cast<double>(lattice.rows) && col < static_cast<double>(lattice.cols);
-  return is_inside ? image[static_cast<std::size_t>(row) * lattice.cols + static_cast<std::size_t>(col)] : 0.0;
-}
-
-/// Bilinear; `row` and `col` count taxels.
+/// Bilinear; `row` and `col` count taxels. Outside of the array there is 0.
 double sample(const Lattice& lattice, std::span<const double> image, double row, double col) {
-  const double above = std::floor(row);
-  const double left = std::floor(col);
-  const double down = row - above;
-  const double right = col - left;
-  return (1.0 - down) * ((1.0 - right) * taxel_or_nothing(lattice, image, above, left) +
-                         right * taxel_or_nothing(lattice, image, above, left + 1.0)) +
-         down * ((1.0 - right) * taxel_or_nothing(lattice, image, above + 1.0, left) +
-                 right * taxel_or_nothing(lattice, image, above + 1.0, left + 1.0));
+  const auto rows = static_cast<std::ptrdiff_t>(lattice.rows);
+  const auto cols = static_cast<std::ptrdiff_t>(lattice.cols);
+  const bool is_near = row > -1.0 && col > -1.0 && row < static_cast<double>(rows) && col < static_cast<double>(cols);
+  if (!is_near) return 0.0;
+  const auto above = static_cast<std::ptrdiff_t>(row + 1.0) - 1;
+  const auto left = static_cast<std::ptrdiff_t>(col + 1.0) - 1;
+  const double down = row - static_cast<double>(above);
+  const double right = col - static_cast<double>(left);
+  const auto between = [&](std::ptrdiff_t line) {
+    if (line < 0 || line >= rows) return 0.0;
+    const double* const values = image.data() + line * cols;
+    return (left >= 0 ? (1.0 - right) * values[left] : 0.0) + (left + 1 < cols ? right * values[left + 1] : 0.0);
+  };
+  return (1.0 - down) * between(above) + down * between(above + 1);
 }
 
 }  // namespace
 
 PolarBlock::PolarBlock() {
-  for (std::size_t i = 0; i < kAngles; ++i) {
-    const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(kAngles);
+  const Eigen::Index angles = ring_.size();
+  for (Eigen::Index i = 0; i < angles; ++i) {
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(angles);
     cosine_[i] = std::cos(angle);
     sine_[i] = std::sin(angle);
+  }
+  for (Eigen::Index harmonic = 0; harmonic < real_.rows(); ++harmonic) {
+    const double scale = (harmonic > 0 ? std::numbers::sqrt2 : 1.0) / static_cast<double>(angles);
+    for (Eigen::Index i = 0; i < angles; ++i) {
+      real_(harmonic, i) = scale * cosine_[harmonic * i % angles];
+      imaginary_(harmonic, i) = scale * sine_[harmonic * i % angles];
+    }
   }
 }
 
@@ -47,20 +54,12 @@ void PolarBlock::write(const ImageAnalysis& analysis, std::span<double> out) {
   for (std::size_t ring = 0; ring < kRings; ++ring) {
     const double share = (static_cast<double>(ring) + 0.5) / static_cast<double>(kRings);
     const double radius = share * kOuterRadius * moments.radius;
-    for (std::size_t i = 0; i < kAngles; ++i) {
+    for (Eigen::Index i = 0; i < ring_.size(); ++i) {
       ring_[i] = sample(lattice, analysis.root(), (moments.row + radius * sine_[i]) / lattice.row_step,
                         (moments.col + radius * cosine_[i]) / lattice.col_step);
     }
-    for (std::size_t harmonic = 0; harmonic < kHarmonics; ++harmonic) {
-      double real = 0.0;
-      double imaginary = 0.0;
-      for (std::size_t i = 0; i < kAngles; ++i) {
-        real += ring_[i] * cosine_[harmonic * i % kAngles];
-        imaginary += ring_[i] * sine_[harmonic * i % kAngles];
-      }
-      const double scale = (harmonic > 0 ? std::numbers::sqrt2 : 1.0) / static_cast<double>(kAngles);
-      out[ring * kHarmonics + harmonic] = scale * std::sqrt(real * real + imaginary * imaginary);
-    }
+    Eigen::Map<Eigen::Array<double, kHarmonics, 1>> sizes(out.data() + ring * kHarmonics);
+    sizes = ((real_ * ring_).array().square() + (imaginary_ * ring_).array().square()).sqrt();
   }
 }
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 
@@ -25,9 +25,11 @@ class PolarBlock {
   void write(const ImageAnalysis& analysis, std::span<double> out);
 
  private:
-  std::array<double, kAngles> cosine_{};
-  std::array<double, kAngles> sine_{};
-  std::array<double, kAngles> ring_{};
+  Eigen::Matrix<double, kAngles, 1> cosine_;
+  Eigen::Matrix<double, kAngles, 1> sine_;
+  Eigen::Matrix<double, kHarmonics, kAngles> real_;  ///< Of the Fourier components.
+  Eigen::Matrix<double, kHarmonics, kAngles> imaginary_;
+  Eigen::Matrix<double, kAngles, 1> ring_;
 };
 
 }  // namespace dermis::recognition
