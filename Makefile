@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench docs package package-test clean
+.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench docs package package-test site clean
 
 build: setup
 	cmake --preset release
@@ -72,6 +72,11 @@ package: setup
 package-test: package
 	/usr/bin/python3 tests/command_line/reference_test.py build/release/bin/dermis
 	scripts/package_test
+
+site: build
+	scripts/setup test
+	scripts/setup site
+	scripts/site
 
 clean:
 	rm -rf build demo
