@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench docs clean
+.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench docs package package-test site clean
 
 build: setup
 	cmake --preset release
@@ -63,6 +63,20 @@ docs:
 	scripts/setup test
 	/usr/bin/python3 scripts/check_docs.py
 	/usr/bin/python3 scripts/sentences.py >/dev/null
+
+package: setup
+	scripts/setup package
+	scripts/package
+
+# As root: it makes a bare Debian in build/package/debian.
+package-test: package
+	/usr/bin/python3 tests/command_line/reference_test.py build/release/bin/dermis
+	scripts/package_test
+
+site: build
+	scripts/setup test
+	scripts/setup site
+	scripts/site
 
 clean:
 	rm -rf build demo
