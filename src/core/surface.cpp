@@ -7,35 +7,16 @@
 #include <numbers>
 #include <string>
 
+#include "core/vector3.hpp"
+
 namespace dermis {
 namespace {
 
 constexpr double kUnitLengthTolerance = 1e-6;
 constexpr double kRoundOff = 1e-9;
 
-Vector3 operator+(const Vector3& a, const Vector3& b) {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-Vector3 operator-(const Vector3& a, const Vector3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-Vector3 operator*(double factor, const Vector3& a) {
-  return {factor * a.x, factor * a.y, factor * a.z};
-}
-double dot(const Vector3& a, const Vector3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 bool is_finite(const Vector3& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
-}
-
-Vector3 rotated(const Quaternion& rotation, const Vector3& a) {
-  const Vector3 axis{rotation.x, rotation.y, rotation.z};
-  const Vector3 turned = 2.0 * cross(axis, a);
-  return a + rotation.w * turned + cross(axis, turned);
 }
 
 Vector3 of_unit_length(const Vector3& a, const Vector3& otherwise) {

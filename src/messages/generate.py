@@ -3,6 +3,8 @@
 """Usage: generate.py MSG_FOLDER OUT.cpp: writes the types of messages (ros_messages.hpp, live_messages.hpp) from their
 .msg files, and the assertions that the enumerations of C++ are those of the files."""
 
+import hashlib
+import json
 import pathlib
 import re
 import sys
@@ -21,6 +23,7 @@ FUNCTIONS = {
     "transforms_type": "tf2_msgs/TFMessage",
     "classification_type": "vision_msgs/Classification",
     "threat_type": "dermis_msgs/Threat",
+    "wrench_type": "geometry_msgs/WrenchStamped",
 }
 
 # Whose constants are the enumerators, in lower case.
@@ -40,6 +43,13 @@ UNNAMED = {"FrameStatus": ["FrameStatus::ok"]}  # no flag
 
 CONSTANT = re.compile(r"^(?:uint8|byte) ([A-Z]\w*)=(\d+)", re.MULTILINE)
 MEMBER_TYPE = re.compile(r"^(\w+/\w+)", re.MULTILINE)
+MEMBER = re.compile(r"^([\w/]+)(\[\])? (\w+)(?: *#.*)?$", re.MULTILINE)
+
+# Of type_description_interfaces/FieldType, which type hashes are made of.
+NESTED_TYPE = 1
+TYPE_IDS = {"int8": 2, "uint8": 3, "int16": 4, "uint16": 5, "int32": 6, "uint32": 7, "int64": 8, "uint64": 9,
+            "float32": 10, "float64": 11, "bool": 15, "byte": 16, "string": 17}
+SEQUENCE = 144  # more than the type of its elements
 
 
 def with_dependencies(name, texts):
@@ -62,9 +72,32 @@ def definition(name, texts):
     return texts[first] + "".join(f"{'=' * 80}\nMSG: {other}\n{texts[other]}" for other in others)
 
 
+def full_name(message):
+    return message.replace("/", "/msg/")
+
+
+def described(message, texts):
+    """The type as ROS 2 describes it for its hash."""
+    fields = []
+    for used, sequence, name in MEMBER.findall(texts[message]):
+        type_id = TYPE_IDS.get(used, NESTED_TYPE) + (SEQUENCE if sequence else 0)
+        nested = full_name(used) if used not in TYPE_IDS else ""
+        fields.append({"name": name, "type": {"type_id": type_id, "capacity": 0, "string_capacity": 0, "nested_type_name": nested}})
+    return {"type_name": full_name(message), "fields": fields}
+
+
+def type_hash(message, texts):
+    """RIHS01 of REP 2016."""
+    others = sorted(with_dependencies(message, texts)[1:], key=full_name)
+    description = {"type_description": described(message, texts),
+                   "referenced_type_descriptions": [described(other, texts) for other in others]}
+    return "RIHS01_" + hashlib.sha256(json.dumps(description).encode()).hexdigest()
+
+
 def function(name, message, texts):
     return f"""const MessageType& {name}() {{
-  static const MessageType kType{{"{message.replace('/', '/msg/')}", R"({definition(message, texts)})"}};
+  static const MessageType kType{{"{full_name(message)}", R"({definition(message, texts)})",
+                                 "{type_hash(message, texts)}"}};
   return kType;
 }}
 """

@@ -220,4 +220,11 @@ void encode_threat(const Threat& threat, std::vector<std::uint8_t>& message) {
   writer.write(threat.y);
 }
 
+void encode_wrench(const Wrench& wrench, Nanos time, std::string_view frame_id, std::vector<std::uint8_t>& message) {
+  CdrWriter writer(message);
+  write_header(writer, time, frame_id);
+  write_vector(writer, wrench.force);
+  write_vector(writer, wrench.torque);
+}
+
 }  // namespace dermis::messages

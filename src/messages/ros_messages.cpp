@@ -33,10 +33,10 @@ Error not_whole(const MessageType& type) {
 }
 
 /// The fields of an image before its data, and the place of the data.
-std::span<std::uint8_t> write_image(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
+std::span<std::uint8_t> write_image(Nanos time, const FrameShape& shape, std::string_view frame_id,
                                     const char* encoding, std::size_t taxel_bytes, std::vector<std::uint8_t>& message) {
   CdrWriter writer(message);
-  write_header(writer, frame.time, frame_id);
+  write_header(writer, time, frame_id);
   writer.write(static_cast<std::uint32_t>(shape.rows));
   writer.write(static_cast<std::uint32_t>(shape.cols));
   writer.write_text(encoding);
@@ -112,10 +112,16 @@ Nanos read_nanos(CdrReader& reader) {
 void encode_image(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
                   std::vector<std::uint8_t>& message) {
   assert(frame.counts.size() == shape.taxel_count());
-  const std::span<std::uint8_t> words = write_image(frame, shape, frame_id, "16UC1", 2, message);
+  const std::span<std::uint8_t> words = write_image(frame.time, shape, frame_id, "16UC1", 2, message);
   if (counts_to_uint16(frame.counts.data(), frame.counts.size(), words.data())) return;
-  const std::span<std::uint8_t> floats = write_image(frame, shape, frame_id, "32FC1", 4, message);
-  std::memcpy(floats.data(), frame.counts.data(), floats.size());
+  encode_value_image(frame.counts, frame.time, shape, frame_id, message);
+}
+
+void encode_value_image(std::span<const float> values, Nanos time, const FrameShape& shape, std::string_view frame_id,
+                        std::vector<std::uint8_t>& message) {
+  assert(values.size() == shape.taxel_count());
+  const std::span<std::uint8_t> floats = write_image(time, shape, frame_id, "32FC1", 4, message);
+  std::memcpy(floats.data(), values.data(), floats.size());
 }
 
 Result<FrameShape> decode_image(std::span<const std::uint8_t> message, RawFrame& frame) {

@@ -42,8 +42,9 @@ json point_field(const char* name, int offset, int datatype) {
 }
 
 TEST(LiveMessages, types_name_all_that_they_use) {
-  for (const MessageType* type : {&point_cloud_type(), &contacts_type(), &statistics_type(), &calibration_state_type(),
-                                  &diagnostics_type(), &transforms_type(), &classification_type(), &threat_type()}) {
+  for (const MessageType* type :
+       {&point_cloud_type(), &contacts_type(), &statistics_type(), &calibration_state_type(), &diagnostics_type(),
+        &transforms_type(), &classification_type(), &threat_type(), &wrench_type()}) {
     EXPECT_NE(type->definition.find("MSG: std_msgs/Header"), std::string::npos) << type->name;
     EXPECT_NE(type->definition.find("MSG: builtin_interfaces/Time"), std::string::npos) << type->name;
   }
@@ -132,6 +133,14 @@ TEST(LiveMessages, contacts_stand_in_the_plane_and_in_the_suit) {
                                                                 {"contacts", json::array({expected_contact})}}));
   encode_contacts({"chest", report, {}, {}}, "suit", message);
   EXPECT_EQ(read_by_definition(contacts_type(), message)["has_centre_of_pressure"], false);
+}
+
+TEST(LiveMessages, a_wrench_has_its_force_and_its_torque) {
+  std::vector<std::uint8_t> message;
+  encode_wrench({{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}}, kTime, "suit", message);
+  EXPECT_EQ(
+      read_by_definition(wrench_type(), message),
+      json({{"header", header()}, {"wrench", {{"force", vector(1.0, 2.0, 3.0)}, {"torque", vector(4.0, 5.0, 6.0)}}}}));
 }
 
 TEST(LiveMessages, a_calibration_state_has_all_of_its_fields) {

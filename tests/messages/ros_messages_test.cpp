@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "dermis/core/random.hpp"
+#include "dermis/messages/live_messages.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/simd_targets.hpp"
 
@@ -89,6 +90,18 @@ TEST(Image, one_count_that_is_no_word_makes_all_floats) {
       }
     });
   }
+}
+
+TEST(Image, values_of_taxels_keep_their_bits) {
+  const std::vector<float> newtons = {
+      0.5F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), -0.0F, 1e-30F, 7.0F};
+  Bytes message;
+  encode_value_image(newtons, Nanos(7), {2, 3}, "pad", message);
+  EXPECT_TRUE(holds(message, "32FC1"));
+  RawFrame frame;
+  EXPECT_EQ(decode_image(message, frame).value(), (FrameShape{2, 3}));
+  EXPECT_EQ(frame.time, Nanos(7));
+  EXPECT_TRUE(has_same_bits(frame.counts, newtons));
 }
 
 TEST(Image, times_beyond_a_stamp_take_its_ends) {
@@ -263,6 +276,15 @@ TEST(MessageTypes, definitions_name_every_type_that_they_use) {
       EXPECT_NE(type->definition.find("\nMSG: " + used + "\n"), std::string::npos) << line;
     }
   }
+}
+
+/// As ROS 2 prints them ("ros2 topic info --verbose"), from recordings and programs of others.
+TEST(MessageTypes, hashes_are_those_of_ros) {
+  EXPECT_STREQ(image_type().hash, "RIHS01_d31d41a9a4c4bc8eae9be757b0beed306564f7526c88ea6a4588fb9582527d47");
+  EXPECT_STREQ(point_cloud_type().hash, "RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5");
+  EXPECT_STREQ(transforms_type().hash, "RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087");
+  EXPECT_STREQ(diagnostics_type().hash, "RIHS01_5a8a36efb05fb25070fa0fb3810290c0e6cd4862b54a8fb975a1ee8dc55a333e");
+  EXPECT_STREQ(wrench_type().hash, "RIHS01_8dc3deaf06b2ab281f9f9a742a8961c328ca7cec16e3fd6586d3a5c83fa78f77");
 }
 
 void put(Bytes& bytes, std::uint32_t value) {

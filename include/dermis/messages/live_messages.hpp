@@ -14,6 +14,7 @@
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/surface.hpp"
+#include "dermis/core/wrench.hpp"
 #include "dermis/messages/ros_messages.hpp"
 
 /// Live results of frames as ROS 2 messages in CDR (docs/stream.md). encode_...() replace the content of `message`, and
@@ -28,6 +29,7 @@ namespace dermis::messages {
 [[nodiscard]] const MessageType& transforms_type();
 [[nodiscard]] const MessageType& classification_type();
 [[nodiscard]] const MessageType& threat_type();
+[[nodiscard]] const MessageType& wrench_type();
 
 /// foxglove_msgs/msg/Grid with the fields siemens and sigma_siemens (float32) and status (uint8, TaxelStatus) of each
 /// taxel, placed as encode_grid() places forces.
@@ -158,5 +160,8 @@ struct Threat {
   double y = 0.0;
 };
 void encode_threat(const Threat& threat, std::vector<std::uint8_t>& message);
+
+/// geometry_msgs/msg/WrenchStamped.
+void encode_wrench(const Wrench& wrench, Nanos time, std::string_view frame_id, std::vector<std::uint8_t>& message);
 
 }  // namespace dermis::messages

@@ -23,6 +23,7 @@ namespace dermis::messages {
 struct MessageType {
   const char* name;  ///< "sensor_msgs/msg/Image"
   std::string definition;
+  const char* hash;  ///< "RIHS01_...", by which nodes of ROS 2 see that they mean the same type (REP 2016).
 };
 
 [[nodiscard]] const MessageType& image_type();
@@ -35,6 +36,9 @@ struct MessageType {
 /// 65535, else "32FC1". Reads back with the same bits.
 void encode_image(const RawFrame& frame, const FrameShape& shape, std::string_view frame_id,
                   std::vector<std::uint8_t>& message);
+/// One value of each taxel, such as newtons, as an image "32FC1".
+void encode_value_image(std::span<const float> values, Nanos time, const FrameShape& shape, std::string_view frame_id,
+                        std::vector<std::uint8_t>& message);
 /// Sets counts, and time to the stamp. Accepts the encodings 16UC1, mono16 and 32FC1, with 1x1 ... 1024x1024 taxels, in
 /// either byte order.
 [[nodiscard]] Result<FrameShape> decode_image(std::span<const std::uint8_t> message, RawFrame& frame);

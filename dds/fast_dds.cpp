@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/log/Log.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TopicDataType.hpp>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "dds/participant.hpp"
+
+/// The plugin that dermis::dds loads.
+namespace dermis::dds {
+namespace {
+
+namespace fast = eprosima::fastdds::dds;
+namespace rtps = eprosima::fastrtps::rtps;
+
+using Message = std::span<const std::uint8_t>;
+
+constexpr std::size_t kMostBytesOfATopic = std::size_t{32} << 20U;
+constexpr std::size_t kFewestMessages = 10;
+constexpr std::size_t kMostMessages = 1000;
+// What was lost is sent again after this.
+constexpr std::uint32_t kHeartbeatNanos = 10'000'000;
+constexpr std::uint32_t kProgramsOnThisMachine = 32;
+
+/// "sensor_msgs/msg/Image" -> "sensor_msgs::msg::dds_::Image_".
+std::string dds_type_name(const std::string& ros_name) {
+  const std::size_t first = ros_name.find('/');
+  const std::size_t last = ros_name.rfind('/');
+  return ros_name.substr(0, first) + "::msg::dds_::" + ros_name.substr(last + 1) + "_";
+}
+
+/// Messages are in CDR already.
+class EncodedType final : public fast::TopicDataType {
+ public:
+  explicit EncodedType(const std::string& name) {
+    setName(name.c_str());
+    m_typeSize = 256;  // To begin with.
+    m_isGetKeyDefined = false;
+    auto_fill_type_information(false);
+    auto_fill_type_object(false);
+  }
+
+  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
+    const Message& message = *static_cast<const Message*>(data);
+    if (payload->max_size < message.size()) return false;
+    std::memcpy(payload->data, message.data(), message.size());
+    payload->length = static_cast<std::uint32_t>(message.size());
+    payload->encapsulation = CDR_LE;
+    return true;
+  }
+  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
+    return [data] { return static_cast<std::uint32_t>(static_cast<const Message*>(data)->size()); };
+  }
+  bool deserialize(rtps::SerializedPayload_t* /*payload*/, void* /*data*/) override { return false; }
+  void* createData() override { return nullptr; }
+  void deleteData(void* /*data*/) override {}
+  bool getKey(void* /*data*/, rtps::InstanceHandle_t* /*key*/, bool /*force_md5*/) override { return false; }
+};
+
+fast::DataWriterQos writer_qos(const Topic& topic) {
+  fast::DataWriterQos qos;
+  qos.reliability().kind = fast::RELIABLE_RELIABILITY_QOS;
+  qos.durability().kind = topic.is_kept ? fast::TRANSIENT_LOCAL_DURABILITY_QOS : fast::VOLATILE_DURABILITY_QOS;
+  const std::size_t room = kMostBytesOfATopic / std::max<std::size_t>(topic.message_bytes, 1);
+  const auto depth = static_cast<std::int32_t>(topic.is_kept ? 1 : std::clamp(room, kFewestMessages, kMostMessages));
+  qos.history().kind = fast::KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = depth;
+  qos.resource_limits().max_samples = depth;
+  qos.resource_limits().max_samples_per_instance = depth;
+  qos.resource_limits().max_instances = 1;
+  qos.resource_limits().allocated_samples = std::min(depth, 10);
+  qos.endpoint().history_memory_policy = rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  qos.reliable_writer_qos().times.heartbeatPeriod = {0, kHeartbeatNanos};
+  const std::string hash = std::string("typehash=") + topic.type.hash + ";";
+  qos.user_data().setValue({hash.begin(), hash.end()});
+  return qos;
+}
+
+class FastWriter final : public Writer, private fast::DataWriterListener {
+ public:
+  [[nodiscard]] bool open(fast::DomainParticipant& participant, fast::Publisher& publisher, const Topic& topic) {
+    const std::string type = dds_type_name(topic.type.name);
+    if (participant.find_type(type).empty()) {
+      fast::TypeSupport(new EncodedType(type)).register_type(&participant);
+    }
+    fast::Topic* const made = participant.create_topic("rt" + topic.name, type, fast::TOPIC_QOS_DEFAULT);
+    if (made == nullptr) return false;
+    writer_ = publisher.create_datawriter(made, writer_qos(topic), this, fast::StatusMask::publication_matched());
+    return writer_ != nullptr;
+  }
+  ~FastWriter() override {
+    if (writer_ != nullptr) writer_->set_listener(nullptr);  // The participant deletes it.
+  }
+
+  [[nodiscard]] bool has_readers() const noexcept override { return readers_ > 0; }
+  void write(Message message) override { writer_->write(&message); }
+
+ private:
+  void on_publication_matched(fast::DataWriter* /*writer*/, const fast::PublicationMatchedStatus& status) override {
+    readers_ = status.current_count;
+  }
+
+  fast::DataWriter* writer_ = nullptr;
+  std::atomic<std::int32_t> readers_{0};
+};
+
+/// By UDP alone: memory shared with other versions of Fast DDS would not be understood.
+fast::DomainParticipantQos participant_qos(bool loopback_only) {
+  fast::DomainParticipantQos qos;
+  qos.name("dermis");
+  qos.transport().use_builtin_transports = false;
+  const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
+  if (loopback_only) {
+    udp->interfaceWhiteList.emplace_back("127.0.0.1");
+    udp->maxInitialPeersRange = kProgramsOnThisMachine;
+    rtps::Locator_t loopback;
+    rtps::IPLocator::setIPv4(loopback, 127, 0, 0, 1);
+    qos.wire_protocol().builtin.initialPeersList.push_back(loopback);
+  }
+  qos.transport().user_transports.push_back(udp);
+  return qos;
+}
+
+class FastParticipant final : public Participant {
+ public:
+  ~FastParticipant() override {
+    if (participant_ == nullptr) return;
+    participant_->delete_contained_entities();
+    fast::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+  }
+
+  [[nodiscard]] Status open(const PublisherOptions& options) {
+    fast::Log::ClearConsumers();  // The library never prints.
+    participant_ = fast::DomainParticipantFactory::get_instance()->create_participant(
+        options.domain, participant_qos(options.loopback_only));
+    if (participant_ != nullptr) publisher_ = participant_->create_publisher(fast::PUBLISHER_QOS_DEFAULT);
+    if (publisher_ != nullptr) return Done{};
+    return failed("DDS: there is no place in domain " + std::to_string(options.domain) +
+                  ": no network with IPv4, or too many programs; try another domain");
+  }
+
+  [[nodiscard]] Result<std::unique_ptr<Writer>> add_writer(const Topic& topic) override {
+    auto writer = std::make_unique<FastWriter>();
+    if (!writer->open(*participant_, *publisher_, topic)) return failed("DDS: cannot publish '" + topic.name + "'");
+    return std::unique_ptr<Writer>(std::move(writer));
+  }
+
+ private:
+  fast::DomainParticipant* participant_ = nullptr;
+  fast::Publisher* publisher_ = nullptr;
+};
+
+}  // namespace
+}  // namespace dermis::dds
+
+/// dermis::dds::OpenParticipant.
+extern "C" __attribute__((visibility("default"))) void dermis_open_participant(
+    const dermis::dds::PublisherOptions& options, dermis::Result<std::unique_ptr<dermis::dds::Participant>>& opened) {
+  auto participant = std::make_unique<dermis::dds::FastParticipant>();
+  if (dermis::Status open = participant->open(options); !open) {
+    opened = open.error();
+  } else {
+    opened = std::unique_ptr<dermis::dds::Participant>(std::move(participant));
+  }
+}

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <span>
+
+#include "dermis/core/surface.hpp"
+
+namespace dermis {
+
+/// Force and torque about the origin of a frame.
+struct Wrench {
+  Vector3 force{};   ///< [N]
+  Vector3 torque{};  ///< [N m]
+
+  bool operator==(const Wrench&) const = default;
+};
+
+/// What the contacts do to what wears them: each presses with its force against the normal of its place. In the frame
+/// that `suit_from_frame` places in the suit; without one, in the suit's.
+[[nodiscard]] Wrench wrench_of(std::span<const SuitContact> contacts, const Pose& suit_from_frame = {}) noexcept;
+
+}  // namespace dermis

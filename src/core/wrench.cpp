@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/core/wrench.hpp"
+
+#include "core/vector3.hpp"
+
+namespace dermis {
+
+Wrench wrench_of(std::span<const SuitContact> contacts, const Pose& suit_from_frame) noexcept {
+  Wrench sum;
+  for (const SuitContact& contact : contacts) {
+    const Vector3 force = -contact.contact.force_n * contact.place.normal;
+    sum.force = sum.force + force;
+    sum.torque = sum.torque + cross(contact.place.position - suit_from_frame.translation, force);
+  }
+  const Quaternion& turn = suit_from_frame.rotation;
+  const Quaternion back{-turn.x, -turn.y, -turn.z, turn.w};
+  return {rotated(back, sum.force), rotated(back, sum.torque)};
+}
+
+}  // namespace dermis

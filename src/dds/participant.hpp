@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "dermis/core/result.hpp"
+#include "dermis/dds/publisher.hpp"
+
+/// What the plugin of Fast DDS does. It is loaded when asked for: linked, it would cost every command its start and 9
+/// MB.
+namespace dermis::dds {
+
+/// Of one topic.
+class Writer {
+ public:
+  Writer() = default;
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  virtual ~Writer() = default;
+
+  /// Thread-safe.
+  [[nodiscard]] virtual bool has_readers() const noexcept = 0;
+  /// May wait for the network.
+  virtual void write(std::span<const std::uint8_t> message) = 0;
+};
+
+/// A program in a domain. It must outlive its writers.
+class Participant {
+ public:
+  Participant() = default;
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+  virtual ~Participant() = default;
+
+  [[nodiscard]] virtual Result<std::unique_ptr<Writer>> add_writer(const Topic& topic) = 0;
+};
+
+/// The function of the plugin, and its name.
+using OpenParticipant = void (*)(const PublisherOptions& options, Result<std::unique_ptr<Participant>>& opened);
+inline constexpr const char* kOpenParticipant = "dermis_open_participant";
+
+[[nodiscard]] Result<std::unique_ptr<Participant>> open_participant(const PublisherOptions& options);
+
+}  // namespace dermis::dds
