@@ -52,7 +52,9 @@ struct CalibrateOptions {
 };
 
 Status add_hashes(const CalibrateOptions& options, std::map<std::string, std::string>& provenance) {
-  const std::string frames = sources::file_of(options.frames);
+  const Result<sources::SourceName> from = sources::SourceName::parse(options.frames);
+  if (!from) return from.error();
+  const std::string& frames = from->file;
   for (const auto& [key, path] : {std::pair{"array hash", &options.array}, std::pair{"frames hash", &frames},
                                   std::pair{"loads hash", &options.loads}}) {
     if (std::filesystem::is_directory(*path)) continue;  // of pictures

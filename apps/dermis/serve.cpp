@@ -8,6 +8,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "dermis/serve/session.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
@@ -29,7 +30,9 @@ Status check(const ServeOptions& options) {
   if (!place.suit.empty() && !place.model.empty()) return bad_input("--model: suit.toml names the models");
   if (!place.suit.empty() && !place.classes.empty()) return bad_input("--classes: suit.toml names the classes");
   const std::string& record = options.session.record;
-  if (!record.empty() && !record.ends_with(".mcap")) return bad_input("--record: end it in .mcap");
+  const Result<recordings::FrameFormat> format = recordings::frame_format(record);
+  const bool is_recording = format && *format == recordings::FrameFormat::mcap;
+  if (!record.empty() && !is_recording) return bad_input("--record: end it in .mcap");
   return options.session.server.validate();
 }
 

@@ -115,7 +115,7 @@ Status simulate(const SimulateOptions& options) {
     progress.show(options.scene, static_cast<double>(k + 1) / static_cast<double>(count));
   }
   if (Status written = (*frames)->commit(); !written) return written;
-  Status written = truth.write(folder, *array, options.scene == "contacts");
+  Status written = truth.write(folder, *array, simulation::find_scene(options.scene)->has_contacts);
   if (!written) std::filesystem::remove(folder / "frames.csv", error);  // worth nothing without its truth
   return written;
 }
@@ -126,7 +126,9 @@ void add_simulate(Command& command) {
   auto options = std::make_shared<SimulateOptions>();
   command.option("--array", options->array, "array.toml: size, pitch and readout circuit").required();
   std::string scenes;
-  for (const std::string& name : simulation::scene_names()) scenes += (scenes.empty() ? "" : " | ") + name;
+  for (const simulation::SceneKind& scene : simulation::scene_kinds()) {
+    scenes += (scenes.empty() ? "" : " | ") + std::string(scene.name);
+  }
   command.option("--scene", options->scene, scenes).required();
   command.option("--out", options->out, "Folder for frames.csv, loads.csv and contacts.csv").required();
   command.option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise").shows_default();

@@ -60,7 +60,7 @@ Result<ReadRecording> read_recording(const ExampleOptions& options, const std::s
                                                 .extra = options.data.extras});
   if (!source) return source.error();
   if (source->is_live()) return sources::has_no_end(from);
-  ReadRecording read{.recording = {.name = recording_name(from), .frames = {}}, .layout = {}};
+  ReadRecording read{.recording = {.name = source->from().short_name(), .frames = {}}, .layout = {}};
   std::vector<Nanos> times;
   for (;;) {
     const Result<bool> more = source->next();

@@ -5,12 +5,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 #include "dermis/core/suit.hpp"
 #include "dermis/files/suit_toml.hpp"
-#include "dermis/recordings/recording.hpp"
 
 namespace dermis::recognising {
 namespace {
@@ -39,10 +37,10 @@ Result<std::vector<ArrayLoadInput>> arrays_of_suit(const LoadInput& input, const
 }
 
 /// What is to be opened: what `from` names, or each array of a recording that holds several.
-Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input) {
+Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input, const sources::SourceName& from) {
   std::vector<ArrayLoadInput> arrays = {ArrayLoadInput{input.from, input.model, input.tare, input.source, {}}};
   if (input.arrays.size() == 1) return arrays;
-  const Result<std::vector<std::string>> held = sources::several_arrays(input.from);
+  const Result<std::vector<std::string>> held = sources::several_arrays(from);
   if (!held) return held.error();
   if (held->empty()) return arrays;
   arrays.clear();
@@ -76,20 +74,17 @@ Status check_loads(const Layout& examples, const std::string& classes, const std
   return Done{};
 }
 
-std::string recording_name(const std::string& from) {
-  const std::string array = recordings::recording_place(from).array;
-  return std::filesystem::path(sources::file_of(from)).filename().string() + (array.empty() ? "" : "#" + array);
-}
-
 LoadSource::LoadSource(ArrayLoads first, bool has_forces) : first_(std::move(first)), has_forces_(has_forces) {}
 
 Result<LoadSource> LoadSource::open(const LoadInput& input) {
-  const Result<std::vector<ArrayLoadInput>> arrays = arrays_of(input);
+  const Result<sources::SourceName> from = sources::SourceName::parse(input.from);
+  if (!from) return from.error();
+  const Result<std::vector<ArrayLoadInput>> arrays = arrays_of(input, *from);
   if (!arrays) return arrays.error();
   Result<ArrayLoads> first = ArrayLoads::open(arrays->front());
   if (!first) return first.error();
   LoadSource source(*std::move(first), !input.model.empty());
-  source.from_ = input.from;
+  source.from_ = *from;
   for (std::size_t i = 1; i < arrays->size(); ++i) {
     Result<HeldLoads> other = HeldLoads::open((*arrays)[i]);
     if (!other) return other.error();
@@ -97,7 +92,7 @@ Result<LoadSource> LoadSource::open(const LoadInput& input) {
   }
   if (input.extra.empty()) return source;
   if (source.is_live()) return bad_field("extra", "'" + input.from + "' is a device; 'dermis record' it first");
-  Result<FurtherReadings> further = FurtherReadings::read(input.extra, recording_name(input.from));
+  Result<FurtherReadings> further = FurtherReadings::read(input.extra, from->short_name());
   if (!further) return further.error();
   source.further_ = *std::move(further);
   return source;
@@ -149,7 +144,7 @@ std::vector<std::string> LoadSource::describe_troubles() const {
   for (const HeldLoads& other : others_) {
     if (other.silent() == 0) continue;
     lines.push_back(fmt::format("{}: {} frames have none of '{}' in the half second before; it has no load there",
-                                from_, other.silent(), other.array().name));
+                                from_.text, other.silent(), other.array().name));
   }
   if (const auto missing = further_ ? further_->describe_missing() : std::nullopt) lines.push_back(*missing);
   return lines;

@@ -11,10 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include "dermis/acquisition/source_uri.hpp"
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/recognition/classes_file.hpp"
-#include "dermis/recordings/frame_files.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "dermis/threats/threat_monitor.hpp"
 #include "serve/array_recognition.hpp"
@@ -22,6 +20,9 @@
 
 namespace dermis::serve {
 namespace {
+
+using sources::SourceKind;
+using sources::SourceName;
 
 /// A name that topics may have, as suit.toml asks for.
 std::string topic_name(const std::string& name) {
@@ -125,33 +126,31 @@ Result<ServedArray> open_array(const SuitArray& described, const Notice& notice,
   return served;
 }
 
-bool is_recording(const std::string& from) {
-  if (acquisition::is_source_uri(from)) return false;
-  return from.substr(0, from.find('#')).ends_with(".mcap");
+/// What cannot be served, and its mend.
+Status check_live(const SourceName& from) {
+  const auto refuse = [&](const std::string& why) { return bad_input(fmt::format("'{}': {}", from.text, why)); };
+  if (from.kind == SourceKind::recording) return refuse("is a recording of a suit; name its suit.toml, too");
+  if (from.has_times_of_its_own()) {
+    return refuse("has times of its own; make a recording of it first ('dermis record')");
+  }
+  if (from.kind == SourceKind::file) {
+    return refuse(fmt::format(
+        "only devices and recordings are served; make a recording of it first (dermis convert {} it.mcap)", from.text));
+  }
+  if (from.needs_rate()) {
+    return refuse(fmt::format("say how many frames a second it sends, such as {}{}rate=100", from.text,
+                              from.text.find('?') == std::string::npos ? "?" : "&"));
+  }
+  return Done{};
 }
 
-Result<std::unique_ptr<FrameSource>> open_live(const std::string& from, const ServedArray& array,
+Result<std::unique_ptr<FrameSource>> open_live(const std::string& text, const ServedArray& array,
                                                sources::SourceOptions options) {
-  if (is_recording(from)) {
-    return bad_input(fmt::format("'{}': is a recording of a suit; name its suit.toml, too", from));
-  }
-  if (!acquisition::is_source_uri(from)) {
-    return bad_input(
-        fmt::format("'{}': only devices and recordings are served; make a recording of it first "
-                    "(dermis convert {} it.mcap)",
-                    from, from));
-  }
-  const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
-  if (!uri) return uri.error();
-  if (uri->transport == acquisition::Transport::simulation && !uri->rate_hz) {
-    return bad_input(fmt::format("'{}': say how many frames a second it sends, such as {}{}rate=100", from, from,
-                                 from.find('?') == std::string::npos ? "?" : "&"));
-  }
-  if (uri->transport == acquisition::Transport::file && uri->rate_hz) {
-    return bad_input(fmt::format("'{}': has times of its own; make a recording of it first ('dermis record')", from));
-  }
+  const Result<SourceName> from = SourceName::parse(text);
+  if (!from) return from.error();
+  if (Status live = check_live(*from); !live) return live.error();
   options.array = &array.model->array;
-  return sources::open_source(*uri, options);
+  return sources::open_source(*from, options);
 }
 
 /// Index in the recording of each array of the suit.
@@ -177,7 +176,9 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
 
 Status open_sources(const SuitPlace& place, const SuitDescription& described, const sources::SourceOptions& options,
                     ServedSuit& suit) {
-  if (is_recording(place.from)) return open_playback(place.from, suit);
+  const Result<SourceName> from = SourceName::parse(place.from);
+  if (!from) return from.error();
+  if (from->kind == SourceKind::recording) return open_playback(place.from, suit);
   for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
     Result<std::unique_ptr<FrameSource>> source = open_live(described.arrays[k].from, suit.arrays[k], options);
     if (!source) return source.error();

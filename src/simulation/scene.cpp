@@ -20,9 +20,18 @@ namespace dermis::simulation {
 namespace {
 
 constexpr std::size_t kMostFrames = 200'000;
-constexpr std::array kNames = {
-    "calibration", "uniform", "paper_calibration", "paper",      "multitouch",
-    "contacts",    "idle",    "touches",           "two_weights"};  // In the order of Scene::Kind.
+// In the order of Scene::Kind.
+constexpr std::array kScenes = {
+    SceneKind{"calibration", ScenePace::step, false, false},
+    SceneKind{"uniform", ScenePace::step, false, false},
+    SceneKind{"paper_calibration", ScenePace::step, false, false},
+    SceneKind{"paper", ScenePace::step, false, false},
+    SceneKind{"multitouch", ScenePace::step, true, false},
+    SceneKind{"contacts", ScenePace::own_rate, true, true},
+    SceneKind{"idle", ScenePace::step, true, false},
+    SceneKind{"touches", ScenePace::any_rate, true, false},
+    SceneKind{"two_weights", ScenePace::any_rate, false, false},
+};
 
 constexpr double kDefaultSupplyV = 5.0;
 constexpr double kRestS = 1.0;
@@ -74,7 +83,7 @@ double calibration_celsius(std::size_t index) {
 
 std::string known_names() {
   std::string names;
-  for (const char* name : kNames) names += (names.empty() ? "" : ", ") + std::string(name);
+  for (const SceneKind& scene : kScenes) names += (names.empty() ? "" : ", ") + std::string(scene.name);
   return names;
 }
 
@@ -88,12 +97,13 @@ const char* to_string(PatchShape shape) noexcept {
   return shape == PatchShape::hertz ? "hertz" : "flat";
 }
 
-std::vector<std::string> scene_names() {
-  return {kNames.begin(), kNames.end()};
+std::span<const SceneKind> scene_kinds() noexcept {
+  return kScenes;
 }
 
-bool takes_rate(std::string_view scene) {
-  return scene == "touches" || scene == "two_weights";
+const SceneKind* find_scene(std::string_view name) noexcept {
+  const auto* const found = std::ranges::find(kScenes, name, &SceneKind::name);
+  return found == kScenes.end() ? nullptr : found;
 }
 
 Status EnvironmentOptions::validate() const {
@@ -108,13 +118,11 @@ Scene::Scene(Kind kind, const ArrayDescription& array, const EnvironmentOptions&
 
 Result<Scene> Scene::create(std::string_view name, const ArrayDescription& array, const EnvironmentOptions& environment,
                             std::uint64_t seed, std::optional<std::size_t> frames, const SceneOptions& options) {
-  const auto* const found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end()) {
-    return bad_input(scene_message(name, "unknown; there are " + known_names()));
-  }
+  const SceneKind* const found = find_scene(name);
+  if (found == nullptr) return bad_input(scene_message(name, "unknown; there are " + known_names()));
   if (Status valid = array.validate(); !valid) return valid.error();
   if (Status valid = environment.validate(); !valid) return valid.error();
-  Scene scene(static_cast<Kind>(found - kNames.begin()), array, environment, seed);
+  Scene scene(static_cast<Kind>(found - kScenes.data()), array, environment, seed);
   if (Status suits = scene.check_array(); !suits) return suits.error();
   if (Status set = scene.set_options(options); !set) return bad_input(scene_message(name, set.error().message));
   if (Status set = scene.set_length(frames); !set) return bad_input(scene_message(name, set.error().message));
@@ -123,8 +131,8 @@ Result<Scene> Scene::create(std::string_view name, const ArrayDescription& array
 }
 
 Status Scene::set_options(const SceneOptions& options) {
-  const bool is_continuous = takes_rate(kNames[static_cast<std::size_t>(kind_)]);
-  if (options.rate_hz && !is_continuous) return bad_input("has a rate of its own");
+  const bool takes_rate = kScenes[static_cast<std::size_t>(kind_)].pace == ScenePace::any_rate;
+  if (options.rate_hz && !takes_rate) return bad_input("has a rate of its own");
   if (options.taxels && kind_ != Kind::two_weights) return bad_input("has taxels of its own");
   rate_hz_ = options.rate_hz.value_or(kind_ == Kind::two_weights ? kWeightRateHz : kTouchRateHz);
   if (!(rate_hz_ >= kLowestRateHz && rate_hz_ <= kHighestRateHz)) return bad_input("needs 10 to 1000 frames a second");
@@ -137,9 +145,8 @@ Status Scene::set_options(const SceneOptions& options) {
 }
 
 Status Scene::set_length(std::optional<std::size_t> frames) {
-  const bool is_of_any_length =
-      kind_ == Kind::multitouch || kind_ == Kind::contacts || kind_ == Kind::idle || kind_ == Kind::touches;
-  if (frames && !is_of_any_length) return bad_input("has a fixed number of frames");
+  if (frames && !kScenes[static_cast<std::size_t>(kind_)].is_of_any_length)
+    return bad_input("has a fixed number of frames");
   if (frames && (*frames == 0 || *frames > kMostFrames)) {
     return bad_input("needs 1 to " + std::to_string(kMostFrames) + " frames");
   }

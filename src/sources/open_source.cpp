@@ -7,7 +7,6 @@
 #include "dermis/acquisition/device_source.hpp"
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/recordings/frame_files.hpp"
-#include "dermis/recordings/recording.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 #include "sources/simulated_source.hpp"
 
@@ -17,12 +16,6 @@ namespace {
 std::optional<FrameShape> shape_of(const ArrayDescription* array) {
   if (array == nullptr) return std::nullopt;
   return FrameShape{array->rows, array->cols};
-}
-
-/// With a rate and without a protocol, a file may be more than the bytes of a device.
-bool is_file_of_frames(const acquisition::SourceUri& uri) {
-  return uri.transport == acquisition::Transport::file && uri.rate_hz && uri.protocol.name == "auto" &&
-         recordings::frame_format(recordings::recording_place(uri.path).path);
 }
 
 Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri, const SourceOptions& options) {
@@ -45,20 +38,20 @@ Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri
 
 }  // namespace
 
-Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const SourceOptions& options) {
-  if (!acquisition::is_source_uri(from)) {
-    return recordings::open_frames(from,
+Result<std::unique_ptr<FrameSource>> open_source(const SourceName& from, const SourceOptions& options) {
+  if (!from.uri) {
+    return recordings::open_frames(from.text,
                                    {.shape = shape_of(options.array), .notice = options.notice, .loss = options.loss});
   }
-  const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
-  if (!uri) return uri.error();
-  return open_source(*uri, options);
+  if (from.kind == SourceKind::simulation) return open_simulation(*from.uri, options);
+  if (from.kind == SourceKind::file) return open_file(*from.uri, options);
+  return acquisition::open_device(*from.uri, {shape_of(options.array), options.stop, options.notice});
 }
 
-Result<std::unique_ptr<FrameSource>> open_source(const acquisition::SourceUri& uri, const SourceOptions& options) {
-  if (uri.transport == acquisition::Transport::simulation) return open_simulation(uri, options);
-  if (is_file_of_frames(uri)) return open_file(uri, options);
-  return acquisition::open_device(uri, {shape_of(options.array), options.stop, options.notice});
+Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const SourceOptions& options) {
+  const Result<SourceName> name = SourceName::parse(from);
+  if (!name) return name.error();
+  return open_source(*name, options);
 }
 
 Result<std::vector<RawFrame>> read_frames(const std::string& from, const SourceOptions& options) {
@@ -72,23 +65,14 @@ Error has_no_end(const std::string& from) {
   return bad_input("'" + from + "': is a device, which has no end; 'dermis record' it first");
 }
 
-Result<std::vector<std::string>> several_arrays(const std::string& from) {
+Result<std::vector<std::string>> several_arrays(const SourceName& from) {
   std::vector<std::string> names;
-  if (acquisition::is_source_uri(from)) return names;
-  const recordings::RecordingPlace place = recordings::recording_place(from);
-  const Result<recordings::FrameFormat> format = recordings::frame_format(place.path);
-  if (!place.array.empty() || !format || *format != recordings::FrameFormat::mcap) return names;
-  const auto recording = recordings::SuitRecordingReader::open(place.path);
+  if (from.kind != SourceKind::recording || !from.array.empty()) return names;
+  const auto recording = recordings::SuitRecordingReader::open(from.file);
   if (!recording) return recording.error();
   if ((*recording)->arrays().size() == 1) return names;
   for (const recordings::RecordedArray& array : (*recording)->arrays()) names.push_back(array.name);
   return names;
-}
-
-std::string file_of(const std::string& from) {
-  const bool is_uri = acquisition::is_source_uri(from);
-  const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
-  return recordings::recording_place(is_uri && uri ? uri->path : from).path;
 }
 
 }  // namespace dermis::sources

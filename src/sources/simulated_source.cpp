@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "dermis/files/array_toml.hpp"
+#include "dermis/simulation/reference_array.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "sources/contact_loop.hpp"
 #include "sources/rehearsal.hpp"
@@ -21,28 +22,16 @@
 namespace dermis::sources {
 namespace {
 
+using simulation::ScenePace;
+
 constexpr std::size_t kMaxFrames = 1000;
 constexpr std::size_t kMaxTaxelFrames = 4'000'000;  // a scene is simulated within seconds
 constexpr std::size_t kLeastFrames = 16;
 constexpr std::uint64_t kMostFramesToCatchUp = 100;
 constexpr std::string_view kRehearsal = "rehearsal";
 
-/// The array of examples/chest.
-ArrayDescription reference_array(const FrameShape& shape) {
-  ArrayDescription array;
-  array.name = "chest";
-  array.rows = shape.rows;
-  array.cols = shape.cols;
-  array.taxel_area_m2 = 38.48e-6;
-  array.readout.drive_ohm.assign(shape.rows, 20.0);
-  array.readout.load_ohm.assign(shape.cols, 200.0);
-  array.readout.adc_reference_v = 5.0;
-  array.readout.supply_v = 5.0;
-  return array;
-}
-
 Result<ArrayDescription> array_of(const acquisition::SourceUri& uri, const ArrayDescription* given) {
-  Result<ArrayDescription> array = reference_array(uri.array_shape.value_or(FrameShape{16, 16}));
+  Result<ArrayDescription> array = simulation::reference_array(uri.array_shape.value_or(FrameShape{16, 16}));
   if (!uri.array.empty()) {
     array = files::read_array(uri.array);
     if (!array) return array;
@@ -82,12 +71,18 @@ Result<simulation::RubberOptions> rubber_of(const acquisition::SourceUri& uri) {
   return rubber;
 }
 
+/// Of an unknown scene that of most: the simulator refuses it.
+ScenePace pace_of(const acquisition::SourceUri& uri) {
+  const simulation::SceneKind* const scene = simulation::find_scene(uri.path);
+  return scene == nullptr ? ScenePace::step : scene->pace;
+}
+
 Result<std::unique_ptr<simulation::Simulator>> simulate_scene(const acquisition::SourceUri& uri,
                                                               const ArrayDescription& array,
                                                               const simulation::RubberOptions& rubber) {
   simulation::SimulationOptions options;
   options.rubber = rubber;
-  if (simulation::takes_rate(uri.path)) options.scene.rate_hz = uri.rate_hz;
+  if (pace_of(uri) == ScenePace::any_rate) options.scene.rate_hz = uri.rate_hz;
   return simulation::Simulator::create(array, options, uri.path, uri.seed, uri.frames);
 }
 
@@ -176,8 +171,11 @@ Result<MakeFrame> rehearsal(const acquisition::SourceUri& uri, const ArrayDescri
 Result<MakeFrame> frames_of(const acquisition::SourceUri& uri, const ArrayDescription& array,
                             const SourceOptions& options, const simulation::RubberOptions& rubber) {
   if (uri.path == kRehearsal) return rehearsal(uri, array, options.guide, rubber);
-  if (simulation::takes_rate(uri.path)) return continuous_scene(uri, array, rubber);
-  if (uri.path == "contacts") return contact_loop(uri, array, rubber, options.simulated);
+  switch (pace_of(uri)) {
+    case ScenePace::any_rate: return continuous_scene(uri, array, rubber);
+    case ScenePace::own_rate: return contact_loop(uri, array, rubber, options.simulated);
+    case ScenePace::step: break;
+  }
   return scene_loop(uri, array, rubber, options.simulated);
 }
 

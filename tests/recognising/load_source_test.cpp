@@ -175,11 +175,5 @@ TEST(LoadSource, has_further_readings_beside_its_frames) {
             "extra: '" + device + "' is a device; 'dermis record' it first");
 }
 
-TEST(RecordingName, has_no_folder_but_the_array) {
-  EXPECT_EQ(recording_name("/run/rec.mcap"), "rec.mcap");
-  EXPECT_EQ(recording_name("/run/rec.mcap#chest"), "rec.mcap#chest");
-  EXPECT_EQ(recording_name("file:/run/frames.npy?rate=50"), "frames.npy");
-}
-
 }  // namespace
 }  // namespace dermis::recognising

@@ -33,8 +33,9 @@ double total(const std::vector<double>& values) {
 
 TEST(Scene, labels_of_every_frame_state_its_forces) {
   const ArrayDescription array = reference_array(5, 4);
-  for (const std::string& name : scene_names()) {
-    const auto frames = play(name, array);
+  for (const SceneKind& kind : scene_kinds()) {
+    const std::string name = kind.name;
+    const auto frames = play(kind.name, array);
     for (std::size_t i = 0; i < frames.size(); ++i) {
       if (frames[i].loads.empty()) {
         ASSERT_EQ(name, "two_weights") << "all others say what presses in every frame";

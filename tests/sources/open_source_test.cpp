@@ -107,10 +107,10 @@ TEST(OpenSource, reads_a_device) {
   EXPECT_EQ(frames->back().counts, some_frames(3).back().counts);
 }
 
-TEST(OpenSource, a_uri_that_was_parsed_opens_the_same) {
-  const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri("sim:idle?frames=2&rows=3&cols=2");
-  ASSERT_TRUE(uri);
-  const Result<std::unique_ptr<FrameSource>> source = open_source(*uri);
+TEST(OpenSource, a_name_that_was_parsed_opens_the_same) {
+  const Result<SourceName> name = SourceName::parse("sim:idle?frames=2&rows=3&cols=2");
+  ASSERT_TRUE(name);
+  const Result<std::unique_ptr<FrameSource>> source = open_source(*name);
   ASSERT_TRUE(source) << source.error().message;
   EXPECT_EQ((*source)->shape(), (FrameShape{3, 2}));
   EXPECT_EQ(support::read_all(**source)->size(), 2U);
@@ -323,23 +323,17 @@ TEST(SeveralArrays, are_those_of_a_recording_where_none_is_named) {
       path, {{.name = "chest", .shape = kShape}, {.name = "back", .shape = {1, 2}}});
   ASSERT_TRUE(writer);
   ASSERT_TRUE((*writer)->commit());
-  const auto arrays = several_arrays(path);
+  const auto arrays = several_arrays(*SourceName::parse(path));
   ASSERT_TRUE(arrays) << arrays.error().message;
   EXPECT_EQ(*arrays, (std::vector<std::string>{"chest", "back"}));
   const std::string one = folder.file("one.mcap");
   write_file(one, some_frames(1));
   for (const std::string& from : {path + "#chest", one, folder.file("frames.csv"), std::string("sim:idle?rate=10")}) {
-    const auto none = several_arrays(from);
+    const auto none = several_arrays(*SourceName::parse(from));
     ASSERT_TRUE(none) << none.error().message;
     EXPECT_TRUE(none->empty()) << from;
   }
-  EXPECT_FALSE(several_arrays(folder.file("absent.mcap")));
-}
-
-TEST(FileOf, leaves_out_the_array_and_what_a_uri_says_of_the_file) {
-  EXPECT_EQ(file_of("run/frames.csv"), "run/frames.csv");
-  EXPECT_EQ(file_of("rec.mcap#chest"), "rec.mcap");
-  EXPECT_EQ(file_of("file:/run/frames.npy?rate=50"), "/run/frames.npy");
+  EXPECT_FALSE(several_arrays(*SourceName::parse(folder.file("absent.mcap"))));
 }
 
 }  // namespace

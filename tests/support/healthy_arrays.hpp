@@ -116,7 +116,7 @@ inline std::unique_ptr<simulation::Simulator> play(const HealthyArray& healthy, 
   constexpr double kTouchRateHz = 10.0;
   const bool has_any_length = scene == "multitouch" || scene == "contacts" || scene == "idle" || scene == "touches";
   simulation::SimulationOptions options = healthy.options;
-  if (simulation::takes_rate(scene)) options.scene.rate_hz = kTouchRateHz;
+  if (simulation::find_scene(scene)->pace == simulation::ScenePace::any_rate) options.scene.rate_hz = kTouchRateHz;
   return simulation::Simulator::create(healthy.array, options, scene, seed,
                                        has_any_length ? std::optional(frames) : std::nullopt)
       .value();

@@ -32,9 +32,6 @@ struct LoadInput {
 [[nodiscard]] Status check_loads(const recognition::Layout& examples, const std::string& classes,
                                  const std::string& model);
 
-/// As the column `recording` of tables names it: without folder, with the array where it is one of several.
-[[nodiscard]] std::string recording_name(const std::string& from);
-
 /// Frames of a source as loads (ArrayLoads). Several arrays stand side by side in each frame of the first: their last
 /// frames until its time (HeldLoads). Not thread-safe.
 class LoadSource {
@@ -56,6 +53,7 @@ class LoadSource {
   [[nodiscard]] std::optional<recognition::Layout> layout() const;
   [[nodiscard]] std::vector<std::string> extra_names() const;
   [[nodiscard]] bool is_live() const { return first_.is_live(); }
+  [[nodiscard]] const sources::SourceName& from() const noexcept { return from_; }
 
   /// A line for each kind of trouble that there was.
   [[nodiscard]] std::vector<std::string> describe_troubles() const;
@@ -67,7 +65,7 @@ class LoadSource {
   std::vector<HeldLoads> others_;
   std::optional<FurtherReadings> further_;
   bool has_forces_;
-  std::string from_;
+  sources::SourceName from_;
   std::vector<float> loads_;
 };
 

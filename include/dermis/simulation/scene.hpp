@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,7 +58,7 @@ struct SceneFrame {
   std::vector<double> force_n;       ///< True force applied to each taxel [N], [rows, cols].
   /// The labels of loads.csv; at least one, except in the frames of two_weights in which a hand moves.
   std::vector<Load> loads;
-  std::vector<AppliedContact> contacts;  ///< Of the scene "contacts", by id; empty in all others.
+  std::vector<AppliedContact> contacts;  ///< By id; empty where the scene has none (SceneKind::has_contacts).
 };
 
 /// What some scenes leave open.
@@ -65,6 +66,26 @@ struct SceneOptions {
   std::optional<double> rate_hz{};      ///< touches (100), two_weights (50): frames a second, 10 ... 1000.
   std::optional<std::size_t> taxels{};  ///< two_weights (4, or all of fewer): how many are pressed, 1 ... all.
 };
+
+/// How the frames of a scene follow each other.
+enum class ScenePace {
+  step,      ///< Each load rests for the time that it takes; there is no rate.
+  own_rate,  ///< Continuous in time, 100 frames a second.
+  any_rate,  ///< Continuous in time at SceneOptions::rate_hz.
+};
+
+/// What a scene is, apart from its loads.
+struct SceneKind {
+  const char* name;
+  ScenePace pace;
+  bool is_of_any_length;  ///< Takes a number of frames.
+  bool has_contacts;      ///< Tells SceneFrame::contacts.
+};
+
+/// All scenes.
+[[nodiscard]] std::span<const SceneKind> scene_kinds() noexcept;
+/// Null where there is none of that name.
+[[nodiscard]] const SceneKind* find_scene(std::string_view name) noexcept;
 
 class ContactScript;
 class TouchScript;
@@ -138,7 +159,7 @@ class Scene {
   void add_contact(Random& random, std::vector<double>& force_n) const;
   void label_forces(std::size_t index, SceneFrame& out) const;
 
-  Kind kind_;
+  Kind kind_;  // Place in scene_kinds().
   ArrayDescription array_;
   double supply_variation_;
   std::uint64_t seed_;
@@ -152,11 +173,5 @@ class Scene {
 };
 
 [[nodiscard]] const char* to_string(PatchShape shape) noexcept;
-
-/// All names that Scene::create knows.
-[[nodiscard]] std::vector<std::string> scene_names();
-
-/// True for the scenes that SceneOptions::rate_hz is for: those that are continuous in time at any rate.
-[[nodiscard]] bool takes_rate(std::string_view scene);
 
 }  // namespace dermis::simulation

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "dermis/acquisition/source_uri.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/sources/guide_voice.hpp"
+#include "dermis/sources/source_name.hpp"
 
 namespace dermis::sources {
 
@@ -29,20 +29,19 @@ struct SourceOptions {
 };
 
 /// Opens the source that `from` names. This is a device or the simulator by its URI (docs/devices.md), or a file of
-/// frames by its path (recordings/frame_files.hpp). "rec.mcap#chest" is one array of a recording. Fails if the URI is
-/// wrong, if nothing has that name, and if the frames do not have the shape of the array. The error says in one line
-/// what to do.
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const std::string& from,
-                                                               const SourceOptions& options = {});
-
-/// The same of a URI that was parsed before.
+/// frames by its path (recordings/frame_files.hpp). "rec.mcap#chest" is one array of a recording. Fails if nothing has
+/// that name, and if the frames do not have the shape of the array. The error says in one line what to do.
 ///
 /// sim:SCENE with a rate is a device that repeats the frames of the scene at that rate, with sequence and device time.
 /// Frames that are not fetched within 500 ms are lost, as they would be in the buffers of a TCP connection. The scene
 /// "contacts" runs at its own speed whatever the rate. Without a rate, it is the scene once, as fast as it is read. The
 /// array is that of the URI, else that of the options, else the reference array of examples/chest, with the rows and
 /// cols of the URI.
-[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const acquisition::SourceUri& uri,
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const SourceName& from,
+                                                               const SourceOptions& options = {});
+
+/// The same of a name that is not parsed yet. Also fails where SourceName::parse() does.
+[[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const std::string& from,
                                                                const SourceOptions& options = {});
 
 /// All frames of the file that `from` names. Fails where open_source() does, and on a device, which has no end.
@@ -53,9 +52,6 @@ struct SourceOptions {
 
 /// Names of the arrays of a recording that holds several where `from` names none of them; empty of every other source.
 /// Fails where the recording cannot be read.
-[[nodiscard]] Result<std::vector<std::string>> several_arrays(const std::string& from);
-
-/// The path of the file that `from` names: without the name of an array in it, and without what a URI says of it.
-[[nodiscard]] std::string file_of(const std::string& from);
+[[nodiscard]] Result<std::vector<std::string>> several_arrays(const SourceName& from);
 
 }  // namespace dermis::sources

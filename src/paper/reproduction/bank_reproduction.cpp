@@ -14,6 +14,7 @@
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/paper/structured_start.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
+#include "dermis/simulation/reference_array.hpp"
 #include "dermis/simulation/simulator.hpp"
 
 namespace dermis::paper {
@@ -130,15 +131,8 @@ std::vector<PaperPoint> list_points(const ArrayDescription& array, const SampleD
 }  // namespace
 
 ArrayDescription paper_array(std::size_t rows, std::size_t cols) {
-  ArrayDescription array;
+  ArrayDescription array = simulation::reference_array({rows, cols});
   array.name = "paper";
-  array.rows = rows;
-  array.cols = cols;
-  array.taxel_area_m2 = simulation::kPaperDiscAreaM2;
-  array.readout.drive_ohm.assign(rows, 20.0);
-  array.readout.load_ohm.assign(cols, 200.0);
-  array.readout.adc_reference_v = 5.0;
-  array.readout.supply_v = 5.0;
   return array;
 }
 

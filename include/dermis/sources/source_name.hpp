@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "dermis/acquisition/source_uri.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::sources {
+
+enum class SourceKind {
+  device,      ///< By its URI; also the bytes of a device in a file.
+  simulation,  ///< sim:SCENE
+  recording,   ///< MCAP, of one or several arrays.
+  file,        ///< Any other file of frames, by its path or by file:PATH?rate=...
+};
+
+/// What the name of a source says (docs/devices.md). Opens nothing.
+struct SourceName {
+  std::string text;  ///< As it was given.
+  SourceKind kind = SourceKind::file;
+  std::string file{};                           ///< Path of the file, recording or bytes; empty: it is none.
+  std::string array{};                          ///< "chest" of "rec.mcap#chest"; empty: none is named.
+  std::optional<acquisition::SourceUri> uri{};  ///< Empty: the name is the path of a file.
+
+  /// Fails on a URI that acquisition::parse_source_uri() refuses. Everything else is the path of a file.
+  [[nodiscard]] static Result<SourceName> parse(const std::string& text);
+
+  /// "rec.mcap#chest": the file without its folder, as tables name it.
+  [[nodiscard]] std::string short_name() const;
+  /// Frames come as fast as they are read: to be live, the name must give a rate.
+  [[nodiscard]] bool needs_rate() const noexcept;
+  /// Times begin at 0 and follow from the rate in the name: they are not those of the readings.
+  [[nodiscard]] bool has_times_of_its_own() const noexcept;
+};
+
+}  // namespace dermis::sources

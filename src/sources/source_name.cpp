@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/sources/source_name.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/recording.hpp"
+
+namespace dermis::sources {
+namespace {
+
+using acquisition::Transport;
+
+/// With a rate and without a protocol, a file may be more than the bytes of a device.
+bool is_file_of_frames(const acquisition::SourceUri& uri) {
+  return uri.transport == Transport::file && uri.rate_hz && uri.protocol.name == "auto" &&
+         recordings::frame_format(recordings::recording_place(uri.path).path);
+}
+
+SourceKind kind_of(const acquisition::SourceUri& uri) {
+  if (uri.transport == Transport::simulation) return SourceKind::simulation;
+  return is_file_of_frames(uri) ? SourceKind::file : SourceKind::device;
+}
+
+bool is_recording(const std::string& path) {
+  const Result<recordings::FrameFormat> format = recordings::frame_format(path);
+  return format && *format == recordings::FrameFormat::mcap;
+}
+
+}  // namespace
+
+Result<SourceName> SourceName::parse(const std::string& text) {
+  SourceName name{.text = text};
+  std::string path = text;
+  if (acquisition::is_source_uri(text)) {
+    Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(text);
+    if (!uri) return uri.error();
+    name.kind = kind_of(*uri);
+    path = uri->transport == Transport::file ? uri->path : "";
+    name.uri = *std::move(uri);
+  }
+  recordings::RecordingPlace place = recordings::recording_place(path);
+  if (!name.uri && is_recording(place.path)) name.kind = SourceKind::recording;
+  name.file = std::move(place.path);
+  name.array = std::move(place.array);
+  return name;
+}
+
+std::string SourceName::short_name() const {
+  return std::filesystem::path(file).filename().string() + (array.empty() ? "" : "#" + array);
+}
+
+bool SourceName::needs_rate() const noexcept {
+  return kind == SourceKind::simulation && !uri->rate_hz;
+}
+
+bool SourceName::has_times_of_its_own() const noexcept {
+  return uri && uri->transport == Transport::file && uri->rate_hz;
+}
+
+}  // namespace dermis::sources
