@@ -8,7 +8,9 @@
 #include <string>
 
 #include "commands.hpp"
+#include "dermis/acquisition/source_uri.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "dermis/serve/array_setup.hpp"
 #include "dermis/serve/session.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
@@ -24,8 +26,9 @@ struct ServeOptions {
 
 Status check(const ServeOptions& options) {
   const serve::SuitPlace& place = options.place;
-  if (place.suit.empty() && (place.from.empty() || place.model.empty())) {
-    return bad_input("serve: give --from and --model, or --suit");
+  if (place.suit.empty() && place.from.empty()) return bad_input("serve: give --from with its --model, or --suit; a device needs no model to begin");
+  if (place.suit.empty() && place.model.empty() && !acquisition::is_source_uri(place.from)) {
+    return bad_input("serve: give the --model of the recording");
   }
   if (!place.suit.empty() && !place.model.empty()) return bad_input("--model: suit.toml names the models");
   if (!place.suit.empty() && !place.classes.empty()) return bad_input("--classes: suit.toml names the classes");
@@ -43,16 +46,32 @@ std::string address(const stream::ServerOptions& server, std::uint16_t port) {
   return url;
 }
 
+/// A user describes the array on the page; its array.toml is served from then on, at the same address.
+Status set_up_array(ServeOptions& options) {
+  const Result<std::unique_ptr<serve::ArraySetup>> setup =
+      serve::ArraySetup::create(options.place.from, options.session, {.stop = &stop_flag(), .notice = say});
+  if (!setup) return setup.error();
+  options.session.server.port = (*setup)->port();
+  say(fmt::format("describe the array at {} (Ctrl-C ends it)",
+                  address(options.session.server, options.session.server.port)));
+  options.place.model = (*setup)->run(stop_flag());
+  if (!options.place.model.empty()) say("wrote " + options.place.model);
+  return Done{};
+}
+
 Status serve_suit(ServeOptions& options) {
   if (Status possible = check(options); !possible) return possible;
   const std::atomic<bool>& stop = stop_flag();
+  const std::span<const stream::Asset> page = viewer::assets();
+  options.session.page.assign(page.begin(), page.end());
+  options.session.server.notice = say;
+  if (options.place.suit.empty() && options.place.model.empty()) {
+    if (Status set_up = set_up_array(options); !set_up || stop) return set_up;
+  }
   Result<serve::ServedSuit> suit = serve::open_suit(options.place, {.stop = &stop, .notice = say});
   if (!suit) return suit.error();
   const std::size_t arrays = suit->arrays.size();
   const std::string what = arrays == 1 ? suit->arrays.front().name : fmt::format("{} arrays", arrays);
-  const std::span<const stream::Asset> page = viewer::assets();
-  options.session.page.assign(page.begin(), page.end());
-  options.session.server.notice = say;
   const Result<std::unique_ptr<serve::Session>> session = serve::Session::create(*std::move(suit), options.session);
   if (!session) return session.error();
   say(fmt::format("serving {} at {} (Ctrl-C ends it)", what, address(options.session.server, (*session)->port())));
@@ -64,7 +83,8 @@ Status serve_suit(ServeOptions& options) {
 void add_serve(Command& command) {
   auto options = std::make_shared<ServeOptions>();
   command.option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
-  command.option("--model", options->place.model, "Its model, or the array.toml of an array to be calibrated");
+  command.option("--model", options->place.model,
+                 "Its model, or the array.toml of an array to be calibrated; without it the page asks");
   command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
   command.option("--classes", options->place.classes,
                  "Classes of 'dermis learn', from newtons: name what touches the array");

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "dermis/calibration/uncalibrated_model.hpp"
 #include "dermis/health/fault_words.hpp"
 
 namespace dermis::serve {
@@ -50,6 +51,10 @@ messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::M
   } else if (statistics.ended) {
     diagnosis.level = messages::Diagnosis::Level::stale;
     diagnosis.message = "the source has ended";
+  } else if (calibration::is_uncalibrated(model)) {
+    diagnosis.level = messages::Diagnosis::Level::warning;
+    diagnosis.message = "not calibrated yet: calibrate";
+    diagnosis.values.clear();
   } else {
     if (!statistics.faults.empty()) diagnosis.level = messages::Diagnosis::Level::warning;
     diagnosis.message = std::move(condition.message);

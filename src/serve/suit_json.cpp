@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "dermis/calibration/uncalibrated_model.hpp"
 #include "serve/json_request.hpp"
 
 namespace dermis::serve {
@@ -57,6 +58,7 @@ nlohmann::ordered_json json_of(const ServedArray& array, const pipeline::Model& 
   if (description.taxel_area_m2) json["taxel_area_m2"] = *description.taxel_area_m2;
   json["full_scale_counts"] = description.readout.full_scale_counts();
   json["full_scale_n"] = full_scale_newtons(model.networks);
+  json["calibrated"] = !calibration::is_uncalibrated(model);
   if (array.classes) json["classes"] = array.classes->names;
   for (const SurfacePoint& taxel : array.surface.taxels()) {
     json["positions"].push_back(json_of(taxel.position));

@@ -157,7 +157,7 @@ class Serve(SmallArray):
         serve = ["serve", "--port", "0"]
         frames = self.contacts / "frames.csv"
         self.refuse(serve, ["--from", "--model", "--suit"])
-        self.refuse([*serve, "--from", LIVE], ["--model"])
+        self.refuse([*serve, "--from", frames], ["--model"])
         self.refuse([*serve, "--from", LIVE, "--model", self.work / "none.safetensors"], ["none.safetensors"])
         self.refuse([*serve, "--from", frames, "--model", self.model], ["frames.csv", "dermis convert"])
         self.refuse([*serve, "--from", "sim:contacts?rows=4&cols=5", "--model", self.model], ["rate=100"])

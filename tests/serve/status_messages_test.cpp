@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/calibration/uncalibrated_model.hpp"
 #include "support/hand_made_model.hpp"
 
 namespace dermis::serve {
@@ -52,6 +53,14 @@ TEST(StatusMessages, what_is_not_known_is_not_a_number) {
   EXPECT_TRUE(std::isnan(message.latency_p99_s));
   EXPECT_TRUE(std::isnan(message.temperature_celsius));
   EXPECT_TRUE(std::isnan(message.supply_v));
+}
+
+TEST(StatusMessages, an_array_without_a_model_is_to_be_calibrated) {
+  const pipeline::Model model = calibration::uncalibrated_model(support::hand_made_model(3, 4).array);
+  const messages::Diagnosis diagnosis = diagnosis_message("chest", model, {});
+  EXPECT_EQ(diagnosis.level, Level::warning);
+  EXPECT_EQ(diagnosis.message, "not calibrated yet: calibrate");
+  EXPECT_EQ(diagnosis.values, Values{});
 }
 
 TEST(StatusMessages, a_whole_array_is_healthy) {

@@ -3,10 +3,12 @@
 import { DisplayStatistics } from "./display_statistics";
 import { element, setHidden, setText } from "./dom";
 import { LiveData } from "./live/live_data";
+import type { HealthStatus } from "./messages/statistics";
 import { Signal } from "./signal";
 import { Stream } from "./stream/stream";
 import { Suit } from "./suit";
 import { Theme } from "./theme";
+import { makeArraySetup } from "./ui/array_setup";
 import { Bar } from "./ui/bar";
 import { makeHelp } from "./ui/help";
 import { makeThreatBanner } from "./ui/threat_banner";
@@ -47,11 +49,20 @@ export class App implements ViewContext {
       showThresholds: () => this.#thresholds.showModal(),
       showHelp: () => this.#help.showModal(),
     });
+    this.live.health.follow((health) => this.#refreshWhereCalibrated(health));
     this.stream.notice.follow((notice) => this.#showNotice(notice?.level ?? 0, notice?.message ?? ""));
   }
 
+  /** Somebody may have calibrated an array, here or on another page. */
+  #refreshWhereCalibrated(health: readonly HealthStatus[]): void {
+    const isNews = this.suit.description.value.arrays.some(
+      ({ name, calibrated }) => !calibrated && health.some((status) => status.name === name && !status.message.startsWith("not calibrated")),
+    );
+    if (isNews) void this.stream.refresh();
+  }
+
   begin(): void {
-    document.body.append(this.#bar.element, makeTokenForm(this.stream), this.#notice, makeThreatBanner(this.live.threats, this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds);
+    document.body.append(this.#bar.element, makeTokenForm(this.stream), makeArraySetup(this.stream, this.suit), this.#notice, makeThreatBanner(this.live.threats, this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds);
     window.addEventListener("hashchange", () => this.#route());
     window.addEventListener("keydown", (event) => this.#key(event));
     this.suit.selected.follow((array) => array !== undefined && this.#shown !== undefined && this.open(this.#shown.name));

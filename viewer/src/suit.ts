@@ -29,15 +29,27 @@ export interface ArrayDescription {
   full_scale_n: number;
   positions: [number, number, number][];
   normals: [number, number, number][];
+  /** No taxel has a force yet: there are counts alone. */
+  calibrated: boolean;
   /** What its touches are named; missing where they are not. */
   classes?: string[];
   /** Missing where nothing is limited. */
   limits?: Limit[];
 }
 
+/** An array of which nothing is written yet: what its source tells. */
+export interface ArraySetup {
+  from: string;
+  rows: number | null;
+  cols: number | null;
+  message: string;
+}
+
 export interface SuitDescription {
   name: string;
   arrays: ArrayDescription[];
+  /** Where a user has to describe the array first. */
+  setup?: ArraySetup;
 }
 
 /** The suit that is served and the array that the user looks at. */

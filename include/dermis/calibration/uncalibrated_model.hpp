@@ -12,4 +12,7 @@ namespace dermis::calibration {
 /// forces already, it is pipeline::direct_model(). `array` must be valid. Not to be written to a file.
 [[nodiscard]] pipeline::Model uncalibrated_model(const ArrayDescription& array);
 
+/// Whether no taxel of the model has a force: its array is still to be calibrated.
+[[nodiscard]] bool is_uncalibrated(const pipeline::Model& model);
+
 }  // namespace dermis::calibration

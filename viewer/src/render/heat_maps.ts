@@ -226,7 +226,7 @@ export class HeatMaps {
     gl.uniform3f(this.#uniforms["line"]!, line[0], line[1], line[2]);
     gl.uniform3f(this.#uniforms["fault"]!, fault[0], fault[1], fault[2]);
     gl.uniform3f(this.#uniforms["fault_stripe"]!, faultStripe[0], faultStripe[1], faultStripe[2]);
-    for (const map of this.#maps) if (map.rows > 0) this.#drawMap(map);
+    for (const map of this.#maps) if (map.rows > 0 && map.area.width > 0) this.#drawMap(map);
   }
 
   #drawMap({ values, statuses, rows, cols, area, scaleEnd }: Map): void {

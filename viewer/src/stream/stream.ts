@@ -115,10 +115,21 @@ export class Stream {
     return this.serverInfo.value?.capabilities.includes(capability) ?? false;
   }
 
+  /** Reads the description of the suit again: a calibration has changed it. */
+  async refresh(): Promise<void> {
+    const attempt = this.#attempts;
+    const response = await this.#fetchSuit().catch(() => undefined);
+    if (response?.ok === true && attempt === this.#attempts) this.#onSuit((await response.json()) as SuitDescription);
+  }
+
+  #fetchSuit(): Promise<Response> {
+    return fetch(this.#address("suit.json"), { signal: AbortSignal.timeout(5000), cache: "no-store" });
+  }
+
   async #attempt(): Promise<void> {
     const attempt = ++this.#attempts;
     try {
-      const response = await fetch(this.#address("suit.json"), { signal: AbortSignal.timeout(5000), cache: "no-store" });
+      const response = await this.#fetchSuit();
       if (attempt !== this.#attempts) return;
       if (response.status === 401 || response.status === 403) {
         this.connection.value = { kind: "wrong token" };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setData, setText } from "../../dom";
+import { element, setData, setHidden, setText } from "../../dom";
 import { fixed, statusWord } from "../../format";
 import { emptyGrid, type GridFrame, readCounts, readGrid } from "../../messages/grids";
 import { type Area, HeatMaps } from "../../render/heat_maps";
@@ -20,7 +20,9 @@ import { MOST_PINS, TaxelTable } from "./taxel_table";
 import { drawZones } from "./zones";
 
 const TEXT_PERIOD_MS = 100;
+const RAW = 0;
 const FORCE = 2;
+const NOWHERE: Area = { left: 0, top: 0, width: 0, height: 0 };
 
 /** What arrives of one quantity: the newest message, decoded when it is drawn. */
 interface Feed {
@@ -46,6 +48,10 @@ class ArrayView implements View {
   readonly #contacts = new ContactTable();
   readonly #summary = new Summary();
   readonly #interpolated = setting<boolean>("interpolated", false, () => true);
+  /** The one that a narrow page shows. */
+  readonly #chosenMap = setting<number>("map", FORCE, (value) => value in QUANTITIES);
+  readonly #narrow = window.matchMedia("(max-width: 700px)");
+  readonly #uncalibrated: HTMLElement;
   readonly #contactsShown = setting<boolean>("contacts", true, () => true);
   readonly #resizing = new ResizeObserver(() => (this.#layoutDue = true));
   readonly #unfollow: (() => void)[] = [];
@@ -64,6 +70,7 @@ class ArrayView implements View {
   constructor(context: ViewContext) {
     this.#context = context;
     this.#maps = new HeatMaps(element("canvas", { class: "layer", "aria-hidden": "true" }), QUANTITIES.length, () => this.#restore());
+    this.#uncalibrated = this.#makeUncalibrated();
     this.#room = this.#makeRoom();
     this.element = element(
       "div",
@@ -74,6 +81,7 @@ class ArrayView implements View {
       this.#spoken,
     );
     context.theme.shown.follow(() => this.#readColors());
+    this.#narrow.addEventListener("change", () => (this.#layoutDue = true));
     context.suit.selected.follow((array) => this.#choose(array));
     for (const panel of this.#panels) panel.end.follow(() => this.#describe());
   }
@@ -125,9 +133,19 @@ class ArrayView implements View {
       this.#overlay.showContacts = value;
       this.#overlayDue = true;
     });
+    const chosen = element(
+      "select",
+      { class: "field map-choice", "aria-label": "Map", "data-role": "map", onchange: () => (this.#chosenMap.value = Number(chosen.value)) },
+      ...QUANTITIES.map(({ title }, index) => element("option", { value: index }, title)),
+    );
+    this.#chosenMap.follow((value) => {
+      chosen.value = String(value);
+      this.#layoutDue = true;
+    });
     return element(
       "div",
       { class: "toolbar" },
+      chosen,
       check("Interpolate between taxels", this.#interpolated, "interpolate"),
       check("Contacts", this.#contactsShown, "show-contacts"),
       element(
@@ -141,6 +159,21 @@ class ArrayView implements View {
     );
   }
 
+  #makeUncalibrated(): HTMLElement {
+    return element(
+      "section",
+      { class: "panel uncalibrated", "aria-label": "Not calibrated yet", "data-role": "uncalibrated", hidden: true },
+      element("h2", {}, "Not calibrated yet"),
+      element("p", {}, "The counts are live. Newtons come with a calibration: known weights on single taxels, as the page asks for them."),
+      element("button", { class: "button primary large-button", "data-role": "calibrate", onclick: () => this.#context.open("calibration") }, "Calibrate"),
+    );
+  }
+
+  #isShownMap(index: number, { calibrated }: ArrayDescription): boolean {
+    if (!calibrated) return index === RAW;
+    return !this.#narrow.matches || index === this.#chosenMap.value;
+  }
+
   #makeRoom(): HTMLElement {
     const room = element(
       "div",
@@ -152,6 +185,7 @@ class ArrayView implements View {
         "data-role": "maps",
       },
       ...this.#panels.map((panel) => panel.element),
+      this.#uncalibrated,
       this.#maps.canvas,
       this.#axes,
       this.#zones,
@@ -160,7 +194,7 @@ class ArrayView implements View {
     room.addEventListener("pointermove", (event) => this.#point(event));
     room.addEventListener("pointerleave", () => this.#moveCursor(-1));
     room.addEventListener("click", (event) => {
-      if (event.target instanceof Element && event.target.closest("select") === null) this.#pin(this.#taxelUnder(event));
+      if (event.target instanceof Element && event.target.closest("select, button") === null) this.#pin(this.#taxelUnder(event));
     });
     room.addEventListener("keydown", (event) => this.#steer(event));
     return room;
@@ -221,6 +255,9 @@ class ArrayView implements View {
 
   #layOut(array: ArrayDescription): void {
     this.#layoutDue = false;
+    this.#panels.forEach((panel, index) => setHidden(panel.element, !this.#isShownMap(index, array)));
+    setHidden(this.#uncalibrated, array.calibrated);
+    setData(this.element, "calibrated", String(array.calibrated));
     const { width, height, left, top } = this.#room.getBoundingClientRect();
     const pixelRatio = window.devicePixelRatio;
     this.#maps.resize(width, height, pixelRatio);
@@ -229,7 +266,7 @@ class ArrayView implements View {
     this.#axes.height = this.#overlay.canvas.height;
     this.#areas = this.#panels.map((panel, index) => {
       const plot = panel.plot.getBoundingClientRect();
-      const area = fitMap({ left: plot.left - left, top: plot.top - top, width: plot.width, height: plot.height }, array);
+      const area = panel.element.hidden ? NOWHERE : fitMap({ left: plot.left - left, top: plot.top - top, width: plot.width, height: plot.height }, array);
       this.#maps.place(index, area);
       return area;
     });
@@ -256,7 +293,8 @@ class ArrayView implements View {
     const { rows, cols, values, statuses } = this.#feeds[index]!.frame;
     if (rows === 0) return;
     const known = this.#feeds[FORCE]!.frame.statuses;
-    this.#maps.setValues(index, rows, cols, values, known.length === statuses.length ? known : statuses);
+    const areKnown = this.#array?.calibrated === true && known.length === statuses.length;
+    this.#maps.setValues(index, rows, cols, values, areKnown ? known : statuses);
     this.#mapsDue = true;
     this.#textDue = true;
   }
@@ -281,7 +319,7 @@ class ArrayView implements View {
     const live = this.#context.live.arrays[this.#context.suit.indexOf(array.name)];
     if (live === undefined) return;
     this.#contacts.show(live);
-    this.#summary.show(array, live, force);
+    this.#summary.show(array, live, array.calibrated ? force : raw);
   }
 
   #taxelUnder(event: MouseEvent): number {
@@ -339,7 +377,9 @@ class ArrayView implements View {
   #speak(array: ArrayDescription): void {
     const force = this.#feeds[FORCE]!.frame;
     const newtons = fixed(force.values[this.#cursor] ?? NaN, 2);
-    const words = `${taxelName(this.#cursor, array)}: ${newtons} newtons, ${statusWord(force.statuses[this.#cursor] ?? 0)}`;
+    const counts = fixed(this.#feeds[RAW]!.frame.values[this.#cursor] ?? NaN, 0);
+    const reading = array.calibrated ? `${newtons} newtons, ${statusWord(force.statuses[this.#cursor] ?? 0)}` : `${counts} counts`;
+    const words = `${taxelName(this.#cursor, array)}: ${reading}`;
     setText(this.#spoken, this.#cursor < 0 ? "" : words);
   }
 }

@@ -21,6 +21,7 @@ export function drawAxes(canvas: HTMLCanvasElement, areas: readonly Area[], arra
   pen.font = FONT;
   pen.fillStyle = cssColor("--text-dim");
   for (const area of areas) {
+    if (area.width === 0) continue;
     const width = area.width / array.cols;
     const height = area.height / array.rows;
     pen.textAlign = "right";

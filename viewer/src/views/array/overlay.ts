@@ -45,11 +45,12 @@ export class Overlay {
     this.#pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
     this.#pen.restore();
     for (const area of areas) {
+      if (area.width === 0) continue;
       pins.forEach((taxel, index) => this.#drawPin(area, array, taxel, index + 1));
       if (cursor >= 0) this.#drawCursor(area, array, cursor);
     }
     const force = areas[areas.length - 1];
-    if (force !== undefined && live !== undefined && this.showContacts) this.#drawContacts(force, array, live);
+    if (force !== undefined && force.width > 0 && live !== undefined && this.showContacts) this.#drawContacts(force, array, live);
   }
 
   #drawCursor(area: Area, array: ArrayDescription, taxel: number): void {

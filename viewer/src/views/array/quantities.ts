@@ -29,7 +29,7 @@ export const QUANTITIES: readonly Quantity[] = [
     title: "Raw",
     unit: "counts",
     ends: (array) => COUNT_DIVISORS.map((divisor) => Math.round(array.full_scale_counts / divisor)),
-    firstEnd: (array) => Math.round(array.full_scale_counts / 4),
+    firstEnd: (array) => Math.round(array.full_scale_counts / (array.calibrated ? 4 : 1)),
     label: (value) => Math.round(value).toString(),
   },
   {

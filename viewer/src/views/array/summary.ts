@@ -28,14 +28,23 @@ export class Summary {
     );
   }
 
-  show(array: ArrayDescription, { contacts }: ArrayLive, force: GridFrame): void {
+  /** `shown`: the forces, or the counts of an array without a model. */
+  show(array: ArrayDescription, { contacts }: ArrayLive, shown: GridFrame): void {
+    const { highest, sum, faulty, worst } = survey(shown);
+    if (!array.calibrated) return this.#showCounts(array, shown, highest);
     setText(this.#total, fixed(contacts.totalForceN, 2));
     setText(this.#sigma, `\u00b1 ${fixed(contacts.sigmaTotalN, 2)}`);
-    const { highest, sum, faulty, worst } = survey(force);
     setText(this.#values[0]!, String(touching(contacts.contacts, contacts.count)));
-    setText(this.#values[1]!, highest < 0 ? fixed(NaN, 0) : `${fixed(force.values[highest]!, 2)} N  ${taxelName(highest, array)}`);
+    setText(this.#values[1]!, highest < 0 ? fixed(NaN, 0) : `${fixed(shown.values[highest]!, 2)} N  ${taxelName(highest, array)}`);
     setText(this.#values[2]!, `${fixed(sum, 2)} N`);
     setText(this.#values[3]!, faulty === 0 ? "none" : `${faulty}, ${statusWord(worst)}`);
+  }
+
+  #showCounts(array: ArrayDescription, { values }: GridFrame, highest: number): void {
+    setText(this.#total, fixed(NaN, 2));
+    setText(this.#sigma, "not calibrated");
+    for (const value of this.#values) setText(value, fixed(NaN, 0));
+    if (highest >= 0) setText(this.#values[1]!, `${fixed(values[highest]!, 0)}  ${taxelName(highest, array)}`);
   }
 }
 

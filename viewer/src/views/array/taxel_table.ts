@@ -33,6 +33,7 @@ class Row {
   show(label: string, taxel: number, array: ArrayDescription, { raw, conductance, force }: Frames): void {
     setText(this.#name, label);
     setData(this.element, "taxel", taxelName(taxel, array));
+    if (!array.calibrated) return this.#showCounts(valueAt(raw, taxel));
     const siemens = valueAt(conductance, taxel);
     const status = force.statuses[taxel] ?? conductance.statuses[taxel] ?? 0;
     this.#set("counts", fixed(valueAt(raw, taxel), Number.isInteger(valueAt(raw, taxel)) ? 0 : 1));
@@ -42,6 +43,14 @@ class Row {
     this.#set("sigma", `\u00b1 ${fixed(force.sigmas[taxel] ?? NaN, 3)} N`);
     this.#set("status", statusWord(status));
     setData(this.element, "status", statusWord(status));
+  }
+
+  /** All that is known of an array without a model. */
+  #showCounts(counts: number): void {
+    delete this.element.dataset["status"];
+    for (const column of COLUMNS) this.#set(column, "");
+    this.#set("counts", fixed(counts, Number.isInteger(counts) ? 0 : 1));
+    this.#set("status", "not calibrated");
   }
 
   clear(label: string): void {

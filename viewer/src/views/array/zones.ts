@@ -20,7 +20,7 @@ export function limitedZones(array: ArrayDescription): Map<Zone, Limit[]> {
 /** Frames round the zones, over a map. */
 export function drawZones(layer: HTMLElement, area: Area | undefined, array: ArrayDescription): void {
   layer.replaceChildren();
-  if (area === undefined) return;
+  if (area === undefined || area.width === 0) return;
   const [width, height] = [area.width / array.cols, area.height / array.rows];
   for (const [{ name, rows, cols }, limits] of limitedZones(array)) {
     const box = {

@@ -26,8 +26,8 @@ class ArrayLabel {
     if (at !== undefined) this.element.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px) translate(-50%, -120%)`;
   }
 
-  show(newtons: number): void {
-    setText(this.#force, `${fixed(newtons, 1)} N`);
+  show(newtons: number, isCalibrated: boolean): void {
+    setText(this.#force, isCalibrated ? `${fixed(newtons, 1)} N` : " not calibrated");
   }
 }
 
@@ -192,7 +192,8 @@ class SuitView implements View {
 
   #showTotals(nowMs: number): void {
     this.#labelMs = nowMs;
-    this.#labels.forEach((label, index) => label.show(this.#context.live.arrays[index]?.contacts.totalForceN ?? NaN));
+    const { arrays } = this.#context.suit.description.value;
+    this.#labels.forEach((label, index) => label.show(this.#context.live.arrays[index]?.contacts.totalForceN ?? NaN, arrays[index]?.calibrated === true));
   }
 
   #click(event: MouseEvent): void {

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "dermis/core/result.hpp"
+#include "dermis/serve/session.hpp"
+#include "dermis/sources/open_source.hpp"
+
+namespace dermis::serve {
+
+/// An array of which nothing is written yet. Serves a page that shows what its source sends, and asks for what that
+/// does not tell. What a client answers becomes an array.toml with circuit = "auto".
+class ArraySetup {
+ public:
+  /// Reads the first frame of the source that the URI `from` names, for at most 8 s, and begins to answer clients.
+  /// Bytes of which no frame can be made are no error: the page tells what they lack. Fails where the URI is wrong, its
+  /// device is not there, or the port cannot be bound.
+  [[nodiscard]] static Result<std::unique_ptr<ArraySetup>> create(const std::string& from,
+                                                                  const SessionOptions& options,
+                                                                  sources::SourceOptions source_options);
+  ArraySetup(const ArraySetup&) = delete;
+  ArraySetup& operator=(const ArraySetup&) = delete;
+  ~ArraySetup();
+
+  [[nodiscard]] std::uint16_t port() const noexcept;
+
+  /// Waits until a client has described the array. Returns the path of its NAME.toml in the current folder; empty where
+  /// `stop` was set before. To be called once.
+  [[nodiscard]] std::string run(const std::atomic<bool>& stop);
+
+ private:
+  class Implementation;
+  explicit ArraySetup(std::unique_ptr<Implementation> implementation);
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace dermis::serve

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+// Usage: node first_hour_test.mjs path/to/dermis
+// What a newcomer does on the page, from a device of which nothing is written to newtons.
+import assert from "node:assert/strict";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, it } from "node:test";
+import { arrayToml, assertUnhurt, becomes, Bench, openBrowser, openPage, WAIT_MS } from "./harness.mjs";
+
+const MOST_ACTIONS = 20;
+const FIT_MS = 240_000;
+
+let browser;
+let folder;
+
+before(async () => {
+  folder = mkdtempSync(join(tmpdir(), "dermis-first-hour-"));
+  browser = await openBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+const serve = (...command) => Bench.prototype.serve.call({ binary: process.argv[2], folder }, "--port", "0", ...command);
+const part = (page, role) => page.locator(`[data-role=${role}]`);
+
+/** A person at the page, whose actions are counted. */
+class Person {
+  actions = 0;
+
+  constructor(page) {
+    this.page = page;
+  }
+
+  click(role) {
+    return this.#do(part(this.page, role).click());
+  }
+
+  fill(id, text) {
+    return this.#do(this.page.locator(`#${id}`).fill(text));
+  }
+
+  open(view) {
+    return this.#do(this.page.locator(`[data-tab=${view}]`).click());
+  }
+
+  async submit() {
+    return this.#do(this.page.locator("[data-role=array-setup] button[type=submit]").click());
+  }
+
+  async #do(action) {
+    this.actions += 1;
+    await action;
+  }
+}
+
+/** A sketch that prints `millis()` and 120 readings in a line, 50 times a second, over TCP. */
+async function csvMat() {
+  const server = createServer((socket) => {
+    let millis = 1000;
+    const timer = setInterval(() => {
+      millis += 20;
+      const readings = Array.from({ length: 120 }, (_, taxel) => 100 + ((7 * taxel) % 23) + Math.round(3 * Math.random()));
+      if (!socket.destroyed) socket.write(`${millis},${readings.join(",")}\r\n`);
+    }, 20);
+    socket.on("error", () => undefined);
+    socket.on("close", () => clearInterval(timer));
+  });
+  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
+  return server;
+}
+
+it("shows the counts of a CSV mat of which nothing is known but its rows and columns", async () => {
+  const mat = await csvMat();
+  const server = await serve("--from", `tcp://127.0.0.1:${mat.address().port}`);
+  try {
+    const page = await openPage(browser, server.url);
+    await part(page, "array-setup").waitFor();
+    assert.match(await part(page, "found").textContent(), /a time and 120 readings/);
+    const person = new Person(page);
+    await person.fill("array-name", "csv");
+    await person.fill("array-rows", "12");
+    await person.fill("array-cols", "10");
+    await person.submit();
+    await part(page, "uncalibrated").waitFor();
+    await becomes(page, "live");
+    await part(page, "maps").focus();
+    await page.keyboard.press("ArrowDown");
+    await page.waitForFunction(() => Number(document.querySelector("[data-role=cursor] [data-field=counts]").textContent) >= 100, null, { timeout: WAIT_MS });
+    assert.match(await part(page, "highest-taxel").textContent(), /^1[0-2]\d {2}r/);
+    assert.ok(await page.locator("section[aria-label='Force map']").isHidden());
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+    mat.close();
+  }
+  assert.match(readFileSync(join(folder, "csv.toml"), "utf8"), /circuit = "auto"/);
+});
+
+it("goes from a mat of unknown circuit to newtons in few actions, and writes no file by hand", async () => {
+  writeFileSync(join(folder, "true.toml"), arrayToml("truth", 12, 10));
+  const server = await serve("--from", `sim:rehearsal?rate=400&array=${join(folder, "true.toml")}`);
+  try {
+    const page = await openPage(browser, server.url);
+    await part(page, "array-setup").waitFor();
+    const person = new Person(page);
+    await person.submit();
+    await person.click("calibrate");
+    await person.fill("weights", "2, 5, 20");
+    await person.fill("hold", "0.1");
+    await person.click("start");
+    await page.locator("[data-role=walk][data-stage='4']").waitFor({ timeout: FIT_MS });
+    await person.click("save");
+    await page.waitForFunction(() => document.querySelector("[data-role=instruction]").textContent.includes("in use"), null, { timeout: WAIT_MS });
+    await person.open("array");
+    await page.locator("section[aria-label='Force map']").waitFor();
+    assert.match(await part(page, "faulty-taxels").textContent(), /none/);
+    assert.match(await part(page, "highest-taxel").textContent(), / N /);
+    assert.ok(person.actions <= MOST_ACTIONS, `${person.actions} actions`);
+    assert.ok(existsSync(join(folder, "mat.toml")));
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+  }
+});
