@@ -3,6 +3,7 @@
 #include "command_line.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
@@ -124,6 +125,11 @@ Option Option::shows_default() const {
 
 Option Option::takes(int values) const {
   option_->expected(values);
+  return *this;
+}
+
+Option Option::one_of(const std::vector<std::string>& names) const {
+  option_->type_name(fmt::format("{}", fmt::join(names, "|")));
   return *this;
 }
 

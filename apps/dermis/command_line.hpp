@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "dermis/core/result.hpp"
 
@@ -27,6 +28,8 @@ class Option {
   Option required() const;
   Option shows_default() const;    ///< The help names the value that it has without the option.
   Option takes(int values) const;  ///< So many values, not one.
+  /// The names that it knows, for the help and for completion; the action says what is wrong with another.
+  Option one_of(const std::vector<std::string>& names) const;
   Option excludes(Option other) const;
   Option needs(Option other) const;
 

@@ -5,6 +5,7 @@
 #include <CLI/App.hpp>
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 namespace dermis::app {
 namespace {
@@ -17,6 +18,15 @@ std::vector<std::string> names_of(const std::set<CLI::Option*>& options) {
   return names;
 }
 
+/// "simple" and "rubber" of "simple|rubber"; none of a value that is no list.
+std::vector<std::string> choices_of(const std::string& value) {
+  std::vector<std::string> choices;
+  if (value.find('|') == std::string::npos) return choices;
+  std::istringstream names(value);
+  for (std::string name; std::getline(names, name, '|');) choices.push_back(name);
+  return choices;
+}
+
 OptionRow option_row(const CLI::Option& option) {
   OptionRow row;
   for (const std::string& name : option.get_snames()) row.names.push_back("-" + name);
@@ -24,6 +34,7 @@ OptionRow option_row(const CLI::Option& option) {
   if (option.get_positional()) row.names.push_back(option.get_name(true));
   row.values = option.get_items_expected_min();
   if (row.values > 0) row.value = option.get_type_name();
+  row.choices = choices_of(row.value);
   row.default_value = option.get_default_str();
   row.help = option.get_description();
   row.needs = names_of(option.get_needs());

@@ -11,9 +11,10 @@ namespace dermis::app {
 
 /// An option or an argument as --help shows it.
 struct OptionRow {
-  std::vector<std::string> names;  ///< "-h" and "--help"; of an argument its one name, "in".
-  std::string value;               ///< What its value is, "TEXT"; empty for a flag.
-  std::string default_value;       ///< Empty where none is shown.
+  std::vector<std::string> names;    ///< "-h" and "--help"; of an argument its one name, "in".
+  std::string value;                 ///< What its value is, "TEXT" or "simple|rubber"; empty for a flag.
+  std::vector<std::string> choices;  ///< The names that it knows, where there is a list of them.
+  std::string default_value;         ///< Empty where none is shown.
   std::string help;
   std::vector<std::string> needs;     ///< Options that must be given, too.
   std::vector<std::string> excludes;  ///< Options that must not be given, too.

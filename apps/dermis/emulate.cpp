@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "dermis/acquisition/byte_stream.hpp"
@@ -73,11 +74,9 @@ Status emulate(const EmulateOptions& options) {
 
 void add_emulate(Command& command) {
   auto options = std::make_shared<EmulateOptions>();
-  std::string names;
-  for (const std::string& name : acquisition::protocol_names()) {
-    if (name != "auto") names += (names.empty() ? "" : " | ") + name;
-  }
-  command.option("--protocol", options->protocol, names).required();
+  std::vector<std::string> protocols = acquisition::protocol_names();
+  std::erase(protocols, "auto");
+  command.option("--protocol", options->protocol, "What the device speaks").one_of(protocols).required();
   command.option("--in", options->in, "Frames to send: a recording, another file of frames, or sim:SCENE").required();
   command.option("--to", options->to, "pty: | tcp-listen://HOST:PORT | tcp:// | udp:// | serial:// | stdout:")
       .shows_default();

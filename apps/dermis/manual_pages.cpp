@@ -44,8 +44,8 @@ std::string page_name(std::string name) {
   return name;
 }
 
-std::string list_of(const std::vector<std::string>& options) {
-  return fmt::format("{}", fmt::join(options, ", "));
+std::string list_of(const std::vector<std::string>& names) {
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// "--range FLOAT FLOAT", "--in TEXT ...", or the name of an argument.
@@ -53,12 +53,14 @@ std::string usage(const OptionRow& option, bool is_argument) {
   if (is_argument) return italic(option.names.front()) + (option.is_repeated ? " ..." : "");
   std::string usage;
   for (const std::string& name : option.names) usage += (usage.empty() ? "" : ", ") + bold(name);
-  for (int value = 0; value < option.values; ++value) usage += " " + italic(option.value);
+  const std::string value = option.choices.empty() ? option.value : "NAME";
+  for (int k = 0; k < option.values; ++k) usage += " " + italic(value);
   return usage + (option.is_repeated ? " ..." : "");
 }
 
 std::string entry(const OptionRow& option, bool is_argument) {
   std::string text = option.help;
+  if (!option.choices.empty()) text += ". One of " + list_of(option.choices);
   if (option.is_required && !is_argument) text += ". Required";
   if (!option.default_value.empty()) text += ". Default: " + option.default_value;
   if (!option.needs.empty()) text += ". Needs " + list_of(option.needs);

@@ -31,11 +31,11 @@ void for_each_command(const CommandTable& command, const Visit& visit) {
   for (const CommandTable& part : command.commands) for_each_command(part, visit);
 }
 
-/// Names of the options whose values are, or are not, texts.
-std::vector<std::string> valued_options(const CommandTable& command, bool texts) {
+/// Names of the options whose values may, or may not, be files.
+std::vector<std::string> valued_options(const CommandTable& command, bool files) {
   std::vector<std::string> names;
   for (const OptionRow& option : command.options) {
-    if (option.values == 0 || (option.value == kText) != texts) continue;
+    if (option.values == 0 || !option.choices.empty() || (option.value == kText) != files) continue;
     names.insert(names.end(), option.names.begin(), option.names.end());
   }
   return names;
@@ -53,6 +53,17 @@ std::string bash_case(const CommandTable& command) {
   return fmt::format("    '{}')\n      words='{}'\n      files=' {} '\n      others=' {} '\n      arguments={} ;;\n",
                      command.name, joined(words_after(command), " "), joined(valued_options(command, true), " "),
                      joined(valued_options(command, false), " "), command.arguments.size());
+}
+
+/// What is offered where the value of an option is one of some names.
+std::string bash_choices(const CommandTable& command) {
+  std::string cases;
+  for (const OptionRow& option : command.options) {
+    if (option.choices.empty()) continue;
+    cases += fmt::format("    '{} {}') words='{}' arguments=0 ;;\n", command.name, option.names.back(),
+                         joined(option.choices, " "));
+  }
+  return cases;
 }
 
 /// Text between single quotes of a shell.
@@ -76,7 +87,8 @@ std::string zsh_option(const OptionRow& option) {
   std::string rest = option.values == 0 ? "" : "=";
   rest += "[" + zsh_text(option.help) + "]";
   for (int value = 0; value < option.values; ++value) {
-    rest += option.value == kText ? ":file or name:_files" : ":number: ";
+    const std::string names = fmt::format(":name:({})", joined(option.choices, " "));
+    rest += option.value == kText ? ":file or name:_files" : option.choices.empty() ? ":number: " : names;
   }
   std::string specification;
   for (const std::string& name : option.names) {
@@ -116,9 +128,11 @@ std::string zsh_function(const CommandTable& command) {
 std::string bash_completion(const CommandTable& dermis) {
   std::vector<std::string> names;
   std::string cases;
+  std::string choices;
   for_each_command(dermis, [&](const CommandTable& command) {
     if (&command != &dermis) names.push_back("'" + command.name + "'");
     cases += bash_case(command);
+    choices += bash_choices(command);
   });
   // Where nothing is offered, readline offers files.
   return kLicence + fmt::format(R"(_dermis() {{
@@ -131,6 +145,8 @@ std::string bash_completion(const CommandTable& dermis) {
   done
   case $command in
 {}  esac
+  case "$command $before" in
+{}  esac
   COMPREPLY=()
   if [[ $others == *" $before "* ]]; then
     compopt +o default
@@ -140,7 +156,7 @@ std::string bash_completion(const CommandTable& dermis) {
 }}
 complete -o default -F _dermis dermis
 )",
-                                joined(names, " | "), cases);
+                                joined(names, " | "), cases, choices);
 }
 
 std::string zsh_completion(const CommandTable& dermis) {

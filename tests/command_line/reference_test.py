@@ -118,6 +118,10 @@ class Completion:
         self.assertEqual(self.completed("dermis serve --mod\t x"), ["serve", "--model", "x"])
         self.assertEqual(self.completed("dermis circuit invert --sig\t"), ["circuit", "invert", "--sigma"])
 
+    def test_names_that_an_option_knows(self):
+        self.assertEqual(self.completed("dermis simulate --memory ru\t"), ["simulate", "--memory", "rubber"])
+        self.assertEqual(self.completed("dermis emulate --protocol flex\t"), ["emulate", "--protocol", "flexitac"])
+
     def test_files_as_values_and_arguments(self):
         self.assertEqual(self.completed("dermis run --model che\t"), ["run", "--model", "chest one.safetensors"])
         self.assertEqual(self.completed("dermis convert fra\t"), ["convert", "frames.csv"])
