@@ -2,13 +2,21 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <atomic>
+#include <charconv>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "commands.hpp"
 #include "dermis/acquisition/source_uri.hpp"
+#include "dermis/dds/publisher.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/serve/array_setup.hpp"
 #include "dermis/serve/session.hpp"
@@ -22,6 +30,8 @@ namespace {
 struct ServeOptions {
   serve::SuitPlace place;
   serve::SessionOptions session;
+  bool dds = false;
+  std::optional<std::uint64_t> domain{};
 };
 
 Status check(const ServeOptions& options) {
@@ -37,6 +47,33 @@ Status check(const ServeOptions& options) {
   const bool is_recording = format && *format == recordings::FrameFormat::mcap;
   if (!record.empty() && !is_recording) return bad_input("--record: end it in .mcap");
   return options.session.server.validate();
+}
+
+std::string_view environment(const char* name) {
+  const char* const value = std::getenv(name);
+  return value != nullptr ? value : "";
+}
+
+/// As the nodes of ROS 2 that are started from the same shell have it.
+Result<std::uint64_t> domain_of_ros() {
+  const std::string_view text = environment("ROS_DOMAIN_ID");
+  std::uint64_t domain = 0;
+  if (text.empty()) return domain;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), domain);
+  if (error == std::errc() && end == text.data() + text.size()) return domain;
+  return bad_input(fmt::format("ROS_DOMAIN_ID: must be 0 to 232, is '{}'", text));
+}
+
+Result<dds::PublisherOptions> dds_options(const std::optional<std::uint64_t>& wanted) {
+  const Result<std::uint64_t> domain = wanted ? Result<std::uint64_t>(*wanted) : domain_of_ros();
+  if (!domain) return domain.error();
+  dds::PublisherOptions options;
+  options.domain =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(*domain, std::numeric_limits<std::uint32_t>::max()));
+  options.loopback_only =
+      environment("ROS_LOCALHOST_ONLY") == "1" || environment("ROS_AUTOMATIC_DISCOVERY_RANGE") == "LOCALHOST";
+  if (Status valid = options.validate(); !valid) return valid.error();
+  return options;
 }
 
 std::string address(const stream::ServerOptions& server, std::uint16_t port) {
@@ -61,6 +98,11 @@ Status set_up_array(ServeOptions& options) {
 
 Status serve_suit(ServeOptions& options) {
   if (Status possible = check(options); !possible) return possible;
+  if (options.dds) {
+    Result<dds::PublisherOptions> dds = dds_options(options.domain);
+    if (!dds) return dds.error();
+    options.session.dds = *dds;
+  }
   const std::atomic<bool>& stop = stop_flag();
   const std::span<const stream::Asset> page = viewer::assets();
   options.session.page.assign(page.begin(), page.end());
@@ -75,6 +117,10 @@ Status serve_suit(ServeOptions& options) {
   const Result<std::unique_ptr<serve::Session>> session = serve::Session::create(*std::move(suit), options.session);
   if (!session) return session.error();
   say(fmt::format("serving {} at {} (Ctrl-C ends it)", what, address(options.session.server, (*session)->port())));
+  if (options.session.dds) {
+    say(fmt::format("topics for ROS 2 are in domain {}, for {}", options.session.dds->domain,
+                    options.session.dds->loopback_only ? "this machine" : "all of the network"));
+  }
   return (*session)->run(stop);
 }
 
@@ -94,6 +140,8 @@ void add_serve(Command& command) {
       .shows_default();
   command.option("--port", options->session.server.port, "Port; 0: any that is free").shows_default();
   command.option("--token", options->session.server.token, "Every client must present it");
+  const Option dds = command.flag("--dds", options->dds, "Topics for ROS 2, too (docs/ros.md)");
+  command.option("--domain", options->domain, "Their domain; else that of ROS_DOMAIN_ID, or 0").needs(dds);
   command.action([options] { return serve_suit(*options); });
 }
 

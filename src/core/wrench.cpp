@@ -6,12 +6,17 @@
 
 namespace dermis {
 
+Wrench& operator+=(Wrench& wrench, const Wrench& other) noexcept {
+  wrench.force = wrench.force + other.force;
+  wrench.torque = wrench.torque + other.torque;
+  return wrench;
+}
+
 Wrench wrench_of(std::span<const SuitContact> contacts, const Pose& suit_from_frame) noexcept {
   Wrench sum;
   for (const SuitContact& contact : contacts) {
     const Vector3 force = -contact.contact.force_n * contact.place.normal;
-    sum.force = sum.force + force;
-    sum.torque = sum.torque + cross(contact.place.position - suit_from_frame.translation, force);
+    sum += {force, cross(contact.place.position - suit_from_frame.translation, force)};
   }
   const Quaternion& turn = suit_from_frame.rotation;
   const Quaternion back{-turn.x, -turn.y, -turn.z, turn.w};

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "serve/contacts_in_suit.hpp"
+
 namespace dermis::serve {
 namespace {
 
@@ -18,7 +20,7 @@ bool begins_or_ends(const ContactReport& report) {
 
 }  // namespace
 
-Broadcaster::Broadcaster(const ServedSuit& suit, stream::Server& server) : server_(server) {
+Broadcaster::Broadcaster(const ServedSuit& suit, stream::Server& server) : server_(server), points_(suit) {
   for (const ServedArray& array : suit.arrays) {
     Channels& channels = arrays_.emplace_back();
     const ArrayDescription& description = array.model->array;
@@ -28,16 +30,9 @@ Broadcaster::Broadcaster(const ServedSuit& suit, stream::Server& server) : serve
     channels.raw = add_channel(server, "/" + array.name + "/raw", messages::image_type());
     channels.conductance = add_channel(server, "/" + array.name + "/conductance", messages::grid_type());
     channels.force = add_channel(server, "/" + array.name + "/force", messages::grid_type());
-    channels.first_point = taxels_.size();
-    for (const SurfacePoint& taxel : array.surface.taxels()) {
-      messages::TaxelPoint& point = taxels_.emplace_back();
-      point.x = static_cast<float>(taxel.position.x);
-      point.y = static_cast<float>(taxel.position.y);
-      point.z = static_cast<float>(taxel.position.z);
-    }
   }
   contacts_ = add_channel(server, "/contacts", messages::contacts_type());
-  points_ = add_channel(server, "/suit/points", messages::point_cloud_type());
+  points_channel_ = add_channel(server, "/suit/points", messages::point_cloud_type());
 }
 
 void Broadcaster::publish(const live::ArrayResult& result) {
@@ -45,7 +40,7 @@ void Broadcaster::publish(const live::ArrayResult& result) {
   const bool due = is_due(channels, result.raw.time);
   if (due) {
     publish_images(channels, result);
-    if (server_.has_subscribers(points_)) keep_points(channels, result.force);
+    if (server_.has_subscribers(points_channel_)) points_.keep(result.array, result.force);
     last_time_ns_ = result.raw.time.count();
   }
   if (due || begins_or_ends(result.report)) publish_contacts(channels, result);
@@ -84,33 +79,14 @@ void Broadcaster::publish_images(Channels& channels, const live::ArrayResult& re
 
 void Broadcaster::publish_contacts(Channels& channels, const live::ArrayResult& result) {
   if (!server_.has_subscribers(contacts_)) return;
-  std::optional<Vector3> centre;
-  if (result.report.centre_of_pressure) {
-    centre = channels.array->surface.at(*result.report.centre_of_pressure).position;
-  }
-  messages::encode_contacts({channels.array->name, result.report, result.contacts, centre}, kSuitFrame,
-                            channels.message);
+  encode_contacts_in_suit(channels.array->name, channels.array->surface, result, channels.message);
   server_.publish(contacts_, result.raw.time, channels.message);
 }
 
-void Broadcaster::keep_points(Channels& channels, const ForceFrame& force) {
-  const std::lock_guard lock(channels.points_mutex);
-  for (std::size_t k = 0; k < force.newtons.size(); ++k) {
-    taxels_[channels.first_point + k].newtons = force.newtons[k];
-    taxels_[channels.first_point + k].status = force.taxels[k];
-  }
-}
-
 void Broadcaster::publish_points() {
-  if (!server_.has_subscribers(points_)) return;
-  taxels_copy_.resize(taxels_.size());
-  for (Channels& channels : arrays_) {
-    const std::lock_guard lock(channels.points_mutex);
-    std::copy_n(taxels_.begin() + static_cast<std::ptrdiff_t>(channels.first_point), channels.shape.taxel_count(),
-                taxels_copy_.begin() + static_cast<std::ptrdiff_t>(channels.first_point));
-  }
-  messages::encode_points(taxels_copy_, last_time(), kSuitFrame, points_message_);
-  server_.publish(points_, last_time(), points_message_);
+  if (!server_.has_subscribers(points_channel_)) return;
+  points_.encode(last_time(), points_message_);
+  server_.publish(points_channel_, last_time(), points_message_);
 }
 
 }  // namespace dermis::serve

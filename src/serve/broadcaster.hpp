@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
 #include "dermis/stream/server.hpp"
+#include "serve/suit_points.hpp"
 
 namespace dermis::serve {
 
@@ -38,7 +38,7 @@ class Broadcaster {
   [[nodiscard]] Nanos last_time() const noexcept { return Nanos(last_time_ns_.load()); }
 
  private:
-  /// An array, touched by its thread alone but for the points.
+  /// An array, touched by its thread alone.
   struct Channels {
     const ServedArray* array = nullptr;
     FrameShape shape{};
@@ -49,21 +49,17 @@ class Broadcaster {
     std::optional<Nanos> last{};  // Frame that came.
     Nanos due{};
     std::vector<std::uint8_t> message{};
-    std::size_t first_point = 0;
-    std::mutex points_mutex{};  // Of this array's points.
   };
 
   [[nodiscard]] bool is_due(Channels& channels, Nanos time) const noexcept;
   void publish_images(Channels& channels, const live::ArrayResult& result);
   void publish_contacts(Channels& channels, const live::ArrayResult& result);
-  void keep_points(Channels& channels, const ForceFrame& force);
 
   stream::Server& server_;
   std::deque<Channels> arrays_;
   stream::ChannelId contacts_;
-  stream::ChannelId points_;
-  std::vector<messages::TaxelPoint> taxels_;       // Of all arrays.
-  std::vector<messages::TaxelPoint> taxels_copy_;  // On their way out.
+  stream::ChannelId points_channel_;
+  SuitPoints points_;
   std::vector<std::uint8_t> points_message_;
   std::atomic<double> rate_hz_{60.0};
   std::atomic<std::int64_t> last_time_ns_{0};

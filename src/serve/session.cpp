@@ -17,6 +17,7 @@
 #include "dermis/files/content_hash.hpp"
 #include "serve/broadcaster.hpp"
 #include "serve/calibration_services.hpp"
+#include "serve/dds_topics.hpp"
 #include "serve/live_parameters.hpp"
 #include "serve/models_in_use.hpp"
 #include "serve/recognition_publisher.hpp"
@@ -79,6 +80,7 @@ struct SessionParts {
   std::unique_ptr<FrameListeners> listeners;
   std::unique_ptr<live::LiveSuit> live;
   std::vector<threats::ThreatMonitor> monitors;
+  std::unique_ptr<DdsTopics> dds;  // null: none are wanted
 };
 
 /// Takes the sources of the suit.
@@ -103,7 +105,11 @@ Result<SessionParts> make_parts(ServedSuit& suit, const SessionOptions& options)
   if (!server) return server.error();
   Result<std::vector<threats::ThreatMonitor>> monitors = threat_monitors(suit);
   if (!monitors) return monitors.error();
-  return SessionParts{*std::move(server), std::move(listeners), *std::move(live), *std::move(monitors)};
+  Result<std::unique_ptr<DdsTopics>> dds{std::unique_ptr<DdsTopics>()};
+  if (options.dds) dds = DdsTopics::create(suit, *options.dds);
+  if (!dds) return dds.error();
+  return SessionParts{*std::move(server), std::move(listeners), *std::move(live), *std::move(monitors),
+                      *std::move(dds)};
 }
 
 }  // namespace
@@ -130,6 +136,7 @@ class Session::Implementation {
   void show_suit();
   void report_failed_recording(const std::string& why);
   void report_left_out();
+  void publish_to_dds(std::int64_t tick);
   void log(const std::string& line) const;
   void tell(const std::string& line);
 
@@ -147,7 +154,9 @@ class Session::Implementation {
   TeachingServices teaching_;
   LiveParameters parameters_;
   StatusPublisher status_;
-  std::uint64_t left_out_ = 0;  // frames of the recording, when they were told last
+  std::unique_ptr<DdsTopics> dds_;  // null: none are wanted
+  std::uint64_t left_out_ = 0;      // frames of the recording, when they were told last
+  std::uint64_t left_out_of_dds_ = 0;
 };
 
 Session::Implementation::Implementation(ServedSuit suit, SessionParts parts, const SessionOptions& options)
@@ -172,7 +181,8 @@ Session::Implementation::Implementation(ServedSuit suit, SessionParts parts, con
           service_arrays(suit_),
           [this](std::size_t array, recognition::Classes classes) { return use_classes(array, std::move(classes)); }),
       parameters_(suit_, *live_, broadcaster_, recorder_),
-      status_(SuitAtWork{suit_, models_, *live_, recorder_, calibration_, threats_}, *server_) {
+      status_(SuitAtWork{suit_, models_, *live_, recorder_, calibration_, threats_}, *server_),
+      dds_(std::move(parts.dds)) {
   if (suit_.threats) {
     threats_.emplace(suit_, std::move(parts.monitors), *server_, recorder_,
                      [this](const std::string& line) { log(line); });
@@ -191,6 +201,7 @@ Session::Implementation::~Implementation() {
 /// learned of. It is recorded last.
 void Session::Implementation::listen() {
   if (threats_) listeners_->add([this](const auto& result) { threats_->publish(result); });
+  if (dds_) listeners_->add([this](const auto& result) { dds_->publish(result); });
   listeners_->add([this](const auto& result) { broadcaster_.publish(result); });
   listeners_->add([this](const auto& result) { recognition_.publish(result); });
   listeners_->add([this](const auto& result) { calibration_.feed(result.array, result.raw); });
@@ -278,6 +289,15 @@ void Session::Implementation::report_left_out() {
     tell(fmt::format("the disk of the recording does not follow: {} frames are left out of {}", left_out,
                      recorder_.path()));
   }
+  const std::uint64_t of_dds = dds_ ? dds_->left_out() : 0;
+  if (of_dds != std::exchange(left_out_of_dds_, of_dds)) {
+    tell(fmt::format("the network of DDS does not follow: {} messages are left out", of_dds));
+  }
+}
+
+void Session::Implementation::publish_to_dds(std::int64_t tick) {
+  dds_->publish_suit();
+  if (tick % StatusPublisher::kTicksPerSecond == 0) dds_->publish_health(status_.diagnoses(), status_.now());
 }
 
 Status Session::Implementation::run(const std::atomic<bool>& stop) {
@@ -287,6 +307,7 @@ Status Session::Implementation::run(const std::atomic<bool>& stop) {
   for (std::int64_t tick = 0; !stop; ++tick) {
     broadcaster_.publish_points();
     status_.publish(tick);
+    if (dds_) publish_to_dds(tick);
     if (tick % kTicksToReport == 0) report_left_out();
     std::this_thread::sleep_until(begin + Nanos((tick + 1) * 1'000'000'000 / StatusPublisher::kTicksPerSecond));
   }

@@ -60,13 +60,17 @@ void StatusPublisher::publish_statistics() {
 
 void StatusPublisher::publish_health() {
   if (!server_.has_subscribers(channels_.health)) return;
+  messages::encode_diagnostics(diagnoses(), now(), kSuitFrame, message_);
+  publish_message(channels_.health);
+}
+
+std::vector<messages::Diagnosis> StatusPublisher::diagnoses() const {
   std::vector<messages::Diagnosis> diagnoses;
   for (std::size_t k = 0; k < work_.suit.arrays.size(); ++k) {
     diagnoses.push_back(diagnosis_message(work_.suit.arrays[k].name, *work_.models.of(k), work_.live.statistics(k)));
   }
   if (work_.threats) std::ranges::move(work_.threats->diagnoses(), std::back_inserter(diagnoses));
-  messages::encode_diagnostics(diagnoses, now(), kSuitFrame, message_);
-  publish_message(channels_.health);
+  return diagnoses;
 }
 
 void StatusPublisher::publish_transforms() {

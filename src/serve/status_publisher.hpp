@@ -9,6 +9,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/playback.hpp"
 #include "dermis/live/live_suit.hpp"
+#include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
 #include "dermis/stream/server.hpp"
 #include "serve/calibration_services.hpp"
@@ -39,6 +40,11 @@ class StatusPublisher {
   /// To be called for each tick: publishes what is due with it.
   void publish(std::int64_t tick);
 
+  /// How each array is, and the threats that are there.
+  [[nodiscard]] std::vector<messages::Diagnosis> diagnoses() const;
+  /// By the clock of the recording that is played, else by that of the machine.
+  [[nodiscard]] Nanos now() const;
+
  private:
   struct Channels {
     stream::ChannelId health = 0;
@@ -47,7 +53,6 @@ class StatusPublisher {
     stream::ChannelId calibration = 0;
   };
 
-  [[nodiscard]] Nanos now() const;
   void publish_statistics();
   void publish_health();
   void publish_transforms();

@@ -16,6 +16,9 @@ struct Wrench {
   bool operator==(const Wrench&) const = default;
 };
 
+/// The sum of two in the same frame.
+Wrench& operator+=(Wrench& wrench, const Wrench& other) noexcept;
+
 /// What the contacts do to what wears them: each presses with its force against the normal of its place. In the frame
 /// that `suit_from_frame` places in the suit; without one, in the suit's.
 [[nodiscard]] Wrench wrench_of(std::span<const SuitContact> contacts, const Pose& suit_from_frame = {}) noexcept;

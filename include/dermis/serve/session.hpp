@@ -5,10 +5,12 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dermis/core/result.hpp"
+#include "dermis/dds/publisher.hpp"
 #include "dermis/serve/served_suit.hpp"
 #include "dermis/stream/server.hpp"
 
@@ -20,6 +22,7 @@ struct SessionOptions {
   std::vector<stream::Asset> page{};  ///< What browsers are shown; empty: there is the stream alone.
   /// A recording to begin with, .mcap; those that clients begin take their names from it. Empty: none.
   std::string record{};
+  std::optional<dds::PublisherOptions> dds{};  ///< Topics for nodes of ROS 2 (docs/ros.md); empty: none.
 };
 
 /// A suit at work and the server that shows it.

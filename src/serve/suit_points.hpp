@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/messages/live_messages.hpp"
+#include "dermis/serve/served_suit.hpp"
+
+namespace dermis::serve {
+
+/// The taxels of a suit in space with their last forces. Thread-safe.
+class SuitPoints {
+ public:
+  explicit SuitPoints(const ServedSuit& suit);
+
+  void keep(std::size_t array, const ForceFrame& force);
+
+  /// All of them, as /suit/points. One at a time.
+  void encode(Nanos time, std::vector<std::uint8_t>& message);
+
+ private:
+  struct Part {
+    std::mutex mutex{};
+    std::vector<messages::TaxelPoint> points{};
+  };
+
+  std::deque<Part> arrays_;
+  std::vector<messages::TaxelPoint> all_;  // On their way out.
+};
+
+}  // namespace dermis::serve
