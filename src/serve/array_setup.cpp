@@ -13,7 +13,6 @@
 #include <thread>
 #include <utility>
 
-#include "dermis/acquisition/source_uri.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "serve/json_request.hpp"
 
@@ -48,7 +47,7 @@ class Patience {
   std::jthread thread_;
 };
 
-Result<FirstLook> look(const acquisition::SourceUri& uri, sources::SourceOptions options) {
+Result<FirstLook> look(const sources::SourceName& name, sources::SourceOptions options) {
   FirstLook found;
   const Patience patience(options.stop);
   options.stop = patience.over();
@@ -57,7 +56,7 @@ Result<FirstLook> look(const acquisition::SourceUri& uri, sources::SourceOptions
     found.message = line;
     if (log) log(line);
   };
-  const Result<std::unique_ptr<FrameSource>> source = sources::open_source(uri, options);
+  const Result<std::unique_ptr<FrameSource>> source = sources::open_source(name, options);
   if (!source) return source.error();
   RawFrame frame;
   const Result<bool> came = (*source)->next(frame);
@@ -166,9 +165,9 @@ class ArraySetup::Implementation {
 
 Result<std::unique_ptr<ArraySetup>> ArraySetup::create(const std::string& from, const SessionOptions& options,
                                                        sources::SourceOptions source_options) {
-  const Result<acquisition::SourceUri> uri = acquisition::parse_source_uri(from);
-  if (!uri) return uri.error();
-  const Result<FirstLook> found = look(*uri, std::move(source_options));
+  const Result<sources::SourceName> name = sources::SourceName::parse(from);
+  if (!name) return name.error();
+  const Result<FirstLook> found = look(*name, std::move(source_options));
   if (!found) return found.error();
   Result<std::unique_ptr<stream::Server>> server = stream::Server::create(options.server, options.page);
   if (!server) return server.error();
