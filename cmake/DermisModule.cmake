@@ -127,6 +127,7 @@ function(borrow_library target)
   if(MODULE_PARSERS)
     # Objects come before libraries, so nothing asks for the parsers of the borrowed one.
     add_library(${target}_parsers OBJECT ${MODULE_PARSERS})
+    set_target_properties(${target}_parsers PROPERTIES POSITION_INDEPENDENT_CODE ON)
     set_headers(${target}_parsers PUBLIC)
     target_include_directories(${target}_parsers PRIVATE ${PROJECT_SOURCE_DIR}/src)
     target_link_libraries(${target}_parsers PUBLIC ${MODULE_DEPENDS} PRIVATE dermis_build_flags ${MODULE_PRIVATE})

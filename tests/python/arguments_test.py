@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Whatever Python hands over, the answer is a result or an exception that says what was expected."""
+import concurrent.futures
 import random
 
 import numpy as np
@@ -24,24 +25,28 @@ class Arguments(workspace.CalibratedArray):
                               object(), self.model, self.array, str(self.frames), self.made["model"], self.made["recording"],
                               self.made["closed"], self.made["force"], (0, 0), (9, 9), (0, 0, 4, 3), (4, 3, 0, 0), lambda *_: 1])
 
-    def test_random_arguments_never_end_the_process(self):
-        seed = random.randrange(2**32)
-        choose = random.Random(seed)
+    def make(self):
+        """Objects of every kind, and what can be called of them."""
         recording = dermis.Recording.read(self.frames)
         closed = dermis.open(self.frames)
         closed.close()
         model = dermis.read_model(self.model)
         pipeline, tracker = dermis.Pipeline(model), dermis.ContactTracker(model)
         self.made = {"model": model, "recording": recording, "closed": closed, "force": pipeline.process(recording[0])}
-        calls = [dermis.read_model, dermis.read_array, dermis.Pipeline, pipeline.process, pipeline.run, tracker.process,
-                 dermis.ContactTracker, dermis.Recording, recording.__getitem__, dermis.Load, dermis.circuit.forward,
-                 dermis.circuit.invert, dermis.ArrayDescription.from_toml, model.array.taxel_name, dermis.open, next,
-                 dermis.Recording.read, dermis.evaluate, lambda array, loads: dermis.calibrate(array, recording, loads),
-                 lambda counts, **more: dermis.Recording(counts, rate_hz=10.0, **more)]
+        source = dermis.open(self.frames)
+        self.addCleanup(source.close)
+        return [dermis.read_model, dermis.read_array, dermis.Pipeline, pipeline.process, pipeline.run, tracker.process,
+                dermis.ContactTracker, dermis.Recording, recording.__getitem__, dermis.Load, dermis.circuit.forward,
+                dermis.circuit.invert, dermis.ArrayDescription.from_toml, model.array.taxel_name, dermis.open, next,
+                dermis.Recording.read, dermis.evaluate, lambda array, loads: dermis.calibrate(array, recording, loads),
+                lambda counts, **more: dermis.Recording(counts, rate_hz=10.0, **more), pipeline.tare, lambda: next(source)]
+
+    def call_at_random(self, calls, choose, count):
+        """How many calls were refused, and the errors that are none of ours."""
         names = ["temperature", "supply", "time_ns", "rate_hz", "supply_v", "temperature_celsius", "array", "newtons",
                  "pascals", "onset_sigma", "most_contacts"]
-        refused = 0
-        for _ in range(CALLS):
+        refused, wrong = 0, []
+        for _ in range(count):
             call = choose.choice(calls)
             arguments = [self.anything(choose) for _ in range(choose.randint(0, 3))]
             named = {choose.choice(names): self.anything(choose)} if choose.random() < 0.3 else {}
@@ -49,12 +54,28 @@ class Arguments(workspace.CalibratedArray):
                 call(*arguments, **named)
             except EXPECTED as error:
                 refused += 1
-                self.assertTrue(str(error), f"seed {seed}: {call}")
+                if not str(error):
+                    wrong.append(f"{call}: {error!r} says nothing")
             except StopIteration:
                 pass
             except Exception as error:
-                self.fail(f"seed {seed}: {call}{arguments}{named}: {error!r}")
+                wrong.append(f"{call}{arguments}{named}: {error!r}")
+        return refused, wrong
+
+    def test_random_arguments_never_end_the_process(self):
+        seed = random.randrange(2**32)
+        refused, wrong = self.call_at_random(self.make(), random.Random(seed), CALLS)
+        self.assertEqual(wrong, [], f"seed {seed}")
         self.assertGreater(refused, CALLS // 2)
+
+    def test_nor_do_they_from_several_threads_at_once(self):
+        seed = random.randrange(2**32)
+        calls = self.make()
+        with concurrent.futures.ThreadPoolExecutor(4) as threads:
+            parts = [threads.submit(self.call_at_random, calls, random.Random(seed + k), CALLS // 4) for k in range(4)]
+        for refused, wrong in (part.result() for part in parts):
+            self.assertEqual(wrong, [], f"seed {seed}")
+            self.assertGreater(refused, CALLS // 8)
 
 
 if __name__ == "__main__":
