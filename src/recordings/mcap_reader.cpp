@@ -6,6 +6,7 @@
 #include "dermis/files/input.hpp"
 #include "dermis/recordings/mcap.hpp"
 #include "recordings/crc32.hpp"
+#include "recordings/mcap_kept_records.hpp"
 #include "recordings/mcap_scanner.hpp"
 
 namespace dermis::recordings {
@@ -27,17 +28,6 @@ bool stands_before(const ChunkPlace& a, const ChunkPlace& b) {
 }  // namespace
 
 struct McapReader::State {
-  /// Attachments and metadata.
-  struct Kept {
-    std::vector<McapAttachment> attachments;
-    std::vector<McapMetadata> metadata;
-    std::size_t bytes = 0;
-    std::uint64_t end = 0;                                ///< Of the last record that was kept.
-    std::vector<std::pair<Opcode, std::uint64_t>> index;  ///< Their places.
-    std::uint64_t count = 0;                              ///< How many the index should have.
-    bool is_complete = false;                             ///< All are known from the index.
-  };
-
   explicit State(McapScanner file_scanner) : scanner(std::move(file_scanner)) {}
 
   McapScanner scanner;
@@ -45,7 +35,7 @@ struct McapReader::State {
   bool complete = false;
   std::optional<McapStatistics> statistics;
   ChannelTable table;
-  Kept kept;
+  KeptRecords kept;
   std::vector<McapCompression> compressions;
 
   std::uint64_t data_place = 0;           ///< Where the records begin, and
@@ -200,28 +190,12 @@ Status McapReader::State::read_indexed() {
     const Status taken = kept.is_complete ? keep(record) : Status(Done{});
     if (!taken) return taken.error();
   }
-  if (!kept.is_complete) {
-    kept.attachments.clear();
-    kept.metadata.clear();
-    kept.bytes = 0;
-  }
+  if (!kept.is_complete) kept.clear();
   return Done{};
 }
 
-/// An attachment or metadata.
 Status McapReader::State::keep(const McapRecord& record) {
-  constexpr std::size_t kMaxKeptBytes = std::size_t{64} << 20U;
-  kept.bytes += record.body.size();
-  if (record.is_left_out || kept.bytes > kMaxKeptBytes) return Done{};
-  if (record.opcode == Opcode::attachment) {
-    Result<McapAttachment> attachment = parse_attachment(record.body);
-    if (!attachment) return error(record.place, attachment.error());
-    kept.attachments.push_back(*std::move(attachment));
-  } else {
-    Result<McapMetadata> parsed = parse_metadata(record.body);
-    if (!parsed) return error(record.place, parsed.error());
-    kept.metadata.push_back(*std::move(parsed));
-  }
+  if (const Status added = kept.add(record); !added) return error(record.place, added.error());
   return Done{};
 }
 

@@ -15,6 +15,7 @@
 #include "recordings/growing_file.hpp"
 #include "recordings/mcap_batch.hpp"
 #include "recordings/mcap_bytes.hpp"
+#include "recordings/mcap_summary.hpp"
 
 namespace dermis::recordings {
 namespace {
@@ -26,16 +27,6 @@ bool has_same_schema(const McapChannel& a, const McapChannel& b) {
 }  // namespace
 
 struct McapWriter::State {
-  /// What the end of the file tells of the records in it.
-  struct Summary {
-    IndexRecords chunk_indexes;
-    IndexRecords attachment_indexes;
-    IndexRecords metadata_indexes;
-    std::vector<std::uint64_t> channel_messages;  ///< Of each channel from 1 on.
-    std::uint64_t first_time = std::numeric_limits<std::uint64_t>::max();
-    std::uint64_t last_time = 0;
-  };
-
   State(GrowingFile growing_file, McapCompression chunk_compression)
       : file(std::move(growing_file)), compression(chunk_compression), compressor(chunk_compression) {}
 
@@ -56,7 +47,7 @@ struct McapWriter::State {
   std::optional<Error> first_error;
   std::uint32_t data_crc = 0;
   Bytes pending;  ///< Whole records that are not yet in the file.
-  Summary summary;
+  McapSummary summary;
 
   void begin();
   [[nodiscard]] std::uint64_t place() const { return file.size() + pending.size(); }
@@ -68,10 +59,7 @@ struct McapWriter::State {
   [[nodiscard]] std::uint64_t append_chunk(const Batch& batch);
   void end_chunk(const Batch& batch);
   void append_message_indexes(const Batch& batch, Bytes& places);
-  void keep_indexes(const Batch& batch);
-  void cut_indexes();
   [[nodiscard]] Bytes end_of_file() const;
-  void append_statistics(Bytes& bytes) const;
   [[nodiscard]] Status status() const;
 };
 
@@ -186,49 +174,12 @@ void McapWriter::State::write(const Batch& batch) {
   if (!batch.chunk.empty()) end_chunk(batch);
   if (const Status written = file.append(pending); !written) first_error = written.error();
   if (first_error) {
-    cut_indexes();
+    summary.cut();
   } else {
     data_crc = crc32(data_crc, pending);
-    keep_indexes(batch);
+    summary.keep(batch);
   }
   pending.clear();
-}
-
-void McapWriter::State::keep_indexes(const Batch& batch) {
-  for (IndexRecords* records : {&summary.chunk_indexes, &summary.attachment_indexes, &summary.metadata_indexes})
-    records->keep();
-  constexpr std::size_t kEntryBytes = 16;
-  if (summary.channel_messages.size() < batch.indexes.size()) summary.channel_messages.resize(batch.indexes.size());
-  for (std::size_t i = 0; i < batch.indexes.size(); ++i)
-    summary.channel_messages[i] += batch.indexes[i].size() / kEntryBytes;
-  if (batch.chunk.empty()) return;
-  summary.first_time = std::min(summary.first_time, batch.first_time);
-  summary.last_time = std::max(summary.last_time, batch.last_time);
-}
-
-void McapWriter::State::cut_indexes() {
-  for (IndexRecords* records : {&summary.chunk_indexes, &summary.attachment_indexes, &summary.metadata_indexes})
-    records->cut();
-}
-
-void McapWriter::State::append_statistics(Bytes& bytes) const {
-  constexpr std::size_t kEntryBytes = 2 + 8;
-  std::uint64_t messages = 0;
-  for (const std::uint64_t count : summary.channel_messages) messages += count;
-  const Record record(bytes, Opcode::statistics);
-  append_number(bytes, messages);
-  append_number(bytes, static_cast<std::uint16_t>(schemas.size()));
-  append_number(bytes, static_cast<std::uint32_t>(channels.size()));
-  append_number(bytes, summary.attachment_indexes.count);
-  append_number(bytes, summary.metadata_indexes.count);
-  append_number(bytes, summary.chunk_indexes.count);
-  append_number(bytes, messages == 0 ? 0 : summary.first_time);
-  append_number(bytes, summary.last_time);
-  append_number(bytes, static_cast<std::uint32_t>(kEntryBytes * channels.size()));
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    append_number(bytes, static_cast<std::uint16_t>(i + 1));
-    append_number(bytes, i < summary.channel_messages.size() ? summary.channel_messages[i] : 0);
-  }
 }
 
 /// Data end, summary, summary offsets and footer.
@@ -258,7 +209,7 @@ Bytes McapWriter::State::end_of_file() const {
       append_channel(bytes, static_cast<std::uint16_t>(i + 1), channels[i]);
     }
   });
-  append_group(Opcode::statistics, [&] { append_statistics(bytes); });
+  append_group(Opcode::statistics, [&] { summary.append_statistics(schemas.size(), channels.size(), bytes); });
   append_group(Opcode::chunk_index, [&] { append_bytes(bytes, summary.chunk_indexes.bytes); });
   append_group(Opcode::attachment_index, [&] { append_bytes(bytes, summary.attachment_indexes.bytes); });
   append_group(Opcode::metadata_index, [&] { append_bytes(bytes, summary.metadata_indexes.bytes); });
