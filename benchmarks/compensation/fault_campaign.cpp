@@ -35,12 +35,12 @@ struct FaultCase {
 std::vector<FaultCase> fault_cases() {
   using Kind = LineFaultKind;
   return {
-      {"open row", Kind::silent_row, [](auto& f, auto&, auto k) { f.open_rows = {k}; }},
-      {"open column", Kind::silent_column, [](auto& f, auto&, auto k) { f.open_columns = {k}; }},
-      {"supplied row", Kind::supplied_row, [](auto& f, auto&, auto k) { f.supplied_rows = {k}; }},
-      {"supplied column", Kind::supplied_column, [](auto& f, auto&, auto k) { f.supplied_columns = {k}; }},
-      {"shorted rows", Kind::shorted_rows, [](auto& f, auto&, auto k) { f.shorted_rows = {k}; }},
-      {"shorted columns", Kind::shorted_columns, [](auto& f, auto&, auto k) { f.shorted_columns = {k}; }},
+      {"open row", Kind::silent_row, [](auto& f, auto&, auto k) { f.rows.open = {k}; }},
+      {"open column", Kind::silent_column, [](auto& f, auto&, auto k) { f.columns.open = {k}; }},
+      {"supplied row", Kind::supplied_row, [](auto& f, auto&, auto k) { f.rows.supplied = {k}; }},
+      {"supplied column", Kind::supplied_column, [](auto& f, auto&, auto k) { f.columns.supplied = {k}; }},
+      {"shorted rows", Kind::shorted_rows, [](auto& f, auto&, auto k) { f.rows.shorted = {k}; }},
+      {"shorted columns", Kind::shorted_columns, [](auto& f, auto&, auto k) { f.columns.shorted = {k}; }},
       {"stuck taxel", Kind::stuck_taxel,
        [](auto& f, auto& array, auto k) { f.stuck_taxels = {array.taxel_name(array.index(k, k))}; }},
       {"dead taxel", Kind::dead_taxel,

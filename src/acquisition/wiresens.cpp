@@ -66,8 +66,17 @@ class WireSensDecoder final : public Decoder {
     return (number * nodes - static_cast<std::int64_t>(start) + taxels) / taxels - 1;
   }
   [[nodiscard]] bool is_of_later_frame(const Packet& packet) const noexcept {
-    return frame_of(full_number(packet), packet.start) > frame_;
+    return frame_of(full_number(packet), packet.start) > open_.number;
   }
+
+  /// The frame that is being read.
+  struct OpenFrame {
+    std::int64_t number = 0;
+    std::size_t received = 0;      // its readings so far
+    std::size_t bytes = 0;         // of the packets that began in it
+    bool seen_from_start = false;  // the packet with its first reading was not before the stream
+    bool damaged = false;          // a packet of it was damaged
+  };
 
   std::optional<Packet> find_packet();
   [[nodiscard]] bool chain_begins(std::size_t packets, bool& undecided) const;
@@ -94,12 +103,8 @@ class WireSensDecoder final : public Decoder {
   bool skipped_ = false;                // bytes were skipped behind it
   std::array<std::uint8_t, 2> tail_{};  // the last two of them
 
-  std::vector<float> held_;       // last reading of each taxel
-  std::int64_t frame_ = 0;        // number of the frame that is being read
-  std::size_t received_ = 0;      // its readings so far
-  std::size_t frame_bytes_ = 0;   // bytes of the packets that began in it
-  bool seen_from_start_ = false;  // the packet with its first reading was not before the stream
-  bool damaged_ = false;          // a packet of it was damaged
+  std::vector<float> held_;  // last reading of each taxel
+  OpenFrame open_;
   std::uint32_t lost_before_ = 0;
 };
 
@@ -142,8 +147,8 @@ bool WireSensDecoder::begin_anew(const Packet& packet) {
   number_ = static_cast<std::int64_t>(packet.number) - 1;
   if (!packet.reads_nodes(format_)) {
     last_->start = (packet.start + format_.taxels - format_.nodes % format_.taxels) % format_.taxels;
-    frame_ = frame_of(number_ + 1, packet.start);
-    seen_from_start_ = packet.start == 0;
+    open_.number = frame_of(number_ + 1, packet.start);
+    open_.seen_from_start = packet.start == 0;
   }
   skipped_ = false;
   return false;
@@ -151,7 +156,7 @@ bool WireSensDecoder::begin_anew(const Packet& packet) {
 
 /// Packets are missing before `packet`, and bytes were skipped: what is missing was not left out by the device.
 void WireSensDecoder::note_damage(const Packet& packet) {
-  if (skipped_ && packet.number - last_->number > 1) damaged_ = true;
+  if (skipped_ && packet.number - last_->number > 1) open_.damaged = true;
 }
 
 bool WireSensDecoder::take_readings(const Packet& packet, RawFrame& frame) {
@@ -161,14 +166,14 @@ bool WireSensDecoder::take_readings(const Packet& packet, RawFrame& frame) {
   for (std::size_t i = 0; i < first; ++i) {
     held_[packet.start + i] = static_cast<float>(load_little<std::uint16_t>(readings + 2 * i));
   }
-  received_ += first;
+  open_.received += first;
   consume(packet);
   const bool ends = packet.start + first == format_.taxels;
   const bool whole = ends && deliver(frame);
   for (std::size_t i = first; i < format_.nodes; ++i) {
     held_[i - first] = static_cast<float>(load_little<std::uint16_t>(readings + 2 * i));
   }
-  if (ends) received_ = format_.nodes - first;
+  if (ends) open_.received = format_.nodes - first;
   return whole;
 }
 
@@ -183,28 +188,28 @@ bool WireSensDecoder::take_pairs(const Packet& packet, RawFrame& frame) {
   for (std::size_t pair = 0; pair < count; ++pair) valid = valid && index(pair) < format_.taxels;
   for (std::size_t pair = 0; valid && pair < count; ++pair)
     held_[index(pair)] = std::numeric_limits<float>::quiet_NaN();
-  received_ = 0;
+  open_.received = 0;
   for (std::size_t pair = 0; valid && pair < count; ++pair) {
-    received_ += std::isnan(held_[index(pair)]) ? 1 : 0;  // a node may come more than once
+    open_.received += std::isnan(held_[index(pair)]) ? 1 : 0;  // a node may come more than once
     held_[index(pair)] = value(pair);
   }
-  frame_ = full_number(packet);
-  seen_from_start_ = true;
+  open_.number = full_number(packet);
+  open_.seen_from_start = true;
   lost_before_ += step - 1;
-  damaged_ = !valid;
+  open_.damaged = !valid;
   consume(packet);
   return deliver(frame);
 }
 
 /// `packet`, which is not taken yet, is of a later frame: those behind the last packet of this one were not sent.
 bool WireSensDecoder::close_frame(const Packet& packet, RawFrame& frame) {
-  if (received_ > 0) {
+  if (open_.received > 0) {
     note_damage(packet);
     return deliver(frame);
   }
-  const std::int64_t missing = frame_of(full_number(packet), packet.start) - frame_;
+  const std::int64_t missing = frame_of(full_number(packet), packet.start) - open_.number;
   lost_before_ += static_cast<std::uint32_t>(missing);
-  frame_ += missing;
+  open_.number += missing;
   return false;
 }
 
@@ -212,38 +217,38 @@ void WireSensDecoder::consume(const Packet& packet) {
   number_ = full_number(packet);
   last_ = packet;
   skipped_ = false;
-  frame_bytes_ += format_.size();
+  open_.bytes += format_.size();
   window_.drop(format_.size());
   packet_end_ = window_.position();
 }
 
 /// The frame that is being read is over. What it has no reading for holds the one before.
 bool WireSensDecoder::deliver(RawFrame& frame) {
-  const bool whole = seen_from_start_ && !damaged_;
+  const bool whole = open_.seen_from_start && !open_.damaged;
   if (whole) {
     frame.temperature_celsius.reset();
     frame.supply_v.reset();
     frame.acquisition = {};
-    frame.acquisition.sequence = static_cast<std::uint64_t>(frame_);
+    frame.acquisition.sequence = static_cast<std::uint64_t>(open_.number);
     frame.acquisition.lost_before = std::exchange(lost_before_, 0);
-    frame.acquisition.held_taxels = static_cast<std::uint32_t>(format_.taxels - received_);
+    frame.acquisition.held_taxels = static_cast<std::uint32_t>(format_.taxels - open_.received);
     frame.counts.assign(held_.begin(), held_.end());
     counts_.lost_frames += frame.acquisition.lost_before;
     ++counts_.frames;
     frame_end_ = packet_end_;
-    frame_bytes_ = 0;
+    open_.bytes = 0;
   }
   drop_frame();
-  ++frame_;
-  seen_from_start_ = true;
+  ++open_.number;
+  open_.seen_from_start = true;
   return whole;
 }
 
 void WireSensDecoder::drop_frame() {
-  if (damaged_) ++counts_.damaged_frames;
-  counts_.skipped_bytes += frame_bytes_;
-  frame_bytes_ = received_ = 0;
-  damaged_ = false;
+  if (open_.damaged) ++counts_.damaged_frames;
+  counts_.skipped_bytes += open_.bytes;
+  open_.bytes = open_.received = 0;
+  open_.damaged = false;
 }
 
 void WireSensDecoder::end_stream() {

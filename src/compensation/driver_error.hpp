@@ -23,6 +23,8 @@ namespace dermis::compensation {
 /// learned with its law. Exact for ideal drivers and at virtual ground; otherwise without the term that couples a taxel
 /// to those of other rows and columns at once, as in GroundedRows::propagate_noise. Of the errors' variance a share,
 /// drive_error_correlation, is common to all drivers.
+///
+/// Many members: the symbols of the formula, as add() may not allocate.
 class DriverError {
  public:
   /// The circuit of GroundedRows, or that of VirtualGround with `column_ohm` 0. Rows are driven.

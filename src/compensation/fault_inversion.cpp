@@ -47,6 +47,13 @@ std::optional<double> between(const std::array<std::optional<double>, 4>& near) 
 
 }  // namespace
 
+FaultInversion::Correction::Correction(std::size_t taxels)
+    : difference(taxels),
+      last_difference(taxels),
+      last_corrected(taxels),
+      healthy_ratio(taxels),
+      faulty_ratio(taxels) {}
+
 FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_ratio,
                                std::span<const double> typical_siemens)
     : array_(array),
@@ -58,11 +65,7 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
       unknown_(array.taxel_count()),
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
-      difference_(array.taxel_count()),
-      last_difference_(array.taxel_count()),
-      last_corrected_(array.taxel_count()),
-      healthy_ratio_(array.taxel_count()),
-      faulty_ratio_(array.taxel_count()) {
+      correction_(array.taxel_count()) {
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
   typical_siemens_.resize(array.taxel_count(), 1.0);
   for (const std::size_t taxel : array.absent) absent_[taxel] = 1;
@@ -139,11 +142,11 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   if (!circuits_) return result;
   for (int round = 0; round < kMaxRounds; ++round) {
     estimate_unknown(siemens);
-    circuits_->healthy.solve(siemens, healthy_ratio_);
+    circuits_->healthy.solve(siemens, correction_.healthy_ratio);
     if (any_) {
-      circuits_->faulty.solve(siemens, faulty_ratio_);
+      circuits_->faulty.solve(siemens, correction_.faulty_ratio);
     } else {
-      std::copy(healthy_ratio_.begin(), healthy_ratio_.end(), faulty_ratio_.begin());
+      std::copy(correction_.healthy_ratio.begin(), correction_.healthy_ratio.end(), correction_.faulty_ratio.begin());
     }
     result.residual_ratio = misfit(siemens);
     if (correct(round == 0) <= tolerance_) return result;
@@ -161,21 +164,21 @@ double FaultInversion::correct(bool first) noexcept {
   double along = 0.0;
   double square = 0.0;
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    const double known = unknown_[taxel] != 0 ? 0.0 : measured_[taxel] - faulty_ratio_[taxel];
-    const double difference = healthy_ratio_[taxel] + known - equivalent_[taxel];
+    const double known = unknown_[taxel] != 0 ? 0.0 : measured_[taxel] - correction_.faulty_ratio[taxel];
+    const double difference = correction_.healthy_ratio[taxel] + known - equivalent_[taxel];
     change = std::max(change, std::abs(difference));
     sum += difference;
-    const double turn = difference - last_difference_[taxel];
+    const double turn = difference - correction_.last_difference[taxel];
     along += difference * turn;
     square += turn * turn;
-    difference_[taxel] = difference;
+    correction_.difference[taxel] = difference;
   }
   const double share = first || square == 0.0 ? 0.0 : std::clamp(along / square, -kMostStretch, kMostStretch);
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    const double corrected = equivalent_[taxel] + difference_[taxel];
-    equivalent_[taxel] = corrected - share * (corrected - last_corrected_[taxel]);
-    last_corrected_[taxel] = corrected;
-    last_difference_[taxel] = difference_[taxel];
+    const double corrected = equivalent_[taxel] + correction_.difference[taxel];
+    equivalent_[taxel] = corrected - share * (corrected - correction_.last_corrected[taxel]);
+    correction_.last_corrected[taxel] = corrected;
+    correction_.last_difference[taxel] = correction_.difference[taxel];
   }
   return std::isfinite(sum) ? change : std::numeric_limits<double>::infinity();
 }
@@ -235,7 +238,7 @@ double FaultInversion::misfit(std::span<const double> siemens) const noexcept {
   double largest = 0.0;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
     if (unknown_[taxel] != 0) continue;
-    const double difference = measured_[taxel] - faulty_ratio_[taxel];
+    const double difference = measured_[taxel] - correction_.faulty_ratio[taxel];
     if (siemens[taxel] == 0.0 && difference < 0.0) continue;
     largest = std::max(largest, std::abs(difference));
   }

@@ -55,6 +55,17 @@ class FaultInversion {
     double ratio;  ///< Reading of the first line over that of the second.
   };
 
+  /// Work space of a round [taxels].
+  struct Correction {
+    explicit Correction(std::size_t taxels);
+
+    std::vector<double> difference;  // T' found less T' put in
+    std::vector<double> last_difference;
+    std::vector<double> last_corrected;
+    std::vector<double> healthy_ratio;
+    std::vector<double> faulty_ratio;
+  };
+
   void add(const LineFault& fault);
   void add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const;
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
@@ -74,13 +85,9 @@ class FaultInversion {
   std::vector<std::uint8_t> unknown_;  // hidden, or without a reading [taxels]
   std::vector<std::size_t> supplied_rows_;
   std::vector<ShortedLines> shorted_;
-  std::vector<double> measured_;         // T without what supplied rows add [taxels]
-  std::vector<double> equivalent_;       // T' [taxels]
-  std::vector<double> difference_;       // T' found less T' put in [taxels]
-  std::vector<double> last_difference_;  // [taxels]
-  std::vector<double> last_corrected_;   // [taxels]
-  std::vector<double> healthy_ratio_;    // [taxels]
-  std::vector<double> faulty_ratio_;     // [taxels]
+  std::vector<double> measured_;    // T without what supplied rows add [taxels]
+  std::vector<double> equivalent_;  // T' [taxels]
+  Correction correction_;
 };
 
 }  // namespace dermis::compensation

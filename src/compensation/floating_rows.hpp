@@ -18,6 +18,8 @@ namespace dermis::compensation {
 /// of each row given, all conductances follow from the readings, and those give D and b anew. A reading below what its
 /// neighbours alone explain is raised until its taxel is at 0 S. Usually settles in 5 to 20 passes of about 35 cols^3 +
 /// 4 rows cols^2 multiplications, where a single product with the Jacobian takes rows^2 cols^2.
+///
+/// Many members: the work space of a pass, which may not allocate.
 class FloatingRows {
  public:
   /// `array`: inverts() it.

@@ -29,22 +29,22 @@ constexpr double kMostLogResidual = 2.302585092994046;  // ln 10
 
 }  // namespace
 
+GroundedRows::Sources::Sources(std::size_t stride)
+    : siemens(stride), column_ratio(stride), column_return(stride), column_sum(stride) {}
+
+GroundedRows::Mixing::Mixing(std::size_t size)
+    : anderson(size, kMixingDepth), log_siemens(size), last_log_siemens(size), log_step(size) {}
+
 GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio, bool counts_driver_errors)
     : tolerance_(tolerance_ratio),
       state_(array.rows, array.cols, array.readout.idle_columns),
       reading_siemens_(state_.stride),
       offset_siemens_(state_.stride),
-      source_siemens_(state_.stride),
-      column_ratio_(state_.stride),
-      column_return_(state_.stride),
-      column_sum_(state_.stride),
+      sources_(state_.stride),
       last_estimate_(state_.siemens.size()),
       best_siemens_(state_.siemens.size()),
       best_explained_(state_.siemens.size()),
-      mixing_(state_.siemens.size(), kMixingDepth),
-      log_siemens_(state_.siemens.size()),
-      last_log_siemens_(state_.siemens.size()),
-      log_step_(state_.siemens.size()),
+      mixing_(state_.siemens.size()),
       sigma_column_(state_.stride),
       sigma_(state_.siemens.size()) {
   const Readout& readout = array.readout;
@@ -63,8 +63,8 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
     driver_error_.emplace(array, std::vector<double>(state_.column_ohm.begin(), state_.column_ohm.begin() + cols));
   }
   if (is_absent(readout.amplifier_offset_v)) return;
-  source_.resize(state_.stride);
-  for (std::size_t col = 0; col < array.cols; ++col) source_[col] = sensed_line(readout, col).emf;
+  sources_.ratio.resize(state_.stride);
+  for (std::size_t col = 0; col < array.cols; ++col) sources_.ratio[col] = sensed_line(readout, col).emf;
 }
 
 double GroundedRows::siemens_per_ratio() const noexcept {
@@ -98,8 +98,8 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
 
 void GroundedRows::forget() noexcept {
   has_last_ = false;
-  std::fill(source_siemens_.begin(), source_siemens_.end(), 0.0);
-  std::fill(column_ratio_.begin(), column_ratio_.end(), 0.0);
+  std::fill(sources_.siemens.begin(), sources_.siemens.end(), 0.0);
+  std::fill(sources_.column_ratio.begin(), sources_.column_ratio.end(), 0.0);
 }
 
 /// y of the readings, with what the sources drove into the array in the last frame.
@@ -107,13 +107,13 @@ void GroundedRows::load(std::span<const double> ratio) noexcept {
   for (std::size_t row = 0; row < state_.rows; ++row) {
     for (std::size_t col = 0; col < state_.cols; ++col) {
       const double reading = reading_siemens_[col] * ratio[row * state_.cols + col];
-      state_.measured[row * state_.stride + col] = reading + offset_siemens_[col] + source_siemens_[col];
+      state_.measured[row * state_.stride + col] = reading + offset_siemens_[col] + sources_.siemens[col];
     }
   }
 }
 
 double GroundedRows::certify() noexcept {
-  const bool settled = source_.empty() || follow_sources();
+  const bool settled = sources_.ratio.empty() || follow_sources();
   const double certificate = assess(state_);
   return settled ? certificate : std::numeric_limits<double>::infinity();
 }
@@ -129,38 +129,39 @@ bool GroundedRows::follow_sources() noexcept {
     change = 0.0;
     find_row_currents();
     for (std::size_t col = 0; col < state_.cols; ++col) {
-      const double ratio = (source_[col] + state_.column_ohm[col] * column_return_[col]) * state_.column_part[col];
-      change = std::max(change, std::abs(ratio - column_ratio_[col]));
-      column_ratio_[col] = ratio;
+      const double ratio =
+          (sources_.ratio[col] + state_.column_ohm[col] * sources_.column_return[col]) * state_.column_part[col];
+      change = std::max(change, std::abs(ratio - sources_.column_ratio[col]));
+      sources_.column_ratio[col] = ratio;
     }
   } while (change > kSourceShare * tolerance_ && change < last_change && ++pass < kSourcePasses);
   find_row_currents();
   for (std::size_t col = 0; col < state_.cols; ++col) {
-    const double current = column_ratio_[col] * column_sum_[col] - column_return_[col];
+    const double current = sources_.column_ratio[col] * sources_.column_sum[col] - sources_.column_return[col];
     for (std::size_t row = 0; row < state_.rows; ++row) {
       const std::size_t k = row * state_.stride + col;
       const bool held = state_.explained[k] > state_.measured[k];
-      state_.measured[k] += current - source_siemens_[col];
+      state_.measured[k] += current - sources_.siemens[col];
       state_.explained[k] = held ? std::max(state_.explained[k], state_.measured[k]) : state_.measured[k];
       state_.dropped[k] = state_.drive_ohm[row] * state_.explained[k];
     }
-    source_siemens_[col] = current;
+    sources_.siemens[col] = current;
   }
   return pass < kSourcePasses;
 }
 
 /// G^T diag(Rd / a) G v and G^T 1.
 void GroundedRows::find_row_currents() noexcept {
-  std::fill(column_return_.begin(), column_return_.end(), 0.0);
-  std::fill(column_sum_.begin(), column_sum_.end(), 0.0);
+  std::fill(sources_.column_return.begin(), sources_.column_return.end(), 0.0);
+  std::fill(sources_.column_sum.begin(), sources_.column_sum.end(), 0.0);
   for (std::size_t row = 0; row < state_.rows; ++row) {
     const double* const siemens = &state_.siemens[row * state_.stride];
     double current = 0.0;
-    for (std::size_t col = 0; col < state_.cols; ++col) current += siemens[col] * column_ratio_[col];
+    for (std::size_t col = 0; col < state_.cols; ++col) current += siemens[col] * sources_.column_ratio[col];
     const double line_ratio = current * state_.drive_ohm[row] / state_.line_gain[row];
     for (std::size_t col = 0; col < state_.cols; ++col) {
-      column_return_[col] += siemens[col] * line_ratio;
-      column_sum_[col] += siemens[col];
+      sources_.column_return[col] += siemens[col] * line_ratio;
+      sources_.column_sum[col] += siemens[col];
     }
   }
 }
@@ -189,10 +190,10 @@ void GroundedRows::keep() noexcept {
 
 /// From the start, the first steps halved (docs/derivations.md, below (4)), the others mixed.
 double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept {
-  for (std::size_t k = 0; k < log_siemens_.size(); ++k) {
-    log_siemens_[k] = std::log(std::max(state_.estimate[k], kLeastSiemens));
+  for (std::size_t k = 0; k < mixing_.log_siemens.size(); ++k) {
+    mixing_.log_siemens[k] = std::log(std::max(state_.estimate[k], kLeastSiemens));
   }
-  mixing_.forget();
+  mixing_.anderson.forget();
   int without_gain = 0;
   for (int step = 0; step < damped_steps + kMixedSteps && best > tolerance_; ++step) {
     take_step();
@@ -203,7 +204,7 @@ double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept
       without_gain = 0;
     }
     if (step < damped_steps) {
-      mixing_.forget();
+      mixing_.anderson.forget();
       without_gain = 0;
     }
     if (++without_gain > (best <= kRounded ? kRoundedStepsWithoutGain : kStepsWithoutGain)) break;
@@ -220,9 +221,9 @@ void GroundedRows::take_step() noexcept {
   for (std::size_t row = 0; row < state_.rows; ++row) {
     for (std::size_t col = 0; col < state_.stride; ++col) {
       const std::size_t k = row * state_.stride + col;
-      const bool held = log_siemens_[k] <= least;
+      const bool held = mixing_.log_siemens[k] <= least;
       const double caused = state_.returned[k] / state_.line_gain[row];
-      state_.siemens[k] = held ? 0.0 : std::exp(log_siemens_[k]);
+      state_.siemens[k] = held ? 0.0 : std::exp(mixing_.log_siemens[k]);
       state_.explained[k] = held ? std::max(state_.measured[k], caused) : state_.measured[k];
     }
   }
@@ -238,17 +239,17 @@ void GroundedRows::choose_step() noexcept {
       const double undriven = state_.line_gain[row] * state_.measured[k] - state_.returned[k];
       const double next = std::max(state_.column_scale[col] * undriven, kLeastSiemens);
       const double change = std::log(next / std::max(state_.siemens[k], kLeastSiemens));
-      log_step_[k] = std::clamp(change, -kMostLogResidual, kMostLogResidual);
+      mixing_.log_step[k] = std::clamp(change, -kMostLogResidual, kMostLogResidual);
       near = near && std::abs(change) < kMostLogResidual;
     }
   }
-  if (!near) mixing_.forget();
-  last_log_siemens_ = log_siemens_;
-  mixing_.advance(log_siemens_, log_step_);
-  for (std::size_t k = 0; k < log_siemens_.size(); ++k) {
-    const double last = last_log_siemens_[k];
-    log_siemens_[k] = std::clamp(log_siemens_[k], last - kMostLogStep, last + kMostLogStep);
-    log_siemens_[k] = std::max(log_siemens_[k], std::log(kLeastSiemens));
+  if (!near) mixing_.anderson.forget();
+  mixing_.last_log_siemens = mixing_.log_siemens;
+  mixing_.anderson.advance(mixing_.log_siemens, mixing_.log_step);
+  for (std::size_t k = 0; k < mixing_.log_siemens.size(); ++k) {
+    const double last = mixing_.last_log_siemens[k];
+    mixing_.log_siemens[k] = std::clamp(mixing_.log_siemens[k], last - kMostLogStep, last + kMostLogStep);
+    mixing_.log_siemens[k] = std::max(mixing_.log_siemens[k], std::log(kLeastSiemens));
   }
 }
 

@@ -62,6 +62,27 @@ class GroundedRows final : public CrosstalkInversion {
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
 
  private:
+  /// What the offsets of amplifiers do [stride].
+  struct Sources {
+    explicit Sources(std::size_t stride);
+
+    std::vector<double> ratio;          // e over the supply; empty: none
+    std::vector<double> siemens;        // what e drives into the array, over the supply
+    std::vector<double> column_ratio;   // column voltages then, over the supply
+    std::vector<double> column_return;  // currents from the rows into the columns then
+    std::vector<double> column_sum;     // G^T 1
+  };
+
+  /// Anderson's mixing of ln G.
+  struct Mixing {
+    explicit Mixing(std::size_t size);
+
+    AndersonMixing anderson;
+    std::vector<double> log_siemens;
+    std::vector<double> last_log_siemens;
+    std::vector<double> log_step;
+  };
+
   void load(std::span<const double> ratio) noexcept;
   [[nodiscard]] double certify() noexcept;
   [[nodiscard]] bool follow_sources() noexcept;
@@ -76,19 +97,12 @@ class GroundedRows final : public CrosstalkInversion {
   GroundedRowsState state_;
   std::vector<double> reading_siemens_;  // y of a ratio of 1 [stride]
   std::vector<double> offset_siemens_;   // y of a ratio of 0 [stride]
-  std::vector<double> source_;           // e over the supply [stride]; empty: none
-  std::vector<double> source_siemens_;   // what e drives into the array, over the supply [stride]
-  std::vector<double> column_ratio_;     // column voltages then, over the supply [stride]
-  std::vector<double> column_return_;    // currents from the rows into the columns then [stride]
-  std::vector<double> column_sum_;       // G^T 1 [stride]
-  bool has_last_ = false;                // `state_` holds the solution of the last frame
-  std::vector<double> last_estimate_;    // and this is the estimate that belongs to it
+  Sources sources_;
+  bool has_last_ = false;              // `state_` holds the solution of the last frame
+  std::vector<double> last_estimate_;  // and this is the estimate that belongs to it
   std::vector<double> best_siemens_;
   std::vector<double> best_explained_;
-  AndersonMixing mixing_;
-  std::vector<double> log_siemens_;
-  std::vector<double> last_log_siemens_;
-  std::vector<double> log_step_;
+  Mixing mixing_;
   std::vector<double> sigma_column_;  // of y [stride]
   std::vector<double> sigma_;         // of G [rows, stride]
   std::optional<DriverError> driver_error_;

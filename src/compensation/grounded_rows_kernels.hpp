@@ -11,6 +11,7 @@ namespace dermis::compensation {
 
 /// What the iteration of GroundedRows works on; grounded_rows.hpp says what the symbols mean. Matrices are
 /// [rows, stride], row-major: zeros fill up the columns to whole SIMD vectors.
+/// Many members: the symbols of formula (4), of the circuit, the frame and the iterate.
 struct GroundedRowsState {
   GroundedRowsState(std::size_t row_count, std::size_t col_count, IdleColumns columns);
 

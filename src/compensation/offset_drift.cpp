@@ -50,6 +50,19 @@ class OffsetDrift::Implementation {
   [[nodiscard]] std::span<const double> offsets() const noexcept { return offset_; }
 
  private:
+  /// Frames that are averaged.
+  struct Block {
+    explicit Block(std::size_t taxels) : sum(taxels), sigma(taxels), trouble(taxels) {}
+
+    Nanos begin{};
+    Nanos last_time{};
+    std::size_t frames = 0;
+    double temperature_sum = 0.0;
+    std::vector<double> sum;            // Of the frames; then their mean beside the calibration [S].
+    std::vector<double> sigma;          // Of one reading, in the last frame [S].
+    std::vector<std::uint8_t> trouble;  // Not 0: some frame had a status other than ok.
+  };
+
   void begin_block(Nanos time) noexcept;
   void forget_history() noexcept;
   void accumulate(const ConductanceFrame& frame) noexcept;
@@ -76,15 +89,7 @@ class OffsetDrift::Implementation {
   std::vector<double> offset_;  // Subtracted; beside the calibration [S].
   std::vector<double> tared_;   // The same after the last tare, from which following may only go so far [S].
 
-  // The block that is being averaged.
-  Nanos block_begin_{};
-  Nanos last_time_{};
-  std::size_t frames_ = 0;
-  double temperature_sum_ = 0.0;
-  std::vector<double> sum_;            // Of the frames; then their mean beside the calibration [S].
-  std::vector<double> sigma_;          // Of one reading, in the last frame [S].
-  std::vector<std::uint8_t> trouble_;  // Not 0: some frame had a status other than ok.
-
+  Block block_;
   std::vector<std::uint8_t> pressed_;  // In this block.
   std::vector<float> hold_s_;          // Not followed for so long.
   std::vector<double> candidate_;      // Mean of the block before, to be followed if this one is idle, too.
@@ -99,9 +104,7 @@ OffsetDrift::Implementation::Implementation(const FrameShape& shape, UnloadedCon
       options_(options),
       offset_(shape.taxel_count()),
       tared_(shape.taxel_count()),
-      sum_(shape.taxel_count()),
-      sigma_(shape.taxel_count()),
-      trouble_(shape.taxel_count()),
+      block_(shape.taxel_count()),
       pressed_(shape.taxel_count()),
       hold_s_(shape.taxel_count()),
       candidate_(shape.taxel_count()),
@@ -120,14 +123,14 @@ void OffsetDrift::Implementation::process(ConductanceFrame& frame) noexcept {
       frame.siemens.size() == taxels && frame.sigma_siemens.size() == taxels && frame.taxels.size() == taxels;
   if (has(frame.status, FrameStatus::rejected) || !fits) return;
   if (observes && !has(frame.status, FrameStatus::not_converged)) {
-    const double since_last_s = seconds(frame.time - last_time_);
-    const double block_s = seconds(frame.time - block_begin_);
-    if (frames_ > 0 && (since_last_s < 0.0 || since_last_s > kLongestGapS)) {
+    const double since_last_s = seconds(frame.time - block_.last_time);
+    const double block_s = seconds(frame.time - block_.begin);
+    if (block_.frames > 0 && (since_last_s < 0.0 || since_last_s > kLongestGapS)) {
       forget_history();
-    } else if (frames_ > 0 && block_is_complete(block_s)) {
+    } else if (block_.frames > 0 && block_is_complete(block_s)) {
       finish_block(block_s);
     }
-    if (frames_ == 0) begin_block(frame.time);
+    if (block_.frames == 0) begin_block(frame.time);
     accumulate(frame);
   }
   double* const siemens = frame.siemens.data();
@@ -159,34 +162,34 @@ void OffsetDrift::Implementation::set_options(const OffsetDriftOptions& options)
 }
 
 void OffsetDrift::Implementation::begin_block(Nanos time) noexcept {
-  block_begin_ = time;
-  temperature_sum_ = 0.0;
-  std::fill(sum_.begin(), sum_.end(), 0.0);
-  std::fill(trouble_.begin(), trouble_.end(), std::uint8_t{0});
+  block_.begin = time;
+  block_.temperature_sum = 0.0;
+  std::fill(block_.sum.begin(), block_.sum.end(), 0.0);
+  std::fill(block_.trouble.begin(), block_.trouble.end(), std::uint8_t{0});
 }
 
 void OffsetDrift::Implementation::forget_history() noexcept {
-  frames_ = 0;
+  block_.frames = 0;
   std::fill(has_candidate_.begin(), has_candidate_.end(), std::uint8_t{0});
 }
 
 void OffsetDrift::Implementation::accumulate(const ConductanceFrame& frame) noexcept {
   const TemperatureSpan& calibrated = unloaded_.law.temperature;
-  temperature_sum_ += calibrated.offset(frame.temperature_celsius.value_or(calibrated.centre_celsius));
+  block_.temperature_sum += calibrated.offset(frame.temperature_celsius.value_or(calibrated.centre_celsius));
   const double* const siemens = frame.siemens.data();
-  double* const sum = sum_.data();
-  for (std::size_t k = 0; k < sum_.size(); ++k) sum[k] += siemens[k];
+  double* const sum = block_.sum.data();
+  for (std::size_t k = 0; k < block_.sum.size(); ++k) sum[k] += siemens[k];
   const TaxelStatus* const status = frame.taxels.data();
-  std::uint8_t* const trouble = trouble_.data();
-  for (std::size_t k = 0; k < trouble_.size(); ++k) trouble[k] |= static_cast<std::uint8_t>(status[k]);
-  std::copy(frame.sigma_siemens.begin(), frame.sigma_siemens.end(), sigma_.begin());
-  last_time_ = frame.time;
-  ++frames_;
+  std::uint8_t* const trouble = block_.trouble.data();
+  for (std::size_t k = 0; k < block_.trouble.size(); ++k) trouble[k] |= static_cast<std::uint8_t>(status[k]);
+  std::copy(frame.sigma_siemens.begin(), frame.sigma_siemens.end(), block_.sigma.begin());
+  block_.last_time = frame.time;
+  ++block_.frames;
 }
 
 bool OffsetDrift::Implementation::block_is_complete(double block_s) const noexcept {
   if (!taring_) return block_s >= kBlockS;
-  return block_s >= kBlockS && (frames_ >= kLeastTareFrames || block_s >= kLongestTareS);
+  return block_s >= kBlockS && (block_.frames >= kLeastTareFrames || block_s >= kLongestTareS);
 }
 
 void OffsetDrift::Implementation::finish_block(double block_s) noexcept {
@@ -198,22 +201,22 @@ void OffsetDrift::Implementation::finish_block(double block_s) noexcept {
     hold_pressed(block_s);
     follow_idle(block_s);
   }
-  frames_ = 0;
+  block_.frames = 0;
 }
 
 void OffsetDrift::Implementation::average_block() noexcept {
-  const double per_frame = 1.0 / static_cast<double>(frames_);
-  const double temperature_offset = temperature_sum_ * per_frame;
-  for (std::size_t k = 0; k < sum_.size(); ++k) {
-    sum_[k] = unloaded_.law.excess(k, sum_[k] * per_frame, temperature_offset);
+  const double per_frame = 1.0 / static_cast<double>(block_.frames);
+  const double temperature_offset = block_.temperature_sum * per_frame;
+  for (std::size_t k = 0; k < block_.sum.size(); ++k) {
+    block_.sum[k] = unloaded_.law.excess(k, block_.sum[k] * per_frame, temperature_offset);
   }
 }
 
 /// Shrinks the step by the share of its square that the noise of the mean may be (James and Stein 1961).
 void OffsetDrift::Implementation::take_block_as_zero() noexcept {
   for (std::size_t k = 0; k < offset_.size(); ++k) {
-    const double step = sum_[k] - offset_[k];
-    const double variance = sigma_[k] * sigma_[k] / static_cast<double>(frames_);
+    const double step = block_.sum[k] - offset_[k];
+    const double variance = block_.sigma[k] * block_.sigma[k] / static_cast<double>(block_.frames);
     const double shrunk = step * std::max(0.0, 1.0 - variance / (step * step));
     if (std::isfinite(shrunk)) offset_[k] += shrunk;
   }
@@ -229,13 +232,13 @@ double OffsetDrift::Implementation::unloaded_siemens(std::size_t taxel) const no
 }
 
 double OffsetDrift::Implementation::band(std::size_t taxel) const noexcept {
-  const double averaged = std::min(static_cast<double>(frames_), kMostAveraged);
+  const double averaged = std::min(static_cast<double>(block_.frames), kMostAveraged);
   return kBandOfUnloaded * unloaded_siemens(taxel) + kRangeSigmas * unloaded_.sigma_siemens[taxel] +
-         kBandSigmas * sigma_[taxel] / std::sqrt(averaged);
+         kBandSigmas * block_.sigma[taxel] / std::sqrt(averaged);
 }
 
 void OffsetDrift::Implementation::find_pressed() noexcept {
-  for (std::size_t k = 0; k < pressed_.size(); ++k) pressed_[k] = sum_[k] - offset_[k] > band(k) ? 1 : 0;
+  for (std::size_t k = 0; k < pressed_.size(); ++k) pressed_[k] = block_.sum[k] - offset_[k] > band(k) ? 1 : 0;
 }
 
 void OffsetDrift::Implementation::hold_pressed(double block_s) noexcept {
@@ -253,12 +256,12 @@ bool OffsetDrift::Implementation::pressed_nearby(std::size_t taxel) const noexce
 
 /// False for NaN, as is_idle().
 bool OffsetDrift::Implementation::is_below_any_load(std::size_t taxel) const noexcept {
-  return sum_[taxel] < offset_[taxel] && sum_[taxel] < -band(taxel);
+  return block_.sum[taxel] < offset_[taxel] && block_.sum[taxel] < -band(taxel);
 }
 
 bool OffsetDrift::Implementation::is_idle(std::size_t taxel) const noexcept {
-  if (trouble_[taxel] != 0 || hold_s_[taxel] > 0.0F) return false;
-  return std::abs(sum_[taxel] - offset_[taxel]) <= band(taxel) || is_below_any_load(taxel);
+  if (block_.trouble[taxel] != 0 || hold_s_[taxel] > 0.0F) return false;
+  return std::abs(block_.sum[taxel] - offset_[taxel]) <= band(taxel) || is_below_any_load(taxel);
 }
 
 void OffsetDrift::Implementation::follow_idle(double block_s) noexcept {
@@ -266,7 +269,7 @@ void OffsetDrift::Implementation::follow_idle(double block_s) noexcept {
     const bool idle = is_idle(k);
     if (idle && has_candidate_[k] != 0) follow(k, block_s);
     has_candidate_[k] = idle ? 1 : 0;
-    if (idle) candidate_[k] = sum_[k];
+    if (idle) candidate_[k] = block_.sum[k];
   }
   corrects_ = true;
 }
@@ -277,11 +280,11 @@ void OffsetDrift::Implementation::follow(std::size_t taxel, double block_s) noex
   const double gain = std::max(std::min(1.0, block_s / kFollowS), 1.0 / (kPriorBlocks + static_cast<double>(blocks)));
   double step = gain * (candidate_[taxel] - offset_[taxel]);
   if (blocks >= kSettlingBlocks && !is_below_any_load(taxel)) {
-    const double largest = block_s * (kUnloadedPerSecond * unloaded + kSigmasPerSecond * sigma_[taxel]);
+    const double largest = block_s * (kUnloadedPerSecond * unloaded + kSigmasPerSecond * block_.sigma[taxel]);
     step = std::clamp(step, -largest, largest);
   }
-  const double most =
-      tared_[taxel] + kRangeOfUnloaded * unloaded + kRangeSigmas * (sigma_[taxel] + unloaded_.sigma_siemens[taxel]);
+  const double most = tared_[taxel] + kRangeOfUnloaded * unloaded +
+                      kRangeSigmas * (block_.sigma[taxel] + unloaded_.sigma_siemens[taxel]);
   offset_[taxel] = std::min(offset_[taxel] + step, most);
   blocks = std::min(blocks + 1.0F, kSettlingBlocks);
 }

@@ -12,9 +12,11 @@
 
 #include "dermis/core/neighbours.hpp"
 #include "fusion/contact_gauge.hpp"
+#include "fusion/contact_parting.hpp"
 #include "fusion/contact_tracks.hpp"
 #include "fusion/stressed_areas.hpp"
 #include "fusion/strip.hpp"
+#include "fusion/taxel_plane.hpp"
 
 namespace dermis::fusion {
 namespace {
@@ -38,13 +40,11 @@ class ContactTracker::Implementation {
  public:
   Implementation(const ArrayDescription& array, const ContactOptions& contact_options, std::optional<StripTable> strip)
       : options(contact_options),
-        rows_(array.rows),
-        cols_(array.cols),
-        row_pitch_m_(array.row_pitch_m),
-        col_pitch_m_(array.col_pitch_m),
+        plane_(array),
         pitch_m_(strip_pitch_m(array).value_or(std::max(array.row_pitch_m, array.col_pitch_m))),
         areas_(array.rows, array.cols, strip.has_value()),
-        gauge_(array, std::move(strip)),
+        gauge_(plane_, std::move(strip)),
+        parting_(plane_),
         tracks_(kReachPitches * pitch_m_) {
     assert(array.validate().has_value());
     found_.reserve(array.taxel_count());
@@ -53,8 +53,8 @@ class ContactTracker::Implementation {
   }
 
   void process(const ForceFrame& force, ContactReport& report) noexcept {
-    assert(force.newtons.size() == rows_ * cols_ && force.sigma_newtons.size() == rows_ * cols_ &&
-           force.signal_to_noise.size() == rows_ * cols_);
+    assert(force.newtons.size() == plane_.places.size() && force.sigma_newtons.size() == plane_.places.size() &&
+           force.signal_to_noise.size() == plane_.places.size());
     report.time = force.time;
     report.status = force.status;
     report.contacts.reserve(2 * options.most_contacts);
@@ -83,20 +83,17 @@ class ContactTracker::Implementation {
     held_.clear();
     for (const ExpectedContact& expected : expected_) {
       const PlaneVector place = expected.place;
-      const double row = std::clamp(place.y / row_pitch_m_, 0.0, static_cast<double>(rows_ - 1));
-      const double col = std::clamp(place.x / col_pitch_m_, 0.0, static_cast<double>(cols_ - 1));
-      held_.push_back(static_cast<std::uint32_t>(std::lround(row)) * static_cast<std::uint32_t>(cols_) +
+      const double row = std::clamp(place.y / plane_.row_pitch_m, 0.0, static_cast<double>(plane_.rows - 1));
+      const double col = std::clamp(place.x / plane_.col_pitch_m, 0.0, static_cast<double>(plane_.cols - 1));
+      held_.push_back(static_cast<std::uint32_t>(std::lround(row)) * static_cast<std::uint32_t>(plane_.cols) +
                       static_cast<std::uint32_t>(std::lround(col)));
     }
   }
 
   /// An area too weak to go on is left out, and one that holds two contacts is parted.
   void add(const ForceFrame& force, std::span<std::uint32_t> taxels) {
-    FoundContact found;
-    found.peak = taxels.front();
-    found.contact = gauge_.measure(force, taxels, pressed_sigma(), expected_at(taxels.front()));
-    found.profile = gauge_.profile();
-    const auto [own, share] = part(force, taxels);
+    const Measurement measured = gauge_.measure(force, taxels, pressed_sigma(), expected_at(taxels.front()));
+    const auto [own, share] = part(force, taxels, measured);
     if (own < taxels.size() && own > 0 && can_go_on(force, taxels.subspan(own)) && is_top(force, taxels, taxels[own]) &&
         are_apart(force, taxels.first(own), taxels.subspan(own), share)) {
       add(force, taxels.first(own));
@@ -104,8 +101,7 @@ class ContactTracker::Implementation {
       return;
     }
     if (!can_go_on(force, taxels)) return;
-    found.can_begin = is_strong(force, taxels, 1.0);
-    found_.push_back(found);
+    found_.push_back({measured.contact, measured.peak, measured.profile(), is_strong(force, taxels, 1.0)});
   }
 
   struct Parting {
@@ -114,13 +110,14 @@ class ContactTracker::Implementation {
   };
 
   /// A contact that is there already is looked for before a new one.
-  [[nodiscard]] Parting part(const ForceFrame& force, std::span<std::uint32_t> taxels) {
+  [[nodiscard]] Parting part(const ForceFrame& force, std::span<std::uint32_t> taxels, const Measurement& measured) {
     if (holds_several(taxels)) {
-      const Parting held{gauge_.part(force, taxels, options.onset_sigma, StressedAreas::kHeldShare, held_),
-                         StressedAreas::kHeldShare};
-      if (held.own < taxels.size()) return held;
+      const Evidence of_held{options.onset_sigma, StressedAreas::kHeldShare};
+      const std::size_t own = parting_.part(force, taxels, measured, of_held, held_);
+      if (own < taxels.size()) return {own, of_held.share};
     }
-    return {gauge_.part(force, taxels, options.onset_sigma, 1.0, {}), 1.0};
+    const Evidence of_new{options.onset_sigma, 1.0};
+    return {parting_.part(force, taxels, measured, of_new, {}), of_new.share};
   }
 
   /// More than one contact of the frame before was on these taxels.
@@ -134,17 +131,26 @@ class ContactTracker::Implementation {
   /// overlap; those found on the parts of an elongated one do, near each other.
   [[nodiscard]] bool are_apart(const ForceFrame& force, std::span<const std::uint32_t> one,
                                std::span<const std::uint32_t> other, double share) {
-    const Contact a = gauge_.measure(force, one, pressed_sigma(), nullptr);
-    if (!gauge_.stands_out(force, other.front(), options.onset_sigma, share)) return false;
-    const Contact b = gauge_.measure(force, other, pressed_sigma(), nullptr);
+    const Measurement measured = gauge_.measure(force, one, pressed_sigma(), nullptr);
+    if (!stands_out(force, one, other.front(), measured, {options.onset_sigma, share})) return false;
+    const Contact a = measured.contact;
+    const Contact b = gauge_.measure(force, other, pressed_sigma(), nullptr).contact;
     const double distance = std::hypot(a.position.x - b.position.x, a.position.y - b.position.y);
     return distance >= share * kPitchesApart * pitch_m_ ||
            distance >= share * (std::sqrt(a.area_m2 / std::numbers::pi) + std::sqrt(b.area_m2 / std::numbers::pi));
   }
 
+  /// `taxel` stands out of what the weak taxels around `area` differ by from its patch. All do where it has none.
+  [[nodiscard]] bool stands_out(const ForceFrame& force, std::span<const std::uint32_t> area, std::uint32_t taxel,
+                                const Measurement& measured, Evidence evidence) {
+    if (!measured.patch) return true;
+    const float scatter = gauge_.scatter_of_weak_taxels(force, area, pressed_sigma(), measured);
+    return parting_.stands_out(force, taxel, measured, evidence, scatter);
+  }
+
   /// No taxel of another area beside it is stronger; else it is the rim of that one.
   [[nodiscard]] bool is_top(const ForceFrame& force, std::span<const std::uint32_t> area, std::uint32_t taxel) const {
-    for (const std::size_t beside : Neighbours(rows_, cols_, taxel)) {
+    for (const std::size_t beside : Neighbours(plane_.rows, plane_.cols, taxel)) {
       if (!(force.newtons[beside] > force.newtons[taxel])) continue;
       if (std::find(area.begin(), area.end(), beside) == area.end()) return false;
     }
@@ -176,8 +182,10 @@ class ContactTracker::Implementation {
     const ExpectedContact* found = nullptr;
     std::int64_t least = 3;  // of the squared distance: the 8 neighbours are at 1 or 2
     for (std::size_t k = 0; k < held_.size(); ++k) {
-      const auto rows = static_cast<std::int64_t>(held_[k] / cols_) - static_cast<std::int64_t>(taxel / cols_);
-      const auto cols = static_cast<std::int64_t>(held_[k] % cols_) - static_cast<std::int64_t>(taxel % cols_);
+      const auto rows =
+          static_cast<std::int64_t>(held_[k] / plane_.cols) - static_cast<std::int64_t>(taxel / plane_.cols);
+      const auto cols =
+          static_cast<std::int64_t>(held_[k] % plane_.cols) - static_cast<std::int64_t>(taxel % plane_.cols);
       const std::int64_t distance = rows * rows + cols * cols;
       if (distance >= least) continue;
       least = distance;
@@ -211,13 +219,11 @@ class ContactTracker::Implementation {
     if (sum > 0.0) report.centre_of_pressure = PlaneVector{first.x / sum, first.y / sum};
   }
 
-  std::size_t rows_;
-  std::size_t cols_;
-  double row_pitch_m_;
-  double col_pitch_m_;
+  TaxelPlane plane_;
   double pitch_m_;
   StressedAreas areas_;
   ContactGauge gauge_;
+  ContactParting parting_;
   ContactTracks tracks_;
   std::vector<ExpectedContact> expected_;
   // [expected]: the taxel it is on

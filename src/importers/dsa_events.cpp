@@ -36,6 +36,13 @@ bool is_space(char c) {
 
 /// expat calls its handlers from within XML_Parse(); the parser stops at each event, and is resumed.
 struct DsaEvents::State {
+  /// The event that is being read.
+  struct Event {
+    DsaEvent read{};
+    bool is_complete = false;
+    bool is_shape_wrong = false;
+  };
+
   std::unique_ptr<std::istream> in;
   std::string name;
   Bzip2Input bytes{*in};
@@ -49,15 +56,12 @@ struct DsaEvents::State {
   std::set<std::string, std::less<>> names{};  ///< Of elements and attributes.
   std::size_t name_bytes = 0;
 
-  // Of the element that is open.
-  std::string text{};
-  DsaEvent open{};
-  bool has_event = false;
-  bool is_shape_wrong = false;
+  std::string text{};  ///< Of the element that is open.
+  Event event{};
 
   void begin();
   [[nodiscard]] XML_Status advance();
-  [[nodiscard]] Status fail(DsaEvent& event);
+  [[nodiscard]] Status fail(DsaEvent& failed);
   [[nodiscard]] Error error(const std::string& message) const;
   void refuse(const char* why);
   void add_name(std::string_view name);
@@ -68,11 +72,11 @@ struct DsaEvents::State {
 
 void DsaEvents::State::begin() {
   parser.reset(XML_ParserCreate(nullptr));
-  is_suspended = is_over = has_event = is_shape_wrong = false;
+  is_suspended = is_over = false;
   refusal = nullptr;
   taken = depth = name_bytes = 0;
   names.clear();
-  open = {};
+  event = {};
   XML_SetUserData(parser.get(), this);
   XML_SetElementHandler(
       parser.get(),
@@ -113,10 +117,12 @@ void DsaEvents::State::start_element(std::string_view element, const XML_Char** 
 
 void DsaEvents::State::end_element(std::string_view element) {
   --depth;
-  if (element == "cells_x") is_shape_wrong = is_shape_wrong || !files::parse_number(text, open.shape.cols);
-  if (element == "cells_y") is_shape_wrong = is_shape_wrong || !files::parse_number(text, open.shape.rows);
-  if (element == "time_stamp") open.time_ms = text;
-  if (element == "frame_data" || element == "temp_data") open.text = std::move(text);
+  if (element == "cells_x")
+    event.is_shape_wrong = event.is_shape_wrong || !files::parse_number(text, event.read.shape.cols);
+  if (element == "cells_y")
+    event.is_shape_wrong = event.is_shape_wrong || !files::parse_number(text, event.read.shape.rows);
+  if (element == "time_stamp") event.read.time_ms = text;
+  if (element == "frame_data" || element == "temp_data") event.read.text = std::move(text);
   text.clear();
   if (element == "matrix") deliver(DsaEvent::Kind::matrix);
   if (element == "frame") deliver(DsaEvent::Kind::frame);
@@ -124,8 +130,8 @@ void DsaEvents::State::end_element(std::string_view element) {
 }
 
 void DsaEvents::State::deliver(DsaEvent::Kind kind) {
-  open.kind = kind;
-  has_event = true;
+  event.read.kind = kind;
+  event.is_complete = true;
   XML_StopParser(parser.get(), XML_TRUE);
 }
 
@@ -144,7 +150,7 @@ XML_Status DsaEvents::State::advance() {
 }
 
 /// Why there is nothing more to parse.
-Status DsaEvents::State::fail(DsaEvent& event) {
+Status DsaEvents::State::fail(DsaEvent& failed) {
   is_over = true;
   if (in->bad()) return files::read_failure(name);
   if (refusal != nullptr) return error(refusal);
@@ -152,8 +158,8 @@ Status DsaEvents::State::fail(DsaEvent& event) {
   const bool is_cut = code == XML_ERROR_NO_ELEMENTS || code == XML_ERROR_UNCLOSED_TOKEN ||
                       code == XML_ERROR_PARTIAL_CHAR || code == XML_ERROR_UNCLOSED_CDATA_SECTION;
   if (!is_cut) return error(std::string("is no XML: ") + XML_ErrorString(code));
-  event = {};
-  event.is_cut = true;
+  failed = {};
+  failed.is_cut = true;
   return Done{};
 }
 
@@ -171,8 +177,8 @@ DsaEvents::~DsaEvents() = default;
 Status DsaEvents::next(DsaEvent& event) {
   State& state = *state_;
   event = {};
-  state.has_event = false;
-  while (!state.is_over && !state.has_event) {
+  state.event.is_complete = false;
+  while (!state.is_over && !state.event.is_complete) {
     const XML_Status status = state.advance();
     XML_ParsingStatus parsing{};
     XML_GetParsingStatus(state.parser.get(), &parsing);
@@ -186,9 +192,9 @@ Status DsaEvents::next(DsaEvent& event) {
     }
     if (parsing.parsing == XML_FINISHED) state.is_over = true;
   }
-  if (!state.has_event) return Done{};
-  if (state.is_shape_wrong) return error("a matrix has cells_x and cells_y that are no numbers");
-  event = std::exchange(state.open, {});
+  if (!state.event.is_complete) return Done{};
+  if (state.event.is_shape_wrong) return error("a matrix has cells_x and cells_y that are no numbers");
+  event = std::exchange(state.event.read, {});
   return Done{};
 }
 

@@ -75,17 +75,17 @@ void ArrayWorker::join() {
 
 template <typename Change>
 void ArrayWorker::request(const Change& change) {
-  const std::lock_guard lock(requests_mutex_);
-  change(requests_);
-  has_requests_.store(true, std::memory_order_release);
+  const std::lock_guard lock(requests_.mutex);
+  change(requests_.changes);
+  requests_.is_any.store(true, std::memory_order_release);
 }
 
 void ArrayWorker::set_settings(const LiveSettings& settings) {
-  request([&](Requests& requests) { requests.settings = settings; });
+  request([&](Changes& changes) { changes.settings = settings; });
 }
 
 void ArrayWorker::set_zero(ZeroRequest zero) {
-  request([&](Requests& requests) { requests.zero = zero; });
+  request([&](Changes& changes) { changes.zero = zero; });
 }
 
 Status ArrayWorker::set_model(const pipeline::Model& model) {
@@ -97,17 +97,17 @@ Status ArrayWorker::set_model(const pipeline::Model& model) {
   }
   Result<std::unique_ptr<pipeline::Pipeline>> pipeline = make_pipeline(model);
   if (!pipeline) return bad_input(fmt::format("array '{}': {}", array_.name, pipeline.error().message));
-  request([&](Requests& requests) { requests.pipeline = *std::move(pipeline); });
+  request([&](Changes& changes) { changes.pipeline = *std::move(pipeline); });
   return Done{};
 }
 
 void ArrayWorker::take_requests() {
-  if (!has_requests_.load(std::memory_order_acquire)) return;
-  Requests asked;
+  if (!requests_.is_any.load(std::memory_order_acquire)) return;
+  Changes asked;
   {
-    const std::lock_guard lock(requests_mutex_);
-    asked = std::exchange(requests_, {});
-    has_requests_.store(false, std::memory_order_relaxed);
+    const std::lock_guard lock(requests_.mutex);
+    asked = std::exchange(requests_.changes, {});
+    requests_.is_any.store(false, std::memory_order_relaxed);
   }
   if (asked.pipeline) pipeline_ = std::move(asked.pipeline);
   settings_ = asked.settings.value_or(settings_);
@@ -124,80 +124,80 @@ void ArrayWorker::run() {
 }
 
 Result<bool> ArrayWorker::step() {
-  Result<bool> more = array_.source->next(raw_);
+  Result<bool> more = array_.source->next(frame_.raw);
   if (!more || !*more) return more;
   take_requests();
-  pipeline_->process(raw_, force_);
+  pipeline_->process(frame_.raw, frame_.force);
   if (pipeline_->rejection() == preprocessing::Rejection::time_going_backwards && was_sought_back()) begin_anew();
-  last_time_ = raw_.time;
-  tracker_.process(force_, report_);
+  last_time_ = frame_.raw.time;
+  tracker_.process(frame_.force, frame_.report);
   place_contacts();
   meter(steady_now());
   if (options_.on_result) {
-    options_.on_result({index_, raw_, pipeline_->conductance(), force_, report_, contacts_});
+    options_.on_result({index_, frame_.raw, pipeline_->conductance(), frame_.force, frame_.report, frame_.contacts});
   }
   return true;
 }
 
 /// A frame of a device that comes a little late is rejected and no more.
 bool ArrayWorker::was_sought_back() const noexcept {
-  return last_time_ - raw_.time > kLate;
+  return last_time_ - frame_.raw.time > kLate;
 }
 
 /// A recording was sought back: the frame counts, and what touched the array then is not followed from now.
 void ArrayWorker::begin_anew() {
-  pipeline_->process(raw_, force_);
+  pipeline_->process(frame_.raw, frame_.force);
   tracker_.forget();
 }
 
 void ArrayWorker::place_contacts() {
-  contacts_.resize(report_.contacts.size());
-  for (std::size_t k = 0; k < contacts_.size(); ++k) {
-    const Contact& contact = report_.contacts[k];
-    contacts_[k] = {index_, contact, array_.surface.at(contact.position),
-                    array_.surface.along(contact.position, contact.velocity)};
+  frame_.contacts.resize(frame_.report.contacts.size());
+  for (std::size_t k = 0; k < frame_.contacts.size(); ++k) {
+    const Contact& contact = frame_.report.contacts[k];
+    frame_.contacts[k] = {index_, contact, array_.surface.at(contact.position),
+                          array_.surface.along(contact.position, contact.velocity)};
   }
 }
 
 void ArrayWorker::meter(Nanos now) {
-  ++frames_;
-  if (has(force_.status, FrameStatus::rejected)) ++rejected_;
-  const Nanos arrival = raw_.acquisition.arrival_steady;
-  if (arrival > Nanos{}) latencies_.add(now, now - arrival);
-  if (now - published_at_ < kPublishInterval) return;
-  const std::unique_lock lock(published_mutex_, std::try_to_lock);
+  ++counts_.frames;
+  if (has(frame_.force.status, FrameStatus::rejected)) ++counts_.rejected;
+  const Nanos arrival = frame_.raw.acquisition.arrival_steady;
+  if (arrival > Nanos{}) counts_.latencies.add(now, now - arrival);
+  if (now - published_.at < kPublishInterval) return;
+  const std::unique_lock lock(published_.mutex, std::try_to_lock);
   if (lock) publish(now);
 }
 
-/// With published_mutex_ held.
+/// With published_.mutex held.
 void ArrayWorker::publish(Nanos now) {
-  published_at_ = now;
-  published_.source = array_.source->statistics();
-  published_.frames = frames_;
-  published_.rejected = rejected_;
-  published_.latency_p50 = latencies_.quantile(now, 0.5);
-  published_.latency_p99 = latencies_.quantile(now, 0.99);
+  published_.at = now;
+  published_.statistics.source = array_.source->statistics();
+  published_.statistics.frames = counts_.frames;
+  published_.statistics.rejected = counts_.rejected;
+  published_.statistics.latency_p50 = counts_.latencies.quantile(now, 0.5);
+  published_.statistics.latency_p99 = counts_.latencies.quantile(now, 0.99);
   const auto faults = pipeline_->line_faults().faults();
-  published_.faults.assign(faults.begin(), faults.end());
-  published_.temperature_celsius = raw_.temperature_celsius;
-  published_.supply_v = raw_.supply_v;
+  published_.statistics.faults.assign(faults.begin(), faults.end());
+  published_.statistics.temperature_celsius = frame_.raw.temperature_celsius;
+  published_.statistics.supply_v = frame_.raw.supply_v;
 }
 
 void ArrayWorker::finish(const Status& outcome) {
   {
-    const std::lock_guard lock(published_mutex_);
+    const std::lock_guard lock(published_.mutex);
     publish(steady_now());
-    published_.ended = true;
-    if (!outcome) published_.error = outcome.error().message;
+    published_.statistics.ended = true;
+    if (!outcome) published_.statistics.error = outcome.error().message;
   }
   if (options_.notice && !outcome) options_.notice(fmt::format("array '{}': {}", array_.name, outcome.error().message));
   ended_.store(true, std::memory_order_release);
 }
 
 ArrayStatistics ArrayWorker::statistics() const {
-  const std::lock_guard lock(published_mutex_);
-  ArrayStatistics statistics = published_;
-  if (!statistics.ended && is_silent(statistics, steady_now() - published_at_)) statistics.source.rate_hz = 0.0;
+  const std::lock_guard lock(published_.mutex);
+  ArrayStatistics statistics = published_.statistics;
+  if (!statistics.ended && is_silent(statistics, steady_now() - published_.at)) statistics.source.rate_hz = 0.0;
   return statistics;
 }
 

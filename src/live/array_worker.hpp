@@ -37,11 +37,39 @@ class ArrayWorker {
   [[nodiscard]] ArrayStatistics statistics() const;
 
  private:
-  /// What other threads ask for; the worker takes it between two frames.
-  struct Requests {
+  /// What other threads ask for.
+  struct Changes {
     std::optional<LiveSettings> settings;
     ZeroRequest zero = ZeroRequest::keep;
     std::unique_ptr<pipeline::Pipeline> pipeline;
+  };
+
+  /// The worker takes the changes between two frames.
+  struct Requests {
+    std::mutex mutex;
+    Changes changes;
+    std::atomic<bool> is_any = false;
+  };
+
+  /// The frame at hand, from its readings to its contacts.
+  struct Frame {
+    RawFrame raw;
+    ForceFrame force;
+    ContactReport report;
+    std::vector<SuitContact> contacts;
+  };
+
+  struct Counts {
+    LatencyMeter latencies;
+    std::uint64_t frames = 0;
+    std::uint64_t rejected = 0;
+  };
+
+  /// What other threads see.
+  struct Published {
+    mutable std::mutex mutex;
+    ArrayStatistics statistics;
+    Nanos at{};  // by the steady clock
   };
 
   ArrayWorker(std::size_t index, LiveArray array, std::unique_ptr<pipeline::Pipeline> pipeline,
@@ -65,26 +93,17 @@ class ArrayWorker {
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> ended_ = false;
 
-  std::mutex requests_mutex_;
   Requests requests_;
-  std::atomic<bool> has_requests_ = false;
 
   // Of the worker's thread alone.
   std::unique_ptr<pipeline::Pipeline> pipeline_;
   LiveSettings settings_;
   fusion::ContactTracker tracker_;
   Nanos last_time_{};
-  RawFrame raw_;
-  ForceFrame force_;
-  ContactReport report_;
-  std::vector<SuitContact> contacts_;
-  LatencyMeter latencies_;
-  std::uint64_t frames_ = 0;
-  std::uint64_t rejected_ = 0;
+  Frame frame_;
+  Counts counts_;
 
-  mutable std::mutex published_mutex_;
-  ArrayStatistics published_;
-  Nanos published_at_{};  // by the steady clock
+  Published published_;
 };
 
 }  // namespace dermis::live

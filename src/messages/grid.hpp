@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -40,5 +42,22 @@ struct GridPlace {
 /// foxglove_msgs/msg/Grid with cells of zeros; returns their place, row-major.
 std::span<std::uint8_t> write_grid(const GridPlace& place, std::span<const GridField> fields, std::size_t cell_bytes,
                                    std::vector<std::uint8_t>& message);
+
+/// foxglove_msgs/msg/Grid of forces or conductances, their standard deviations and status [taxels].
+template <typename Real>
+void write_taxels(const GridPlace& place, std::span<const GridField> fields, const std::vector<Real>& values,
+                  const std::vector<Real>& sigmas, const std::vector<TaxelStatus>& taxels,
+                  std::vector<std::uint8_t>& message) {
+  const std::size_t count = place.shape.taxel_count();
+  assert(values.size() == count && sigmas.size() == count && taxels.size() == count);
+  std::uint8_t* cell = write_grid(place, fields, kCellBytes, message).data();
+  for (std::size_t i = 0; i < count; ++i, cell += kCellBytes) {
+    const auto value = static_cast<float>(values[i]);
+    const auto sigma = static_cast<float>(sigmas[i]);
+    std::memcpy(cell, &value, sizeof(float));
+    std::memcpy(cell + kSigmaOffset, &sigma, sizeof(float));
+    cell[kCellStatusOffset] = static_cast<std::uint8_t>(taxels[i]);
+  }
+}
 
 }  // namespace dermis::messages

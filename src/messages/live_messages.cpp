@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cstring>
 
 #include "dermis/messages/cdr.hpp"
@@ -79,18 +78,8 @@ void write_array_statistics(CdrWriter& writer, const ArrayStatistics& array) {
 
 void encode_conductance_grid(const ConductanceFrame& frame, const FrameShape& shape, const Pitch& pitch,
                              std::string_view frame_id, std::vector<std::uint8_t>& message) {
-  assert(frame.siemens.size() == shape.taxel_count());
-  assert(frame.sigma_siemens.size() == shape.taxel_count() && frame.taxels.size() == shape.taxel_count());
-  const std::span<std::uint8_t> cells =
-      write_grid({frame.time, shape, pitch, frame_id}, kConductanceFields, kCellBytes, message);
-  for (std::size_t i = 0; i < shape.taxel_count(); ++i) {
-    std::uint8_t* cell = cells.data() + i * kCellBytes;
-    const auto siemens = static_cast<float>(frame.siemens[i]);
-    const auto sigma = static_cast<float>(frame.sigma_siemens[i]);
-    std::memcpy(cell, &siemens, sizeof(float));
-    std::memcpy(cell + kSigmaOffset, &sigma, sizeof(float));
-    cell[kCellStatusOffset] = static_cast<std::uint8_t>(frame.taxels[i]);
-  }
+  write_taxels({frame.time, shape, pitch, frame_id}, kConductanceFields, frame.siemens, frame.sigma_siemens,
+               frame.taxels, message);
 }
 
 void encode_points(std::span<const TaxelPoint> points, Nanos time, std::string_view frame_id,

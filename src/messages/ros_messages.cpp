@@ -201,16 +201,8 @@ Status decode_acquisition(std::span<const std::uint8_t> message, RawFrame& frame
 
 void encode_grid(const ForceFrame& frame, const FrameShape& shape, const Pitch& pitch, std::string_view frame_id,
                  std::vector<std::uint8_t>& message) {
-  assert(frame.newtons.size() == shape.taxel_count());
-  assert(frame.sigma_newtons.size() == shape.taxel_count() && frame.taxels.size() == shape.taxel_count());
-  const std::span<std::uint8_t> cells =
-      write_grid({frame.time, shape, pitch, frame_id}, kGridFields, kCellBytes, message);
-  for (std::size_t i = 0; i < shape.taxel_count(); ++i) {
-    std::uint8_t* cell = cells.data() + i * kCellBytes;
-    std::memcpy(cell, &frame.newtons[i], sizeof(float));
-    std::memcpy(cell + kSigmaOffset, &frame.sigma_newtons[i], sizeof(float));
-    cell[kCellStatusOffset] = static_cast<std::uint8_t>(frame.taxels[i]);
-  }
+  write_taxels({frame.time, shape, pitch, frame_id}, kGridFields, frame.newtons, frame.sigma_newtons, frame.taxels,
+               message);
 }
 
 Result<FrameShape> decode_grid(std::span<const std::uint8_t> message, ForceFrame& frame) {

@@ -19,6 +19,7 @@ namespace dermis::pipeline {
 namespace {
 
 using files::SafetensorsFile;
+using files::TensorReader;
 using fusion::ForceNetworks;
 using fusion::LookUpTables;
 
@@ -40,33 +41,6 @@ struct TaxelTensors {
        {"networks.offset_sigma_siemens", &ForceNetworks::offset_sigma_siemens}}};
 };
 
-template <typename T>
-void put(SafetensorsFile& file, const std::string& name, std::vector<std::size_t> shape, const std::vector<T>& values) {
-  file.tensors[name] = {std::move(shape), values};
-}
-
-/// Copies a tensor out of the file; keeps the first error.
-class TensorReader {
- public:
-  explicit TensorReader(const SafetensorsFile& file) : file_(file) {}
-
-  template <typename T>
-  void get(const std::string& name, const std::vector<std::size_t>& shape, std::vector<T>& values) {
-    const Result<std::span<const T>> view = file_.view<T>(name, shape);
-    if (view) {
-      values.assign(view->begin(), view->end());
-    } else if (!first_error_) {
-      first_error_ = view.error();
-    }
-  }
-
-  [[nodiscard]] const std::optional<Error>& first_error() const { return first_error_; }
-
- private:
-  const SafetensorsFile& file_;
-  std::optional<Error> first_error_;
-};
-
 const std::string& metadata(const SafetensorsFile& file, const std::string& key) {
   static const std::string kEmpty;
   const auto found = file.metadata.find(key);
@@ -86,10 +60,10 @@ void put_tables(SafetensorsFile& file, const fusion::ForceTables& tables) {
   if (count == 0) return;
   file.metadata["tables"] = std::to_string(count);
   file.metadata["tables.knots"] = std::to_string(tables.knots);
-  put<std::int64_t>(file, "tables.taxels", {count}, {tables.taxels.begin(), tables.taxels.end()});
-  put(file, "tables.siemens", {count, tables.knots}, tables.siemens);
-  put(file, "tables.newtons", {count, tables.knots}, tables.newtons);
-  put(file, "tables.per_celsius", {count}, tables.per_celsius);
+  put_tensor<std::int64_t>(file, "tables.taxels", {count}, {tables.taxels.begin(), tables.taxels.end()});
+  put_tensor(file, "tables.siemens", {count, tables.knots}, tables.siemens);
+  put_tensor(file, "tables.newtons", {count, tables.knots}, tables.newtons);
+  put_tensor(file, "tables.per_celsius", {count}, tables.per_celsius);
 }
 
 fusion::ForceTables get_tables(const SafetensorsFile& file, TensorReader& reader) {
@@ -112,17 +86,17 @@ void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
   const std::size_t taxels = networks.taxel_count();
   file.metadata["networks.inputs"] = std::to_string(networks.shape.inputs);
   file.metadata["networks.hidden"] = std::to_string(networks.shape.hidden);
-  put<double>(file, "networks.temperature_celsius", {3},
-              {networks.unloaded.temperature.centre_celsius, networks.unloaded.temperature.half_span_celsius,
-               networks.temperature_sigma_celsius});
+  put_tensor<double>(file, "networks.temperature_celsius", {3},
+                     {networks.unloaded.temperature.centre_celsius, networks.unloaded.temperature.half_span_celsius,
+                      networks.temperature_sigma_celsius});
   const TaxelTensors tensors;
-  for (const auto& [name, member] : tensors.unloaded) put(file, name, {taxels}, networks.unloaded.*member);
-  for (const auto& [name, member] : tensors.floats) put(file, name, {taxels}, networks.*member);
-  put(file, "networks.dead", {taxels}, networks.dead);
-  put(file, "networks.relative_sigma", {fusion::kSigmaKnots, taxels}, networks.relative_sigma);
-  put<float>(file, "networks.sigma_knots_newtons", {2},
-             {networks.sigma_knots_newtons.begin(), networks.sigma_knots_newtons.end()});
-  put(file, "networks.parameters", {networks.shape.parameter_count(), taxels}, networks.parameters);
+  for (const auto& [name, member] : tensors.unloaded) put_tensor(file, name, {taxels}, networks.unloaded.*member);
+  for (const auto& [name, member] : tensors.floats) put_tensor(file, name, {taxels}, networks.*member);
+  put_tensor(file, "networks.dead", {taxels}, networks.dead);
+  put_tensor(file, "networks.relative_sigma", {fusion::kSigmaKnots, taxels}, networks.relative_sigma);
+  put_tensor<float>(file, "networks.sigma_knots_newtons", {2},
+                    {networks.sigma_knots_newtons.begin(), networks.sigma_knots_newtons.end()});
+  put_tensor(file, "networks.parameters", {networks.shape.parameter_count(), taxels}, networks.parameters);
   put_tables(file, networks.tables);
 }
 
@@ -158,10 +132,10 @@ void put_baseline(SafetensorsFile& file, std::size_t index, const LookUpTables& 
   file.metadata[baseline_key(index, "signal")] =
       tables.signal == fusion::LookUpSignal::reading ? "reading" : "conductance";
   file.metadata[baseline_key(index, "knots")] = std::to_string(tables.knots);
-  put<double>(file, baseline_key(index, "reference_celsius"), {1}, {tables.reference_celsius});
-  put(file, baseline_key(index, "knot_signal"), {taxels, tables.knots}, tables.knot_signal);
-  put(file, baseline_key(index, "knot_newtons"), {taxels, tables.knots}, tables.knot_newtons);
-  put(file, baseline_key(index, "temperature_coefficient"), {taxels}, tables.temperature_coefficient);
+  put_tensor<double>(file, baseline_key(index, "reference_celsius"), {1}, {tables.reference_celsius});
+  put_tensor(file, baseline_key(index, "knot_signal"), {taxels, tables.knots}, tables.knot_signal);
+  put_tensor(file, baseline_key(index, "knot_newtons"), {taxels, tables.knots}, tables.knot_newtons);
+  put_tensor(file, baseline_key(index, "temperature_coefficient"), {taxels}, tables.temperature_coefficient);
 }
 
 LookUpTables get_baseline(const SafetensorsFile& file, std::size_t index, std::size_t taxels, TensorReader& reader) {
@@ -182,9 +156,9 @@ LookUpTables get_baseline(const SafetensorsFile& file, std::size_t index, std::s
 void put_strip(SafetensorsFile& file, const fusion::StripTable& strip) {
   const std::size_t knots = strip.centre_m.size();
   file.metadata["strip.knots"] = std::to_string(knots);
-  put(file, "strip.centre_m", {knots}, strip.centre_m);
-  put(file, "strip.position_m", {knots}, strip.position_m);
-  put<double>(file, "strip.sigma_m", {1}, {strip.sigma_m});
+  put_tensor(file, "strip.centre_m", {knots}, strip.centre_m);
+  put_tensor(file, "strip.position_m", {knots}, strip.position_m);
+  put_tensor<double>(file, "strip.sigma_m", {1}, {strip.sigma_m});
 }
 
 fusion::StripTable get_strip(const SafetensorsFile& file, TensorReader& reader) {
@@ -201,8 +175,8 @@ fusion::StripTable get_strip(const SafetensorsFile& file, TensorReader& reader) 
 /// Only where there is one: files without it stay as they always were.
 void put_memory(SafetensorsFile& file, const fusion::MemoryLaw& law) {
   file.metadata["memory"] = "creep and hysteresis";
-  put<float>(file, "memory.creep", {law.creep.size()}, {law.creep.begin(), law.creep.end()});
-  put<float>(file, "memory.gap", {law.gap.size()}, {law.gap.begin(), law.gap.end()});
+  put_tensor<float>(file, "memory.creep", {law.creep.size()}, {law.creep.begin(), law.creep.end()});
+  put_tensor<float>(file, "memory.gap", {law.gap.size()}, {law.gap.begin(), law.gap.end()});
 }
 
 fusion::MemoryLaw get_memory(TensorReader& reader) {

@@ -6,6 +6,7 @@
 #include "dermis/files/input.hpp"
 #include "dermis/recordings/mcap.hpp"
 #include "recordings/crc32.hpp"
+#include "recordings/mcap_kept_records.hpp"
 #include "recordings/mcap_scanner.hpp"
 
 namespace dermis::recordings {
@@ -34,24 +35,17 @@ struct McapReader::State {
   bool complete = false;
   std::optional<McapStatistics> statistics;
   ChannelTable table;
-  std::vector<McapAttachment> attachments;
-  std::vector<McapMetadata> metadata;
+  KeptRecords kept;
   std::vector<McapCompression> compressions;
-  std::size_t kept_bytes = 0;  ///< Of attachments and metadata.
-  bool has_index = false;      ///< All attachments and metadata are known from it.
 
   std::uint64_t data_place = 0;           ///< Where the records begin, and
   std::optional<std::uint32_t> data_crc;  ///< the checksum of what is before.
-  std::uint64_t kept_end = 0;             ///< Of the last record that was kept.
   std::vector<ChunkPlace> chunks;         ///< Of the summary, in the order to be read.
   bool goes_by_chunks = false;            ///< Else from record to record of the file.
   std::size_t next_chunk = 0;
   bool ended = false;
   std::uint64_t chunk_place = 0;
   ByteView chunk_records;  ///< What is left of the chunk.
-
-  std::vector<std::pair<Opcode, std::uint64_t>> indexed;  ///< Attachments and metadata, and their places.
-  std::uint64_t indexed_count = 0;                        ///< How many there should be.
 
   [[nodiscard]] Error error(std::uint64_t place, const Error& what) const {
     return scanner.error(place, what.message + kMend);
@@ -135,7 +129,7 @@ Status McapReader::State::take_summary_record(const McapRecord& record) {
     case Opcode::metadata_index: {
       ByteReader reader(record.body);
       const bool is_attachment = record.opcode == Opcode::attachment_index;
-      indexed.emplace_back(is_attachment ? Opcode::attachment : Opcode::metadata, reader.number<std::uint64_t>());
+      kept.index.emplace_back(is_attachment ? Opcode::attachment : Opcode::metadata, reader.number<std::uint64_t>());
       if (!reader.good()) return bad_input("an index of the summary is shorter than its fields");
       return Done{};
     }
@@ -149,7 +143,7 @@ Status McapReader::State::take_statistics(ByteReader reader) {
   static_cast<void>(reader.number<std::uint16_t>());  // schemas
   static_cast<void>(reader.number<std::uint32_t>());  // channels
   const std::uint64_t attachment_count = reader.number<std::uint32_t>();
-  indexed_count = attachment_count + reader.number<std::uint32_t>();  // and metadata
+  kept.count = attachment_count + reader.number<std::uint32_t>();  // and metadata
   taken.chunks = reader.number<std::uint32_t>();
   taken.first_log_time = reader.number<std::uint64_t>();
   taken.last_log_time = reader.number<std::uint64_t>();
@@ -185,39 +179,23 @@ Status McapReader::State::take_chunk_index(ByteReader reader) {
 Status McapReader::State::read_indexed() {
   std::uint64_t read_bytes = 0;
   McapRecord record;
-  has_index = indexed.size() == indexed_count;
-  for (const auto& [opcode, place] : indexed) {
-    if (!has_index) break;
+  kept.is_complete = kept.index.size() == kept.count;
+  for (const auto& [opcode, place] : kept.index) {
+    if (!kept.is_complete) break;
     scanner.go_to(std::min(place, scanner.size()));
     const Result<McapScanner::Step> step = scanner.next(record);
     if (!step) return step.error();
     read_bytes += record.bytes;
-    has_index = *step == McapScanner::Step::record && record.opcode == opcode && read_bytes <= scanner.size();
-    const Status kept = has_index ? keep(record) : Status(Done{});
-    if (!kept) return kept.error();
+    kept.is_complete = *step == McapScanner::Step::record && record.opcode == opcode && read_bytes <= scanner.size();
+    const Status taken = kept.is_complete ? keep(record) : Status(Done{});
+    if (!taken) return taken.error();
   }
-  if (!has_index) {
-    attachments.clear();
-    metadata.clear();
-    kept_bytes = 0;
-  }
+  if (!kept.is_complete) kept.clear();
   return Done{};
 }
 
-/// An attachment or metadata.
 Status McapReader::State::keep(const McapRecord& record) {
-  constexpr std::size_t kMaxKeptBytes = std::size_t{64} << 20U;
-  kept_bytes += record.body.size();
-  if (record.is_left_out || kept_bytes > kMaxKeptBytes) return Done{};
-  if (record.opcode == Opcode::attachment) {
-    Result<McapAttachment> attachment = parse_attachment(record.body);
-    if (!attachment) return error(record.place, attachment.error());
-    attachments.push_back(*std::move(attachment));
-  } else {
-    Result<McapMetadata> parsed = parse_metadata(record.body);
-    if (!parsed) return error(record.place, parsed.error());
-    metadata.push_back(*std::move(parsed));
-  }
+  if (const Status added = kept.add(record); !added) return error(record.place, added.error());
   return Done{};
 }
 
@@ -273,9 +251,9 @@ Result<bool> McapReader::State::handle(const McapRecord& record, McapMessage& me
     }
     case Opcode::attachment:
     case Opcode::metadata:
-      if (!has_index && record.place >= kept_end) {
-        kept_end = record.place + record.bytes;
-        if (const Status kept = keep(record); !kept) return kept.error();
+      if (!kept.is_complete && record.place >= kept.end) {
+        kept.end = record.place + record.bytes;
+        if (const Status taken = keep(record); !taken) return taken.error();
       }
       return false;
     case Opcode::message:
@@ -383,11 +361,11 @@ const std::map<std::uint16_t, McapChannel>& McapReader::channels() const noexcep
 }
 
 const std::vector<McapAttachment>& McapReader::attachments() const noexcept {
-  return state_->attachments;
+  return state_->kept.attachments;
 }
 
 const std::vector<McapMetadata>& McapReader::metadata() const noexcept {
-  return state_->metadata;
+  return state_->kept.metadata;
 }
 
 const std::vector<McapCompression>& McapReader::compressions() const noexcept {

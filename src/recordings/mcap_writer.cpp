@@ -15,6 +15,7 @@
 #include "recordings/growing_file.hpp"
 #include "recordings/mcap_batch.hpp"
 #include "recordings/mcap_bytes.hpp"
+#include "recordings/mcap_summary.hpp"
 
 namespace dermis::recordings {
 namespace {
@@ -46,12 +47,7 @@ struct McapWriter::State {
   std::optional<Error> first_error;
   std::uint32_t data_crc = 0;
   Bytes pending;  ///< Whole records that are not yet in the file.
-  IndexRecords chunk_indexes;
-  IndexRecords attachment_indexes;
-  IndexRecords metadata_indexes;
-  std::vector<std::uint64_t> channel_messages;  ///< In the file, of each channel from 1 on.
-  std::uint64_t first_time = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t last_time = 0;
+  McapSummary summary;
 
   void begin();
   [[nodiscard]] std::uint64_t place() const { return file.size() + pending.size(); }
@@ -63,10 +59,7 @@ struct McapWriter::State {
   [[nodiscard]] std::uint64_t append_chunk(const Batch& batch);
   void end_chunk(const Batch& batch);
   void append_message_indexes(const Batch& batch, Bytes& places);
-  void keep_indexes(const Batch& batch);
-  void cut_indexes();
   [[nodiscard]] Bytes end_of_file() const;
-  void append_statistics(Bytes& bytes) const;
   [[nodiscard]] Status status() const;
 };
 
@@ -132,7 +125,7 @@ void McapWriter::State::end_chunk(const Batch& batch) {
   const std::uint64_t chunk_place = place();
   const std::uint64_t compressed_bytes = append_chunk(batch);
   const std::uint64_t chunk_end = place();
-  Bytes& index = chunk_indexes.bytes;
+  Bytes& index = summary.chunk_indexes.bytes;
   const Record record(index, Opcode::chunk_index);
   append_number(index, batch.first_time);
   append_number(index, batch.last_time);
@@ -143,7 +136,7 @@ void McapWriter::State::end_chunk(const Batch& batch) {
   append_text(index, to_string(compression));
   append_number(index, compressed_bytes);
   append_number(index, std::uint64_t{batch.chunk.size()});
-  ++chunk_indexes.count;
+  ++summary.chunk_indexes.count;
 }
 
 void McapWriter::State::append_message_indexes(const Batch& batch, Bytes& places) {
@@ -164,7 +157,7 @@ void McapWriter::State::append_message_indexes(const Batch& batch, Bytes& places
 void McapWriter::State::append_placed_indexes(const Batch& batch) {
   for (const PlacedRecord& placed : batch.placed) {
     const bool is_attachment = placed.opcode == Opcode::attachment_index;
-    IndexRecords& indexes = is_attachment ? attachment_indexes : metadata_indexes;
+    IndexRecords& indexes = is_attachment ? summary.attachment_indexes : summary.metadata_indexes;
     const Record record(indexes.bytes, placed.opcode);
     append_number(indexes.bytes, place() + placed.offset);
     append_number(indexes.bytes, std::uint64_t{placed.bytes});
@@ -181,46 +174,12 @@ void McapWriter::State::write(const Batch& batch) {
   if (!batch.chunk.empty()) end_chunk(batch);
   if (const Status written = file.append(pending); !written) first_error = written.error();
   if (first_error) {
-    cut_indexes();
+    summary.cut();
   } else {
     data_crc = crc32(data_crc, pending);
-    keep_indexes(batch);
+    summary.keep(batch);
   }
   pending.clear();
-}
-
-void McapWriter::State::keep_indexes(const Batch& batch) {
-  for (IndexRecords* records : {&chunk_indexes, &attachment_indexes, &metadata_indexes}) records->keep();
-  constexpr std::size_t kEntryBytes = 16;
-  if (channel_messages.size() < batch.indexes.size()) channel_messages.resize(batch.indexes.size());
-  for (std::size_t i = 0; i < batch.indexes.size(); ++i) channel_messages[i] += batch.indexes[i].size() / kEntryBytes;
-  if (batch.chunk.empty()) return;
-  first_time = std::min(first_time, batch.first_time);
-  last_time = std::max(last_time, batch.last_time);
-}
-
-void McapWriter::State::cut_indexes() {
-  for (IndexRecords* records : {&chunk_indexes, &attachment_indexes, &metadata_indexes}) records->cut();
-}
-
-void McapWriter::State::append_statistics(Bytes& bytes) const {
-  constexpr std::size_t kEntryBytes = 2 + 8;
-  std::uint64_t messages = 0;
-  for (const std::uint64_t count : channel_messages) messages += count;
-  const Record record(bytes, Opcode::statistics);
-  append_number(bytes, messages);
-  append_number(bytes, static_cast<std::uint16_t>(schemas.size()));
-  append_number(bytes, static_cast<std::uint32_t>(channels.size()));
-  append_number(bytes, attachment_indexes.count);
-  append_number(bytes, metadata_indexes.count);
-  append_number(bytes, chunk_indexes.count);
-  append_number(bytes, messages == 0 ? 0 : first_time);
-  append_number(bytes, last_time);
-  append_number(bytes, static_cast<std::uint32_t>(kEntryBytes * channels.size()));
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    append_number(bytes, static_cast<std::uint16_t>(i + 1));
-    append_number(bytes, i < channel_messages.size() ? channel_messages[i] : 0);
-  }
 }
 
 /// Data end, summary, summary offsets and footer.
@@ -230,7 +189,7 @@ Bytes McapWriter::State::end_of_file() const {
     const Record data_end(bytes, Opcode::data_end);
     append_number(bytes, data_crc);
   }
-  const std::size_t summary = bytes.size();
+  const std::size_t summary_begin = bytes.size();
   Bytes offsets;
   const auto append_group = [&](Opcode opcode, const auto& append_records) {
     const std::size_t begin = bytes.size();
@@ -250,20 +209,20 @@ Bytes McapWriter::State::end_of_file() const {
       append_channel(bytes, static_cast<std::uint16_t>(i + 1), channels[i]);
     }
   });
-  append_group(Opcode::statistics, [&] { append_statistics(bytes); });
-  append_group(Opcode::chunk_index, [&] { append_bytes(bytes, chunk_indexes.bytes); });
-  append_group(Opcode::attachment_index, [&] { append_bytes(bytes, attachment_indexes.bytes); });
-  append_group(Opcode::metadata_index, [&] { append_bytes(bytes, metadata_indexes.bytes); });
+  append_group(Opcode::statistics, [&] { summary.append_statistics(schemas.size(), channels.size(), bytes); });
+  append_group(Opcode::chunk_index, [&] { append_bytes(bytes, summary.chunk_indexes.bytes); });
+  append_group(Opcode::attachment_index, [&] { append_bytes(bytes, summary.attachment_indexes.bytes); });
+  append_group(Opcode::metadata_index, [&] { append_bytes(bytes, summary.metadata_indexes.bytes); });
   const std::uint64_t offsets_place = file.size() + bytes.size();
   append_bytes(bytes, offsets);
   {
     const Record footer(bytes, Opcode::footer);
-    append_number(bytes, file.size() + summary);
+    append_number(bytes, file.size() + summary_begin);
     append_number(bytes, offsets_place);
     // The checksum counts the length of the footer, which is not yet there.
     const std::uint64_t footer_length = kFooterBytes;
     std::memcpy(bytes.data() + bytes.size() - 24, &footer_length, sizeof(footer_length));
-    append_number(bytes, crc32(0, ByteView(bytes).subspan(summary)));
+    append_number(bytes, crc32(0, ByteView(bytes).subspan(summary_begin)));
   }
   append_characters(bytes, kMcapMagic);
   return bytes;

@@ -4,12 +4,13 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <string>
+#include <tuple>
 
 #include "dermis/files/config_table.hpp"
 
@@ -22,13 +23,28 @@ constexpr double kUnknownCircuitOhm = 100.0;
 
 using Lines = std::vector<std::size_t>;
 
+/// One way in which a line breaks, as files name it.
+struct LineBreak {
+  const char* name;
+  Lines BrokenLines::*lines;
+  std::size_t lines_beside = 0;  // that such a line needs behind it
+};
+
+constexpr std::array kLineBreaks{
+    LineBreak{"open", &BrokenLines::open}, LineBreak{"grounded", &BrokenLines::grounded},
+    LineBreak{"supplied", &BrokenLines::supplied}, LineBreak{"shorted", &BrokenLines::shorted, 1}};
+
+std::string key_of(const LineBreak& kind, const char* side) {
+  return std::string("faults.") + kind.name + "_" + side;
+}
+
 bool contains(const Lines& lines, std::size_t line) {
   return std::find(lines.begin(), lines.end(), line) != lines.end();
 }
 
-Status check(const char* field, const Lines& lines, std::size_t size) {
+Status check(const std::string& key, const Lines& lines, std::size_t size) {
   if (std::all_of(lines.begin(), lines.end(), [size](std::size_t line) { return line < size; })) return Done{};
-  return bad_input(std::string("faults.") + field + ": must be below " + std::to_string(size) + ", counted from 0");
+  return bad_input(key + ": must be below " + std::to_string(size) + ", counted from 0");
 }
 
 /// Row-major index of "r3c5", or nothing where the array has no such taxel.
@@ -67,8 +83,8 @@ class Nodes {
   Nodes(const ArrayDescription& array, const LineFaults& faults, std::span<const double> siemens)
       : rows_(array.rows), lines_(array.rows + array.cols), node_(lines_) {
     std::iota(node_.begin(), node_.end(), std::size_t{0});
-    for (const std::size_t row : faults.shorted_rows) join(row, row + 1);
-    for (const std::size_t col : faults.shorted_columns) join(rows_ + col, rows_ + col + 1);
+    for (const std::size_t row : faults.rows.shorted) join(row, row + 1);
+    for (const std::size_t col : faults.columns.shorted) join(rows_ + col, rows_ + col + 1);
     laplacian_ = Eigen::MatrixXd::Zero(size(), size());
     for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
       connect(node_[taxel / array.cols], node_[rows_ + taxel % array.cols], siemens[taxel]);
@@ -157,13 +173,10 @@ class Scan {
     std::optional<double> short_to;
   };
 
-  [[nodiscard]] Line row_line(std::size_t row) const {
-    return {contains(faults_.open_rows, row),
-            short_of(contains(faults_.grounded_rows, row), contains(faults_.supplied_rows, row))};
-  }
-  [[nodiscard]] Line column_line(std::size_t col) const {
-    return {contains(faults_.open_columns, col),
-            short_of(contains(faults_.grounded_columns, col), contains(faults_.supplied_columns, col))};
+  [[nodiscard]] Line row_line(std::size_t row) const { return line_of(faults_.rows, row); }
+  [[nodiscard]] Line column_line(std::size_t col) const { return line_of(faults_.columns, col); }
+  static Line line_of(const BrokenLines& broken, std::size_t line) {
+    return {contains(broken.open, line), short_of(contains(broken.grounded, line), contains(broken.supplied, line))};
   }
   static std::optional<double> short_of(bool grounded, bool supplied) {
     if (grounded) return 0.0;
@@ -234,7 +247,7 @@ void read_unknown(const ArrayDescription& array, const LineFaults& faults, std::
                   std::span<double> ratio) {
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
     const bool silent =
-        contains(faults.open_rows, taxel / array.cols) || contains(faults.open_columns, taxel % array.cols);
+        contains(faults.rows.open, taxel / array.cols) || contains(faults.columns.open, taxel % array.cols);
     ratio[taxel] = silent ? 0.0 : kUnknownCircuitOhm * siemens[taxel];
   }
 }
@@ -242,23 +255,20 @@ void read_unknown(const ArrayDescription& array, const LineFaults& faults, std::
 }  // namespace
 
 bool LineFaults::any() const noexcept {
-  return !(open_rows.empty() && open_columns.empty() && grounded_rows.empty() && grounded_columns.empty() &&
-           supplied_rows.empty() && supplied_columns.empty() && shorted_rows.empty() && shorted_columns.empty() &&
-           dead_taxels.empty() && stuck_taxels.empty() && drifting_rows.empty());
+  const bool is_line_broken = std::any_of(kLineBreaks.begin(), kLineBreaks.end(), [&](const auto& kind) {
+    return !(rows.*kind.lines).empty() || !(columns.*kind.lines).empty();
+  });
+  return is_line_broken || !dead_taxels.empty() || !stuck_taxels.empty() || !drifting_rows.empty();
 }
 
 Status LineFaults::validate(const ArrayDescription& array) const {
-  for (const auto& [field, lines, size] :
-       {std::tuple{"open_rows", &open_rows, array.rows}, std::tuple{"open_columns", &open_columns, array.cols},
-        std::tuple{"grounded_rows", &grounded_rows, array.rows},
-        std::tuple{"grounded_columns", &grounded_columns, array.cols},
-        std::tuple{"supplied_rows", &supplied_rows, array.rows},
-        std::tuple{"supplied_columns", &supplied_columns, array.cols},
-        std::tuple{"shorted_rows", &shorted_rows, array.rows - 1},
-        std::tuple{"shorted_columns", &shorted_columns, array.cols - 1},
-        std::tuple{"drifting_rows", &drifting_rows, array.driven_lines()}}) {
-    if (Status valid = check(field, *lines, size); !valid) return valid;
+  for (const LineBreak& kind : kLineBreaks) {
+    for (const auto& [side, lines, size] :
+         {std::tuple("rows", &rows, array.rows), std::tuple("columns", &columns, array.cols)}) {
+      if (Status valid = check(key_of(kind, side), lines->*kind.lines, size - kind.lines_beside); !valid) return valid;
+    }
   }
+  if (Status valid = check("faults.drifting_rows", drifting_rows, array.driven_lines()); !valid) return valid;
   if (Status valid = check_taxels("dead_taxels", dead_taxels, array); !valid) return valid;
   if (Status valid = check_taxels("stuck_taxels", stuck_taxels, array); !valid) return valid;
   if (!(stuck_ratio >= 0.0 && stuck_ratio <= 1.0)) return bad_input("faults.stuck_ratio: must be 0 to 1");
@@ -268,14 +278,10 @@ Status LineFaults::validate(const ArrayDescription& array) const {
 }
 
 void read_line_faults(files::ConfigFile& file, LineFaults& faults) {
-  file.counts("faults.open_rows", faults.open_rows);
-  file.counts("faults.open_columns", faults.open_columns);
-  file.counts("faults.grounded_rows", faults.grounded_rows);
-  file.counts("faults.grounded_columns", faults.grounded_columns);
-  file.counts("faults.supplied_rows", faults.supplied_rows);
-  file.counts("faults.supplied_columns", faults.supplied_columns);
-  file.counts("faults.shorted_rows", faults.shorted_rows);
-  file.counts("faults.shorted_columns", faults.shorted_columns);
+  for (const LineBreak& kind : kLineBreaks) {
+    file.counts(key_of(kind, "rows"), faults.rows.*kind.lines);
+    file.counts(key_of(kind, "columns"), faults.columns.*kind.lines);
+  }
   file.texts("faults.dead_taxels", faults.dead_taxels);
   file.texts("faults.stuck_taxels", faults.stuck_taxels);
   file.number("faults.stuck_ratio", faults.stuck_ratio);

@@ -110,6 +110,21 @@ class Server::Implementation final : public SessionOwner {
   void on_cut(const std::string& line) override { notices_.say("cut", line); }
 
  private:
+  /// Between the owner's threads and the server's.
+  struct Shared {
+    mutable std::mutex mutex;  // guards the others
+    std::vector<Channel> channels;
+    std::vector<Published> waiting;
+    std::size_t waiting_bytes = 0;
+    ServerStatistics statistics;
+  };
+
+  /// Who is connected; of the server's thread.
+  struct Connected {
+    std::list<std::shared_ptr<Session>> visitors;  // the oldest first
+    std::set<std::shared_ptr<Session>> clients;
+  };
+
   void accept();
   void accept_waiting();
   void admit(tcp::socket socket);
@@ -130,15 +145,10 @@ class Server::Implementation final : public SessionOwner {
   tcp::acceptor acceptor_{context_};
   asio::steady_timer pause_{context_};
   std::uint16_t port_ = 0;
-  std::list<std::shared_ptr<Session>> visitors_;  // the oldest first; of the server's thread, as the next
-  std::set<std::shared_ptr<Session>> clients_;
+  Connected connected_;
   NoticeLimiter notices_;
 
-  mutable std::mutex mutex_;  // guards all below but the thread
-  std::vector<Channel> channels_;
-  std::vector<Published> waiting_;
-  std::size_t waiting_bytes_ = 0;
-  ServerStatistics statistics_;
+  Shared shared_;
   std::thread thread_;
 };
 
@@ -191,21 +201,21 @@ void Server::Implementation::accept_waiting() {
 
 /// Who says nothing, or says it slowly, has to make room: a new connection is always taken.
 void Server::Implementation::admit(tcp::socket socket) {
-  if (visitors_.size() >= kMostVisitors) {
+  if (connected_.visitors.size() >= kMostVisitors) {
     notices_.say("many",
                  "more than " + std::to_string(kMostVisitors) + " connections beside the stream's: the oldest closed");
     count({.refused = 1});
-    const std::shared_ptr<Session> oldest = visitors_.front();
+    const std::shared_ptr<Session> oldest = connected_.visitors.front();
     oldest->end();
   }
-  visitors_.push_back(std::make_shared<Session>(*this, std::move(socket)));
-  visitors_.back()->start();
+  connected_.visitors.push_back(std::make_shared<Session>(*this, std::move(socket)));
+  connected_.visitors.back()->start();
 }
 
 bool Server::Implementation::enter(const std::shared_ptr<Session>& session) {
-  if (clients_.size() >= options_.most_clients) return false;
-  visitors_.remove(session);
-  clients_.insert(session);
+  if (connected_.clients.size() >= options_.most_clients) return false;
+  connected_.visitors.remove(session);
+  connected_.clients.insert(session);
   count_clients();
   return true;
 }
@@ -218,8 +228,8 @@ std::unique_ptr<Client> Server::Implementation::make_client(bool is_sdk, Ask ask
 }
 
 void Server::Implementation::leave(const std::shared_ptr<Session>& session) {
-  visitors_.remove(session);
-  clients_.erase(session);
+  connected_.visitors.remove(session);
+  connected_.clients.erase(session);
   count_clients();
 }
 
@@ -231,18 +241,19 @@ void Server::Implementation::on_refused(const std::string& line) {
 ChannelId Server::Implementation::add_channel(std::string topic, std::string schema_name, std::string schema) {
   Channel channel;
   {
-    const std::lock_guard lock(mutex_);
-    assert(channels_.size() < kMostChannels);
-    channel = {static_cast<ChannelId>(channels_.size()), std::move(topic), std::move(schema_name), std::move(schema)};
-    channels_.push_back(channel);
+    const std::lock_guard lock(shared_.mutex);
+    assert(shared_.channels.size() < kMostChannels);
+    channel = {static_cast<ChannelId>(shared_.channels.size()), std::move(topic), std::move(schema_name),
+               std::move(schema)};
+    shared_.channels.push_back(channel);
   }
   send_to_clients([channel](Client& client) { client.advertise(channel); });
   return channel.id;
 }
 
 std::vector<Channel> Server::Implementation::channels() const {
-  const std::lock_guard lock(mutex_);
-  return channels_;
+  const std::lock_guard lock(shared_.mutex);
+  return shared_.channels;
 }
 
 void Server::Implementation::change_subscribers(ChannelId channel, int change) {
@@ -254,14 +265,14 @@ void Server::Implementation::publish(ChannelId channel, Nanos log_time, std::spa
   Published published{channel, log_time,
                       std::make_shared<const std::vector<std::uint8_t>>(message.begin(), message.end())};
   {
-    const std::lock_guard lock(mutex_);
-    if (waiting_bytes_ + message.size() > kMostWaitingBytes) {
-      ++statistics_.dropped;
+    const std::lock_guard lock(shared_.mutex);
+    if (shared_.waiting_bytes + message.size() > kMostWaitingBytes) {
+      ++shared_.statistics.dropped;
       return;
     }
-    waiting_bytes_ += message.size();
-    waiting_.push_back(std::move(published));
-    if (waiting_.size() > 1) return;  // the server's thread knows already
+    shared_.waiting_bytes += message.size();
+    shared_.waiting.push_back(std::move(published));
+    if (shared_.waiting.size() > 1) return;  // the server's thread knows already
   }
   asio::post(context_, [this] { hand_out(); });
 }
@@ -269,12 +280,12 @@ void Server::Implementation::publish(ChannelId channel, Nanos log_time, std::spa
 void Server::Implementation::hand_out() {
   std::vector<Published> published;
   {
-    const std::lock_guard lock(mutex_);
-    published.swap(waiting_);
-    waiting_bytes_ = 0;
+    const std::lock_guard lock(shared_.mutex);
+    published.swap(shared_.waiting);
+    shared_.waiting_bytes = 0;
   }
   ServerStatistics handed;
-  const auto sessions = std::vector(clients_.begin(), clients_.end());
+  const auto sessions = std::vector(connected_.clients.begin(), connected_.clients.end());
   for (const auto& session : sessions) {
     if (session->client() == nullptr) continue;  // its handshake goes on
     for (const Published& message : published) {
@@ -288,7 +299,7 @@ void Server::Implementation::hand_out() {
 template <typename Send>
 void Server::Implementation::send_to_clients(Send send) {
   asio::post(context_, [this, send = std::move(send)] {
-    const auto sessions = std::vector(clients_.begin(), clients_.end());
+    const auto sessions = std::vector(connected_.clients.begin(), connected_.clients.end());
     for (const auto& session : sessions) {
       if (session->client() == nullptr) continue;
       send(*session->client());
@@ -307,20 +318,20 @@ void Server::Implementation::parameters_changed() {
 }
 
 void Server::Implementation::count_clients() {
-  const std::lock_guard lock(mutex_);
-  statistics_.clients = clients_.size();
+  const std::lock_guard lock(shared_.mutex);
+  shared_.statistics.clients = connected_.clients.size();
 }
 
 void Server::Implementation::count(const ServerStatistics& more) {
-  const std::lock_guard lock(mutex_);
-  statistics_.messages += more.messages;
-  statistics_.dropped += more.dropped;
-  statistics_.refused += more.refused;
+  const std::lock_guard lock(shared_.mutex);
+  shared_.statistics.messages += more.messages;
+  shared_.statistics.dropped += more.dropped;
+  shared_.statistics.refused += more.refused;
 }
 
 ServerStatistics Server::Implementation::statistics() const {
-  const std::lock_guard lock(mutex_);
-  return statistics_;
+  const std::lock_guard lock(shared_.mutex);
+  return shared_.statistics;
 }
 
 Server::Server(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}

@@ -135,14 +135,14 @@ std::vector<FaultCase> fault_cases(const ArrayDescription& array) {
   using Kind = LineFaultKind;
   const std::size_t silent = array.rows < 16 ? 20 : 10;  // fewer taxels tell less
   return {
-      {"open row", Kind::silent_row, false, false, silent, [](auto& f, auto k) { f.open_rows = {k}; }},
-      {"open column", Kind::silent_column, true, false, silent, [](auto& f, auto k) { f.open_columns = {k}; }},
-      {"grounded row", Kind::silent_row, false, false, silent, [](auto& f, auto k) { f.grounded_rows = {k}; }},
-      {"grounded column", Kind::silent_column, true, false, silent, [](auto& f, auto k) { f.grounded_columns = {k}; }},
-      {"supplied row", Kind::supplied_row, false, false, 60, [](auto& f, auto k) { f.supplied_rows = {k}; }},
-      {"supplied column", Kind::supplied_column, true, false, 25, [](auto& f, auto k) { f.supplied_columns = {k}; }},
-      {"shorted rows", Kind::shorted_rows, false, false, 200, [](auto& f, auto k) { f.shorted_rows = {k}; }},
-      {"shorted columns", Kind::shorted_columns, true, false, 200, [](auto& f, auto k) { f.shorted_columns = {k}; }},
+      {"open row", Kind::silent_row, false, false, silent, [](auto& f, auto k) { f.rows.open = {k}; }},
+      {"open column", Kind::silent_column, true, false, silent, [](auto& f, auto k) { f.columns.open = {k}; }},
+      {"grounded row", Kind::silent_row, false, false, silent, [](auto& f, auto k) { f.rows.grounded = {k}; }},
+      {"grounded column", Kind::silent_column, true, false, silent, [](auto& f, auto k) { f.columns.grounded = {k}; }},
+      {"supplied row", Kind::supplied_row, false, false, 60, [](auto& f, auto k) { f.rows.supplied = {k}; }},
+      {"supplied column", Kind::supplied_column, true, false, 25, [](auto& f, auto k) { f.columns.supplied = {k}; }},
+      {"shorted rows", Kind::shorted_rows, false, false, 200, [](auto& f, auto k) { f.rows.shorted = {k}; }},
+      {"shorted columns", Kind::shorted_columns, true, false, 200, [](auto& f, auto k) { f.columns.shorted = {k}; }},
       {"dead taxel", Kind::dead_taxel, false, true, 800,
        [array](auto& f, auto k) { f.dead_taxels = {array.taxel_name(k)}; }},
       {"stuck taxel", Kind::stuck_taxel, false, true, 240,
@@ -192,7 +192,7 @@ TEST(LineFaultMonitor, finds_silent_lines_that_nothing_touches) {
       const ArrayDescription array = reference_circuit(12, 9, circuit);
       LineFaults faults;
       faults.from_frame = 30;
-      (row ? faults.open_rows : faults.open_columns) = {4};
+      (row ? faults.rows.open : faults.columns.open) = {4};
       Rig rig(array, "idle", 5, 60, faults, circuit == Circuit::none ? 40e3 : 200e3);  // none reads 100 ohm / R
       while (rig.next()) {
         if (rig.frames() <= 30) {
@@ -214,7 +214,7 @@ TEST(LineFaultMonitor, finds_a_supplied_row_beside_a_first_row_that_is_silent) {
     SCOPED_TRACE(testing::Message() << "silent row " << silent);
     const ArrayDescription array = reference_circuit(8, 8);
     LineFaults faults;
-    faults.supplied_rows = {3};
+    faults.rows.supplied = {3};
     faults.from_frame = kSuppliedFrom;
     Rig rig(array, "multitouch", 108, 240, faults);
     while (rig.read()) {
@@ -260,7 +260,7 @@ TEST(LineFaultMonitor, memory_of_the_material_is_no_fault) {
     }
     LineFaults faults;
     faults.from_frame = 200;
-    faults.open_rows = {6};
+    faults.rows.open = {6};
     Rig rig(reference_circuit(16, 16), scene, 22, 210, faults, rubber);
     while (rig.next()) continue;
     ASSERT_EQ(rig.monitor().faults().size(), 1U) << "found all the same, within 10 frames";
@@ -316,7 +316,7 @@ TEST(LineFaultMonitor, measures_a_drifting_driver) {
 TEST(LineFaultMonitor, tells_an_open_row_from_one_shorted_to_ground) {
   for (const bool grounded : {false, true}) {
     LineFaults faults;
-    (grounded ? faults.grounded_rows : faults.open_rows) = {6};
+    (grounded ? faults.rows.grounded : faults.rows.open) = {6};
     Rig rig(reference_circuit(16, 16), "multitouch", 9, 400, faults);
     while (rig.next()) continue;
     ASSERT_EQ(rig.monitor().faults().size(), 1U);
@@ -426,18 +426,18 @@ TEST(FaultySolve, healthy_taxels_stay_right_beside_an_open_line) {
     cases.push_back({circuit, {}, median, p95});
     return cases.back().faults;
   };
-  add(Circuit::divider, 1.2, 1.2).open_rows = {5};
-  add(Circuit::divider, 1.2, 1.2).open_rows = {11};
-  add(Circuit::divider, 1.2, 1.3).open_rows = {0};  // an edge: neighbours on one side only
-  add(Circuit::divider, 1.2, 1.2).open_columns = {9};
-  add(Circuit::divider, 1.05, 1.05).shorted_rows = {7};
-  add(Circuit::divider, 1.05, 1.05).shorted_columns = {2};
+  add(Circuit::divider, 1.2, 1.2).rows.open = {5};
+  add(Circuit::divider, 1.2, 1.2).rows.open = {11};
+  add(Circuit::divider, 1.2, 1.3).rows.open = {0};  // an edge: neighbours on one side only
+  add(Circuit::divider, 1.2, 1.2).columns.open = {9};
+  add(Circuit::divider, 1.05, 1.05).rows.shorted = {7};
+  add(Circuit::divider, 1.05, 1.05).columns.shorted = {2};
   add(Circuit::divider, 1.1, 1.1).stuck_taxels = {"r5c5"};
   add(Circuit::divider, 1.1, 1.1).dead_taxels = {"r5c5"};
-  add(Circuit::transimpedance, 1.05, 1.05).open_rows = {5};
-  add(Circuit::transimpedance, 1.2, 1.2).open_columns = {9};
-  add(Circuit::transimpedance, 1.05, 1.05).shorted_rows = {7};
-  add(Circuit::transimpedance, 1.05, 1.05).shorted_columns = {2};
+  add(Circuit::transimpedance, 1.05, 1.05).rows.open = {5};
+  add(Circuit::transimpedance, 1.2, 1.2).columns.open = {9};
+  add(Circuit::transimpedance, 1.05, 1.05).rows.shorted = {7};
+  add(Circuit::transimpedance, 1.05, 1.05).columns.shorted = {2};
   for (std::size_t k = 0; k < cases.size(); ++k) {
     const auto [median, p95] = error_ratios(reference_circuit(16, 16, cases[k].circuit), cases[k].faults, 40 + k);
     EXPECT_LE(median, cases[k].most_median) << "case " << k;
@@ -449,13 +449,13 @@ TEST(FaultySolve, healthy_taxels_stay_right_beside_an_open_line) {
 /// supply or at 0 V is only estimated.
 TEST(FaultySolve, healthy_taxels_stay_usable_beside_a_line_at_a_rail) {
   LineFaults supplied_row;
-  supplied_row.supplied_rows = {5};
+  supplied_row.rows.supplied = {5};
   EXPECT_LE(error_ratios(reference_circuit(16, 16), supplied_row, 1).first, 3.0);
   LineFaults supplied_column;
-  supplied_column.supplied_columns = {5};
+  supplied_column.columns.supplied = {5};
   EXPECT_LE(error_ratios(reference_circuit(16, 16), supplied_column, 2).first, 3.0);
   LineFaults grounded_column;
-  grounded_column.grounded_columns = {5};
+  grounded_column.columns.grounded = {5};
   EXPECT_LE(error_ratios(reference_circuit(16, 16), grounded_column, 3).first, 4.0);
 }
 
@@ -501,8 +501,8 @@ TEST(FaultySolve, allocates_nothing) {
   LineFaults faults;
   faults.from_frame = 5;
   faults.until_frame = 60;
-  faults.open_rows = {3};
-  faults.shorted_columns = {8};
+  faults.rows.open = {3};
+  faults.columns.shorted = {8};
   faults.dead_taxels = {"r10c2"};
   Rig faulty(reference_circuit(16, 16), "multitouch", 4, 120, faults);
   ASSERT_TRUE(faulty.next());

@@ -102,6 +102,22 @@ TEST(Safetensors, gives_a_view_of_a_tensor_of_the_expected_shape_and_type) {
   EXPECT_EQ(other_type.error().message, "tensor 'weights' is F32 [2, 2], expected F64 [2, 2]");
 }
 
+TEST(Safetensors, copies_tensors_out_and_keeps_the_first_error) {
+  SafetensorsFile file;
+  put_tensor(file, "weights", {2, 1}, std::vector<float>{1.5F, -2.0F});
+  TensorReader reader(file);
+  std::vector<float> weights;
+  reader.get("weights", {2, 1}, weights);
+  EXPECT_EQ(weights, (std::vector<float>{1.5F, -2.0F}));
+  EXPECT_FALSE(reader.first_error());
+  std::vector<double> other{7.0};
+  reader.get("missing", {1}, other);
+  reader.get("weights", {3}, weights);
+  EXPECT_EQ(other, std::vector<double>{7.0});
+  ASSERT_TRUE(reader.first_error());
+  EXPECT_NE(reader.first_error()->message.find("missing"), std::string::npos);
+}
+
 TEST(Safetensors, refuses_every_file_cut_short) {
   const std::string bytes = written_bytes(example());
   for (std::size_t size = 0; size < bytes.size(); ++size) {

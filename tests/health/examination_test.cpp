@@ -100,7 +100,7 @@ TEST(Examination, an_array_as_it_was_calibrated_is_healthy) {
 
 TEST(Examination, an_open_row_is_found_with_its_place_and_its_first_frame) {
   Measurement measurement;
-  measurement.faults.open_rows = {2};
+  measurement.faults.rows.open = {2};
   measurement.faults.from_frame = 50;
   const Diagnosis diagnosis = examine(measurement);
   ASSERT_EQ(diagnosis.faults.size(), 1U);
@@ -114,7 +114,7 @@ TEST(Examination, an_open_row_is_found_with_its_place_and_its_first_frame) {
 
 TEST(Examination, a_fault_that_goes_has_an_end) {
   Measurement measurement;
-  measurement.faults.open_columns = {5};
+  measurement.faults.columns.open = {5};
   measurement.faults.from_frame = 50;
   measurement.faults.until_frame = 100;
   const Diagnosis diagnosis = examine(measurement);

@@ -537,7 +537,7 @@ TEST(Pipeline, open_row_is_found_and_masked_and_the_rest_stays_right) {
   Model model = hand_made_model(16, 16);
   model.array.readout.adc_bits = 12;
   simulation::LineFaults faults;
-  faults.open_rows = {kRow};
+  faults.rows.open = {kRow};
   faults.from_frame = kFrom;
   const auto circuit = simulation::FaultyCircuit::create(model.array, faults).value();
   const auto scene = simulation::Scene::create("multitouch", model.array, {}, 8, kFrames).value();

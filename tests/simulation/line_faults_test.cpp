@@ -71,14 +71,14 @@ TEST(LineFaults, open_lines_are_the_limit_of_a_large_resistance) {
     ArrayDescription array = make_array(Circuit::divider, idle);
     const auto siemens = random_siemens(array, 2);
     LineFaults faults;
-    faults.open_rows = {2};
+    faults.rows.open = {2};
     const auto open_row = read(array, siemens, faults);
     ArrayDescription limit = array;
     limit.readout.drive_ohm[2] = 1e12;
     expect_near(open_row, read_healthy(limit, siemens), 1e-6);
 
     faults = {};
-    faults.open_columns = {3};
+    faults.columns.open = {3};
     auto open_column = read(array, siemens, faults);
     limit = array;
     limit.readout.load_ohm[3] = 1e12;
@@ -95,7 +95,7 @@ TEST(LineFaults, grounded_row_is_a_driver_that_always_gives_nothing) {
   const ArrayDescription array = make_array(Circuit::divider);
   const auto siemens = random_siemens(array, 3);
   LineFaults faults;
-  faults.grounded_rows = {1};
+  faults.rows.grounded = {1};
   const auto ratio = read(array, siemens, faults);
   ArrayDescription limit = array;
   limit.readout.drive_ohm[1] = 0.0;
@@ -109,7 +109,7 @@ TEST(LineFaults, supplied_row_adds_its_own_reading_to_every_scan) {
   const ArrayDescription array = make_array(Circuit::divider);
   const auto siemens = random_siemens(array, 4);
   LineFaults faults;
-  faults.supplied_rows = {4};
+  faults.rows.supplied = {4};
   const auto ratio = read(array, siemens, faults);
   ArrayDescription ideal = array;
   ideal.readout.drive_ohm[4] = 0.0;
@@ -128,7 +128,7 @@ TEST(LineFaults, shorted_columns_are_one_column) {
     const ArrayDescription array = make_array(circuit);
     const auto siemens = random_siemens(array, 5);
     LineFaults faults;
-    faults.shorted_columns = {1};
+    faults.columns.shorted = {1};
     const auto ratio = read(array, siemens, faults);
 
     ArrayDescription merged = array;
@@ -159,7 +159,7 @@ TEST(LineFaults, shorted_rows_stand_between_their_drivers) {
   const ArrayDescription array = make_array(Circuit::divider);
   const auto siemens = random_siemens(array, 6);
   LineFaults faults;
-  faults.shorted_rows = {2};
+  faults.rows.shorted = {2};
   const auto ratio = read(array, siemens, faults);
 
   ArrayDescription merged = array;
@@ -193,19 +193,19 @@ TEST(LineFaults, every_circuit_reads_finite_numbers_with_every_fault) {
   arrays.push_back(make_array(Circuit::divider));
   arrays.back().readout.drive_ohm.assign(arrays.back().rows, 0.0);
   std::vector<LineFaults> all(11);
-  all[0].open_rows = {0, 5};
-  all[1].open_columns = {0, 4};
-  all[2].grounded_rows = {1};
-  all[3].grounded_columns = {1};
-  all[4].supplied_rows = {2};
-  all[5].supplied_columns = {2};
-  all[6].shorted_rows = {3, 4};
-  all[7].shorted_columns = {3};
+  all[0].rows.open = {0, 5};
+  all[1].columns.open = {0, 4};
+  all[2].rows.grounded = {1};
+  all[3].columns.grounded = {1};
+  all[4].rows.supplied = {2};
+  all[5].columns.supplied = {2};
+  all[6].rows.shorted = {3, 4};
+  all[7].columns.shorted = {3};
   all[8].dead_taxels = {"r0c0", "r5c4"};
   all[9].drifting_rows = {1};
   all[9].drift_ohm = 100.0;
-  all[10].open_rows = {0, 1, 2, 3, 4, 5};
-  all[10].open_columns = {0, 1, 2, 3, 4};
+  all[10].rows.open = {0, 1, 2, 3, 4, 5};
+  all[10].columns.open = {0, 1, 2, 3, 4};
   for (std::size_t circuit = 0; circuit < arrays.size(); ++circuit) {
     for (std::size_t fault = 0; fault < all.size(); ++fault) {
       for (const double value : read(arrays[circuit], random_siemens(arrays[circuit], 7), all[fault])) {
@@ -249,7 +249,7 @@ TEST(LineFaults, stuck_and_dead_taxels) {
 TEST(LineFaults, refuses_lines_that_the_array_does_not_have) {
   const ArrayDescription array = make_array(Circuit::divider);
   LineFaults faults;
-  faults.shorted_rows = {5};
+  faults.rows.shorted = {5};
   EXPECT_EQ(faults.validate(array).error().message, "faults.shorted_rows: must be below 5, counted from 0");
   faults = {};
   faults.dead_taxels = {"r6c0"};
@@ -268,7 +268,7 @@ TEST(LineFaults, are_read_from_toml) {
   EXPECT_FALSE(faults.any());
   read_line_faults(file, faults);
   ASSERT_TRUE(file.finish());
-  EXPECT_EQ(faults.open_rows, (std::vector<std::size_t>{3, 4}));
+  EXPECT_EQ(faults.rows.open, (std::vector<std::size_t>{3, 4}));
   EXPECT_EQ(faults.dead_taxels, std::vector<std::string>{"r1c1"});
   EXPECT_EQ(faults.from_frame, 20U);
   EXPECT_TRUE(faults.any());

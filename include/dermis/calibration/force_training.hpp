@@ -13,7 +13,7 @@
 
 namespace dermis::calibration {
 
-/// What the training chose, why, and how well it fits.
+/// What the training chose, why, and how well it fits. Many members: reports show each of them.
 struct TrainingReport {
   std::size_t own_networks = 0;     ///< Taxels with a network of their own.
   std::size_t shared_networks = 0;  ///< Taxels on the shared network with a gain.

@@ -33,6 +33,7 @@ enum class GuideHint : std::uint8_t {
   one_of_two,   ///< GuideState::pressed_taxel is pressed; GuideState::missing_taxel is still to be.
 };
 
+/// What a person sees of a guided calibration. Many members: clients show each of them.
 struct GuideState {
   GuideStage stage = GuideStage::none;
   GuideHint hint = GuideHint::none;

@@ -50,7 +50,7 @@ inline constexpr double kFitOhm = std::numeric_limits<double>::quiet_NaN();
 
 /// The path from taxel resistance to counts (the paper's Fig. 3). Lists with one value a line may be empty if the
 /// circuit does not have that part. For `automatic` the driven lines are not known yet, so drive_ohm and load_ohm are
-/// empty (to be fitted) or hold one value for all lines.
+/// empty (to be fitted) or hold one value for all lines. Many members: one for each key of the table [readout].
 struct Readout {
   Circuit circuit = Circuit::divider;
   /// Not counts: only with Circuit::none. Members in counts are then in this unit, and readings below 0 are valid.

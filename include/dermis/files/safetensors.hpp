@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -35,6 +37,37 @@ struct SafetensorsFile {
   [[nodiscard]] Result<std::span<const T>> view(const std::string& name, const std::vector<std::size_t>& shape) const;
 
   bool operator==(const SafetensorsFile&) const = default;
+};
+
+/// `values` as the tensor `name` of the file.
+template <typename T>
+void put_tensor(SafetensorsFile& file, const std::string& name, std::vector<std::size_t> shape,
+                const std::vector<T>& values) {
+  file.tensors[name] = {std::move(shape), values};
+}
+
+/// Copies tensors out of a file and keeps the first error.
+class TensorReader {
+ public:
+  /// `file` is to outlive it.
+  explicit TensorReader(const SafetensorsFile& file) : file_(file) {}
+
+  /// See SafetensorsFile::view(). Where that fails, `values` stay as they were.
+  template <typename T>
+  void get(const std::string& name, const std::vector<std::size_t>& shape, std::vector<T>& values) {
+    const Result<std::span<const T>> view = file_.view<T>(name, shape);
+    if (view) {
+      values.assign(view->begin(), view->end());
+    } else if (!first_error_) {
+      first_error_ = view.error();
+    }
+  }
+
+  [[nodiscard]] const std::optional<Error>& first_error() const { return first_error_; }
+
+ private:
+  const SafetensorsFile& file_;
+  std::optional<Error> first_error_;
 };
 
 /// Reads a file of at most 1 GiB with a header of at most 4 MiB. The tensors must fill the file without gap or overlap.

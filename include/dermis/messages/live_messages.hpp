@@ -86,7 +86,7 @@ struct Statistics {
 };
 void encode_statistics(const Statistics& statistics, std::string_view frame_id, std::vector<std::uint8_t>& message);
 
-/// dermis_msgs/msg/CalibrationState.
+/// dermis_msgs/msg/CalibrationState. Many members: the fields of the message.
 struct CalibrationState {
   enum class Stage : std::uint8_t { none, unloaded, pressing, fitting, done, failed };
   enum class Hint : std::uint8_t { none, press, hold, release, other_taxel, unsteady, too_short, several, one_of_two };

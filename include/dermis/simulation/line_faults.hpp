@@ -17,16 +17,18 @@ class ConfigFile;
 
 namespace dermis::simulation {
 
-/// What is broken in a simulated array, and when. Lines and taxels are numbered from 0.
+/// Rows or columns that are broken, numbered from 0.
+struct BrokenLines {
+  std::vector<std::size_t> open;      ///< The wire between a line and its driver or load is broken: it floats.
+  std::vector<std::size_t> grounded;  ///< Shorted to 0 V.
+  std::vector<std::size_t> supplied;  ///< Shorted to the supply.
+  std::vector<std::size_t> shorted;   ///< Line k is shorted to line k + 1.
+};
+
+/// What is broken in a simulated array, and when.
 struct LineFaults {
-  std::vector<std::size_t> open_rows;         ///< The wire between a line and its driver or load is broken: it floats.
-  std::vector<std::size_t> open_columns;      ///< The same.
-  std::vector<std::size_t> grounded_rows;     ///< Shorted to 0 V.
-  std::vector<std::size_t> grounded_columns;  ///< The same.
-  std::vector<std::size_t> supplied_rows;     ///< Shorted to the supply.
-  std::vector<std::size_t> supplied_columns;  ///< The same.
-  std::vector<std::size_t> shorted_rows;      ///< Row k is shorted to row k + 1.
-  std::vector<std::size_t> shorted_columns;   ///< Column k is shorted to column k + 1.
+  BrokenLines rows;     ///< In files "open_rows", "grounded_rows" and so on.
+  BrokenLines columns;  ///< The same.
   std::vector<std::string> dead_taxels;       ///< "r3c5": no contact at the crossing, 0 S.
   std::vector<std::string> stuck_taxels;      ///< "r3c5": the reading does not change.
   double stuck_ratio = 0.25;                  ///< Reading of the stuck taxels over the supply, without noise, 0 ... 1.
@@ -44,7 +46,7 @@ struct LineFaults {
   [[nodiscard]] Status validate(const ArrayDescription& array) const;
 };
 
-/// Reads the table [faults]; keys are the field names.
+/// Reads the table [faults]; keys are the field names, with "open_rows" for rows.open.
 void read_line_faults(files::ConfigFile& file, LineFaults& faults);
 
 /// Readings of an array with faults, [rows, cols] over the supply, `frame` frames after the first of the recording.

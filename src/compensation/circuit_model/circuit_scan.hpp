@@ -21,41 +21,44 @@ namespace dermis::compensation {
 /// rho_t with the currents i and k into the network moves it by dI_ds/drho_t = i k.
 class CircuitScan {
  public:
+  /// `lines` are to outlive it.
+  explicit CircuitScan(const ScannedLines& lines);
+  CircuitScan(const CircuitScan&) = delete;
+  CircuitScan& operator=(const CircuitScan&) = delete;
   virtual ~CircuitScan() = default;
 
   /// All scans at the conductances that the network was eliminated with: potentials, currents, drops.
   virtual void solve() noexcept = 0;
 
   /// I_ds over the supply [driven, sensed].
-  [[nodiscard]] virtual const Matrix& currents() const noexcept = 0;
+  [[nodiscard]] const Matrix& currents() const noexcept { return currents_; }
 
   /// d I_ds / d rho of a line.
   [[nodiscard]] virtual double current_by_resistor(std::size_t driven, std::size_t sensed,
                                                    std::size_t line) const noexcept = 0;
 
   /// See CircuitModel.
-  virtual void taxel_jacobian(std::span<double> jacobian) const noexcept = 0;
-  virtual void own_derivatives(std::span<double> derivatives) const noexcept = 0;
+  void taxel_jacobian(std::span<double> jacobian) const noexcept;
+  void own_derivatives(std::span<double> derivatives) const noexcept;
   virtual void multiply_taxel_jacobian(std::span<const double> change, std::span<double> product) noexcept = 0;
+
+ protected:
+  [[nodiscard]] const ScannedLines& lines() const noexcept { return lines_; }
+  /// See currents(); solve() sets them.
+  [[nodiscard]] double& current(std::size_t driven, std::size_t sensed) noexcept {
+    return currents_(at(driven), at(sensed));
+  }
+
+  /// d reading / d siemens of as many taxels as `out` has, from `first` on.
+  virtual void derive(std::size_t driven, std::size_t sensed, std::size_t first,
+                      std::span<double> out) const noexcept = 0;
+
+ private:
+  const ScannedLines& lines_;
+  Matrix currents_;
 };
 
 /// Both outlive the scan.
 [[nodiscard]] std::unique_ptr<CircuitScan> make_circuit_scan(const ScannedLines& lines, const LineNetwork& network);
-
-/// jacobian [reading, taxel] from derive(driven, sensed, first, out): d reading / d taxel for the taxels from `first`.
-template <typename Derive>
-void fill_jacobian(const ScannedLines& lines, std::span<double> jacobian, const Derive& derive) {
-  lines.for_each_reading([&](std::size_t driven, std::size_t sensed, std::size_t reading) {
-    derive(driven, sensed, std::size_t{0}, jacobian.subspan(reading * lines.taxels(), lines.taxels()));
-  });
-}
-
-/// Its diagonal.
-template <typename Derive>
-void fill_diagonal(const ScannedLines& lines, std::span<double> derivatives, const Derive& derive) {
-  lines.for_each_reading([&](std::size_t driven, std::size_t sensed, std::size_t reading) {
-    derive(driven, sensed, reading, derivatives.subspan(reading, 1));
-  });
-}
 
 }  // namespace dermis::compensation

@@ -5,11 +5,10 @@
 namespace dermis::compensation {
 
 FloatingDrivenScan::FloatingDrivenScan(const ScannedLines& lines, const LineNetwork& network)
-    : lines_(lines),
+    : CircuitScan(lines),
       network_(network),
       responses_(lines, network),
       drops_(lines.driven(), lines.sensed(), lines.taxels()),
-      currents_(at(lines.driven()), at(lines.sensed())),
       loop_siemens_(lines.driven()),
       squares_(at(lines.driven()), at(lines.taxels())),
       square_sums_(at(lines.driven())) {}
@@ -18,7 +17,7 @@ void FloatingDrivenScan::solve() noexcept {
   responses_.solve();
   drops_.adjoint = responses_.sensed_drops();
   drops_.prepare_sums();
-  for (std::size_t d = 0; d < lines_.driven(); ++d) drive(d);
+  for (std::size_t d = 0; d < lines().driven(); ++d) drive(d);
 }
 
 void FloatingDrivenScan::drive(std::size_t driven) noexcept {
@@ -28,9 +27,9 @@ void FloatingDrivenScan::drive(std::size_t driven) noexcept {
   drops_.forward.row(d) = volts * responses_.drops().row(d) + responses_.offset_drops();
   responses_.clear_isolated_lines(driven, drops_.forward.row(d));
   squares_.row(d) = drops_.forward.row(d).cwiseProduct(responses_.drops().row(d));
-  for (std::size_t s = 0; s < lines_.sensed(); ++s) {
-    const std::size_t line = lines_.driven() + s;
-    currents_(d, at(s)) =
+  for (std::size_t s = 0; s < lines().sensed(); ++s) {
+    const std::size_t line = lines().driven() + s;
+    current(driven, s) =
         volts * loop_siemens_[driven] * responses_.current(line, driven) + responses_.offset_current(line);
   }
 }
@@ -41,11 +40,11 @@ double FloatingDrivenScan::source_volts(std::size_t driven) const noexcept {
 
 double FloatingDrivenScan::current_by_resistor(std::size_t driven, std::size_t sensed,
                                                std::size_t line) const noexcept {
-  const std::size_t sensed_line = lines_.driven() + sensed;
+  const std::size_t sensed_line = lines().driven() + sensed;
   const double loop = loop_siemens_[driven];
   const double share = responses_.current(sensed_line, driven);
   const double drive = source_volts(driven) * loop;
-  if (line < lines_.driven()) return line == driven ? -drive * loop * share : 0.0;
+  if (line < lines().driven()) return line == driven ? -drive * loop * share : 0.0;
   const double through_line = responses_.current(line, driven);
   return (responses_.offset_current(line) + drive * through_line) *
          (responses_.current(line, sensed_line) - share * loop * through_line);
@@ -53,27 +52,19 @@ double FloatingDrivenScan::current_by_resistor(std::size_t driven, std::size_t s
 
 void FloatingDrivenScan::derive(std::size_t driven, std::size_t sensed, std::size_t first,
                                 std::span<double> out) const noexcept {
-  const double gain = lines_.sensed_head(sensed).gain;
+  const double gain = lines().sensed_head(sensed).gain;
   Eigen::Map<Eigen::RowVectorXd> row(out.data(), at(out.size()));
   drops_.derive(driven, sensed, gain, first, row);
-  row += gain * responses_.current(lines_.driven() + sensed, driven) *
+  row += gain * responses_.current(lines().driven() + sensed, driven) *
          squares_.row(at(driven)).segment(at(first), row.size());
-}
-
-void FloatingDrivenScan::taxel_jacobian(std::span<double> jacobian) const noexcept {
-  fill_jacobian(lines_, jacobian, [this](auto... scan) { derive(scan...); });
-}
-
-void FloatingDrivenScan::own_derivatives(std::span<double> derivatives) const noexcept {
-  fill_diagonal(lines_, derivatives, [this](auto... scan) { derive(scan...); });
 }
 
 void FloatingDrivenScan::multiply_taxel_jacobian(std::span<const double> change, std::span<double> product) noexcept {
   const Matrix& sums = drops_.sum(change);
   square_sums_.noalias() = squares_ * Eigen::Map<const Eigen::VectorXd>(change.data(), at(change.size()));
-  lines_.for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
-    const double taken = responses_.current(lines_.driven() + s, d) * square_sums_(at(d));
-    product[reading] = -lines_.sensed_head(s).gain * (sums(at(d), at(s)) - taken);
+  lines().for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
+    const double taken = responses_.current(lines().driven() + s, d) * square_sums_(at(d));
+    product[reading] = -lines().sensed_head(s).gain * (sums(at(d), at(s)) - taken);
   });
 }
 

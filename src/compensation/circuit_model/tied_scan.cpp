@@ -5,44 +5,33 @@
 namespace dermis::compensation {
 
 TiedScan::TiedScan(const ScannedLines& lines, const LineNetwork& network)
-    : lines_(lines),
-      responses_(lines, network),
-      drops_(lines.driven(), lines.sensed(), lines.taxels()),
-      currents_(at(lines.driven()), at(lines.sensed())) {}
+    : CircuitScan(lines), responses_(lines, network), drops_(lines.driven(), lines.sensed(), lines.taxels()) {}
 
 void TiedScan::solve() noexcept {
   responses_.solve();
   drops_.forward = responses_.driven_drops().rowwise() + responses_.offset_drops();
   drops_.adjoint = responses_.sensed_drops();
   drops_.prepare_sums();
-  lines_.for_each_reading([&](std::size_t d, std::size_t s, std::size_t) {
-    const std::size_t line = lines_.driven() + s;
-    currents_(at(d), at(s)) = responses_.current(line, d) + responses_.offset_current(line);
+  lines().for_each_reading([&](std::size_t d, std::size_t s, std::size_t) {
+    const std::size_t line = lines().driven() + s;
+    current(d, s) = responses_.current(line, d) + responses_.offset_current(line);
   });
 }
 
 double TiedScan::current_by_resistor(std::size_t driven, std::size_t sensed, std::size_t line) const noexcept {
   return (responses_.current(line, driven) + responses_.offset_current(line)) *
-         responses_.current(line, lines_.driven() + sensed);
+         responses_.current(line, lines().driven() + sensed);
 }
 
 void TiedScan::derive(std::size_t driven, std::size_t sensed, std::size_t first, std::span<double> out) const noexcept {
-  const double gain = lines_.sensed_head(sensed).gain;
+  const double gain = lines().sensed_head(sensed).gain;
   drops_.derive(driven, sensed, gain, first, {out.data(), at(out.size())});
-}
-
-void TiedScan::taxel_jacobian(std::span<double> jacobian) const noexcept {
-  fill_jacobian(lines_, jacobian, [this](auto... scan) { derive(scan...); });
-}
-
-void TiedScan::own_derivatives(std::span<double> derivatives) const noexcept {
-  fill_diagonal(lines_, derivatives, [this](auto... scan) { derive(scan...); });
 }
 
 void TiedScan::multiply_taxel_jacobian(std::span<const double> change, std::span<double> product) noexcept {
   const Matrix& sums = drops_.sum(change);
-  lines_.for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
-    product[reading] = -lines_.sensed_head(s).gain * sums(at(d), at(s));
+  lines().for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
+    product[reading] = -lines().sensed_head(s).gain * sums(at(d), at(s));
   });
 }
 

@@ -14,20 +14,15 @@ class TiedScan final : public CircuitScan {
   TiedScan(const ScannedLines& lines, const LineNetwork& network);
 
   void solve() noexcept override;
-  [[nodiscard]] const Matrix& currents() const noexcept override { return currents_; }
   [[nodiscard]] double current_by_resistor(std::size_t driven, std::size_t sensed,
                                            std::size_t line) const noexcept override;
-  void taxel_jacobian(std::span<double> jacobian) const noexcept override;
-  void own_derivatives(std::span<double> derivatives) const noexcept override;
   void multiply_taxel_jacobian(std::span<const double> change, std::span<double> product) noexcept override;
 
  private:
-  void derive(std::size_t driven, std::size_t sensed, std::size_t first, std::span<double> out) const noexcept;
+  void derive(std::size_t driven, std::size_t sensed, std::size_t first, std::span<double> out) const noexcept override;
 
-  const ScannedLines& lines_;
   LineResponses responses_;
   DropPairs drops_;
-  Matrix currents_;
 };
 
 }  // namespace dermis::compensation

@@ -5,79 +5,70 @@
 namespace dermis::compensation {
 
 TwoTerminalScan::TwoTerminalScan(const ScannedLines& lines, const LineNetwork& network)
-    : lines_(lines),
+    : CircuitScan(lines),
       network_(network),
       potential_(at(network.nodes()), at(lines.taxels())),
-      currents_(at(lines.driven()), at(lines.sensed())),
       square_sums_(at(lines.taxels())) {}
 
 bool TwoTerminalScan::is_joined(std::size_t driven, std::size_t sensed) const noexcept {
-  return network_.is_joined(network_.head(driven), network_.head(lines_.driven() + sensed));
+  return network_.is_joined(network_.head(driven), network_.head(lines().driven() + sensed));
 }
 
 void TwoTerminalScan::solve() noexcept {
   potential_.setZero();
-  lines_.for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
+  lines().for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
     potential_(at(network_.head(d)), at(reading)) = 1.0;
-    potential_(at(network_.head(lines_.driven() + s)), at(reading)) = -1.0;
+    potential_(at(network_.head(lines().driven() + s)), at(reading)) = -1.0;
   });
   network_.solve(potential_);
-  lines_.for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
-    const std::size_t line = lines_.driven() + s;
+  lines().for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
+    const std::size_t line = lines().driven() + s;
     const double ohm = potential_(at(network_.head(d)), at(reading)) - potential_(at(network_.head(line)), at(reading));
-    currents_(at(d), at(s)) = is_joined(d, s) ? 1.0 / (lines_.rho(d) + ohm + lines_.rho(line)) : 0.0;
+    current(d, s) = is_joined(d, s) ? 1.0 / (lines().rho(d) + ohm + lines().rho(line)) : 0.0;
   });
 }
 
 double TwoTerminalScan::current_by_resistor(std::size_t driven, std::size_t sensed, std::size_t line) const noexcept {
-  const double amperes = currents_(at(driven), at(sensed));
-  return line == driven || line == lines_.driven() + sensed ? -amperes * amperes : 0.0;
+  const double amperes = currents()(at(driven), at(sensed));
+  return line == driven || line == lines().driven() + sensed ? -amperes * amperes : 0.0;
 }
 
 // Over the supply. In a scan across two parts of the array without a taxel between them, one stands at 1 V.
 double TwoTerminalScan::drop(std::size_t driven, std::size_t sensed, std::size_t taxel) const noexcept {
   const std::size_t from = network_.head(driven);
-  const std::size_t to = network_.head(lines_.driven() + sensed);
+  const std::size_t to = network_.head(lines().driven() + sensed);
   const auto joined = [this](std::size_t a, std::size_t b) { return network_.is_joined(a, b); };
   const auto [a, b] = network_.edges()[taxel];
   if (!joined(from, to)) return (joined(a, from) && joined(b, to)) || (joined(b, from) && joined(a, to)) ? 1.0 : 0.0;
   if (!joined(a, b)) return 0.0;
-  const Eigen::Index scan = at(lines_.reading(driven, sensed));
-  return currents_(at(driven), at(sensed)) * (potential_(at(a), scan) - potential_(at(b), scan));
+  const Eigen::Index scan = at(lines().reading(driven, sensed));
+  return currents()(at(driven), at(sensed)) * (potential_(at(a), scan) - potential_(at(b), scan));
 }
 
 void TwoTerminalScan::derive(std::size_t driven, std::size_t sensed, std::size_t first,
                              std::span<double> out) const noexcept {
-  const double gain = lines_.sensed_head(sensed).gain;
+  const double gain = lines().sensed_head(sensed).gain;
   for (std::size_t k = 0; k < out.size(); ++k) {
     const double volts = drop(driven, sensed, first + k);
     out[k] = gain * volts * volts;
   }
 }
 
-void TwoTerminalScan::taxel_jacobian(std::span<double> jacobian) const noexcept {
-  fill_jacobian(lines_, jacobian, [this](auto... scan) { derive(scan...); });
-}
-
-void TwoTerminalScan::own_derivatives(std::span<double> derivatives) const noexcept {
-  fill_diagonal(lines_, derivatives, [this](auto... scan) { derive(scan...); });
-}
-
 void TwoTerminalScan::multiply_taxel_jacobian(std::span<const double> change, std::span<double> product) noexcept {
   square_sums_.setZero();
-  for (std::size_t taxel = 0; taxel < lines_.taxels(); ++taxel) {
+  for (std::size_t taxel = 0; taxel < lines().taxels(); ++taxel) {
     const auto [a, b] = network_.edges()[taxel];
     if (!network_.is_joined(a, b)) continue;
     square_sums_ += change[taxel] * (potential_.row(at(a)) - potential_.row(at(b))).cwiseAbs2().transpose();
   }
-  lines_.for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
-    const double amperes = currents_(at(d), at(s));
+  lines().for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
+    const double amperes = currents()(at(d), at(s));
     double sum = amperes * amperes * square_sums_(at(reading));
     if (!is_joined(d, s)) {
       sum = 0.0;
-      for (std::size_t taxel = 0; taxel < lines_.taxels(); ++taxel) sum += drop(d, s, taxel) * change[taxel];
+      for (std::size_t taxel = 0; taxel < lines().taxels(); ++taxel) sum += drop(d, s, taxel) * change[taxel];
     }
-    product[reading] = lines_.sensed_head(s).gain * sum;
+    product[reading] = lines().sensed_head(s).gain * sum;
   });
 }
 

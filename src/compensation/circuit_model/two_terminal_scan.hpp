@@ -14,24 +14,19 @@ class TwoTerminalScan final : public CircuitScan {
   TwoTerminalScan(const ScannedLines& lines, const LineNetwork& network);
 
   void solve() noexcept override;
-  [[nodiscard]] const Matrix& currents() const noexcept override { return currents_; }
   [[nodiscard]] double current_by_resistor(std::size_t driven, std::size_t sensed,
                                            std::size_t line) const noexcept override;
-  void taxel_jacobian(std::span<double> jacobian) const noexcept override;
-  void own_derivatives(std::span<double> derivatives) const noexcept override;
   void multiply_taxel_jacobian(std::span<const double> change, std::span<double> product) noexcept override;
 
  private:
-  void derive(std::size_t driven, std::size_t sensed, std::size_t first, std::span<double> out) const noexcept;
+  void derive(std::size_t driven, std::size_t sensed, std::size_t first, std::span<double> out) const noexcept override;
   [[nodiscard]] double drop(std::size_t driven, std::size_t sensed, std::size_t taxel) const noexcept;
   /// The scan lies within one part of the array.
   [[nodiscard]] bool is_joined(std::size_t driven, std::size_t sensed) const noexcept;
 
-  const ScannedLines& lines_;
   const LineNetwork& network_;
   LineNetwork::Potentials potential_;  // [nodes, readings]
-  Matrix currents_;
-  Eigen::VectorXd square_sums_;  // over the taxels [readings]
+  Eigen::VectorXd square_sums_;        // over the taxels [readings]
 };
 
 }  // namespace dermis::compensation

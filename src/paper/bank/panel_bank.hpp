@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,48 +10,9 @@
 #include "paper/bank/frame_space.hpp"
 #include "paper/bank/huge_vector.hpp"
 #include "paper/bank/panel_layout.hpp"
+#include "paper/bank/pattern_space.hpp"
 
 namespace dermis::paper {
-
-/// Patterns that evaluating takes through the layers together: what they put out and a layer's weights stay in the
-/// cache.
-inline constexpr std::size_t kBlock = 64;
-
-/// Work space of one thread for a batch of patterns: what each layer puts out, [patterns, stride], pattern by pattern.
-class PatternSpace {
- public:
-  PatternSpace(const PanelLayout& layout, std::size_t patterns);
-
-  /// Rows that a batch of this size occupies: whole lanes.
-  [[nodiscard]] std::size_t rows() const { return rows_; }
-  /// Level 0 holds the inputs, level l + 1 what layer l puts out and, on the way back, its deltas.
-  [[nodiscard]] float* level(std::size_t level) { return values_.data() + starts_[level]; }
-  [[nodiscard]] std::size_t stride(std::size_t level) const { return strides_[level]; }
-  /// Deltas of a layer with the patterns side by side, [units, column_stride].
-  [[nodiscard]] float* columns() { return values_.data() + columns_; }
-  /// What they give for the layer below, of the same form.
-  [[nodiscard]] float* columns_below() { return values_.data() + columns_below_; }
-  [[nodiscard]] std::size_t column_stride() const { return column_stride_; }
-
-  std::vector<float> targets;  ///< [patterns, outputs]
-  std::vector<float> weights;  ///< [patterns], over the number of patterns.
-
- private:
-  std::size_t rows_;
-  std::size_t column_stride_;
-  std::size_t columns_ = 0;
-  std::size_t columns_below_ = 0;
-  std::vector<std::size_t> strides_;
-  std::vector<std::size_t> starts_;
-  HugeVector<float> values_;
-};
-
-/// The parameters of one network and, for Adam, the moments of their gradients.
-struct PanelParameters {
-  float* values;
-  float* first_moments;
-  float* second_moments;
-};
 
 /// One network after the other, each a row of matrix panels (PanelLayout): for layers wider than the vectors.
 class PanelBank final : public BankStorage {

@@ -17,6 +17,7 @@ namespace dermis::recognition {
 namespace {
 
 using files::SafetensorsFile;
+using files::TensorReader;
 using Json = nlohmann::json;
 using Shape = std::vector<std::size_t>;
 
@@ -147,46 +148,21 @@ std::string tensor_name(std::size_t expert, const char* table) {
   return "expert." + std::to_string(expert) + "." + table;
 }
 
-template <typename T>
-void put(SafetensorsFile& file, const std::string& name, Shape shape, const std::vector<T>& values) {
-  file.tensors[name] = {std::move(shape), values};
-}
-
-/// Copies tensors out of a file; keeps the first error.
-class TensorReader {
- public:
-  explicit TensorReader(const SafetensorsFile& file) : file_(file) {}
-
-  template <typename T>
-  std::vector<T> get(const std::string& name, const Shape& shape) {
-    const Result<std::span<const T>> view = file_.view<T>(name, shape);
-    if (view) return {view->begin(), view->end()};
-    if (!first_error_) first_error_ = view.error();
-    return {};
-  }
-
-  [[nodiscard]] const std::optional<Error>& first_error() const { return first_error_; }
-
- private:
-  const SafetensorsFile& file_;
-  std::optional<Error> first_error_;
-};
-
 Expert expert_from(const Json& json, std::size_t place, std::size_t class_count, JsonReader& reader,
                    TensorReader& tensors) {
   Expert expert{.name = reader.text(json, "name"), .weight = reader.number(json, "weight")};
   const std::size_t columns = std::min(reader.count(json, "columns"), kMostColumns);
-  const auto table = [&](const char* name, const Shape& shape) {
-    return tensors.get<float>(tensor_name(place, name), shape);
+  const auto get = [&](const char* name, const Shape& shape, auto& values) {
+    tensors.get(tensor_name(place, name), shape, values);
   };
-  expert.columns = tensors.get<std::int64_t>(tensor_name(place, "columns"), {columns});
-  expert.mean = table("mean", {columns});
-  expert.scale = table("scale", {columns});
+  get("columns", {columns}, expert.columns);
+  get("mean", {columns}, expert.mean);
+  get("scale", {columns}, expert.scale);
   expert.rank = std::min(reader.count(json, "rank"), columns);
   expert.unknown_weight = reader.number(json, "unknown_weight");
-  expert.axes = table("axes", {expert.rank, columns});
-  expert.class_means = table("class_means", {class_count, expert.rank});
-  expert.distances = table("distances", {reader.count(json, "distances")});
+  get("axes", {expert.rank, columns}, expert.axes);
+  get("class_means", {class_count, expert.rank}, expert.class_means);
+  get("distances", {reader.count(json, "distances")}, expert.distances);
   return expert;
 }
 
@@ -207,8 +183,8 @@ Result<Classes> classes_from(const SafetensorsFile& file) {
   classes.unknown_from = reader.number(json, "unknown_from");
   const Json touches = json.is_object() ? json.value("touches", Json()) : Json();
   if (!touches.is_null()) classes.touches = touches_from(touches, reader);
-  classes.examples = tensors.get<std::int64_t>("examples", {classes.names.size()});
-  classes.doubts = tensors.get<float>("doubts", {reader.count(json, "doubts")});
+  tensors.get("examples", {classes.names.size()}, classes.examples);
+  tensors.get("doubts", {reader.count(json, "doubts")}, classes.doubts);
   for (const Json& expert : reader.array(json, "experts")) {
     classes.experts.push_back(expert_from(expert, classes.experts.size(), classes.names.size(), reader, tensors));
     if (!reader.is_good() || tensors.first_error()) break;
@@ -228,16 +204,16 @@ Status write_classes(const std::string& path, const Classes& classes) {
   SafetensorsFile file;
   file.metadata["format"] = kFormat;
   file.metadata["classes"] = description_of(classes).dump(-1, ' ', false, Json::error_handler_t::replace);
-  put(file, "examples", {classes.examples.size()}, classes.examples);
-  put(file, "doubts", {classes.doubts.size()}, classes.doubts);
+  put_tensor(file, "examples", {classes.examples.size()}, classes.examples);
+  put_tensor(file, "doubts", {classes.doubts.size()}, classes.doubts);
   for (std::size_t place = 0; place < classes.experts.size(); ++place) {
     const Expert& expert = classes.experts[place];
-    put(file, tensor_name(place, "columns"), {expert.columns.size()}, expert.columns);
-    put(file, tensor_name(place, "mean"), {expert.mean.size()}, expert.mean);
-    put(file, tensor_name(place, "scale"), {expert.scale.size()}, expert.scale);
-    put(file, tensor_name(place, "axes"), {expert.rank, expert.columns.size()}, expert.axes);
-    put(file, tensor_name(place, "class_means"), {classes.names.size(), expert.rank}, expert.class_means);
-    put(file, tensor_name(place, "distances"), {expert.distances.size()}, expert.distances);
+    put_tensor(file, tensor_name(place, "columns"), {expert.columns.size()}, expert.columns);
+    put_tensor(file, tensor_name(place, "mean"), {expert.mean.size()}, expert.mean);
+    put_tensor(file, tensor_name(place, "scale"), {expert.scale.size()}, expert.scale);
+    put_tensor(file, tensor_name(place, "axes"), {expert.rank, expert.columns.size()}, expert.axes);
+    put_tensor(file, tensor_name(place, "class_means"), {classes.names.size(), expert.rank}, expert.class_means);
+    put_tensor(file, tensor_name(place, "distances"), {expert.distances.size()}, expert.distances);
   }
   return files::write_safetensors(path, file);
 }

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "dermis/calibration/force_training.hpp"
+#include "dermis/calibration/sample_database.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/fusion/force_fusion.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::calibration {
+
+/// Squares of the relative error at the knots of fusion::ForceNetworks::relative_sigma.
+using VarianceProfile = std::array<double, fusion::kSigmaKnots>;
+
+/// A tested load with the variances of the sum of its taxels' forces, by where they come from [N^2].
+struct JudgedLoad {
+  double square_noise = 0.0;
+  double square_error = 0.0;
+  double newtons = 0.0;
+  double instruments = 0.0;    // ADC, temperature sensor, unloaded conductance
+  double supply = 0.0;         // for a supply error of kUnitSupplyNoise, which all taxels share
+  VarianceProfile material{};  // for a relative error of 1 at each knot
+
+  [[nodiscard]] double variance(double supply_noise, const VarianceProfile& profile) const;
+
+  static constexpr double kUnitSupplyNoise = 0.005;
+};
+
+/// The budget of some of the tested loads, at most 4,000, by what `model` says of its instruments. Left out are loads
+/// to which the material adds nothing. Errors: those of Compensator::create().
+[[nodiscard]] Result<std::vector<JudgedLoad>> judge_loads(const SampleDatabase& database,
+                                                          const std::vector<TestedLoad>& loads,
+                                                          const pipeline::Model& model);
+
+}  // namespace dermis::calibration
