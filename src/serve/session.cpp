@@ -22,6 +22,7 @@
 #include "serve/recognition_publisher.hpp"
 #include "serve/status_publisher.hpp"
 #include "serve/suit_json.hpp"
+#include "serve/suit_recognition.hpp"
 #include "serve/suit_recorder.hpp"
 #include "serve/teaching_services.hpp"
 #include "serve/threat_publisher.hpp"
@@ -105,7 +106,8 @@ class Session::Implementation {
   std::unique_ptr<stream::Server> server_;
   std::optional<Broadcaster> broadcaster_;
   std::optional<RecognitionPublisher> recognition_;
-  std::unique_ptr<ThreatPublisher> threats_;  // null: nothing is limited
+  std::unique_ptr<SuitRecognition> suit_recognition_;  // null: the suit has no classes
+  std::unique_ptr<ThreatPublisher> threats_;           // null: nothing is limited
   std::optional<LiveParameters> parameters_;
   std::optional<StatusPublisher> status_;
   /// What listens to every frame, in this order: a threat is told before anything else is done with its frame, then
@@ -177,6 +179,10 @@ Status Session::Implementation::make_server(const SessionOptions& options) {
   for (const std::string& name : TeachingServices::names()) {
     services.push_back({name, [this, name](std::string_view request) { return teaching_.call(name, request); }});
   }
+  if (suit_.classes && suit_.classes->layout.extras > 0) {
+    services.push_back({SuitRecognition::kService,
+                        [this](std::string_view request) { return suit_recognition_->take_readings(request); }});
+  }
   if (suit_.threats) {
     services.push_back({"/threats/reset", [this](std::string_view request) { return threats_->reset(request); }});
   }
@@ -196,6 +202,11 @@ Status Session::Implementation::make_publishers() {
     if (!classes) continue;
     if (Status used = recognition_->use(k, *classes); !used) return used;
   }
+  if (suit_.classes) {
+    Result<std::unique_ptr<SuitRecognition>> made = SuitRecognition::create(suit_, *server_, recorder_);
+    if (!made) return made.error();
+    suit_recognition_ = *std::move(made);
+  }
   Result<std::unique_ptr<ThreatPublisher>> threats =
       ThreatPublisher::create(suit_, *server_, recorder_, [this](const std::string& line) {
         if (notice_) notice_(line);
@@ -210,6 +221,7 @@ std::vector<Listener> Session::Implementation::listeners_in_order() {
   if (threats_) listeners.emplace_back([this](const auto& result) { threats_->publish(result); });
   listeners.emplace_back([this](const auto& result) { broadcaster_->publish(result); });
   listeners.emplace_back([this](const auto& result) { recognition_->publish(result); });
+  if (suit_recognition_) listeners.emplace_back([this](const auto& result) { suit_recognition_->publish(result); });
   listeners.emplace_back([this](const auto& result) { calibration_.feed(result.array, result.raw); });
   listeners.emplace_back([this](const auto& result) { teaching_.feed(result); });
   listeners.emplace_back([this](const auto& result) { recorder_.write(result.array, result.raw); });
