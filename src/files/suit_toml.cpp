@@ -81,6 +81,8 @@ class SuitReader {
   Result<SuitDescription> read() {
     SuitDescription suit;
     file_.text("suit.name", suit.name);
+    file_.text("suit.classes", suit.classes);
+    suit.classes = path_beside(name_, suit.classes);
     suit.arrays.resize(file_.table_count("array"));
     for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
       read_array(fmt::format("array[{}]", k), suit.arrays[k]);

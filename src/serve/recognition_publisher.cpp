@@ -18,13 +18,14 @@ RecognitionPublisher::RecognitionPublisher(const ServedSuit& suit, stream::Serve
 Status RecognitionPublisher::use(std::size_t array, recognition::Classes classes) {
   Named& named = arrays_[array];
   const std::string& name = named.array->name;
-  Result<ArrayRecognition> made = ArrayRecognition::create(std::move(classes), name, named.array->model->array);
+  Result<LiveRecognition> made =
+      LiveRecognition::create(std::move(classes), {recognition::sensed_array(named.array->model->array, name)});
   if (!made) return bad_input(fmt::format("array '{}': {}", name, made.error().message));
   if (!named.topic) {
     named.topic.emplace("/" + name + "/recognition", messages::classification_type(), server_, recorder_);
   }
   const std::lock_guard lock(named.next_mutex);
-  named.next = std::make_unique<ArrayRecognition>(*std::move(made));
+  named.next = std::make_unique<LiveRecognition>(*std::move(made));
   named.has_next = true;
   return Done{};
 }

@@ -16,8 +16,8 @@
 #include "dermis/live/live_suit.hpp"
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
-#include "serve/array_recognition.hpp"
 #include "serve/event_topic.hpp"
+#include "serve/live_recognition.hpp"
 
 namespace dermis::serve {
 
@@ -39,9 +39,9 @@ class RecognitionPublisher {
     std::optional<EventTopic> topic{};
     std::atomic<bool> has_next = false;
     std::mutex next_mutex{};
-    std::unique_ptr<ArrayRecognition> next{};
+    std::unique_ptr<LiveRecognition> next{};
     // Of the array's thread alone.
-    std::unique_ptr<ArrayRecognition> recognition{};
+    std::unique_ptr<LiveRecognition> recognition{};
     std::vector<std::size_t> order{};
     std::vector<messages::Hypothesis> results{};
     std::vector<std::uint8_t> message{};

@@ -15,8 +15,9 @@
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "dermis/threats/threat_monitor.hpp"
-#include "serve/array_recognition.hpp"
+#include "serve/live_recognition.hpp"
 #include "serve/model_or_array.hpp"
+#include "serve/suit_recognition.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -70,16 +71,35 @@ Result<SuitDescription> describe(const SuitPlace& place) {
 
 using Notice = std::function<void(const std::string&)>;
 
-Status read_classes(const std::string& path, const Notice& notice, ServedArray& array) {
-  if (path.empty()) return Done{};
+/// `create(classes)`: the recognition that they are for.
+template <typename Create>
+Result<recognition::Classes> read_classes(const std::string& path, const Notice& notice, const Create& create) {
   Result<recognition::Classes> classes = recognition::read_classes(path);
   if (!classes) return classes.error();
-  const Result<ArrayRecognition> fits = ArrayRecognition::create(*classes, array.name, array.model->array);
+  const Result<LiveRecognition> fits = create(*classes);
   if (!fits) return bad_input(fmt::format("{}: {}", path, fits.error().message));
   if (!classes->layout.has_forces() && notice) {
     notice(path + ": was not learned with a model; what it learned from is taken for newtons");
   }
+  return classes;
+}
+
+Status read_classes_of_array(const std::string& path, const Notice& notice, ServedArray& array) {
+  if (path.empty()) return Done{};
+  Result<recognition::Classes> classes = read_classes(path, notice, [&](const recognition::Classes& read) {
+    return LiveRecognition::create(read, {recognition::sensed_array(array.model->array, array.name)});
+  });
+  if (!classes) return classes.error();
   array.classes = *std::move(classes);
+  return Done{};
+}
+
+Status read_classes_of_suit(const std::string& path, const Notice& notice, ServedSuit& suit) {
+  if (path.empty()) return Done{};
+  Result<recognition::Classes> classes = read_classes(
+      path, notice, [&](const recognition::Classes& read) { return recognition_of_suit(read, suit.arrays); });
+  if (!classes) return classes.error();
+  suit.classes = *std::move(classes);
   return Done{};
 }
 
@@ -122,7 +142,7 @@ Result<ServedArray> open_array(const SuitArray& described, const Notice& notice,
                      described.base_from_array,
                      std::move(known->description),
                      described.model};
-  if (Status read = read_classes(described.classes, notice, served); !read) return read.error();
+  if (Status read = read_classes_of_array(described.classes, notice, served); !read) return read.error();
   return served;
 }
 
@@ -215,6 +235,7 @@ Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions opti
     if (!array) return array.error();
     suit.arrays.push_back(*std::move(array));
   }
+  if (Status read = read_classes_of_suit(described->classes, options.notice, suit); !read) return read.error();
   if (Status read = read_threats(place.threats, options.notice, suit); !read) return read.error();
   options.guide = suit.guide;
   if (Status opened = open_sources(place, *described, options, suit); !opened) return opened.error();

@@ -24,6 +24,7 @@
 #include "serve/service_arrays.hpp"
 #include "serve/status_publisher.hpp"
 #include "serve/suit_json.hpp"
+#include "serve/suit_recognition.hpp"
 #include "serve/suit_recorder.hpp"
 #include "serve/teaching_services.hpp"
 #include "serve/threat_publisher.hpp"
@@ -152,6 +153,7 @@ class Session::Implementation {
   std::optional<ThreatPublisher> threats_;  // empty: nothing is limited
   CalibrationServices calibration_;
   TeachingServices teaching_;
+  std::unique_ptr<SuitRecognition> suit_recognition_;  // null: the suit has no classes
   LiveParameters parameters_;
   StatusPublisher status_;
   std::unique_ptr<DdsTopics> dds_;  // null: none are wanted
@@ -187,7 +189,6 @@ Session::Implementation::Implementation(ServedSuit suit, SessionParts parts, con
     threats_.emplace(suit_, std::move(parts.monitors), *server_, recorder_,
                      [this](const std::string& line) { log(line); });
   }
-  listen();
 }
 
 Session::Implementation::~Implementation() {
@@ -204,6 +205,7 @@ void Session::Implementation::listen() {
   if (dds_) listeners_->add([this](const auto& result) { dds_->publish(result); });
   listeners_->add([this](const auto& result) { broadcaster_.publish(result); });
   listeners_->add([this](const auto& result) { recognition_.publish(result); });
+  if (suit_recognition_) listeners_->add([this](const auto& result) { suit_recognition_->publish(result); });
   listeners_->add([this](const auto& result) { calibration_.feed(result.array, result.raw); });
   listeners_->add([this](const auto& result) { teaching_.feed(result); });
   listeners_->add([this](const auto& result) { recorder_.write(result.array, result.raw); });
@@ -215,6 +217,12 @@ Status Session::Implementation::start(const SessionOptions& options) {
     if (!classes) continue;
     if (Status used = recognition_.use(k, *classes); !used) return used;
   }
+  if (suit_.classes) {
+    Result<std::unique_ptr<SuitRecognition>> recognition = SuitRecognition::create(suit_, *server_, recorder_);
+    if (!recognition) return recognition.error();
+    suit_recognition_ = *std::move(recognition);
+  }
+  listen();
   show_suit();
   server_->start(handlers(), services());
   return options.record.empty() ? Status(Done{}) : recorder_.begin();
@@ -232,6 +240,10 @@ std::vector<stream::Service> Session::Implementation::services() {
   }
   for (const std::string& name : TeachingServices::names()) {
     services.push_back({name, [this, name](std::string_view request) { return teaching_.call(name, request); }});
+  }
+  if (suit_recognition_ && suit_.classes->layout.extras > 0) {
+    services.push_back({SuitRecognition::kService,
+                        [this](std::string_view request) { return suit_recognition_->take_readings(request); }});
   }
   if (threats_) {
     services.push_back({"/threats/reset", [this](std::string_view request) { return threats_->reset(request); }});

@@ -72,6 +72,7 @@ nlohmann::ordered_json json_of(const ServedArray& array, const pipeline::Model& 
 std::string suit_json(const ServedSuit& suit, const ModelsInUse& models) {
   nlohmann::ordered_json json;
   json["name"] = suit.name;
+  if (suit.classes) json["classes"] = suit.classes->names;
   json["arrays"] = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
     nlohmann::ordered_json array = json_of(suit.arrays[k], *models.of(k));

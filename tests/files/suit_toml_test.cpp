@@ -16,6 +16,7 @@ namespace {
 
 constexpr const char* kComplete = R"([suit]
 name = "body"
+classes = "hugs.safetensors"
 
 [[array]]
 name = "chest"
@@ -72,6 +73,7 @@ TEST(SuitToml, reads_every_key) {
   const Result<SuitDescription> suit = suit_from_toml(kComplete, "suit.toml", one_position);
   ASSERT_TRUE(suit) << suit.error().message;
   EXPECT_EQ(suit->name, "body");
+  EXPECT_EQ(suit->classes, "hugs.safetensors");
   ASSERT_EQ(suit->arrays.size(), 4U);
   const SuitArray& chest = suit->arrays[0];
   EXPECT_EQ(chest.classes, "touches.safetensors");

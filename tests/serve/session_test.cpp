@@ -254,10 +254,13 @@ TEST(Session, names_touches_and_watches_limits_for_its_clients_and_in_its_record
   suit.arrays[0].classes = std::move(classes);
   suit.threats =
       threats::ThreatLimits{{}, {{.name = "pushed", .quantity = threats::ThreatQuantity::total_force, .limit = 100.0}}};
+  suit.classes = suit.arrays[0].classes;
+  suit.classes->layout.arrays[0].name = "right";
   Work work(session_of(std::move(suit), options_with(folder.file("rec.mcap"))));
   StreamClient client(work.port());
-  client.subscribe({"/left/recognition", "/threat"});
+  client.subscribe({"/left/recognition", "/suit/recognition", "/threat"});
   EXPECT_FALSE(client.next_message("/left/recognition").bytes.empty());
+  EXPECT_FALSE(client.next_message("/suit/recognition").bytes.empty());
   EXPECT_FALSE(client.next_message("/threat").bytes.empty());
   EXPECT_EQ(client.call("/threats/reset", "{}"), "{}");
   ASSERT_TRUE(work.end());

@@ -24,6 +24,7 @@ struct SuitArray {
 /// Several arrays on one body.
 struct SuitDescription {
   std::string name = "suit";
+  std::string classes{};          ///< Path of a classes file for touches of several arrays together; empty: none.
   std::vector<SuitArray> arrays;  ///< 1 ... 256
 
   /// Names the first field that is wrong, as "array 'chest': ...".

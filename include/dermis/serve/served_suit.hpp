@@ -40,6 +40,8 @@ struct ServedArray {
 struct ServedSuit {
   std::string name = "suit";
   std::vector<ServedArray> arrays;                         ///< At least one.
+  std::optional<recognition::Classes> classes{};           ///< What touches several of them together, or one beside
+                                                           ///< further readings; learned from newtons.
   std::optional<dermis::threats::ThreatLimits> threats{};  ///< Zones name arrays as `arrays` does.
   std::unique_ptr<live::Playback> playback{};  ///< Of the recording from which all sources come; null: they are live.
   /// Heard by the simulated hands among the sources. Not null.

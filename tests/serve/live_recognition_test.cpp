@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/array_recognition.hpp"
+#include "serve/live_recognition.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,18 +16,18 @@ namespace {
 
 using recognition::Answer;
 
-ArrayRecognition recognition_of(const recognition::Classes& classes) {
-  Result<ArrayRecognition> made = ArrayRecognition::create(classes, "skin", touched_array());
+LiveRecognition recognition_of(const recognition::Classes& classes) {
+  Result<LiveRecognition> made = LiveRecognition::create(classes, {recognition::sensed_array(touched_array(), "skin")});
   EXPECT_TRUE(made) << made.error().message;
   return *std::move(made);
 }
 
-std::string name_of(const ArrayRecognition& recognition, const Answer& answer) {
+std::string name_of(const LiveRecognition& recognition, const Answer& answer) {
   return recognition.classes().names[answer.likeliest];
 }
 
 /// What is told of a gesture that begins after half a second, at so many frames a second; two seconds of it.
-std::vector<std::string> told_of(ArrayRecognition& recognition, bool is_tap, double rate_hz) {
+std::vector<std::string> told_of(LiveRecognition& recognition, bool is_tap, double rate_hz) {
   Random random(3);
   std::vector<std::string> told;
   for (int frame = 0; frame < static_cast<int>(2.0 * rate_hz); ++frame) {
@@ -39,8 +39,8 @@ std::vector<std::string> told_of(ArrayRecognition& recognition, bool is_tap, dou
   return told;
 }
 
-TEST(ArrayRecognition, tells_a_pose_when_it_changes_and_ten_times_a_second) {
-  ArrayRecognition recognition = recognition_of(left_and_right());
+TEST(LiveRecognition, tells_a_pose_when_it_changes_and_ten_times_a_second) {
+  LiveRecognition recognition = recognition_of(left_and_right());
   Random random(4);
   std::vector<std::string> told;
   for (int frame = 0; frame < 4000; ++frame) {
@@ -53,20 +53,20 @@ TEST(ArrayRecognition, tells_a_pose_when_it_changes_and_ten_times_a_second) {
   EXPECT_EQ(told.back(), "right");
 }
 
-TEST(ArrayRecognition, tells_a_gesture_once_whatever_the_rate_of_the_array) {
+TEST(LiveRecognition, tells_a_gesture_once_whatever_the_rate_of_the_array) {
   const recognition::Classes classes = taps_and_holds();
   for (const double rate_hz : {50.0, 100.0, 1000.0}) {
-    ArrayRecognition taps = recognition_of(classes);
+    LiveRecognition taps = recognition_of(classes);
     EXPECT_EQ(told_of(taps, true, rate_hz), std::vector<std::string>{"tap"}) << rate_hz;
-    ArrayRecognition holds = recognition_of(classes);
+    LiveRecognition holds = recognition_of(classes);
     EXPECT_EQ(told_of(holds, false, rate_hz), std::vector<std::string>{"hold"}) << rate_hz;
   }
 }
 
-TEST(ArrayRecognition, does_not_answer_for_a_gesture_that_a_gap_or_a_leap_in_time_cuts) {
+TEST(LiveRecognition, does_not_answer_for_a_gesture_that_a_gap_or_a_leap_in_time_cuts) {
   const recognition::Classes classes = taps_and_holds();
   for (const std::int64_t leap_s : {-10, 10}) {
-    ArrayRecognition recognition = recognition_of(classes);
+    LiveRecognition recognition = recognition_of(classes);
     Random random(5);
     for (int frame = 0; frame < 200; ++frame) {
       const Nanos time(frame * 10'000'000LL + (frame < 120 ? 0 : leap_s * 1'000'000'000));
@@ -76,26 +76,34 @@ TEST(ArrayRecognition, does_not_answer_for_a_gesture_that_a_gap_or_a_leap_in_tim
   }
 }
 
-TEST(ArrayRecognition, passes_over_frames_that_are_rejected) {
-  ArrayRecognition recognition = recognition_of(left_and_right());
+TEST(LiveRecognition, passes_over_frames_that_are_rejected) {
+  LiveRecognition recognition = recognition_of(left_and_right());
   Random random(6);
   ForceFrame frame = force_frame(Nanos(0), touch(random, true, 4.0));
   frame.status = FrameStatus::rejected;
   EXPECT_FALSE(recognition.next(frame));
 }
 
-TEST(ArrayRecognition, refuses_classes_that_do_not_fit_the_array) {
+TEST(LiveRecognition, refuses_classes_that_do_not_fit_the_array) {
   recognition::Classes classes = left_and_right();
   classes.layout.arrays[0].row_pitch_mm = classes.layout.arrays[0].col_pitch_mm = 0.0;
-  const auto misfit = ArrayRecognition::create(classes, "skin", support::reference_array(3, 4));
+  const auto misfit =
+      LiveRecognition::create(classes, {recognition::sensed_array(support::reference_array(3, 4), "skin")});
   ASSERT_FALSE(misfit);
   EXPECT_NE(misfit.error().message.find("array 'skin' has 3x4 taxels, the examples were of"), std::string::npos)
       << misfit.error().message;
 }
 
-TEST(ArrayRecognition, allocates_nothing) {
+TEST(LiveRecognition, refuses_classes_of_other_further_readings) {
+  const auto misfit =
+      LiveRecognition::create(left_and_right(), {recognition::sensed_array(touched_array(), "skin")}, 1);
+  ASSERT_FALSE(misfit);
+  EXPECT_EQ(misfit.error().message, "there are 1 further readings beside a frame, the examples had 0");
+}
+
+TEST(LiveRecognition, allocates_nothing) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
-  ArrayRecognition recognition = recognition_of(left_and_right());
+  LiveRecognition recognition = recognition_of(left_and_right());
   Random random(7);
   std::vector<ForceFrame> frames;
   for (int frame = 0; frame < 100; ++frame) {

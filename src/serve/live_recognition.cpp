@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/array_recognition.hpp"
+#include "serve/live_recognition.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -24,30 +24,34 @@ double rate_for(const Classes& classes) {
   return classes.moving ? std::min(classes.layout.rate_hz, kMostHz) : kPosesHz;
 }
 
-Layout layout_of(const std::string& name, const ArrayDescription& array, double rate_hz) {
+/// Of newtons of these arrays, side by side.
+Layout layout_of(std::vector<recognition::SensedArray> arrays, std::size_t further, const Classes& classes) {
   Layout layout;
-  layout.arrays = {recognition::sensed_array(array, name)};
-  layout.readings = array.taxel_count();
-  layout.rate_hz = rate_hz;
+  for (recognition::SensedArray& array : arrays) {
+    array.first_column = layout.readings;
+    layout.readings += array.taxel_count();
+  }
+  layout.arrays = std::move(arrays);
+  layout.extras = further;
+  layout.rate_hz = rate_for(classes);
+  layout.least_reading = classes.layout.least_reading;
   return layout;
 }
 
 }  // namespace
 
-Result<ArrayRecognition> ArrayRecognition::create(Classes classes, const std::string& name,
-                                                  const ArrayDescription& array) {
-  const double rate_hz = rate_for(classes);
-  Layout layout = layout_of(name, array, rate_hz);
-  layout.least_reading = classes.layout.least_reading;
+Result<LiveRecognition> LiveRecognition::create(Classes classes, std::vector<recognition::SensedArray> arrays,
+                                                std::size_t further) {
+  const Layout layout = layout_of(std::move(arrays), further, classes);
   Result<StreamRecogniser> recogniser = StreamRecogniser::create(std::move(classes), layout);
   if (!recogniser) return recogniser.error();
-  return ArrayRecognition(*std::move(recogniser), rate_hz, array.taxel_count());
+  return LiveRecognition(*std::move(recogniser), layout.rate_hz, layout.readings);
 }
 
-ArrayRecognition::ArrayRecognition(StreamRecogniser recogniser, double rate_hz, std::size_t taxels)
+LiveRecognition::LiveRecognition(StreamRecogniser recogniser, double rate_hz, std::size_t taxels)
     : recogniser_(std::move(recogniser)), resampler_(rate_hz, taxels) {}
 
-std::optional<Answer> ArrayRecognition::next(const ForceFrame& force) {
+std::optional<Answer> LiveRecognition::next(const ForceFrame& force, std::span<const float> further) {
   if (has(force.status, FrameStatus::rejected)) return std::nullopt;
   if (resampler_.leaps_to(force)) {
     // What was going on then is not answered for.
@@ -56,13 +60,13 @@ std::optional<Answer> ArrayRecognition::next(const ForceFrame& force) {
   }
   std::optional<Answer> answer;
   resampler_.take(force, [&](std::span<const float> newtons) {
-    if (const auto recognition = recogniser_.next(newtons)) answer = recognition->answer;
+    if (const auto recognition = recogniser_.next(newtons, further)) answer = recognition->answer;
   });
   if (!answer || !is_news(*answer, force.time)) return std::nullopt;
   return answer;
 }
 
-bool ArrayRecognition::is_news(const Answer& answer, Nanos time) {
+bool LiveRecognition::is_news(const Answer& answer, Nanos time) {
   if (classes().moving) return true;
   const bool is_same = told_ && told_->likeliest == answer.likeliest && told_->verdict == answer.verdict;
   if (is_same && time - told_->time < kTellPeriod) return false;

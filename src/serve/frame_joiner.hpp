@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+
+namespace dermis::serve {
+
+/// What was told longer ago tells nothing of now.
+inline constexpr Nanos kLongestSilence = std::chrono::milliseconds(500);
+
+/// The frames of the first of several arrays, with the last frames of the others beside them. Thread-safe: each array
+/// on a thread of its own. Allocates only when made.
+class FrameJoiner {
+ public:
+  /// Taxels of each array; at least one array.
+  explicit FrameJoiner(const std::vector<std::size_t>& taxels);
+
+  /// Keeps the newtons of an array that is not the first. Rejected frames are passed over.
+  void keep(std::size_t array, const ForceFrame& force);
+
+  /// All arrays side by side at a frame of the first. What is further than kLongestSilence from it has no load. Valid
+  /// until the next call.
+  [[nodiscard]] const ForceFrame& join(const ForceFrame& first);
+
+ private:
+  struct Kept {
+    std::optional<Nanos> time{};
+    std::vector<float> newtons{};
+  };
+
+  std::mutex mutex_;
+  std::vector<Kept> others_;
+  ForceFrame joined_;
+};
+
+}  // namespace dermis::serve
