@@ -150,7 +150,8 @@ class ArraySetup::Implementation {
     const std::string path = array->name + ".toml";
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) {
-      return bad_field("name", path + " is there already: choose another name, or serve it with --model " + path);
+      return bad_field("name",
+                       path + " is there already: choose another name, or serve it as the model of this source");
     }
     if (Status status = files::write_array(path, *array); !status) return status.error();
     const std::lock_guard lock(mutex_);

@@ -104,14 +104,12 @@ export class Overlay {
     const trail = live.slots.slots[slot]?.trail;
     if (trail === undefined || trail.length < 2) return;
     const pen = this.#pen;
-    pen.strokeStyle = INK;
-    pen.lineWidth = 1.25;
     for (let point = 1; point < trail.length; ++point) {
       pen.globalAlpha = (0.7 * point) / trail.length;
       pen.beginPath();
       pen.moveTo(originX + trail.x(point - 1) * pixelsX, originY + trail.y(point - 1) * pixelsY);
       pen.lineTo(originX + trail.x(point) * pixelsX, originY + trail.y(point) * pixelsY);
-      pen.stroke();
+      this.#strokeTwice(() => pen.stroke(), 1.25);
     }
     pen.globalAlpha = 1;
   }

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+// Usage: node layout_test.mjs path/to/dermis
+// Measures the boxes of all texts and controls of each view: nothing is cut, nothing lies over something else.
+import assert from "node:assert/strict";
+import { after, before, it } from "node:test";
+import { assertUnhurt, becomes, Bench, openBrowser, openPage } from "./harness.mjs";
+
+const VIEWS = ["array", "time", "suit", "recognition", "health", "calibration"];
+const SIZES = [
+  { width: 390, height: 844 },
+  { width: 1280, height: 720 },
+  { width: 1920, height: 1080 },
+];
+
+let bench;
+let browser;
+
+before(async () => {
+  bench = new Bench(process.argv[2]);
+  browser = await openBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  bench?.close();
+});
+
+/** In the page: what is wrong with its boxes, a line each. */
+function faultsOfBoxes() {
+  const SLACK = 1.5;
+  const style = (target) => getComputedStyle(target);
+  const ancestors = (target) => {
+    const found = [];
+    for (let one = target; one !== null && one !== document.documentElement; one = one.parentElement) found.push(one);
+    return found;
+  };
+  const faults = [];
+  const boxes = [];
+  const words = (target) => `<${target.tagName.toLowerCase()} ${target.className}> ${(target.value ?? target.textContent).trim().slice(0, 30)}`;
+  /** What is seen of a box; undefined where it is scrolled away. */
+  const seen = (box, owner) => {
+    let { left, top, right, bottom } = box;
+    for (const ancestor of ancestors(owner)) {
+      const { overflowX, overflowY } = style(ancestor);
+      if (overflowX === "visible" && overflowY === "visible") continue;
+      const room = ancestor.getBoundingClientRect();
+      const isCut = right > room.right + SLACK || left < room.left - SLACK;
+      const scrolls = overflowX === "auto" || overflowX === "scroll";
+      const isShortened = ancestors(owner).some((one) => style(one).textOverflow === "ellipsis");
+      if (isCut && !scrolls && !isShortened && ancestor !== document.body) faults.push(`cut: ${words(owner)}`);
+      [left, right] = [Math.max(left, room.left), Math.min(right, room.right)];
+      [top, bottom] = [Math.max(top, room.top), Math.min(bottom, room.bottom)];
+    }
+    return right - left > SLACK && bottom - top > SLACK ? { left, top, right, bottom } : undefined;
+  };
+  const add = (box, owner) => {
+    if (box.width === 0 || box.height === 0) return;
+    const part = seen(box, owner);
+    if (part === undefined) return;
+    if (part.right > innerWidth + SLACK || part.left < -SLACK) faults.push(`beyond the page: ${words(owner)}`);
+    boxes.push({ ...part, owner });
+  };
+  const isLeftOut = (target) => target.closest(".only-spoken, .suit-room, .uplot, dialog, option, [hidden]") !== null || style(target).visibility === "hidden";
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let text = texts.nextNode(); text !== null; text = texts.nextNode()) {
+    const owner = text.parentElement;
+    if (text.data.trim() === "" || isLeftOut(owner)) continue;
+    const range = document.createRange();
+    range.selectNodeContents(text);
+    for (const box of range.getClientRects()) add(box, owner);
+  }
+  for (const control of document.querySelectorAll("input, select, button")) if (!isLeftOut(control)) add(control.getBoundingClientRect(), control);
+  boxes.forEach((one, index) => {
+    for (const other of boxes.slice(index + 1)) {
+      if (one.owner.contains(other.owner) || other.owner.contains(one.owner)) continue;
+      const width = Math.min(one.right, other.right) - Math.max(one.left, other.left);
+      const height = Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top);
+      if (width > SLACK && height > SLACK) faults.push(`${words(one.owner)} lies over ${words(other.owner)}`);
+    }
+  });
+  const map = document.querySelector(".map-panel:not([hidden]) .map-plot, .calibration-picture");
+  if (map !== null && Math.min(map.clientWidth, map.clientHeight) < 150) faults.push(`the map has ${map.clientWidth}x${map.clientHeight} px`);
+  if (document.documentElement.scrollWidth > innerWidth) faults.push(`the page is ${document.documentElement.scrollWidth} px wide`);
+  return [...new Set(faults)];
+}
+
+it("shows the whole guide to somebody with a telephone beside the mat", async () => {
+  const server = await bench.serve("--port", "0", "--from", "sim:rehearsal?rate=100", ...bench.model);
+  try {
+    const page = await openPage(browser, `${server.url}#/calibration`);
+    await page.setViewportSize(SIZES[0]);
+    await becomes(page, "live");
+    await page.locator("[data-role=start]").click();
+    await page.locator("[data-role=walk][data-stage='2']").waitFor();
+    await page.waitForTimeout(400);
+    assert.deepEqual(await page.evaluate(faultsOfBoxes), []);
+    for (const part of [".calibration-picture", "[data-role=instruction]", ".ring"]) {
+      const { y, height } = await page.locator(part).boundingBox();
+      assert.ok(y >= 0 && y + height <= SIZES[0].height, `${part} ends at ${y + height} px`);
+    }
+    await page.close();
+  } finally {
+    await server.stop();
+  }
+});
+
+for (const size of SIZES) {
+  for (const colorScheme of ["light", "dark"]) {
+    it(`cuts nothing and lays nothing over another at ${size.width} px, ${colorScheme}`, async () => {
+      const server = await bench.serve("--port", "0", "--from", "sim:contacts?rate=100", ...bench.model);
+      try {
+        const page = await openPage(browser, server.url);
+        await page.emulateMedia({ colorScheme });
+        await page.setViewportSize(size);
+        await becomes(page, "live");
+        const found = {};
+        for (const view of VIEWS) {
+          await page.locator(`[data-tab=${view}]`).click();
+          await page.locator(`[data-view=${view}]`).waitFor();
+          await page.waitForTimeout(400);
+          const faults = await page.evaluate(faultsOfBoxes);
+          if (faults.length > 0) found[view] = faults;
+        }
+        assert.deepEqual(found, {});
+        assertUnhurt(page);
+        await page.close();
+      } finally {
+        await server.stop();
+      }
+    });
+  }
+}
