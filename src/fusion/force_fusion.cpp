@@ -87,7 +87,8 @@ ForceFusion::ForceFusion(ForceNetworks networks)
       inputs_(networks_.shape.inputs * networks_.taxel_count()),
       outputs_(networks_.taxel_count()),
       gradient_(inputs_.size()),
-      table_variance_(networks_.taxel_count()) {
+      table_variance_(networks_.taxel_count()),
+      noise_newtons_(networks_.taxel_count()) {
   assert(networks_.is_consistent());
   for (const float gain : networks_.gain) log_gain_.push_back(std::log(gain));
   for (const float sigma : networks_.relative_sigma) relative_variance_.push_back(sigma * sigma);
@@ -176,7 +177,7 @@ void ForceFusion::look_up(double temperature_offset) noexcept {
   }
 }
 
-void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& force) const noexcept {
+void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& force) noexcept {
   const float first = std::log(networks_.sigma_knots_newtons[0]);
   const float last = std::log(networks_.sigma_knots_newtons[1]);
   ForceSources sources;
@@ -196,7 +197,7 @@ void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& for
   }
   sources.log_first_knot = first;
   sources.knots_per_log = static_cast<float>(kSigmaKnots - 1) / (last - first);
-  forces(sources, force.newtons, force.sigma_newtons);
+  forces(sources, {force.newtons, force.sigma_newtons, noise_newtons_});
 }
 
 void ForceFusion::compute_signals(double temperature_sigma, ForceFrame& force) const noexcept {

@@ -62,7 +62,7 @@ hn::Vec<D> material_variance(D d, const ForceSources& sources, hn::Vec<D> log_ne
   return variance;
 }
 
-void compute_forces(const ForceSources& sources, float* newtons, float* sigma_newtons) {
+void compute_forces(const ForceSources& sources, const FusedForces& fused) {
   constexpr float kLargestLog = 88.0F;  // of a float
   const std::size_t taxels = sources.log_gain.size();
   for_all_lanes(taxels, [&](auto d, std::size_t first) {
@@ -77,7 +77,7 @@ void compute_forces(const ForceSources& sources, float* newtons, float* sigma_ne
     const auto log_newtons =
         hn::Min(hn::Add(load(sources.log_newtons), load(sources.log_gain)), hn::Set(d, kLargestLog));
     const auto is_loaded = hn::Gt(load(sources.excess.siemens), hn::Zero(d));
-    hn::StoreU(hn::IfThenElseZero(is_loaded, hn::Exp(d, log_newtons)), d, newtons + first);
+    hn::StoreU(hn::IfThenElseZero(is_loaded, hn::Exp(d, log_newtons)), d, fused.newtons.data() + first);
 
     // Where the standard deviation is taken: at e, or at one standard deviation of e where that is more.
     const auto noise_share = hn::Div(load(sources.excess.sigma_siemens), reference);
@@ -101,7 +101,8 @@ void compute_forces(const ForceSources& sources, float* newtons, float* sigma_ne
     variance = hn::MulAdd(drift, drift, variance);
     const auto at_reached = hn::Exp(d, hn::Min(log_reached, hn::Set(d, kLargestLog)));
     const auto least = hn::Set(d, std::numeric_limits<float>::min());
-    hn::StoreU(hn::Max(hn::Mul(at_reached, hn::Sqrt(variance)), least), d, sigma_newtons + first);
+    hn::StoreU(hn::Max(hn::Mul(at_reached, hn::Sqrt(variance)), least), d, fused.sigma_newtons.data() + first);
+    hn::StoreU(hn::Mul(at_reached, noise), d, fused.noise_newtons.data() + first);
   });
 }
 
@@ -118,8 +119,8 @@ void conductance_inputs(const ExcessConductance& excess, std::span<float> inputs
   HWY_DYNAMIC_DISPATCH(compute_inputs)(excess, inputs.data());
 }
 
-void forces(const ForceSources& sources, std::span<float> newtons, std::span<float> sigma_newtons) noexcept {
-  HWY_DYNAMIC_DISPATCH(compute_forces)(sources, newtons.data(), sigma_newtons.data());
+void forces(const ForceSources& sources, const FusedForces& fused) noexcept {
+  HWY_DYNAMIC_DISPATCH(compute_forces)(sources, fused);
 }
 
 }  // namespace dermis::fusion

@@ -37,7 +37,13 @@ struct ForceSources {
   float knots_per_log = 0.0F;                 ///< Knots for a rise of ln(newtons) by one.
 };
 
-/// newtons and sigma_newtons [taxels] by the formulas of ForceNetworks and ForceFusion.
-void forces(const ForceSources& sources, std::span<float> newtons, std::span<float> sigma_newtons) noexcept;
+/// What comes of them, each [taxels], by the formulas of ForceNetworks and ForceFusion.
+struct FusedForces {
+  std::span<float> newtons;
+  std::span<float> sigma_newtons;
+  std::span<float> noise_newtons;  ///< The part of sigma_newtons that comes from sigma_siemens.
+};
+
+void forces(const ForceSources& sources, const FusedForces& fused) noexcept;
 
 }  // namespace dermis::fusion

@@ -36,8 +36,8 @@ MaterialMemory::MaterialMemory(const MemoryLaw& law, std::size_t taxels)
   assert(law.is_consistent());
 }
 
-void MaterialMemory::process(ForceFrame& force) noexcept {
-  assert(force.newtons.size() == newtons_.size());
+void MaterialMemory::process(ForceFrame& force, std::span<const float> noise_newtons) noexcept {
+  assert(force.newtons.size() == newtons_.size() && noise_newtons.size() == newtons_.size());
   if (has(force.status, FrameStatus::rejected)) return;
   if (time_ && force.time < *time_) forget();
   MemoryStep step;
@@ -55,6 +55,7 @@ void MaterialMemory::process(ForceFrame& force) noexcept {
     step.late[k] = static_cast<float>(static_cast<double>(law_.creep[k]) * (1.0 - approach));
   }
   for (std::size_t j = 0; j < law_.gap.size(); ++j) step.half_gap[j] = 0.5F * law_.gap[j];
+  step.noise_newtons = noise_newtons;
   step_memory(step, force.newtons, force.sigma_newtons);
   time_ = force.time;
 }

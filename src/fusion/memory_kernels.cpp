@@ -3,6 +3,7 @@
 #include "fusion/memory_kernels.hpp"
 
 #include <cstddef>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "fusion/memory_kernels.cpp"
@@ -50,9 +51,16 @@ void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, 
     hn::StoreU(stop, d, at);
     share = hn::MulAdd(hn::Set(d, step.half_gap[j]), stop, share);
   }
-  hn::StoreU(hn::IfThenElse(is_known, hn::Mul(load, share), felt), d, newtons + first);
+  const auto freed = hn::Mul(load, share);
+  hn::StoreU(hn::IfThenElse(is_known, freed, felt), d, newtons + first);
   const auto sigma = hn::LoadU(d, sigma_newtons + first);
-  hn::StoreU(hn::Mul(sigma, hn::Mul(share, gain)), d, sigma_newtons + first);
+  const auto noise = hn::LoadU(d, step.noise_newtons.data() + first);
+  const auto lasting = hn::Max(hn::MulSub(sigma, sigma, hn::Mul(noise, noise)), hn::Zero(d));
+  const auto growth = hn::Max(hn::IfThenElse(hn::Gt(felt, hn::Zero(d)), hn::Div(freed, felt), one), one);
+  const auto noise_now = hn::Mul(noise, hn::Mul(share, gain));
+  const auto variance = hn::MulAdd(hn::Mul(growth, growth), lasting, hn::Mul(noise_now, noise_now));
+  const auto least = hn::Set(d, std::numeric_limits<float>::min());
+  hn::StoreU(hn::IfThenElse(is_known, hn::Max(hn::Sqrt(variance), least), sigma), d, sigma_newtons + first);
 }
 
 void step_all(const MemoryStep& step, float* newtons, float* sigma_newtons) {

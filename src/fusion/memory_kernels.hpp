@@ -15,6 +15,7 @@ struct MemoryStep {
   std::array<float, MemoryLaw::kCreepSeconds.size()> approach{};  ///< a_k
   std::array<float, MemoryLaw::kCreepSeconds.size()> late{};      ///< c_k (1 - a_k)
   std::array<float, MemoryLaw::kStopReach.size()> half_gap{};     ///< h_j / 2
+  std::span<const float> noise_newtons;                           ///< Of u.
   std::span<float> newtons;                                       ///< f, then the one of this step
   std::span<float> logarithm;                                     ///< ln(1 + f), likewise
   std::span<float> late_newtons;                                  ///< s_k [4, taxels], likewise

@@ -96,9 +96,9 @@ void Pipeline::process(const RawFrame& raw, ForceFrame& force) noexcept {
     compensator_.set_faults(monitor_.faults());
     compensator_.process(conditioned_, conductance_);
   }
-  drift_.process(conductance_);          // zero kept at zero
-  fusion_.process(conductance_, force);  // unit 4: material and temperature fused to newtons
-  if (memory_) memory_->process(force);  // and what the material remembers
+  drift_.process(conductance_);                                   // zero kept at zero
+  fusion_.process(conductance_, force);                           // unit 4: material and temperature fused to newtons
+  if (memory_) memory_->process(force, fusion_.noise_newtons());  // and what the material remembers
 }
 
 }  // namespace dermis::pipeline

@@ -138,6 +138,11 @@ bool has_missing_force(std::span<const Bin> bins) {
   });
 }
 
+/// The frame of the onset itself has no place on an axis of logarithms.
+std::optional<double> above_zero(const std::optional<double>& seconds) {
+  return seconds && *seconds > 0.0 ? seconds : std::nullopt;
+}
+
 Figure breakdown_figure(const Breakdown& breakdown, const Evaluation& evaluation,
                         const std::vector<BreakdownBin>& all_bins) {
   Figure figure{breakdown.file, breakdown.title, breakdown.nothing, {}, 1};
@@ -190,10 +195,19 @@ std::vector<Figure> breakdown_figures(const Evaluation& evaluation) {
                            true,
                            [](const JudgedTaxel& taxel) { return std::optional(static_cast<double>(taxel.contacts)); },
                            [](const JudgedTotal&) { return std::optional<double>(); }};
+  const Breakdown onset{"error_vs_time.svg",
+                        "Error against time since the onset",
+                        "time since the load came [s]",
+                        "No load was seen coming, so there is no error against time.",
+                        Scale::logarithmic,
+                        false,
+                        [](const JudgedTaxel& taxel) { return above_zero(taxel.touch.seconds_since_onset); },
+                        [](const JudgedTotal& total) { return above_zero(total.touch.seconds_since_onset); }};
   return {breakdown_figure(force, evaluation, evaluation.by_force),
           breakdown_figure(temperature, evaluation, evaluation.by_temperature),
           breakdown_figure(supply, evaluation, evaluation.by_supply),
-          breakdown_figure(contacts, evaluation, evaluation.by_contacts)};
+          breakdown_figure(contacts, evaluation, evaluation.by_contacts),
+          breakdown_figure(onset, evaluation, evaluation.by_onset)};
 }
 
 }  // namespace dermis::report

@@ -16,13 +16,14 @@ namespace {
 struct Figures {
   Figure calibration;
   std::vector<Figure> breakdowns;
+  Figure touch;
   Figure coverage;
   std::vector<Figure> tactile;
 };
 
 Figures all_figures(const calibration::Evaluation& evaluation) {
-  return {calibration_figure(evaluation), breakdown_figures(evaluation), coverage_figure(evaluation),
-          tactile_figures(evaluation)};
+  return {calibration_figure(evaluation), breakdown_figures(evaluation), touch_figure(evaluation),
+          coverage_figure(evaluation), tactile_figures(evaluation)};
 }
 
 std::string page_of(const calibration::Evaluation& evaluation, const pipeline::Model& model, const Figures& figures) {
@@ -32,6 +33,7 @@ std::string page_of(const calibration::Evaluation& evaluation, const pipeline::M
   add_estimators(page, evaluation, model);
   page.figure(figures.calibration);
   page.figures(figures.breakdowns);
+  page.figure(figures.touch);
   page.figure(figures.coverage);
   for (const Figure& figure : figures.tactile) page.figure(figure);
   add_array(page, evaluation.array);
@@ -50,6 +52,7 @@ Status write_evaluation_report(const std::string& directory, const calibration::
   const Figures figures = all_figures(evaluation);
   std::vector<Figure> files = {figures.calibration};
   files.insert(files.end(), figures.breakdowns.begin(), figures.breakdowns.end());
+  files.push_back(figures.touch);
   files.push_back(figures.coverage);
   files.insert(files.end(), figures.tactile.begin(), figures.tactile.end());
   return write_files(directory, files, page_of(evaluation, model, figures));

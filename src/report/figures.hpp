@@ -13,12 +13,16 @@ namespace dermis::report {
 /// where the loads have a few levels, or else a panel for each estimator.
 [[nodiscard]] Figure calibration_figure(const calibration::Evaluation& evaluation);
 
-/// Errors against force, temperature, supply and number of contacts.
+/// Errors against force, temperature, supply, number of contacts and time since the onset.
 [[nodiscard]] std::vector<Figure> breakdown_figures(const calibration::Evaluation& evaluation);
 
 /// Share of the true forces that lie within the interval of a given probability: a straight line where the standard
 /// deviations are right. No panel where nothing was judged.
 [[nodiscard]] Figure coverage_figure(const calibration::Evaluation& evaluation);
+
+/// A load over time as dermis gives it, beside the truth, and its loop of loading and unloading. No panel where the
+/// labels tell nothing of time.
+[[nodiscard]] Figure touch_figure(const calibration::Evaluation& evaluation);
 
 /// Tactile images of the example frames.
 [[nodiscard]] std::vector<Figure> tactile_figures(const calibration::Evaluation& evaluation);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -177,6 +178,62 @@ TEST(Evaluation, breaks_down_every_judged_taxel_once) {
   }
 }
 
+/// A press that comes, grows, is held, falls and goes, ten labels a second.
+struct TimedPress {
+  std::vector<RawFrame> frames;
+  std::vector<Load> loads;
+};
+
+TimedPress timed_press(const pipeline::Model& model, const TaxelRegion& where) {
+  TimedPress press;
+  for (const double newtons : {0.0, 0.0, 5.0, 5.02, 5.04, 8.0, 8.0, 8.0, 4.0, 4.0, 0.0, 0.0, 0.0, 0.0}) {
+    press.loads.push_back({press.frames.size(), LoadKind::force, where, newtons});
+    press.frames.push_back(frame_under(model, {newtons, 0, 0, 0}));
+    press.frames.back().time = std::chrono::milliseconds(100) * press.frames.size();
+  }
+  return press;
+}
+
+TEST(Evaluation, tells_how_long_a_load_lay_whether_it_falls_and_what_stays_after_it) {
+  const pipeline::Model model = exact_model();
+  const auto [frames, loads] = timed_press(model, {0, 0, 0, 0});
+  const auto evaluation = evaluate(model, frames, loads);
+  ASSERT_TRUE(evaluation);
+  ASSERT_EQ(evaluation->taxels.size(), 8U);
+  for (std::size_t k = 0; k < 8; ++k) {
+    EXPECT_NEAR(*evaluation->taxels[k].touch.seconds_since_onset, 0.1 * static_cast<double>(k), 1e-9);
+    EXPECT_EQ(*evaluation->taxels[k].touch.is_unloading, k >= 6) << k;
+  }
+  ASSERT_EQ(evaluation->by_onset.size(), 2U);
+  EXPECT_EQ(evaluation->by_onset[0].relative_error.front().count, 3U);
+  ASSERT_EQ(evaluation->by_direction.size(), 2U);
+  EXPECT_EQ(evaluation->by_direction[1].relative_error.front().count, 2U);
+  ASSERT_EQ(evaluation->after_release.size(), 2U);
+  EXPECT_EQ(evaluation->after_release[0].ghost_n.front().count, 3U);
+  EXPECT_EQ(evaluation->after_release[1].low, 0.3);
+}
+
+TEST(Evaluation, tells_the_time_of_a_sum_that_is_alone_in_its_frames) {
+  const pipeline::Model model = exact_model();
+  const auto [frames, loads] = timed_press(model, {0, 0, 1, 1});
+  const auto evaluation = evaluate(model, frames, loads);
+  ASSERT_TRUE(evaluation);
+  ASSERT_EQ(evaluation->totals.size(), 8U);
+  EXPECT_NEAR(*evaluation->totals.back().touch.seconds_since_onset, 0.7, 1e-9);
+  EXPECT_TRUE(*evaluation->totals.back().touch.is_unloading);
+}
+
+TEST(Evaluation, labels_that_are_seconds_apart_tell_nothing_of_time) {
+  const pipeline::Model model = exact_model();
+  auto [frames, loads] = timed_press(model, {0, 0, 0, 0});
+  for (RawFrame& frame : frames) frame.time *= 20;
+  const auto evaluation = evaluate(model, frames, loads);
+  ASSERT_TRUE(evaluation);
+  EXPECT_TRUE(evaluation->by_onset.empty());
+  EXPECT_TRUE(evaluation->by_direction.empty());
+  EXPECT_TRUE(evaluation->after_release.empty());
+}
+
 TEST(Evaluation, counts_a_rejected_frame_apart) {
   const pipeline::Model model = exact_model();
   std::vector<RawFrame> frames = {frame_under(model, {5.0, 0, 0, 0}), frame_under(model, {5.0, 0, 0, 0})};
@@ -195,9 +252,10 @@ TEST(Evaluation, has_the_documented_json_keys_and_no_bare_nan) {
   const auto evaluation = evaluate(model, frames, std::vector<Load>{{0, LoadKind::force, {0, 0, 0, 0}, 5.0}});
   ASSERT_TRUE(evaluation);
   const std::string json = to_json(*evaluation);
-  for (const char* key : {"estimators", "name", "median_relative_error", "p95_relative_error", "p99_relative_error",
-                          "max_relative_error", "ghost_p99_n", "ghost_max_n", "total_rmse_n", "taxels_judged",
-                          "by_force", "by_temperature", "by_supply", "by_contacts"}) {
+  for (const char* key :
+       {"estimators", "name", "median_relative_error", "p95_relative_error", "p99_relative_error", "max_relative_error",
+        "ghost_p99_n", "ghost_max_n", "total_rmse_n", "taxels_judged", "by_force", "by_temperature", "by_supply",
+        "by_contacts", "by_onset", "by_direction", "after_release"}) {
     EXPECT_NE(json.find("\"" + std::string(key) + "\""), std::string::npos) << key;
   }
   EXPECT_EQ(json.find("nan"), std::string::npos);

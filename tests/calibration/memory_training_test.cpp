@@ -5,11 +5,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
 #include <numeric>
 
 #include "calibration/simulated.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/evaluation.hpp"
+#include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -53,6 +57,90 @@ TEST(MemoryTraining, two_weights_teach_what_the_material_remembers) {
     EXPECT_LT(*dermis.relative_error.median, touch_gain > 0.0 ? 0.06 : 0.02);
     EXPECT_LT(*dermis.relative_error.p95, touch_gain > 0.0 ? 0.21 : 0.15);
     EXPECT_LT(*dermis.ghost_n.p99, 0.3);
+  }
+}
+
+/// Recordings of one taxel each, put together as if the next began a few seconds after the last.
+Recording put_together(const ArrayDescription& array, simulation::SimulationOptions physics) {
+  physics.scene = {.rate_hz = 20.0, .taxels = 1};
+  Recording all;
+  Nanos begin{};
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Recording one = record(array, "two_weights", seed, physics);
+    for (Load load : one.loads) {
+      load.frame += all.frames.size();
+      all.loads.push_back(load);
+    }
+    for (RawFrame frame : one.frames) {
+      frame.time += begin;
+      all.frames.push_back(frame);
+    }
+    begin = all.frames.back().time + std::chrono::seconds(2);
+  }
+  return all;
+}
+
+TEST(MemoryTraining, pauses_that_nobody_waited_do_not_mislead) {
+  const ArrayDescription array = reference_array(1, 2);
+  const simulation::SimulationOptions physics = rubber(0.0);
+  const Recording pieces = put_together(array, physics);
+  const auto calibration = calibrate(array, pieces.frames, pieces.loads);
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  ASSERT_TRUE(calibration->model.memory);
+  for (const float share : calibration->model.memory->creep) EXPECT_NEAR(share, 0.08F, 0.03F);
+}
+
+/// Whether tracking changes forces of at least a newton, and what it makes of taxels that a load has left.
+struct Tracked {
+  double worst_change = 0.0;  // relative
+  double worst_ghost = 0.0;   // [N]
+  double least = 0.0;         // [N]
+};
+
+Tracked tracked(const pipeline::Model& model, const Recording& recording) {
+  auto with = pipeline::Pipeline::create(model);
+  auto without = pipeline::Pipeline::create(model);
+  with->drift().set_options({.track = true});
+  std::map<std::size_t, std::map<std::size_t, double>> truth;  // by frame and taxel
+  for (const Load& load : recording.loads) {
+    for (std::size_t row = load.where.first_row; row <= load.where.last_row; ++row) {
+      for (std::size_t col = load.where.first_col; col <= load.where.last_col; ++col) {
+        truth[load.frame][model.array.index(row, col)] = load.value;
+      }
+    }
+  }
+  Tracked result;
+  ForceFrame force;
+  ForceFrame plain;
+  for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {
+    with->process(recording.frames[frame], force);
+    without->process(recording.frames[frame], plain);
+    for (const float newtons : force.newtons) result.least = std::min(result.least, static_cast<double>(newtons));
+    for (const auto& [taxel, newtons] : truth[frame]) {
+      const auto given = static_cast<double>(force.newtons[taxel]);
+      if (newtons == 0.0) result.worst_ghost = std::max(result.worst_ghost, given);
+      if (newtons < 1.0) continue;
+      const double change = given / static_cast<double>(plain.newtons[taxel]) - 1.0;
+      result.worst_change = std::max(result.worst_change, std::abs(change));
+    }
+  }
+  return result;
+}
+
+TEST(MemoryTraining, the_dip_after_a_release_is_no_drift) {
+  const ArrayDescription array = reference_array(2, 3);
+  for (const double unloaded_ohm : {200e3, 10e3}) {
+    SCOPED_TRACE(testing::Message() << "unloaded " << unloaded_ohm << " ohm");
+    simulation::SimulationOptions physics = rubber(0.0);
+    physics.rubber.unloaded_ohm = unloaded_ohm;
+    const Recording weights = two_weights(array, physics, 1);
+    const auto calibration = calibrate(array, weights.frames, weights.loads);
+    ASSERT_TRUE(calibration) << calibration.error().message;
+    ASSERT_TRUE(calibration->model.memory);
+    const Tracked result = tracked(calibration->model, two_weights(array, physics, 2));
+    EXPECT_GE(result.least, 0.0);
+    EXPECT_LT(result.worst_change, 0.05);
+    EXPECT_LT(result.worst_ghost, 0.3);
   }
 }
 

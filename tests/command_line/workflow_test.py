@@ -12,6 +12,7 @@ ESTIMATOR_KEYS = {"name", "median_relative_error", "p95_relative_error", "p99_re
                   "total_median_relative_error", "total_max_relative_error", "totals_judged"}
 COVERAGE_KEYS = {"coverage_68", "coverage_95", "coverage_taxels"}
 BREAKDOWNS = ("by_force", "by_temperature", "by_supply", "by_contacts")
+OVER_TIME = ("by_onset", "by_direction", "after_release")
 
 
 def rows_of(path):
@@ -42,7 +43,7 @@ class Workflow(SmallArray):
     def test_evaluation_as_json(self):
         result = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))
         self.assertEqual(set(result), {"frames", "frames_rejected", "judged_from_n", "estimators", *BREAKDOWNS,
-                                       "cramer_rao_bound"})
+                                       *OVER_TIME, "cramer_rao_bound"})
         self.assertEqual((result["frames"], result["frames_rejected"]), (200, 0))
         names = [entry["name"] for entry in result["estimators"]]
         self.assertEqual(names, ["dermis", "raw_lookup", "temperature_lookup", "crosstalk_lookup"])

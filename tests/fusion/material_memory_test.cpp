@@ -37,6 +37,12 @@ ForceFrame frame_at(double seconds, std::vector<float> newtons, float sigma = 0.
   return frame;
 }
 
+/// A frame whose standard deviations are all noise.
+void process(MaterialMemory& memory, ForceFrame& frame) {
+  const std::vector<float> noise = frame.sigma_newtons;
+  memory.process(frame, noise);
+}
+
 /// One taxel of the material, in double precision: a load is put on at once and held.
 class Material {
  public:
@@ -92,7 +98,7 @@ TEST(MaterialMemory, a_law_without_memory_changes_no_bit) {
   for (int k = 0; k < 50; ++k) {
     const std::vector<float> newtons{0.0F, static_cast<float>(random.log_uniform(0.01, 100.0)), 3.7F};
     ForceFrame frame = frame_at(0.01 * k, newtons, 0.3F);
-    memory.process(frame);
+    process(memory, frame);
     EXPECT_EQ(frame.newtons, newtons);
     EXPECT_EQ(frame.sigma_newtons, std::vector<float>(3, 0.3F));
   }
@@ -105,12 +111,12 @@ TEST(MaterialMemory, the_force_of_a_load_does_not_depend_on_how_long_it_lies_nor
     Material material(creep_only());
     MaterialMemory memory(creep_only(), 1);
     ForceFrame first = frame_at(0.0, {0.0F});
-    memory.process(first);
+    process(memory, first);
     double seconds = 0.0;
     for (const Hold& hold : random_holds(random, 300)) {
       seconds += hold.seconds;
       ForceFrame frame = frame_at(seconds, {static_cast<float>(material.feel(hold.newtons, hold.seconds))});
-      memory.process(frame);
+      process(memory, frame);
       ASSERT_NEAR(static_cast<double>(frame.newtons[0]), hold.newtons, 2e-4 * hold.newtons + 2e-4) << seconds << " s";
     }
   }
@@ -126,10 +132,10 @@ TEST(MaterialMemory, lost_frames_of_a_held_load_change_nothing) {
     const auto felt = static_cast<float>(k == 0 ? 0.0 : material.feel(newtons, 0.02));
     ForceFrame frame = frame_at(0.02 * k, {felt});
     ForceFrame kept = frame;
-    all.process(frame);
+    process(all, frame);
     const bool is_change = k == 11 || k == 1500;
     if (k != 0 && k != 10 && k != 1499 && !is_change && random.below(4) != 0) continue;
-    some.process(kept);
+    process(some, kept);
     EXPECT_NEAR(kept.newtons[0], frame.newtons[0], 1e-3F) << k;
   }
 }
@@ -142,16 +148,16 @@ TEST(MaterialMemory, loading_and_unloading_are_told_apart_by_the_stops) {
   double seconds = 0.0;
   for (const Hold& hold : random_holds(random, 500)) {
     ForceFrame frame = frame_at(seconds += hold.seconds, {static_cast<float>(hold.newtons)});
-    memory.process(frame);
+    process(memory, frame);
     const double expected = material.slide(hold.newtons);
     ASSERT_NEAR(static_cast<double>(frame.newtons[0]), expected, 1e-4 * expected + 1e-5);
   }
   ForceFrame off = frame_at(seconds + 0.5, {0.0F});
-  memory.process(off);
+  process(memory, off);
   ForceFrame up = frame_at(seconds + 1.0, {40.0F});
-  memory.process(up);
+  process(memory, up);
   ForceFrame half = frame_at(seconds + 2.0, {10.0F});
-  memory.process(half);
+  process(memory, half);
   EXPECT_NEAR(up.newtons[0], 40.0F * 1.045F, 1e-3F);
   EXPECT_LT(half.newtons[0], 10.0F * 0.97F);
 }
@@ -162,7 +168,7 @@ TEST(MaterialMemory, after_a_release_nothing_presses) {
   for (int k = 0; k < 600; ++k) {
     const bool is_pressed = k > 5 && k < 300;
     ForceFrame frame = frame_at(0.05 * k, {is_pressed ? 20.0F : static_cast<float>(0.05 * random.uniform(0.0, 1.0))});
-    memory.process(frame);
+    process(memory, frame);
     if (is_pressed) continue;
     EXPECT_GE(frame.newtons[0], 0.0F);
     EXPECT_LT(frame.newtons[0], 0.1F);
@@ -178,7 +184,7 @@ TEST(MaterialMemory, a_taxel_without_a_force_counts_as_carrying_its_last_one) {
     const bool is_known = k < 100 || k >= 300;
     ForceFrame frame = frame_at(0.05 * k, {is_known ? felt : kNan, felt});
     if (!is_known) frame.sigma_newtons[0] = kNan;
-    memory.process(frame);
+    process(memory, frame);
     EXPECT_EQ(std::isnan(frame.newtons[0]), !is_known);
     EXPECT_EQ(std::isnan(frame.sigma_newtons[0]), !is_known);
     if (is_known) {
@@ -199,7 +205,7 @@ TEST(MaterialMemory, a_rejected_frame_is_none) {
       frame.newtons[0] = kNan;
       frame.time = Nanos(-5);
     }
-    memory.process(frame);
+    process(memory, frame);
     if (k > 1 && k % 3 != 1) {
       EXPECT_NEAR(frame.newtons[0], 8.0F, 0.01F) << k;
     }
@@ -216,13 +222,13 @@ TEST(MaterialMemory, states_stay_finite_whatever_the_frames_are) {
     std::vector<float> newtons;
     for (int taxel = 0; taxel < 4; ++taxel) newtons.push_back(odd[random.below(odd.size())]);
     ForceFrame frame = frame_at(seconds, newtons);
-    memory.process(frame);
+    process(memory, frame);
     for (std::size_t taxel = 0; taxel < 4; ++taxel) {
       EXPECT_EQ(std::isfinite(frame.newtons[taxel]), !std::isnan(newtons[taxel]));
     }
   }
   ForceFrame frame = frame_at(seconds + 1e5, {2.0F, 2.0F, 2.0F, 2.0F});
-  memory.process(frame);
+  process(memory, frame);
   for (const float newtons : frame.newtons) EXPECT_NEAR(newtons, 2.0F, 0.2F);
 }
 
@@ -231,20 +237,20 @@ TEST(MaterialMemory, the_load_of_the_first_frame_counts_as_lying_there_for_long)
   for (const double start : {100.0, 5.0}) {  // earlier: a recording that begins anew
     for (int k = 0; k < 20; ++k) {
       ForceFrame frame = frame_at(start + k, {7.0F});
-      memory.process(frame);
+      process(memory, frame);
       EXPECT_NEAR(frame.newtons[0], 7.0F, 1e-4F);
     }
   }
 }
 
-TEST(MaterialMemory, the_standard_deviation_grows_as_noise_does) {
+TEST(MaterialMemory, noise_grows_as_the_inverse_does) {
   const MemoryLaw law = creep_only();
   const auto newtons_of = [&](float felt, float& sigma) {
     MaterialMemory memory(law, 1);
     ForceFrame frame;
     for (int k = 0; k < 30; ++k) {
       frame = frame_at(0.01 * k, {k < 5 ? 0.0F : (k < 29 ? 10.0F : felt)}, 0.25F);
-      memory.process(frame);
+      process(memory, frame);
     }
     sigma = frame.sigma_newtons[0];
     return frame.newtons[0];
@@ -256,10 +262,29 @@ TEST(MaterialMemory, the_standard_deviation_grows_as_noise_does) {
   EXPECT_GT(sigma, 0.3F);
 }
 
+TEST(MaterialMemory, an_error_that_lasts_a_touch_stays_the_same_share_of_the_force) {
+  Material material(creep_only());
+  MaterialMemory memory(creep_only(), 2);
+  constexpr float kError = 0.05F;
+  const std::vector<float> noise{0.0F, 1e-3F};
+  for (int k = 0; k < 2000; ++k) {
+    const double newtons = k < 5 ? 0.0 : (k < 1000 ? 10.0 : 3.0);
+    const auto felt = static_cast<float>(material.feel(newtons, 0.01));
+    ForceFrame frame = frame_at(0.01 * k, {felt, felt * (1.0F + kError)});
+    frame.sigma_newtons = {kError * felt, std::hypot(kError * felt, noise[1])};
+    memory.process(frame, noise);
+    if (k < 5) continue;
+    EXPECT_NEAR(frame.newtons[1], frame.newtons[0] * (1.0F + kError), 1e-3F) << k;
+    EXPECT_NEAR(frame.sigma_newtons[0], kError * std::max(frame.newtons[0], felt), 1e-4F) << k;
+    EXPECT_NEAR(frame.sigma_newtons[1], frame.sigma_newtons[0], 1e-4F) << k;
+  }
+}
+
 TEST(MaterialMemory, every_instruction_set_gives_the_same_and_nothing_is_allocated) {
   std::vector<std::vector<float>> results;
   support::for_each_simd_target([&] {
     constexpr std::size_t kTaxels = 37;
+    const std::vector<float> noise(kTaxels, 0.05F);
     MaterialMemory memory(creep_and_hysteresis(), kTaxels);
     Random random(13);
     ForceFrame frame;
@@ -268,7 +293,7 @@ TEST(MaterialMemory, every_instruction_set_gives_the_same_and_nothing_is_allocat
       for (float& force : newtons) force = static_cast<float>(random.below(2) == 0 ? 0.0 : random.uniform(0.0, 30.0));
       frame = frame_at(0.013 * k, newtons);
       const support::AllocationGuard guard;
-      memory.process(frame);
+      memory.process(frame, noise);
       if (support::kAllocationsAreCounted) {
         EXPECT_EQ(guard.count(), 0U);
       }

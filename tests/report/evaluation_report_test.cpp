@@ -64,6 +64,23 @@ TEST_F(ReportTest, writes_the_page_and_every_figure) {
   EXPECT_TRUE(says("BP networks of 2-4-1 units"));
 }
 
+TEST_F(ReportTest, shows_the_longest_touch_over_time_and_its_loop) {
+  calibration::Evaluation evaluation = empty_sample(2, 2);
+  for (std::size_t frame = 0; frame < 60; ++frame) {
+    const double newtons = frame < 20 ? 5.0 : (frame < 40 ? 10.0 : 5.0);
+    const auto felt = static_cast<float>(frame < 40 ? 0.98 * newtons : 1.02 * newtons);
+    calibration::JudgedTaxel taxel{frame, 2, newtons, {}, {}, 1, {felt, felt, felt, felt}, 0.1F};
+    taxel.touch = {0.1 * static_cast<double>(frame), frame >= 40};
+    evaluation.taxels.push_back(taxel);
+  }
+  summarise_sample(evaluation);
+  EXPECT_TRUE(write(evaluation).contains("touch_over_time.svg"));
+  EXPECT_TRUE(says("A touch over time"));
+  EXPECT_TRUE(says("unloading"));
+  write(sample_evaluation(4, 4, 20));
+  EXPECT_TRUE(says("No load was seen coming, so there is no touch over time."));
+}
+
 TEST_F(ReportTest, shows_how_sure_it_is_and_the_bound) {
   calibration::Evaluation evaluation = sample_evaluation(16, 16, 300);
   evaluation.bound = {20, 160, 0.0045, 0.0061, 1.34};

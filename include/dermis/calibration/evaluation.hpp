@@ -73,6 +73,12 @@ struct EstimatorResult {
   ErrorSummary total_relative_error;   ///< |sum / total - 1| of totals above 0.
 };
 
+/// Where in its touch a known force was, as far as the labels tell: they are at most a second apart.
+struct TouchTime {
+  std::optional<double> seconds_since_onset;  ///< Since the first label above zero after one of zero.
+  std::optional<bool> is_unloading;           ///< Whether the last change of the force, of more than 1 %, was a fall.
+};
+
 /// One loaded taxel of one frame, for plots.
 struct JudgedTaxel {
   std::size_t frame = 0;
@@ -83,6 +89,7 @@ struct JudgedTaxel {
   std::size_t contacts = 0;    ///< Separate stressed areas in the frame (8-connected).
   std::vector<float> newtons;  ///< Estimate of each estimator, in their order.
   float sigma_newtons = 0.0F;  ///< Standard deviation of dermis' estimate, as ForceFrame defines it [N].
+  TouchTime touch = {};
 };
 
 /// Share of `taxels` whose true force is within each of `sigmas` (>= 0) standard deviations of dermis' force, of those
@@ -95,6 +102,7 @@ struct JudgedTotal {
   double true_newtons = 0.0;
   std::optional<double> temperature_celsius;
   std::vector<double> newtons;  ///< Sum of each estimator, in their order.
+  TouchTime touch = {};         ///< Where it is the only total of its frame.
 };
 
 /// Errors of all estimators on the judged taxels (totals, where no taxel is judged) that fall into [low, high).
@@ -103,6 +111,13 @@ struct BreakdownBin {
   double high = 0.0;
   std::vector<ErrorSummary> relative_error;  ///< One per estimator.
   Coverage coverage = {};                    ///< Of dermis; of taxels only.
+};
+
+/// Forces on unloaded taxels whose load went [low, high) before.
+struct ReleaseBin {
+  double low = 0.0;                   ///< [s]
+  double high = 0.0;                  ///< [s]
+  std::vector<ErrorSummary> ghost_n;  ///< One per estimator [N].
 };
 
 /// A frame at its stages, for pictures; each [rows, cols].
@@ -129,7 +144,10 @@ struct Evaluation {
   std::vector<BreakdownBin> by_temperature;  ///< [C]
   std::vector<BreakdownBin> by_supply;       ///< [V]
   std::vector<BreakdownBin> by_contacts;     ///< Number of contacts, one a bin.
-  std::vector<TactileExample> examples;      ///< A few loaded frames with known taxel forces.
+  std::vector<BreakdownBin> by_onset;        ///< Time since the onset of the touch [s].
+  std::vector<BreakdownBin> by_direction;    ///< From 0: loading, and held after it; from 1: unloading.
+  std::vector<ReleaseBin> after_release;
+  std::vector<TactileExample> examples;  ///< A few loaded frames with known taxel forces.
 };
 
 /// Runs the model and its baselines on frames whose loads are known, and a further estimator where there is one, as the

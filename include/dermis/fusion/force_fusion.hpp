@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dermis/core/frames.hpp"
@@ -97,6 +98,10 @@ class ForceFusion {
   /// Allocates nothing once `force` has the array's size.
   void process(const ConductanceFrame& conductance, ForceFrame& force) noexcept;
 
+  /// Of the frame before: the first term of sigma_newtons, the noise of readings and zero, alone [taxels] [N]. It is
+  /// new in each frame; the other terms stay as long as a touch does. Meaningless where there is no force.
+  [[nodiscard]] std::span<const float> noise_newtons() const noexcept { return noise_newtons_; }
+
  private:
   /// Offset from the centre, clamped, and its standard deviation [C].
   struct Temperature {
@@ -108,7 +113,7 @@ class ForceFusion {
   [[nodiscard]] Temperature temperature(const ConductanceFrame& conductance, ForceFrame& force) const noexcept;
   void prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept;
   void look_up(double temperature_offset) noexcept;
-  void compute_forces(const Temperature& temperature, ForceFrame& force) const noexcept;
+  void compute_forces(const Temperature& temperature, ForceFrame& force) noexcept;
   void compute_signals(double temperature_sigma, ForceFrame& force) const noexcept;
   void apply_status(ForceFrame& force) const noexcept;
   [[nodiscard]] bool are_plain(std::size_t from, std::size_t to, const ForceFrame& force) const noexcept;
@@ -127,6 +132,7 @@ class ForceFusion {
   std::vector<float> gradient_;            // of the outputs [inputs, taxels]
   std::vector<float> line_end_siemens_;    // ForceTables::line_end_siemens() [tables]
   std::vector<float> table_variance_;      // ForceSources::table_variance [taxels]
+  std::vector<float> noise_newtons_;       // [taxels]
 };
 
 }  // namespace dermis::fusion

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "dermis/core/frames.hpp"
@@ -38,8 +39,10 @@ struct MemoryLaw {
 ///
 /// The states are bounded by the heaviest load that was, whatever the frames are. What lies on the array in the first
 /// frame counts as lying there for long; a frame that is earlier than the one before it is the first of a recording
-/// that begins anew. A taxel without a force counts as carrying its last one, a rejected frame as none at all. Standard
-/// deviations grow as the noise does: by d newtons / d u.
+/// that begins anew. A taxel without a force counts as carrying its last one, a rejected frame as none at all.
+///
+/// The noise of u is new in each frame and grows by d newtons / d u. All else that a standard deviation covers stays
+/// for a touch, states included: it grows with the force, by newtons / u, and never shrinks.
 ///
 /// Not thread-safe: one per stream.
 class MaterialMemory {
@@ -47,8 +50,9 @@ class MaterialMemory {
   /// `law` must be consistent.
   MaterialMemory(const MemoryLaw& law, std::size_t taxels);
 
-  /// newtons and sigma_newtons of a frame of the array's size. Allocates nothing.
-  void process(ForceFrame& force) noexcept;
+  /// newtons and sigma_newtons of a frame of the array's size. `noise_newtons`: ForceFusion::noise_newtons() of the
+  /// same frame. Allocates nothing.
+  void process(ForceFrame& force, std::span<const float> noise_newtons) noexcept;
 
  private:
   void forget() noexcept;

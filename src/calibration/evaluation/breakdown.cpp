@@ -78,6 +78,12 @@ void break_down(Evaluation& evaluation) {
   evaluation.by_force = bins_of(evaluation, {0, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 1e6}, force);
   evaluation.by_temperature =
       bins_of(evaluation, {-273, -20, -10, 0, 10, 20, 30, 40, 50, 60, 70, 85, 100, 1000}, temperature);
+  evaluation.by_onset = bins_of(evaluation, {0, 0.3, 1, 3, 10, 30, 100, 1e6},
+                                [](const auto& judged) { return judged.touch.seconds_since_onset; });
+  evaluation.by_direction = bins_of(evaluation, {0, 1, 2}, [](const auto& judged) -> std::optional<double> {
+    if (!judged.touch.is_unloading) return std::nullopt;
+    return *judged.touch.is_unloading ? 1.0 : 0.0;
+  });
   if (evaluation.taxels.empty()) return;
   const auto of_taxel = [&](auto quantity, const std::vector<double>& edges) {
     return bins_of(evaluation, edges, [&](const auto& judged) -> std::optional<double> {

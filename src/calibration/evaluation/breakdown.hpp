@@ -6,7 +6,7 @@
 
 namespace dermis::calibration {
 
-/// Fills by_force, by_temperature, by_supply and by_contacts from the judged taxels and totals.
+/// Fills by_force, by_temperature, by_supply, by_contacts, by_onset and by_direction from the judged taxels and totals.
 void break_down(Evaluation& evaluation);
 
 }  // namespace dermis::calibration

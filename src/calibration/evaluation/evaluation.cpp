@@ -60,7 +60,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   const LoadsOfFrames loads_of(loads, frames.size());
   EstimatorRow row(model, std::move(*pipeline), further, judged_from(model, loads_of));
   evaluation.judged_from_n = row.judged_from_n();
-  Judgement judgement(row.names().size());
+  Judgement judgement(row.names().size(), model.array.taxel_count());
   ExampleChoice examples;
   std::size_t labelled = 0;
   for (std::size_t frame = 0; frame < frames.size(); ++frame) labelled += loads_of[frame].empty() ? 0 : 1;
@@ -92,6 +92,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   if (further != nullptr) evaluation.estimators.back().description = further->description();
   evaluation.taxels = std::move(judgement.taxels);
   evaluation.totals = std::move(judgement.totals);
+  evaluation.after_release = judgement.after_release.bins();
   evaluation.bound = bound.comparison();
   evaluation.coverage = coverage_of(evaluation.taxels);
   evaluation.examples = std::move(examples).chosen();

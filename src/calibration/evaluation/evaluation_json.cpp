@@ -53,6 +53,22 @@ Json breakdown_json(const Evaluation& evaluation, const std::vector<BreakdownBin
   return rows;
 }
 
+Json after_release_json(const Evaluation& evaluation) {
+  Json rows = Json::array();
+  for (const ReleaseBin& bin : evaluation.after_release) {
+    Json estimators = Json::object();
+    for (std::size_t k = 0; k < bin.ghost_n.size(); ++k) {
+      estimators[evaluation.estimators[k].name] = {{"ghost_median_n", number(bin.ghost_n[k].median)},
+                                                   {"ghost_p99_n", number(bin.ghost_n[k].p99)}};
+    }
+    rows.push_back({{"from", bin.low},
+                    {"to", bin.high},
+                    {"count", bin.ghost_n.front().count},
+                    {"estimators", std::move(estimators)}});
+  }
+  return rows;
+}
+
 }  // namespace
 
 std::string to_json(const Evaluation& evaluation) {
@@ -67,7 +83,10 @@ std::string to_json(const Evaluation& evaluation) {
                {"by_force", breakdown_json(evaluation, evaluation.by_force)},
                {"by_temperature", breakdown_json(evaluation, evaluation.by_temperature)},
                {"by_supply", breakdown_json(evaluation, evaluation.by_supply)},
-               {"by_contacts", breakdown_json(evaluation, evaluation.by_contacts)}};
+               {"by_contacts", breakdown_json(evaluation, evaluation.by_contacts)},
+               {"by_onset", breakdown_json(evaluation, evaluation.by_onset)},
+               {"by_direction", breakdown_json(evaluation, evaluation.by_direction)},
+               {"after_release", after_release_json(evaluation)}};
   const BoundComparison& bound = evaluation.bound;
   if (bound.frames > 0) {
     root["cramer_rao_bound"] = {{"frames", bound.frames},

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "calibration/evaluation/judgement.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -11,13 +13,23 @@
 namespace dermis::calibration {
 namespace {
 
+constexpr std::array kReleaseSeconds{0.0, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 1e6};
+
+bool is_unloaded(const Sample& truth) {
+  return truth.totals.empty() && std::all_of(truth.known_newtons.begin(), truth.known_newtons.end(),
+                                             [](float newtons) { return newtons == 0.0F; });
+}
+
 void add_taxels(std::size_t frame, const RawFrame& raw, const Sample& truth, const EstimatorRow& row,
                 Judgement& judgement) {
   const ArrayDescription& array = row.array();
   const std::size_t contacts = count_contacts(truth.known_newtons, array.rows, array.cols);
   for (std::size_t taxel = 0; taxel < truth.known_newtons.size(); ++taxel) {
     const double newtons = truth.known_newtons[taxel];
+    if (!std::isnan(newtons)) judgement.clocks[taxel].add(raw.time, newtons);
     if (newtons == 0.0) {
+      const std::optional<double> seconds = judgement.clocks[taxel].seconds_since_release();
+      if (seconds) judgement.after_release.add(*seconds, row.newtons(), taxel);
       for (std::size_t k = 0; k < row.newtons().size(); ++k) {
         const float ghost = row.newtons()[k][taxel];
         if (!std::isnan(ghost)) judgement.ghost_n[k].push_back(ghost);  // no force is no ghost
@@ -26,6 +38,7 @@ void add_taxels(std::size_t frame, const RawFrame& raw, const Sample& truth, con
       JudgedTaxel judged{frame, taxel, newtons, raw.temperature_celsius, raw.supply_v, contacts, {}, 0.0F};
       for (const std::vector<float>& forces : row.newtons()) judged.newtons.push_back(forces[taxel]);
       judged.sigma_newtons = row.force().sigma_newtons[taxel];
+      judged.touch = judgement.clocks[taxel].touch();
       judgement.taxels.push_back(std::move(judged));
     }
   }
@@ -33,8 +46,12 @@ void add_taxels(std::size_t frame, const RawFrame& raw, const Sample& truth, con
 
 void add_totals(std::size_t frame, const RawFrame& raw, const Sample& truth, const EstimatorRow& row,
                 Judgement& judgement) {
+  const bool is_only_one = truth.totals.size() == 1;
+  if (is_only_one) judgement.total_clock.add(raw.time, truth.totals.front().newtons);
+  if (is_unloaded(truth)) judgement.total_clock.add(raw.time, 0.0);
   for (const TotalForce& total : truth.totals) {
     JudgedTotal judged{frame, total.newtons, raw.temperature_celsius, {}};
+    if (is_only_one) judged.touch = judgement.total_clock.touch();
     for (const std::vector<float>& forces : row.newtons()) {
       double sum = 0.0;
       for (const std::size_t taxel : total.taxels) {
@@ -48,6 +65,24 @@ void add_totals(std::size_t frame, const RawFrame& raw, const Sample& truth, con
 }
 
 }  // namespace
+
+void ReleaseGhosts::add(double seconds, const std::vector<std::vector<float>>& newtons, std::size_t taxel) {
+  const auto above = std::upper_bound(kReleaseSeconds.begin(), kReleaseSeconds.end() - 1, seconds);
+  std::vector<std::vector<double>>& bin = newtons_[static_cast<std::size_t>(above - kReleaseSeconds.begin() - 1)];
+  bin.resize(newtons.size());
+  for (std::size_t k = 0; k < newtons.size(); ++k) {
+    if (!std::isnan(newtons[k][taxel])) bin[k].push_back(newtons[k][taxel]);
+  }
+}
+
+std::vector<ReleaseBin> ReleaseGhosts::bins() const {
+  std::vector<ReleaseBin> bins;
+  for (const auto& [bin, newtons] : newtons_) {
+    bins.push_back({kReleaseSeconds[bin], kReleaseSeconds[bin + 1], {}});
+    for (const std::vector<double>& of_estimator : newtons) bins.back().ghost_n.push_back(summarise(of_estimator));
+  }
+  return bins;
+}
 
 void Judgement::add(std::size_t frame, const RawFrame& raw, const Sample& truth, const EstimatorRow& row) {
   add_taxels(frame, raw, truth, row, *this);

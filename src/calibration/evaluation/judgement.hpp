@@ -3,18 +3,30 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
 #include "calibration/evaluation/estimator_row.hpp"
+#include "calibration/evaluation/touch_clock.hpp"
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/calibration/sample_database.hpp"
 
 namespace dermis::calibration {
 
+/// Forces that estimators gave on taxels whose load had gone [N], in bins of the time since.
+class ReleaseGhosts {
+ public:
+  void add(double seconds, const std::vector<std::vector<float>>& newtons, std::size_t taxel);
+  [[nodiscard]] std::vector<ReleaseBin> bins() const;
+
+ private:
+  std::map<std::size_t, std::vector<std::vector<double>>> newtons_;  // of each bin [estimators]
+};
+
 /// What every estimator made of the loads, gathered while the frames go by.
 struct Judgement {
-  explicit Judgement(std::size_t estimators) : ghost_n(estimators) {}
+  Judgement(std::size_t estimators, std::size_t taxels) : ghost_n(estimators), clocks(taxels) {}
 
   /// One labelled frame that `row` has run.
   void add(std::size_t frame, const RawFrame& raw, const Sample& truth, const EstimatorRow& row);
@@ -24,6 +36,9 @@ struct Judgement {
   std::vector<JudgedTaxel> taxels;
   std::vector<JudgedTotal> totals;
   std::vector<std::vector<double>> ghost_n;  ///< Forces on unloaded taxels [estimators].
+  std::vector<PlaceClock> clocks;            ///< [taxels]
+  PlaceClock total_clock;
+  ReleaseGhosts after_release;
 };
 
 }  // namespace dermis::calibration

@@ -195,6 +195,7 @@ std::vector<FreedLoad> freed_loads(const FeltHistory& felt, std::span<const Know
   fusion::MaterialMemory memory(law, asked.size());
   ForceFrame frame;
   frame.sigma_newtons.assign(asked.size(), 0.0F);
+  const std::vector<float> no_noise(asked.size());
   std::vector<FreedLoad> freed(loads.size());
   std::size_t next = 0;
   for (std::size_t place = 0; place < felt.time.size() && next < loads.size(); ++place) {
@@ -202,7 +203,7 @@ std::vector<FreedLoad> freed_loads(const FeltHistory& felt, std::span<const Know
     frame.time = felt.time[place];
     frame.newtons.clear();
     for (const std::size_t taxel : asked) frame.newtons.push_back(row[taxel]);
-    memory.process(frame);
+    memory.process(frame, no_noise);
     for (; next < loads.size() && loads[next].place == place; ++next) {
       for (const std::size_t taxel : loads[next].taxels) {
         if (std::isnan(row[taxel])) continue;

@@ -32,6 +32,7 @@ constexpr double kShortHoldSeconds = 5.0;
 constexpr double kSameLoad = 1.03;
 constexpr double kLighter = 0.9;
 constexpr Nanos kOneTouch = std::chrono::seconds(1);  // between labels of one touch
+constexpr Nanos kPause = std::chrono::seconds(1);     // between frames: others may be missing
 constexpr fusion::MemoryLaw kStart{{0.04F, 0.04F, 0.04F, 0.04F}, {0.02F, 0.02F, 0.02F}};
 
 /// The same samples with what the material felt under their loads: as much more or less than the load as a law that was
@@ -136,6 +137,30 @@ std::optional<HeldOutErrors> held_out_errors(const SampleDatabase& database, con
   return errors;
 }
 
+/// Each piece after a pause is told as a recording of its own, which begins earlier than the last one ended.
+std::vector<Nanos> times_of_pieces(const std::vector<Nanos>& times) {
+  std::vector<Nanos> of_pieces;
+  Nanos begin = times.front();
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    if (k > 0 && times[k] - times[k - 1] > kPause) begin = times[k];
+    of_pieces.push_back(times[k] - begin);
+  }
+  return of_pieces;
+}
+
+/// Recordings of single presses that were put together have pauses that nobody waited. So a pause counts as unknown
+/// past where the loads agree better without it.
+std::vector<Nanos> likelier_times(const LoadHistory& history, const std::vector<KnownLoad>& loads,
+                                  const fusion::ForceNetworks& plain) {
+  const std::vector<Nanos> of_pieces = times_of_pieces(history.time);
+  if (of_pieces.back() == history.time.back() - history.time.front()) return history.time;
+  FeltHistory felt = felt_history(history, plain);
+  const double misfit = memory_misfit(felt, loads, fit_memory(felt, loads, kStart));
+  felt.time = of_pieces;
+  const double misfit_of_pieces = memory_misfit(felt, loads, fit_memory(felt, loads, kStart));
+  return misfit_of_pieces < misfit ? of_pieces : history.time;
+}
+
 /// What the recording can tell of time and of unloading.
 void observe_loads(const std::vector<KnownLoad>& loads, const LoadHistory& history, LearnedMemory& memory) {
   struct Hold {
@@ -192,17 +217,22 @@ bool is_continuous(std::span<const RawFrame> frames) {
 
 std::optional<LearnedMemory> learn_memory(const SampleDatabase& database, std::span<const RawFrame> frames,
                                           const ForceTraining& plain) {
-  const Result<LoadHistory> history = read_history(database, frames);
+  Result<LoadHistory> history = read_history(database, frames);
   if (!history) return std::nullopt;
   const std::vector<KnownLoad> loads = known_loads(database, *history);
   if (loads.size() < kLeastLoads) return std::nullopt;
+  LearnedMemory memory;
+  observe_loads(loads, *history, memory);
+  history->time = likelier_times(*history, loads, plain.networks);
   std::optional<Fitted> fitted = fit(database, *history, plain.networks, kRounds);
   if (!fitted) return std::nullopt;
   const std::optional<HeldOutErrors> errors = held_out_errors(database, *history);
   if (!errors || errors->with > kWorthwhile * errors->without) return std::nullopt;
-  LearnedMemory memory{fitted->law, std::move(fitted->felt), std::move(fitted->training), errors->without,
-                       errors->with};
-  observe_loads(loads, *history, memory);
+  memory.law = fitted->law;
+  memory.felt = std::move(fitted->felt);
+  memory.training = std::move(fitted->training);
+  memory.error_without = errors->without;
+  memory.error_with = errors->with;
   return memory;
 }
 

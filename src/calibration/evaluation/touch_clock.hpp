@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "dermis/calibration/evaluation.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::calibration {
+
+/// What the known forces of a place tell of time, label by label.
+class PlaceClock {
+ public:
+  /// Labels more than a second apart are not of one touch, and zero so long before a force is not its onset.
+  void add(Nanos time, double newtons);
+
+  /// Of the last label, where it is above zero.
+  [[nodiscard]] TouchTime touch() const;
+
+  /// Since the last force went, where the last label is zero and the force was seen going.
+  [[nodiscard]] std::optional<double> seconds_since_release() const;
+
+ private:
+  std::optional<Nanos> last_;
+  std::optional<Nanos> onset_;
+  std::optional<Nanos> release_;
+  double newtons_ = 0.0;  // from which it next changes
+  std::optional<bool> is_unloading_;
+};
+
+}  // namespace dermis::calibration
