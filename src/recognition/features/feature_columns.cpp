@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <initializer_list>
 #include <numeric>
+#include <utility>
 
 #include "recognition/features/form_block.hpp"
 #include "recognition/features/hog_block.hpp"
@@ -17,10 +18,17 @@ namespace {
 
 constexpr std::size_t kMostCells = 6;
 
-void add(FeatureColumns& columns, Block block, std::size_t size) {
-  if (size == 0) return;
-  columns.blocks.push_back({block, columns.count, size});
+void add(FeatureColumns& columns, Block block, std::size_t array, std::vector<FeatureGroup> groups) {
+  std::size_t size = 0;
+  for (const FeatureGroup& group : groups) size += group.size;
+  columns.blocks.push_back({block, array, columns.count, size, std::move(groups)});
   columns.count += size;
+}
+
+/// Whatever changes tells of time.
+std::vector<FeatureGroup> changed(std::vector<FeatureGroup> groups) {
+  for (FeatureGroup& group : groups) group.aspect = FeatureAspect::time;
+  return groups;
 }
 
 ExpertColumns expert_of(const std::string& name, const FeatureColumns& all, std::initializer_list<Block> blocks) {
@@ -42,17 +50,24 @@ std::size_t hog_cells(std::size_t lines) {
 
 FeatureColumns feature_columns(const Layout& layout, bool moving) {
   FeatureColumns columns;
-  for (const SensedArray& array : layout.arrays) {
-    add(columns, Block::hog, HogBlock::kOrientations * hog_cells(array.rows) * hog_cells(array.cols));
-    add(columns, Block::pose, kPoseSize);
-    add(columns, Block::polar, PolarBlock::kSize);
-    add(columns, Block::form, FormBlock::kSize);
+  for (std::size_t i = 0; i < layout.arrays.size(); ++i) {
+    const SensedArray& array = layout.arrays[i];
+    add(columns, Block::hog, i, {HogBlock::group(hog_cells(array.rows), hog_cells(array.cols))});
+    add(columns, Block::pose, i, {kPoseGroup});
+    add(columns, Block::polar, i, {PolarBlock::group()});
+    add(columns, Block::form, i, FormBlock::groups());
     if (!moving) continue;
-    add(columns, Block::time, TimeBlock::kSize);
-    add(columns, Block::changed_form, FormBlock::kSize);
+    add(columns, Block::time, i, TimeBlock::groups());
+    add(columns, Block::changed_form, i, changed(FormBlock::groups()));
   }
-  if (layout.arrays.size() > 1) add(columns, Block::share, layout.arrays.size());
-  add(columns, Block::extra, 2 * layout.extras);
+  if (layout.arrays.size() > 1) {
+    add(columns, Block::share, 0, {{"shares of the force", FeatureAspect::place, layout.arrays.size()}});
+  }
+  if (layout.extras > 0) {
+    add(columns, Block::extra, 0,
+        {{"at the end", FeatureAspect::further, layout.extras},
+         {"since the beginning", FeatureAspect::further, layout.extras}});
+  }
   return columns;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dermis/recognition/segment.hpp"
+#include "recognition/features/feature_group.hpp"
 
 namespace dermis::recognition {
 
@@ -15,8 +16,10 @@ enum class Block { hog, pose, polar, form, time, changed_form, share, extra };
 /// Where a block of features stands among all.
 struct BlockColumns {
   Block block = Block::hog;
+  std::size_t array = 0;  ///< 0 also for what is of all arrays.
   std::size_t begin = 0;
   std::size_t size = 0;
+  std::vector<FeatureGroup> groups{};  ///< Of these features, in their order.
 };
 
 /// All features of a segment, in their order.

@@ -14,17 +14,10 @@ namespace {
 constexpr double kMediumBlur = 1.4;  // lengths
 constexpr double kCoarseBlur = 2.8;
 
-constexpr std::array<std::size_t, 8> kSizes{6, 7, 9, 6, 4, 5, 6, 3};  // of the groups of features, in their order
-static_assert(kSizes[0] + kSizes[1] + kSizes[2] + kSizes[3] + kSizes[4] + kSizes[5] + kSizes[6] + kSizes[7] ==
-              FormBlock::kSize);
+using Out = std::span<double>;
 
-void put_sizes(const Moments& moments, double least, std::span<double> out) {
-  out[0] = std::log(moments.sum + least);
-  out[1] = std::log(moments.peak + least);
-  out[2] = out[1] - out[0];
-  out[3] = std::log(moments.major);
-  out[4] = std::log(moments.minor);
-  out[5] = moments.minor / moments.major;
+double log_peak_over_sum(const Moments& moments, double least) {
+  return std::log(moments.peak + least) - std::log(moments.sum + least);
 }
 
 /// E(u^3), E(v^3), E(u^4), E(v^4), E(u^2 v), E(u v^2), E(u^2 v^2) along the principal axes.
@@ -58,7 +51,7 @@ void put_principal_moments(const ImageAnalysis& analysis, std::span<double> out)
 void put_complex_moments(const ImageAnalysis& analysis, std::span<double> out) {
   const Lattice& lattice = analysis.lattice();
   const Moments& moments = analysis.moments();
-  std::array<std::complex<double>, kSizes[2]> sums{};
+  std::array<std::complex<double>, 9> sums{};
   for (std::size_t row = 0, taxel = 0; row < lattice.rows; ++row) {
     const double y = (static_cast<double>(row) * lattice.row_step - moments.row) / moments.radius;
     for (std::size_t col = 0; col < lattice.cols; ++col, ++taxel) {
@@ -118,20 +111,47 @@ FormBlock::FormBlock(const Lattice& lattice, double least_reading)
   }
 }
 
+constexpr std::array<FeatureRow<FormBlock, ImageAnalysis>, 11> FormBlock::kRows{{
+    {{"force and peak", FeatureAspect::force, 2},
+     [](FormBlock& block, const ImageAnalysis& analysis, Out out) {
+       out[0] = std::log(analysis.moments().sum + block.least_reading_);
+       out[1] = std::log(analysis.moments().peak + block.least_reading_);
+     }},
+    {{"peak over force", FeatureAspect::shape, 1},
+     [](FormBlock& block, const ImageAnalysis& analysis, Out out) {
+       out[0] = log_peak_over_sum(analysis.moments(), block.least_reading_);
+     }},
+    {{"axes", FeatureAspect::area, 2},
+     [](FormBlock&, const ImageAnalysis& analysis, Out out) {
+       out[0] = std::log(analysis.moments().major);
+       out[1] = std::log(analysis.moments().minor);
+     }},
+    {{"elongation", FeatureAspect::shape, 1},
+     [](FormBlock&, const ImageAnalysis& analysis, Out out) {
+       out[0] = analysis.moments().minor / analysis.moments().major;
+     }},
+    {{"moments along the axes", FeatureAspect::shape, 7},
+     [](FormBlock&, const ImageAnalysis& analysis, Out out) { put_principal_moments(analysis, out); }},
+    {{"moments of any direction", FeatureAspect::shape, 9},
+     [](FormBlock&, const ImageAnalysis& analysis, Out out) { put_complex_moments(analysis, out); }},
+    {{"taxels above levels", FeatureAspect::area, 6},
+     [](FormBlock&, const ImageAnalysis& analysis, Out out) { put_level_shares(analysis.root(), out); }},
+    {{"connected areas", FeatureAspect::area, 4},
+     [](FormBlock& block, const ImageAnalysis& analysis, Out out) { block.put_areas(analysis, out); }},
+    {{"quantiles", FeatureAspect::shape, 5},
+     [](FormBlock& block, const ImageAnalysis& analysis, Out out) { block.put_quantiles(analysis.root(), out); }},
+    {{"directions of edges", FeatureAspect::shape, 6},
+     [](FormBlock& block, const ImageAnalysis& analysis, Out out) { block.put_directions(analysis, out); }},
+    {{"textures", FeatureAspect::shape, 3},
+     [](FormBlock& block, const ImageAnalysis& analysis, Out out) { block.put_textures(analysis, out); }},
+}};
+
+std::vector<FeatureGroup> FormBlock::groups() {
+  return groups_of(kRows);
+}
+
 void FormBlock::write(const ImageAnalysis& analysis, std::span<double> out) {
-  std::array<std::span<double>, kSizes.size()> groups;
-  for (std::size_t group = 0, begin = 0; group < kSizes.size(); ++group) {
-    groups[group] = out.subspan(begin, kSizes[group]);
-    begin += kSizes[group];
-  }
-  put_sizes(analysis.moments(), least_reading_, groups[0]);
-  put_principal_moments(analysis, groups[1]);
-  put_complex_moments(analysis, groups[2]);
-  put_level_shares(analysis.root(), groups[3]);
-  put_areas(analysis, groups[4]);
-  put_quantiles(analysis.root(), groups[5]);
-  put_directions(analysis, groups[6]);
-  put_textures(analysis, groups[7]);
+  write_rows(kRows, *this, analysis, out);
 }
 
 void FormBlock::put_areas(const ImageAnalysis& analysis, std::span<double> out) {

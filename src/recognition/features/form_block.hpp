@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "recognition/features/connected_areas.hpp"
+#include "recognition/features/feature_group.hpp"
 #include "recognition/features/image_analysis.hpp"
 
 namespace dermis::recognition {
@@ -15,17 +16,15 @@ namespace dermis::recognition {
 /// Size and form of the contact, wherever it is and whichever way it is turned. Not thread-safe.
 class FormBlock {
  public:
-  static constexpr std::size_t kSize = 46;
-  /// Places of the features that tell of the force, and of the area of the contact; the others tell of its shape.
-  static constexpr std::array<std::size_t, 2> kForcePlaces{0, 1};
-  static constexpr std::array<std::size_t, 12> kAreaPlaces{3, 4, 22, 23, 24, 25, 26, 27, 28, 29, 30, 31};
-
   /// `least_reading`: where logarithms begin.
   FormBlock(const Lattice& lattice, double least_reading);
 
+  [[nodiscard]] static std::vector<FeatureGroup> groups();
+  /// `out`: the features of all groups
   void write(const ImageAnalysis& analysis, std::span<double> out);
 
  private:
+  static const std::array<FeatureRow<FormBlock, ImageAnalysis>, 11> kRows;
   static constexpr std::size_t kDirections = 16;
 
   void put_areas(const ImageAnalysis& analysis, std::span<double> out);

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "recognition/features/feature_group.hpp"
 #include "recognition/features/image_analysis.hpp"
 
 namespace dermis::recognition {
@@ -23,15 +24,17 @@ struct CellShares {
 /// lies in several by its area. Not thread-safe.
 class HogBlock {
  public:
-  static constexpr std::size_t kOrientations = 8;
-
   HogBlock(const Lattice& lattice, std::size_t row_cells, std::size_t col_cells);
 
-  [[nodiscard]] std::size_t size() const noexcept { return kOrientations * row_cells_ * col_cells_; }
+  [[nodiscard]] static FeatureGroup group(std::size_t row_cells, std::size_t col_cells) noexcept {
+    return {"edges in cells", FeatureAspect::place, kOrientations * row_cells * col_cells};
+  }
   /// `out`: [row cells, column cells, orientations]
   void write(const ImageAnalysis& analysis, std::span<double> out);
 
  private:
+  static constexpr std::size_t kOrientations = 8;
+
   std::size_t row_cells_;
   std::size_t col_cells_;
   std::vector<CellShares> row_shares_;  ///< Of each row.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "recognition/features/feature_group.hpp"
 #include "recognition/features/image_analysis.hpp"
 
 namespace dermis::recognition {
@@ -14,17 +15,19 @@ namespace dermis::recognition {
 /// its Fourier components round each ring. Not thread-safe.
 class PolarBlock {
  public:
-  static constexpr std::size_t kRings = 8;
-  static constexpr std::size_t kAngles = 32;
-  static constexpr std::size_t kHarmonics = 7;  ///< 0 to 6
-  static constexpr std::size_t kSize = kRings * kHarmonics;
-
   PolarBlock();
 
+  [[nodiscard]] static FeatureGroup group() noexcept {
+    return {"rings around the centre", FeatureAspect::shape, kRings * kHarmonics};
+  }
   /// `out`: [rings, harmonics]
   void write(const ImageAnalysis& analysis, std::span<double> out);
 
  private:
+  static constexpr std::size_t kRings = 8;
+  static constexpr std::size_t kAngles = 32;
+  static constexpr std::size_t kHarmonics = 7;  ///< 0 to 6
+
   Eigen::Matrix<double, kAngles, 1> cosine_;
   Eigen::Matrix<double, kAngles, 1> sine_;
   Eigen::Matrix<double, kHarmonics, kAngles> real_;  ///< Of the Fourier components.

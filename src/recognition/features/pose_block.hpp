@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <cstddef>
 #include <span>
 
+#include "recognition/features/feature_group.hpp"
 #include "recognition/features/image_analysis.hpp"
 
 namespace dermis::recognition {
 
-inline constexpr std::size_t kPoseSize = 4;
+inline constexpr FeatureGroup kPoseGroup{"centre and direction", FeatureAspect::place, 4};
 
 /// Where on the array the contact is, along its rows and columns, and which way it lies, the more it is elongated:
 /// (1 - minor/major) (cos 2 angle, sin 2 angle).

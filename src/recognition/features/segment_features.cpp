@@ -46,6 +46,17 @@ double add_differences(std::span<const double> a, std::span<const double> b, std
   return sum;
 }
 
+/// Further readings at the end, and their change since the beginning.
+void write_extras(const Segment& segment, std::span<double> out) {
+  const std::size_t count = out.size() / 2;
+  const std::span<const float> first = segment.extras.first(count);
+  const std::span<const float> last = segment.extras.last(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    out[i] = static_cast<double>(last[i]);
+    out[count + i] = static_cast<double>(last[i]) - static_cast<double>(first[i]);
+  }
+}
+
 }  // namespace
 
 SegmentFeatures::ArrayFeatures::ArrayFeatures(const SensedArray& examples, const SensedArray& source,
@@ -68,9 +79,9 @@ SegmentFeatures::SegmentFeatures(const Layout& examples, const Layout& source, b
       moving_(moving),
       most_frames_(most_frames),
       source_frames_per_frame_(frames_per_frame(examples, source)),
-      extra_count_(examples.extras),
+      columns_(feature_columns(examples, moving)),
       blend_(source.readings),
-      features_(feature_columns(examples, moving).count) {
+      features_(columns_.count) {
   assert(examples.arrays.size() == source.arrays.size() && examples.extras == source.extras);
   const std::size_t most = resampled_count(most_frames, source_frames_per_frame_);
   for (std::size_t i = 0; i < examples.arrays.size(); ++i) {
@@ -85,12 +96,10 @@ std::span<const double> SegmentFeatures::compute(const Segment& segment) {
   Segment last = segment;
   if (last.frames.size() > most) last.frames = last.frames.last(most);
   measure(last);
-  std::size_t column = 0;
-  for (ArrayFeatures& array : arrays_) {
-    accumulate(array, last);
-    column = write_array(array, column);
+  for (ArrayFeatures& array : arrays_) accumulate(array, last);
+  for (const BlockColumns& block : columns_.blocks) {
+    write(block, segment, std::span(features_).subspan(block.begin, block.size));
   }
-  write_rest(segment, column);
   return features_;
 }
 
@@ -147,46 +156,34 @@ void SegmentFeatures::accumulate(ArrayFeatures& array, const Segment& segment) {
     std::swap(array.image, array.before);
   }
   for (double& value : array.held) value /= static_cast<double>(held_frames);
+  array.analysis.analyse(array.held);
   if (series.frames() < 2) return;
   for (double& value : array.changed) value /= static_cast<double>(series.frames() - 1);
 }
 
-/// Returns the column behind the last one written.
-std::size_t SegmentFeatures::write_array(ArrayFeatures& array, std::size_t column) {
-  const auto take = [&](std::size_t size) {
-    const std::span<double> out = std::span(features_).subspan(column, size);
-    column += size;
-    return out;
-  };
-  array.analysis.analyse(array.held);
-  array.hog.write(array.analysis, take(array.hog.size()));
-  write_pose(array.analysis, take(kPoseSize));
-  array.polar.write(array.analysis, take(PolarBlock::kSize));
-  array.form.write(array.analysis, take(FormBlock::kSize));
-  if (!moving_) return column;
-  array.time.write(array.series, take(TimeBlock::kSize));
-  array.analysis.analyse(array.changed);
-  array.form.write(array.analysis, take(FormBlock::kSize));
-  return column;
+/// Blocks of one array in their order: the changed form is the last, as it is of another image.
+void SegmentFeatures::write(const BlockColumns& block, const Segment& segment, std::span<double> out) {
+  ArrayFeatures& array = arrays_[block.array];
+  switch (block.block) {
+    case Block::hog: return array.hog.write(array.analysis, out);
+    case Block::pose: return write_pose(array.analysis, out);
+    case Block::polar: return array.polar.write(array.analysis, out);
+    case Block::form: return array.form.write(array.analysis, out);
+    case Block::time: return array.time.write(array.series, out);
+    case Block::changed_form: array.analysis.analyse(array.changed); return array.form.write(array.analysis, out);
+    case Block::share: return write_shares(out);
+    case Block::extra: return write_extras(segment, out);
+  }
 }
 
-/// Each array's part of the held force; further readings at the end, and their change since the beginning.
-void SegmentFeatures::write_rest(const Segment& segment, std::size_t column) {
-  if (arrays_.size() > 1) {
-    const auto held_force = [](const ArrayFeatures& array) {
-      return std::accumulate(array.held.begin(), array.held.end(), 0.0);
-    };
-    double sum = 0.0;
-    for (const ArrayFeatures& array : arrays_) sum += held_force(array);
-    for (const ArrayFeatures& array : arrays_) features_[column++] = sum > 0.0 ? held_force(array) / sum : 0.0;
+/// Each array's part of the held force.
+void SegmentFeatures::write_shares(std::span<double> out) const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < arrays_.size(); ++i) {
+    out[i] = std::accumulate(arrays_[i].held.begin(), arrays_[i].held.end(), 0.0);
+    sum += out[i];
   }
-  if (extra_count_ == 0) return;
-  const std::span<const float> first = segment.extras.first(extra_count_);
-  const std::span<const float> last = segment.extras.last(extra_count_);
-  for (std::size_t i = 0; i < extra_count_; ++i) {
-    features_[column + i] = static_cast<double>(last[i]);
-    features_[column + extra_count_ + i] = static_cast<double>(last[i]) - static_cast<double>(first[i]);
-  }
+  for (double& force : out) force = sum > 0.0 ? force / sum : 0.0;
 }
 
 }  // namespace dermis::recognition

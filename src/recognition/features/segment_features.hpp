@@ -50,14 +50,14 @@ class SegmentFeatures {
   void measure(const Segment& segment);
   void image_at(ArrayFeatures& array, const Segment& segment, std::size_t frame);
   void accumulate(ArrayFeatures& array, const Segment& segment);
-  std::size_t write_array(ArrayFeatures& array, std::size_t column);
-  void write_rest(const Segment& segment, std::size_t column);
+  void write(const BlockColumns& block, const Segment& segment, std::span<double> out);
+  void write_shares(std::span<double> out) const;
 
   Layout source_;
   bool moving_;
   std::size_t most_frames_;
   double source_frames_per_frame_;
-  std::size_t extra_count_;
+  FeatureColumns columns_;
   std::vector<ArrayFeatures> arrays_;
   std::vector<double> force_;  ///< Of all arrays, of each frame.
   std::vector<float> blend_;   ///< A frame between two of the source.

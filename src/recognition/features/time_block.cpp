@@ -13,8 +13,8 @@ namespace {
 constexpr double kHeld = 0.5;  // share of the peak force
 constexpr double kTouched = 0.25;
 constexpr double kLeastPeak = 0.3;
-constexpr std::size_t kForceSamples = 10;
-constexpr std::size_t kAreaSamples = 6;
+
+using Out = std::span<double>;
 
 double mean_of(std::span<const double> values) {
   const double sum = std::accumulate(values.begin(), values.end(), 0.0);
@@ -119,36 +119,48 @@ void TimeBlock::scale(const FrameSeries& series) {
   for (std::size_t i = 0; i < slope_.size(); ++i) slope_[i] = force_[i + 1] - force_[i];
 }
 
-void TimeBlock::write(const FrameSeries& series, std::span<double> out) {
-  constexpr std::array<std::size_t, 8> kGroups{5, 9, 12, 7, 4, 4, 4, 4};
-  scale(series);
-  std::array<std::span<double>, kGroups.size()> groups;
-  std::size_t begin = 0;
-  for (std::size_t group = 0; group < kGroups.size(); ++group) {
-    groups[group] = out.subspan(begin, kGroups[group]);
-    begin += kGroups[group];
-  }
-  put_size(series, groups[0]);
-  put_course(groups[1]);
-  put_path(series, groups[2]);
-  put_changes(series, groups[3]);
-  put_spectrum(force_, groups[4]);
-  put_centre_spectrum(series.row, groups[5]);
-  put_centre_spectrum(series.col, groups[6]);
-  constexpr std::array<std::size_t, 4> kLags{1, 2, 3, 5};
-  for (std::size_t i = 0; i < kLags.size(); ++i) groups[7][i] = autocorrelation(slope_, kLags[i]);
-  resample(force_, 1.0, out.subspan(begin, kForceSamples));
-  begin += kForceSamples;
-  resample(series.area, over(1.0, peak_area_), out.subspan(begin, kAreaSamples));
-  static_assert(5 + 9 + 12 + 7 + 4 * 4 + kForceSamples + kAreaSamples == kSize);
+constexpr std::array<FeatureRow<TimeBlock, FrameSeries>, 12> TimeBlock::kRows{{
+    {{"length", FeatureAspect::time, 1},
+     [](TimeBlock&, const FrameSeries& series, Out out) { out[0] = std::log(static_cast<double>(series.frames())); }},
+    {{"force and peak", FeatureAspect::force, 2},
+     [](TimeBlock& block, const FrameSeries&, Out out) {
+       out[0] = std::log(block.peak_force_ + block.least_reading_);
+       out[1] = std::log(block.peak_taxel_ + block.least_reading_);
+     }},
+    {{"area", FeatureAspect::area, 2},
+     [](TimeBlock& block, const FrameSeries& series, Out out) {
+       out[0] = std::log(1.0 + block.peak_area_);
+       out[1] = std::log(1.0 + mean_of(series.area));
+     }},
+    {{"course of the force", FeatureAspect::time, 9},
+     [](TimeBlock& block, const FrameSeries&, Out out) { block.put_course(out); }},
+    {{"path of the centre", FeatureAspect::time, 12},
+     [](TimeBlock& block, const FrameSeries& series, Out out) { block.put_path(series, out); }},
+    {{"changes", FeatureAspect::time, 7},
+     [](TimeBlock& block, const FrameSeries& series, Out out) { block.put_changes(series, out); }},
+    {{"spectrum of the force", FeatureAspect::time, 4},
+     [](TimeBlock& block, const FrameSeries&, Out out) { block.put_spectrum(block.force_, out); }},
+    {{"spectrum of the row", FeatureAspect::time, 4},
+     [](TimeBlock& block, const FrameSeries& series, Out out) { block.put_centre_spectrum(series.row, out); }},
+    {{"spectrum of the column", FeatureAspect::time, 4},
+     [](TimeBlock& block, const FrameSeries& series, Out out) { block.put_centre_spectrum(series.col, out); }},
+    {{"autocorrelation of the slope", FeatureAspect::time, 4},
+     [](TimeBlock& block, const FrameSeries&, Out out) { block.put_autocorrelations(out); }},
+    {{"curve of the force", FeatureAspect::time, 10},
+     [](TimeBlock& block, const FrameSeries&, Out out) { resample(block.force_, 1.0, out); }},
+    {{"curve of the area", FeatureAspect::time, 6},
+     [](TimeBlock& block, const FrameSeries& series, Out out) {
+       resample(series.area, over(1.0, block.peak_area_), out);
+     }},
+}};
+
+std::vector<FeatureGroup> TimeBlock::groups() {
+  return groups_of(kRows);
 }
 
-void TimeBlock::put_size(const FrameSeries& series, std::span<double> out) const {
-  out[0] = std::log(static_cast<double>(series.frames()));
-  out[1] = std::log(peak_force_ + least_reading_);
-  out[2] = std::log(peak_taxel_ + least_reading_);
-  out[3] = std::log(1.0 + peak_area_);
-  out[4] = std::log(1.0 + mean_of(series.area));
+void TimeBlock::write(const FrameSeries& series, std::span<double> out) {
+  scale(series);
+  write_rows(kRows, *this, series, out);
 }
 
 void TimeBlock::put_course(std::span<double> out) const {
@@ -231,6 +243,11 @@ void TimeBlock::put_spectrum(std::span<const double> signal, std::span<double> o
     sum += out[band];
   }
   for (double& power : out) power = std::sqrt(over(power, sum));
+}
+
+void TimeBlock::put_autocorrelations(std::span<double> out) const {
+  constexpr std::array<std::size_t, 4> kLags{1, 2, 3, 5};
+  for (std::size_t i = 0; i < kLags.size(); ++i) out[i] = autocorrelation(slope_, kLags[i]);
 }
 
 void TimeBlock::put_centre_spectrum(std::span<const double> place, std::span<double> out) {

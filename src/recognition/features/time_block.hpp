@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "recognition/features/feature_group.hpp"
+
 namespace dermis::recognition {
 
 /// What each frame of a segment says of one array, [frames] each. Lengths as in Lattice.
@@ -25,25 +27,23 @@ struct FrameSeries {
 /// How force, centre and area go on over the frames of a segment. Not thread-safe.
 class TimeBlock {
  public:
-  static constexpr std::size_t kSize = 65;
-  /// Places of the features that tell of the force, and of the area of the contact; the others tell of its course.
-  static constexpr std::array<std::size_t, 2> kForcePlaces{1, 2};
-  static constexpr std::array<std::size_t, 2> kAreaPlaces{3, 4};
-
   /// `least_reading`: where logarithms begin. Allocates for segments of up to `most_frames`.
   TimeBlock(double least_reading, std::size_t most_frames);
 
+  [[nodiscard]] static std::vector<FeatureGroup> groups();
+  /// `out`: the features of all groups
   void write(const FrameSeries& series, std::span<double> out);
 
  private:
+  static const std::array<FeatureRow<TimeBlock, FrameSeries>, 12> kRows;
   static constexpr std::size_t kPeriod = 64;  ///< Points of the Fourier transform.
 
   void scale(const FrameSeries& series);
-  void put_size(const FrameSeries& series, std::span<double> out) const;
   void put_course(std::span<double> out) const;
   void put_path(const FrameSeries& series, std::span<double> out) const;
   void put_changes(const FrameSeries& series, std::span<double> out) const;
   void put_spectrum(std::span<const double> signal, std::span<double> out) const;
+  void put_autocorrelations(std::span<double> out) const;
   void put_centre_spectrum(std::span<const double> place, std::span<double> out);
 
   double least_reading_;
