@@ -11,6 +11,7 @@
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recognition/evaluation.hpp"
 #include "source_options.hpp"
+#include "touch_finding.hpp"
 
 namespace dermis::app {
 namespace {
@@ -55,7 +56,12 @@ Status evaluate_classes(const std::string& path, recognising::ExampleOptions exa
   if (examples.data.rate_hz == 0.0) data->layout.rate_hz = classes->layout.rate_hz;
   const Result<ClassesEvaluation> evaluation = recognition::evaluate_classes(*classes, *data);
   if (!evaluation) return bad_input(path + ": " + evaluation.error().message);
-  json ? print_json(*classes, *evaluation) : print_text(*classes, *evaluation);
+  if (json) {
+    print_json(*classes, *evaluation);
+    return Done{};
+  }
+  print_text(*classes, *evaluation);
+  if (classes->touches) print_finding(*data, *classes->touches);
   return Done{};
 }
 

@@ -24,6 +24,7 @@
 #include "interruption.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
+#include "touch_finding.hpp"
 #include "writable.hpp"
 
 namespace dermis::app {
@@ -111,9 +112,7 @@ Status write_model(const LearnOptions& options, const LabelledFrames& data, cons
   if (Status written = recognition::write_classes(options.out, learned->classes); !written) return written;
   print_report(*learned, std::chrono::duration<double>(Clock::now() - start).count());
   if (const auto& touches = learned->classes.touches) {
-    const recognition::FindingReport finding = recognition::judge_touches(data, *touches);
-    fmt::print("in the stream {} of {} touches are found, and {} where no label is\n", finding.found, finding.labelled,
-               finding.others);
+    print_finding(data, *touches);
   } else if (learned->classes.moving) {
     fmt::print(
         "where touches begin and end cannot be learned: 'dermis recognise' needs labels that leave a tenth of the "
