@@ -3,7 +3,6 @@
 #include "calibration/memory/memory_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -25,13 +24,14 @@ constexpr double kPriorWeight = 0.05;   // of the prior against all loads
 constexpr double kUnlikeShare = 0.05;   // of a creep element or a stop, from the mean of them
 constexpr double kExpectedShare = 0.5;  // of all of them
 
-constexpr std::size_t kParameters = fusion::MemoryLaw::kCreepSeconds.size() + fusion::MemoryLaw::kStopReach.size();
+constexpr std::size_t kShares = fusion::MemoryLaw::kCreepSeconds.size() + fusion::MemoryLaw::kStopReach.size();
 
-/// The free parameters are roots of the shares, which are not negative.
+/// The free parameters are roots of the shares, which are not negative: of creep and, where there are stops, of gaps.
 fusion::MemoryLaw law_of(std::span<const double> free) {
   fusion::MemoryLaw law;
   std::size_t k = 0;
   for (float& share : law.creep) share = static_cast<float>(free[k] * free[k]), ++k;
+  if (k == free.size()) return law;
   for (float& share : law.gap) share = static_cast<float>(free[k] * free[k]), ++k;
   return law;
 }
@@ -40,6 +40,7 @@ std::vector<double> free_of(const fusion::MemoryLaw& law) {
   constexpr float kLeast = 1e-3F;  // at zero the derivative is zero
   std::vector<double> free;
   for (const float share : law.creep) free.push_back(std::sqrt(std::max(share, kLeast)));
+  if (law.gap == decltype(law.gap){}) return free;
   for (const float share : law.gap) free.push_back(std::sqrt(std::max(share, kLeast)));
   return free;
 }
@@ -66,7 +67,7 @@ class MemoryProblem {
     floor_newtons_ = kFloorShare * std::exp(log_newtons);
   }
 
-  [[nodiscard]] std::size_t residual_count() const { return loads_.size() + kParameters; }
+  [[nodiscard]] std::size_t residual_count() const { return loads_.size() + kShares; }
 
   /// Of each load, about relative.
   void errors(const fusion::MemoryLaw& law, std::span<double> errors) const {
@@ -225,17 +226,18 @@ fusion::MemoryLaw fit_memory(const FeltHistory& felt, std::span<const KnownLoad>
   const auto function = [&](std::span<const double> free, std::span<double> residuals, std::span<double> jacobian) {
     if (jacobian.empty()) return problem.residuals(free, residuals);
     const std::size_t count = problem.residual_count();
-    std::array<std::vector<double>, kParameters + 1> moved;  // by a step of each parameter, and the one that is asked
+    const std::size_t parameters = free.size();
+    std::vector<std::vector<double>> moved(parameters + 1);  // by a step of each parameter, and the one that is asked
     parallel_for(moved.size(), [&](std::size_t k) {
       std::vector<double> there(free.begin(), free.end());
-      if (k < kParameters) there[k] += kStep;
+      if (k < parameters) there[k] += kStep;
       moved[k].resize(count);
       problem.residuals(there, moved[k]);
     });
     std::copy(moved.back().begin(), moved.back().end(), residuals.begin());
     for (std::size_t row = 0; row < count; ++row) {
-      for (std::size_t k = 0; k < kParameters; ++k) {
-        jacobian[row * kParameters + k] = (moved[k][row] - residuals[row]) / kStep;
+      for (std::size_t k = 0; k < parameters; ++k) {
+        jacobian[row * parameters + k] = (moved[k][row] - residuals[row]) / kStep;
       }
     }
   };

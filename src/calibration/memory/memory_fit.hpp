@@ -50,7 +50,7 @@ struct FreedLoad {
 [[nodiscard]] double memory_misfit(const FeltHistory& felt, std::span<const KnownLoad> loads,
                                    const fusion::MemoryLaw& law);
 
-/// The law whose misfit is the least, from `start`.
+/// The law whose misfit is the least, from `start`. Without stops where that has none.
 [[nodiscard]] fusion::MemoryLaw fit_memory(const FeltHistory& felt, std::span<const KnownLoad> loads,
                                            const fusion::MemoryLaw& start);
 

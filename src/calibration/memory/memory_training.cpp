@@ -76,9 +76,9 @@ struct Fitted {
 /// From networks that know of no law. Empty where networks cannot be trained, or where not even the loads that it is
 /// fitted to gain by a law.
 std::optional<Fitted> fit(const SampleDatabase& database, const LoadHistory& history,
-                          const fusion::ForceNetworks& plain, int rounds) {
+                          const fusion::ForceNetworks& plain, const fusion::MemoryLaw& start, int rounds) {
   const std::vector<KnownLoad> loads = known_loads(database, history);
-  Fitted fitted{kStart, {}, {}};
+  Fitted fitted{start, {}, {}};
   for (int round = 0; round < rounds; ++round) {
     const FeltHistory felt = felt_history(history, round == 0 ? plain : fitted.training.networks);
     fitted.law = fit_memory(felt, loads, fitted.law);
@@ -119,7 +119,8 @@ struct HeldOutErrors {
 };
 
 /// Of fits to the other pieces.
-std::optional<HeldOutErrors> held_out_errors(const SampleDatabase& database, const LoadHistory& history) {
+std::optional<HeldOutErrors> held_out_errors(const SampleDatabase& database, const LoadHistory& history,
+                                             const fusion::MemoryLaw& start) {
   const std::vector<KnownLoad> loads = known_loads(database, history);
   HeldOutErrors errors;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
@@ -127,7 +128,7 @@ std::optional<HeldOutErrors> held_out_errors(const SampleDatabase& database, con
     const SampleDatabase kept = without(database, held_out);
     const Result<ForceTraining> plain = train_force_networks(kept);
     if (!plain) return std::nullopt;
-    const std::optional<Fitted> fitted = fit(kept, history, plain->networks, kRoundsOfFold);
+    const std::optional<Fitted> fitted = fit(kept, history, plain->networks, start, kRoundsOfFold);
     if (!fitted) return std::nullopt;
     const FeltHistory of_plain = felt_history(history, plain->networks);
     const FeltHistory felt = felt_history(history, fitted->training.networks);
@@ -151,13 +152,13 @@ std::vector<Nanos> times_of_pieces(const std::vector<Nanos>& times) {
 /// Recordings of single presses that were put together have pauses that nobody waited. So a pause counts as unknown
 /// past where the loads agree better without it.
 std::vector<Nanos> likelier_times(const LoadHistory& history, const std::vector<KnownLoad>& loads,
-                                  const fusion::ForceNetworks& plain) {
+                                  const fusion::ForceNetworks& plain, const fusion::MemoryLaw& start) {
   const std::vector<Nanos> of_pieces = times_of_pieces(history.time);
   if (of_pieces.back() == history.time.back() - history.time.front()) return history.time;
   FeltHistory felt = felt_history(history, plain);
-  const double misfit = memory_misfit(felt, loads, fit_memory(felt, loads, kStart));
+  const double misfit = memory_misfit(felt, loads, fit_memory(felt, loads, start));
   felt.time = of_pieces;
-  const double misfit_of_pieces = memory_misfit(felt, loads, fit_memory(felt, loads, kStart));
+  const double misfit_of_pieces = memory_misfit(felt, loads, fit_memory(felt, loads, start));
   return misfit_of_pieces < misfit ? of_pieces : history.time;
 }
 
@@ -195,12 +196,12 @@ std::string describe(const LearnedMemory& memory) {
   };
   double gap = 0.0;
   for (const float share : memory.law.gap) gap += static_cast<double>(share);
-  std::string text = fmt::format(
-      "the material remembers: a load that lies still reads {:.0f} % more after ten seconds than after one, and {:.0f} "
-      "% "
-      "more when unloading than when loading; this is undone: loads left out are {:.1f} % off, without it {:.1f} %",
-      100.0 * (felt_after(10.0) / felt_after(1.0) - 1.0), 100.0 * gap, 100.0 * memory.error_with,
-      100.0 * memory.error_without);
+  std::string text =
+      fmt::format("the material remembers: a load that lies still reads {:.0f} % more after ten seconds than after one",
+                  100.0 * (felt_after(10.0) / felt_after(1.0) - 1.0));
+  if (gap > 0.0) text += fmt::format(", and {:.0f} % more when unloading than when loading", 100.0 * gap);
+  text += fmt::format("; this is undone: loads left out are {:.1f} % off, without it {:.1f} %",
+                      100.0 * memory.error_with, 100.0 * memory.error_without);
   if (memory.longest_hold_seconds < kShortHoldSeconds) {
     text += fmt::format("; no load lies still for more than {:.2g} s: what comes after is not known",
                         memory.longest_hold_seconds);
@@ -223,10 +224,12 @@ std::optional<LearnedMemory> learn_memory(const SampleDatabase& database, std::s
   if (loads.size() < kLeastLoads) return std::nullopt;
   LearnedMemory memory;
   observe_loads(loads, *history, memory);
-  history->time = likelier_times(*history, loads, plain.networks);
-  std::optional<Fitted> fitted = fit(database, *history, plain.networks, kRounds);
+  fusion::MemoryLaw start = kStart;
+  if (!memory.has_unloading) start.gap = {};  // a loop of which one side was not seen would be a guess
+  history->time = likelier_times(*history, loads, plain.networks, start);
+  std::optional<Fitted> fitted = fit(database, *history, plain.networks, start, kRounds);
   if (!fitted) return std::nullopt;
-  const std::optional<HeldOutErrors> errors = held_out_errors(database, *history);
+  const std::optional<HeldOutErrors> errors = held_out_errors(database, *history, start);
   if (!errors || errors->with > kWorthwhile * errors->without) return std::nullopt;
   memory.law = fitted->law;
   memory.felt = std::move(fitted->felt);
