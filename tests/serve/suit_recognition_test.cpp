@@ -78,9 +78,7 @@ class NamedSuit : public testing::Test {
     suit_.classes = std::move(classes);
     stream::ServerOptions options;
     options.port = 0;
-    const auto none = [] { return std::vector<stream::Parameter>{}; };
-    Result<std::unique_ptr<stream::Server>> created =
-        stream::Server::create(options, {}, {none, [](const stream::Parameter&) { return Done{}; }});
+    Result<std::unique_ptr<stream::Server>> created = stream::Server::create(options, {});
     ASSERT_TRUE(created) << created.error().message;
     server_ = *std::move(created);
     auto made = SuitRecognition::create(suit_, *server_, recorder_);
