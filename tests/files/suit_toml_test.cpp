@@ -147,28 +147,28 @@ TEST(SuitToml, refuses_what_is_missing) {
 
 TEST(SuitToml, refuses_a_misspelt_key_with_the_nearest_known) {
   EXPECT_EQ(error_of(with("mirrored", "mirored")),
-            "suit.toml:15: unknown key 'array[1].mirored'; did you mean 'array[1].mirrored'?");
+            "suit.toml:16: unknown key 'array[1].mirored'; did you mean 'array[1].mirrored'?");
   EXPECT_EQ(error_of(with("cylinder", "cylindre")),
-            "suit.toml:16: unknown table 'array[1].cylindre'; did you mean 'array[1].cylinder'?");
+            "suit.toml:17: unknown table 'array[1].cylindre'; did you mean 'array[1].cylinder'?");
   EXPECT_EQ(error_of(with("rotation_deg", "rotation_degs")),
-            "suit.toml:9: unknown key 'array[0].base_from_array.rotation_degs'; did you mean "
+            "suit.toml:10: unknown key 'array[0].base_from_array.rotation_degs'; did you mean "
             "'array[0].base_from_array.rotation_deg'?");
-  EXPECT_EQ(error_of(with("[[array]]", "[[arrays]]")), "suit.toml:4: unknown key 'arrays'; did you mean 'array'?");
+  EXPECT_EQ(error_of(with("[[array]]", "[[arrays]]")), "suit.toml:5: unknown key 'arrays'; did you mean 'array'?");
   EXPECT_EQ(error_of(with("[suit]", "[suite]")), "suit.toml:1: unknown table 'suite'; did you mean 'suit'?");
 }
 
 TEST(SuitToml, refuses_values_that_cannot_be) {
   EXPECT_EQ(error_of(with("[-75, 100.5, 1e2]", "[-75, 100.5]")),
-            "suit.toml:9: array[0].base_from_array.translation_mm: must be a list of 3 numbers, has 2");
-  EXPECT_EQ(error_of(with("\"x\"", "\"z\"")), "suit.toml:16: array[1].cylinder.axis: must be \"x\" or \"y\"");
-  EXPECT_EQ(error_of(with("= 45", "= 0")), "suit.toml:16: array[1].cylinder.radius_mm: must be more than 0 mm");
+            "suit.toml:10: array[0].base_from_array.translation_mm: must be a list of 3 numbers, has 2");
+  EXPECT_EQ(error_of(with("\"x\"", "\"z\"")), "suit.toml:17: array[1].cylinder.axis: must be \"x\" or \"y\"");
+  EXPECT_EQ(error_of(with("= 45", "= 0")), "suit.toml:17: array[1].cylinder.radius_mm: must be more than 0 mm");
   EXPECT_EQ(error_of(with("[10, 0, -1.5]", "[10, 0]")),
-            "suit.toml:22: array[2].positions_mm: must be a list of lists of 3 numbers");
+            "suit.toml:23: array[2].positions_mm: must be a list of lists of 3 numbers");
   EXPECT_EQ(error_of(with("mirrored = true", "positions_mm = []")),
-            "suit.toml:15: array[1].positions_mm: has no meaning beside cylinder; remove one");
+            "suit.toml:16: array[1].positions_mm: has no meaning beside cylinder; remove one");
   EXPECT_EQ(
       error_of(with("[[array]]", "[array]")),
-      "suit.toml:11:1: Error while parsing table header: cannot redefine existing table 'array' as array-of-tables");
+      "suit.toml:12:1: Error while parsing table header: cannot redefine existing table 'array' as array-of-tables");
   EXPECT_EQ(error_of("[array]\nname = \"a\"\n"),
             "suit.toml:1: array: must be a list of tables, each begun by [[array]]");
 }
