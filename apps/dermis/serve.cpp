@@ -36,7 +36,8 @@ struct ServeOptions {
 
 Status check(const ServeOptions& options) {
   const serve::SuitPlace& place = options.place;
-  if (place.suit.empty() && place.from.empty()) return bad_input("serve: give --from with its --model, or --suit; a device needs no model to begin");
+  if (place.suit.empty() && place.from.empty())
+    return bad_input("serve: give --from with its --model, or --suit; a device needs no model to begin");
   if (place.suit.empty() && place.model.empty() && !acquisition::is_source_uri(place.from)) {
     return bad_input("serve: give the --model of the recording");
   }

@@ -25,14 +25,14 @@ using Lines = std::vector<std::size_t>;
 
 /// One way in which a line breaks, as files name it.
 struct LineBreak {
-  const char* name;
-  Lines BrokenLines::*lines;
+  const char* name = nullptr;
+  Lines BrokenLines::*lines = nullptr;
   std::size_t lines_beside = 0;  // that such a line needs behind it
 };
 
-constexpr std::array kLineBreaks{
-    LineBreak{"open", &BrokenLines::open}, LineBreak{"grounded", &BrokenLines::grounded},
-    LineBreak{"supplied", &BrokenLines::supplied}, LineBreak{"shorted", &BrokenLines::shorted, 1}};
+constexpr std::array kLineBreaks{LineBreak{"open", &BrokenLines::open}, LineBreak{"grounded", &BrokenLines::grounded},
+                                 LineBreak{"supplied", &BrokenLines::supplied},
+                                 LineBreak{"shorted", &BrokenLines::shorted, 1}};
 
 std::string key_of(const LineBreak& kind, const char* side) {
   return std::string("faults.") + kind.name + "_" + side;

@@ -122,8 +122,10 @@ static void print_counts(size_t k) {
   qsort(latencies, count, sizeof *latencies, by_size);
   printf("{\"topic\":\"%s\",\"messages\":%zu,\"lost\":%u", topics[k].name, count, lost.total_count);
   if (count > 0) {
-    printf(",\"p50_ms\":%.3f,\"p99_ms\":%.3f,\"worst_ms\":%.3f", (double)latencies[count / 2] * 1e-6,
-           (double)latencies[count - 1 - count / 100] * 1e-6, (double)latencies[count - 1] * 1e-6);
+    const size_t middle = count / 2;
+    const size_t one_in_hundred = count / 100;
+    printf(",\"p50_ms\":%.3f,\"p99_ms\":%.3f,\"worst_ms\":%.3f", (double)latencies[middle] * 1e-6,
+           (double)latencies[count - 1 - one_in_hundred] * 1e-6, (double)latencies[count - 1] * 1e-6);
   }
   fputs("}\n", stdout);
 }

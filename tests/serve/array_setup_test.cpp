@@ -27,14 +27,12 @@ SessionOptions any_port() {
 /// In a folder of its own, which is the current one meanwhile.
 class ArraySetupTest : public testing::Test {
  protected:
-  ArraySetupTest() : before_(std::filesystem::current_path()) { std::filesystem::current_path(folder_.file("")); }
-  ArraySetupTest(const ArraySetupTest&) = delete;
-  ArraySetupTest& operator=(const ArraySetupTest&) = delete;
-  ~ArraySetupTest() override { std::filesystem::current_path(before_); }
+  void SetUp() override { std::filesystem::current_path(folder_.file("")); }
+  void TearDown() override { std::filesystem::current_path(before_); }
 
  private:
   support::TemporaryFolder folder_;
-  std::filesystem::path before_;
+  std::filesystem::path before_ = std::filesystem::current_path();
 };
 
 TEST_F(ArraySetupTest, writes_the_array_that_a_client_describes) {

@@ -37,7 +37,8 @@ struct FrameFileInfo {
 };
 
 /// For a recording from its summary, if it has one; for other files by reading all frames. A file without a frame is
-/// bad input. "rec.mcap#chest" is one array of a recording. `shape`: required shape of the frames, needed if the file does not contain it.
+/// bad input. "rec.mcap#chest" is one array of a recording. `shape`: required shape of the frames, needed if the file
+/// does not contain it.
 [[nodiscard]] Result<FrameFileInfo> frame_file_info(const std::string& path,
                                                     const std::optional<FrameShape>& shape = std::nullopt);
 
