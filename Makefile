@@ -40,6 +40,7 @@ sanitize: numerics
 	ctest --preset asan
 
 lint: setup
+	scripts/setup test
 	scripts/setup lint
 	cmake --preset lint
 	cmake --build --preset lint
