@@ -116,7 +116,7 @@ Status HeldLoads::move_to(Nanos time) {
     if (!more) return more.error();
     has_next_ = *more;
   }
-  if (time - *last_ > kLongestSilence) {
+  if (time - *last_ > recognition::kLongestSilence) {
     std::fill(loads_.begin(), loads_.end(), 0.0F);
     ++silent_;
   }

@@ -9,7 +9,7 @@
 
 #include "dermis/files/csv_table.hpp"
 #include "dermis/files/text.hpp"
-#include "dermis/recognising/array_loads.hpp"
+#include "dermis/recognition/segment.hpp"
 
 namespace dermis::recognising {
 namespace {
@@ -88,7 +88,7 @@ void FurtherReadings::move_to(Nanos time) {
   }
   bool is_complete = true;
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    values_[i] = last_times_[i] >= time - kLongestSilence ? last_[i] : kMissing;
+    values_[i] = last_times_[i] >= time - recognition::kLongestSilence ? last_[i] : kMissing;
     is_complete = is_complete && !std::isnan(values_[i]);
   }
   ++frames_;

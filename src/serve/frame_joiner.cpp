@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <numeric>
 
 namespace dermis::serve {
@@ -30,7 +31,7 @@ const ForceFrame& FrameJoiner::join(const ForceFrame& first) {
   auto end = std::copy(first.newtons.begin(), first.newtons.end(), joined_.newtons.begin());
   const std::lock_guard lock(mutex_);
   for (const Kept& kept : others_) {
-    const bool is_near = kept.time && std::chrono::abs(*kept.time - first.time) <= kLongestSilence;
+    const bool is_near = kept.time && std::chrono::abs(*kept.time - first.time) <= recognition::kLongestSilence;
     end = is_near ? std::copy(kept.newtons.begin(), kept.newtons.end(), end)
                   : std::fill_n(end, kept.newtons.size(), 0.0F);
   }

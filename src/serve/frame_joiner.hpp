@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <mutex>
 #include <optional>
@@ -10,11 +9,9 @@
 #include <vector>
 
 #include "dermis/core/frames.hpp"
+#include "dermis/recognition/segment.hpp"
 
 namespace dermis::serve {
-
-/// What was told longer ago tells nothing of now.
-inline constexpr Nanos kLongestSilence = std::chrono::milliseconds(500);
 
 /// The frames of the first of several arrays, with the last frames of the others beside them. Thread-safe: each array
 /// on a thread of its own. Allocates only when made.
@@ -26,8 +23,8 @@ class FrameJoiner {
   /// Keeps the newtons of an array that is not the first. Rejected frames are passed over.
   void keep(std::size_t array, const ForceFrame& force);
 
-  /// All arrays side by side at a frame of the first. What is further than kLongestSilence from it has no load. Valid
-  /// until the next call.
+  /// All arrays side by side at a frame of the first. What is further than recognition::kLongestSilence from it has no
+  /// load. Valid until the next call.
   [[nodiscard]] const ForceFrame& join(const ForceFrame& first);
 
  private:

@@ -99,7 +99,7 @@ void SuitRecognition::read_further(Nanos time) {
     told_.reset();
     further_time_ = time;
   }
-  const bool is_near = further_time_ && std::chrono::abs(time - *further_time_) <= kLongestSilence;
+  const bool is_near = further_time_ && std::chrono::abs(time - *further_time_) <= recognition::kLongestSilence;
   if (!is_near) std::fill(further_.begin(), further_.end(), kMissing);
 }
 

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -18,9 +17,6 @@
 #include "dermis/sources/open_source.hpp"
 
 namespace dermis::recognising {
-
-/// What was told longer ago tells nothing of now.
-inline constexpr Nanos kLongestSilence = std::chrono::milliseconds(500);
 
 /// Frames of one array, and how they become loads.
 struct ArrayLoadInput {
@@ -92,11 +88,11 @@ class HeldLoads {
   /// Goes on to a time, which may not fall.
   [[nodiscard]] Status move_to(Nanos time);
 
-  /// 0 where there was no frame for kLongestSilence.
+  /// 0 where there was no frame for recognition::kLongestSilence.
   [[nodiscard]] const std::vector<float>& loads() const noexcept { return loads_; }
   /// Whether the array is still being tared.
   [[nodiscard]] bool is_tare() const noexcept { return is_tare_; }
-  /// At how many times there was no frame for kLongestSilence, beginning with the first time.
+  /// At how many times there was no frame for recognition::kLongestSilence, beginning with the first time.
   [[nodiscard]] std::size_t silent() const noexcept { return silent_; }
   [[nodiscard]] recognition::SensedArray array() const { return array_.array().value_or(recognition::SensedArray{}); }
 

@@ -24,7 +24,7 @@ class FurtherReadings {
   /// Goes on to the time of a frame, which may not fall.
   void move_to(Nanos time);
 
-  /// The last values that are not later; NaN where there is none, or none for kLongestSilence.
+  /// The last values that are not later; NaN where there is none, or none for recognition::kLongestSilence.
   [[nodiscard]] const std::vector<float>& values() const noexcept { return values_; }
 
   /// A line where some were missing.

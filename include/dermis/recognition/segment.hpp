@@ -2,18 +2,23 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 
 /// What is recognised: a piece of the stream of one or several arrays.
 namespace dermis::recognition {
 
 inline constexpr std::size_t kMostLines = 1024;  ///< Rows, and columns.
+
+/// Values of another array, or further readings, that are older than this are stale.
+inline constexpr Nanos kLongestSilence = std::chrono::milliseconds(500);
 
 /// One array among those whose readings stand side by side in a frame.
 struct SensedArray {
