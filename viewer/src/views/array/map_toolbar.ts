@@ -63,7 +63,7 @@ function makeShare({ share }: MapChoices, actions: MapActions): HTMLElement {
 function makeRegion({ drawing }: MapChoices, { hasRegion, clearRegion }: MapActions): HTMLElement {
   const button = element("button", {
     class: "button compact",
-    "data-role": "region",
+    "data-role": "draw-region",
     title: "The force on a part of the map, here and over time: draw from corner to corner, or set both with Enter",
     onclick: () => (hasRegion.value ? clearRegion() : (drawing.value = !drawing.value)),
   });
