@@ -70,14 +70,27 @@ export class MapPanel {
     const ends = this.quantity.ends(array);
     if (!ends.includes(end)) ends.push(end);
     ends.sort((a, b) => a - b);
-    const isStepped = this.end.value === STEPS;
-    this.#select.replaceChildren(
-      element("option", { value: STEPS, selected: isStepped }, `steps: 0 \u2013 ${endLabel(this.quantity, end)}`),
-      element("option", { value: FIT }, "fit to what is there now"),
-      ...ends.map((value) => element("option", { value, selected: !isStepped && value === end }, `0 \u2013 ${endLabel(this.quantity, value)}`)),
-    );
+    this.#offer(ends, end);
     setText(this.#unit, shownUnit(this.quantity, end));
     this.#ticks.forEach((label, tick) => setText(label, this.quantity.label((end * tick) / TICKS, end)));
+  }
+
+  /** Options that are there already stay. */
+  #offer(ends: readonly number[], end: number): void {
+    const isStepped = this.end.value === STEPS;
+    const wanted: (readonly [number, string])[] = [
+      [STEPS, isStepped ? `steps: 0 \u2013 ${endLabel(this.quantity, end)}` : "in steps, by itself"],
+      [FIT, "fit to what is there now"],
+      ...ends.map((value) => [value, `0 \u2013 ${endLabel(this.quantity, value)}`] as const),
+    ];
+    const { options } = this.#select;
+    while (options.length > wanted.length) options.remove(options.length - 1);
+    wanted.forEach(([value, words], index) => {
+      const option = options[index] ?? this.#select.appendChild(element("option"));
+      option.value = String(value);
+      setText(option, words);
+    });
+    this.#select.value = String(isStepped ? STEPS : end);
   }
 
   /** What is drawn next. True: the scale has another end now. */

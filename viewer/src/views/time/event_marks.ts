@@ -24,6 +24,7 @@ export function drawEvents(plot: uPlot, events: readonly TimedEvent[], nowS: num
   pen.save();
   pen.scale(ratio, ratio);
   pen.font = FONT;
+  pen.fillStyle = cssColor("--text");
   pen.textAlign = "left";
   pen.textBaseline = "top";
   let free = Infinity;
@@ -32,16 +33,14 @@ export function drawEvents(plot: uPlot, events: readonly TimedEvent[], nowS: num
     const ageS = atS - nowS;
     if (ageS < firstS || ageS > 0) continue;
     const x = (left + width * (1 - ageS / firstS)) / ratio;
-    pen.strokeStyle = pen.fillStyle = cssColor(EVENT_LOOKS[kind].color);
+    pen.strokeStyle = cssColor(EVENT_LOOKS[kind].color);
     pen.setLineDash(kind === "contact" ? [2, 3] : []);
     pen.beginPath();
     pen.moveTo(x, top / ratio);
     pen.lineTo(x, (top + height) / ratio);
     pen.stroke();
     const end = x + GAP + pen.measureText(words).width;
-    if (end > Math.min(free, (left + width) / ratio)) continue;
-    pen.fillStyle = cssColor("--text");
-    pen.fillText(words, x + GAP, top / ratio);
+    if (end < Math.min(free, (left + width) / ratio)) pen.fillText(words, x + GAP, top / ratio);
     free = x - GAP;
   }
   pen.restore();
