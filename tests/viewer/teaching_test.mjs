@@ -13,7 +13,8 @@ const KINDS = ["tap", "hold", "stroke"];
 const TAUGHT = 10;
 const NEW = 60;
 const TOUCH_S = 2;
-const PAUSE_S = 20;
+// Long enough for a busy machine to stop the playback before the touches of the next kind come.
+const PAUSE_S = 60;
 const ARRAY = `[array]
 name = "palm"
 rows = ${ROWS}
@@ -100,6 +101,8 @@ async function seek(page, seconds) {
 }
 
 const BLOCK_S = PAUSE_S + TAUGHT * TOUCH_S;
+/** The new touches begin. */
+const NEW_S = KINDS.length * BLOCK_S + PAUSE_S;
 const TOTAL_S = KINDS.length * BLOCK_S + PAUSE_S + NEW * TOUCH_S + PAUSE_S;
 
 async function teach(page, kind, index) {
@@ -115,13 +118,30 @@ async function teach(page, kind, index) {
   await part(page, "teach-listen").getByText("Begin").waitFor();
 }
 
-/** Every answer that the bars show, in order. */
+/** Every answer that the bars show, by the number of its touch among the new ones. */
 async function watchAnswers(page) {
-  await page.evaluate(() => {
+  await page.evaluate(([firstS, touchS]) => {
     const bars = document.querySelector("[aria-label='What touches']");
-    window.answers = [];
-    new MutationObserver(() => setTimeout(() => window.answers.push(document.querySelector("[data-role=answer]").textContent))).observe(bars, { attributes: true, attributeFilter: ["data-stamp"] });
-  });
+    window.answers = {};
+    new MutationObserver(() => {
+      const touch = Math.floor((Number(bars.dataset.stamp) - firstS) / touchS);
+      (window.answers[touch] ??= new Set()).add(document.querySelector("[data-role=answer]").textContent);
+    }).observe(bars, { attributes: true, attributeFilter: ["data-stamp"] });
+  }, [NEW_S, TOUCH_S]);
+}
+
+/** Plays the new touches; again where the page was too busy to show an answer before the next one came. */
+async function answersToNewTouches(page) {
+  await watchAnswers(page);
+  const shown = () => page.evaluate(() => Object.entries(window.answers).map(([touch, answers]) => [Number(touch), [...answers].join()]));
+  for (const begin = Date.now(); Date.now() - begin < WAIT_MS; ) {
+    await play(page, false);
+    await seek(page, NEW_S - 1);
+    await play(page, true);
+    await eventually(page, ([count, endS]) => Object.keys(window.answers).length >= count || Number(document.querySelector("[aria-label='What touches']").dataset.stamp) > endS, [NEW, NEW_S + (NEW - 1) * TOUCH_S]);
+    if ((await shown()).length >= NEW) break;
+  }
+  return new Map(await shown());
 }
 
 it("teaches three touches, throws an example away, trains, and names new touches", async () => {
@@ -139,16 +159,12 @@ it("teaches three touches, throws an example away, trains, and names new touches
 
     await part(page, "teach-train").click();
     await part(page, "teach-result").getByText(/were right when left out\. Saved as palm-touches-\d{8}-\d{6}\.safetensors and in use\./).waitFor();
-    await watchAnswers(page);
-    await seek(page, KINDS.length * BLOCK_S + PAUSE_S - 1);
-    await play(page, true);
-    await eventually(page, (count) => window.answers.length >= count, NEW);
-    const answers = await page.evaluate(() => window.answers);
-    assert.equal(answers.length, NEW);
-    const wrong = answers.filter((answer, index) => answer !== KINDS[index % 3] && answer !== "unknown");
-    const right = answers.filter((answer, index) => answer === KINDS[index % 3]).length;
+    const answers = await answersToNewTouches(page);
+    assert.deepEqual([...answers.keys()].sort((a, b) => a - b), Array.from({ length: NEW }, (_, touch) => touch));
+    const wrong = [...answers].filter(([touch, answer]) => answer !== KINDS[touch % 3] && answer !== "unknown");
+    const right = [...answers].filter(([touch, answer]) => answer === KINDS[touch % 3]).length;
     assert.deepEqual(wrong, []);
-    assert.ok(right >= 0.9 * NEW, `${right} of ${NEW}: ${answers}`);
+    assert.ok(right >= 0.9 * NEW, `${right} of ${NEW}: ${[...answers.values()]}`);
     assertUnhurt(page);
     await page.close();
   } finally {
