@@ -16,6 +16,8 @@ namespace {
 
 constexpr const char* kComplete = R"([suit]
 name = "body"
+body = "robot.stl"
+body_scale = 0.001
 classes = "hugs.safetensors"
 
 [[array]]
@@ -23,6 +25,7 @@ name = "chest"
 from = "sim:multitouch?rate=200&seed=1"
 model = "chest.safetensors"
 classes = "touches.safetensors"
+link = "torso"
 base_from_array = {translation_mm = [-75, 100.5, 1e2], rotation_deg = [90, 0, 0]}
 
 [[array]]
@@ -74,6 +77,9 @@ TEST(SuitToml, reads_every_key) {
   ASSERT_TRUE(suit) << suit.error().message;
   EXPECT_EQ(suit->name, "body");
   EXPECT_EQ(suit->classes, "hugs.safetensors");
+  EXPECT_EQ(suit->body, "robot.stl");
+  EXPECT_EQ(suit->body_scale, 0.001);
+  EXPECT_EQ(suit->arrays[0].link, "torso");
   ASSERT_EQ(suit->arrays.size(), 4U);
   const SuitArray& chest = suit->arrays[0];
   EXPECT_EQ(chest.classes, "touches.safetensors");
