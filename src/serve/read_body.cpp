@@ -20,6 +20,8 @@ using Notice = std::function<void(const std::string&)>;
 
 constexpr std::size_t kMostFileBytes = 20'000'000;
 constexpr std::size_t kMostBytes = 3 * kMostFileBytes;
+/// glTF has y up and z forward; the suit has z up and x forward.
+constexpr Pose kUpright{{}, {0.5, 0.5, 0.5, 0.5}};
 
 /// ".stl"
 std::string ending_of(const std::string& path) {
@@ -97,8 +99,9 @@ Result<BodyParts> body_of_mesh(const std::string& path, double scale) {
   const std::string name = fs::path(path).filename().string();
   Result<std::string> bytes = read_mesh(fs::path(path).parent_path(), name);
   if (!bytes) return bad_input(fmt::format("{}: {}", path, bytes.error().message));
-  Body body{
-      fs::path(path).stem().string(), {{"body", {BodyVisual{{}, MeshSolid{name, {scale, scale, scale}}, {}}}}}, {}};
+  const Pose pose = ending_of(name) == ".glb" ? kUpright : Pose{};
+  const BodyVisual visual{pose, MeshSolid{name, {scale, scale, scale}}, {}};
+  Body body{fs::path(path).stem().string(), {{"body", {visual}}}, {}};
   return BodyParts{std::move(body), {{name, "/body/0" + ending_of(name), *std::move(bytes)}}};
 }
 

@@ -154,6 +154,10 @@ TEST(ReadBody, takes_one_mesh_as_a_body) {
   EXPECT_EQ(body->body.name, "torso");
   EXPECT_EQ(std::get<MeshSolid>(body->body.links[0].visuals[0].solid).scale, (Vector3{0.001, 0.001, 0.001}));
   EXPECT_EQ(body->files[0].path, "/body/0.stl");
+  write_bytes(folder.file("torso.glb"), "glTF");
+  const Result<BodyParts> upright = read_body(folder.file("torso.glb"), 1.0, {});
+  ASSERT_TRUE(upright.has_value()) << upright.error().message;
+  EXPECT_EQ(turned(upright->body.links[0].visuals[0].link_from_visual, {0.0, 1.0, 0.0}), (Vector3{0.0, 0.0, 1.0}));
 }
 
 TEST(ReadBody, refuses_other_files_and_what_is_too_large) {
