@@ -16,8 +16,6 @@ namespace {
 
 constexpr const char* kComplete = R"([suit]
 name = "body"
-body = "robot.stl"
-body_scale = 0.001
 classes = "hugs.safetensors"
 
 [[array]]
@@ -25,7 +23,6 @@ name = "chest"
 from = "sim:multitouch?rate=200&seed=1"
 model = "chest.safetensors"
 classes = "touches.safetensors"
-link = "torso"
 base_from_array = {translation_mm = [-75, 100.5, 1e2], rotation_deg = [90, 0, 0]}
 
 [[array]]
@@ -77,9 +74,6 @@ TEST(SuitToml, reads_every_key) {
   ASSERT_TRUE(suit) << suit.error().message;
   EXPECT_EQ(suit->name, "body");
   EXPECT_EQ(suit->classes, "hugs.safetensors");
-  EXPECT_EQ(suit->body, "robot.stl");
-  EXPECT_EQ(suit->body_scale, 0.001);
-  EXPECT_EQ(suit->arrays[0].link, "torso");
   ASSERT_EQ(suit->arrays.size(), 4U);
   const SuitArray& chest = suit->arrays[0];
   EXPECT_EQ(chest.classes, "touches.safetensors");
@@ -96,6 +90,17 @@ TEST(SuitToml, reads_every_key) {
   EXPECT_EQ(arm.shape, (ArrayShape{CylinderShape{CylinderShape::Axis::x, 0.045}}));
   EXPECT_EQ(suit->arrays[2].shape, (ArrayShape{FreeShape{{{0.0, 0.0, 0.0}, {0.010, 0.0, -0.0015}}}}));
   EXPECT_EQ(suit->arrays[3].shape, (ArrayShape{FreeShape{{{1.0, 2.0, 3.0}}}}));
+}
+
+TEST(SuitToml, reads_the_body_and_the_link_of_an_array) {
+  const std::string array = "[[array]]\nname = \"chest\"\nfrom = \"sim:idle\"\nmodel = \"m\"\nlink = \"torso\"\n";
+  const Result<SuitDescription> suit =
+      suit_from_toml("[suit]\nbody = \"robot.stl\"\nbody_scale = 0.001\n" + array, "s/suit.toml", no_positions);
+  ASSERT_TRUE(suit) << suit.error().message;
+  EXPECT_EQ(suit->body, "s/robot.stl");
+  EXPECT_EQ(suit->body_scale, 0.001);
+  EXPECT_EQ(suit->arrays[0].link, "torso");
+  EXPECT_EQ(error_of(array), "suit.toml: array 'chest': link: needs the body of the suit");
 }
 
 TEST(SuitToml, turns_by_roll_pitch_and_yaw_about_fixed_axes_in_this_order) {
