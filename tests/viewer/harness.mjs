@@ -12,6 +12,8 @@ import { createRequire } from "node:module";
 const { chromium } = createRequire(new URL("../npm/package.json", import.meta.url))("playwright-core");
 
 export const WAIT_MS = 60_000;
+/** As the tabs name them. */
+export const VIEWS = ["array", "time", "suit", "recognition", "health", "calibration"];
 
 /** An array.toml. */
 export function arrayToml(name, rows, cols) {

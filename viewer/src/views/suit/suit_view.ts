@@ -22,7 +22,7 @@ class ArrayLabel {
   readonly #force = element("span", { class: "figure" });
 
   constructor(name: string, open: () => void) {
-    this.element = element("button", { class: "array-label", onclick: open, "data-array": name, "aria-label": `Open ${name}` }, name, this.#force);
+    this.element = element("button", { class: "array-label", onclick: open, "data-array": name, title: `Open ${name}` }, name, this.#force);
   }
 
   show(newtons: number, isCalibrated: boolean): void {
