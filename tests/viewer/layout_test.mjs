@@ -3,8 +3,8 @@
 // Usage: node layout_test.mjs path/to/dermis
 // Measures the boxes of all texts and controls of each view: nothing is cut, nothing lies over something else.
 import assert from "node:assert/strict";
-import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage } from "./harness.mjs";
+import { it } from "node:test";
+import { assertUnhurt, becomes, bench, browser, openPage, useBench } from "./harness.mjs";
 
 const VIEWS = ["array", "time", "suit", "recognition", "health", "calibration"];
 const SIZES = [
@@ -13,18 +13,7 @@ const SIZES = [
   { width: 1920, height: 1080 },
 ];
 
-let bench;
-let browser;
-
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  browser = await openBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
+useBench();
 
 /** In the page: what is wrong with its boxes, a line each. */
 function faultsOfBoxes() {
