@@ -9,8 +9,8 @@
 #include <numeric>
 #include <utility>
 
-#include "recognition/features/load.hpp"
 #include "recognition/features/pose_block.hpp"
+#include "recognition/load.hpp"
 
 namespace dermis::recognition {
 namespace {

@@ -3,7 +3,7 @@
 #include "dermis/recognition/segment.hpp"
 
 #include "dermis/core/millimetres.hpp"
-#include "recognition/classes/names.hpp"
+#include "recognition/names.hpp"
 
 namespace dermis::recognition {
 namespace {
