@@ -115,6 +115,8 @@ Result<SessionParts> make_parts(ServedSuit& suit, const SessionOptions& options)
 
 }  // namespace
 
+/// Joins the parts of a server, which know nothing of each other. Many members: each part is one, in the order in which
+/// they are made.
 class Session::Implementation {
  public:
   Implementation(ServedSuit suit, SessionParts parts, const SessionOptions& options);
