@@ -64,6 +64,7 @@ class StatusPublisher {
   stream::Server& server_;
   Channels channels_;
   PlaybackStatus last_playback_{};
+  std::uint64_t body_version_ = 0;  // of which /tf was published
   std::vector<std::uint8_t> message_;
 };
 

@@ -6,24 +6,13 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { createServer } from "node:net";
-import { after, before, describe, it } from "node:test";
-import { arrayToml, assertUnhurt, becomes, Bench, openBrowser, openPage, VIEWS } from "./harness.mjs";
+import { describe, it } from "node:test";
+import { arrayToml, assertUnhurt, becomes, bench, browser, openPage, useBench, VIEWS } from "./harness.mjs";
 
 const AXE = readFileSync(createRequire(new URL("../npm/package.json", import.meta.url)).resolve("axe-core/axe.min.js"), "utf8");
 const MOST_TABS = 200;
 
-let bench;
-let browser;
-
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  browser = await openBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
+useBench();
 
 /** What axe-core finds serious or critical, a line each. */
 async function findings(page) {

@@ -3,8 +3,8 @@
 // Usage: node layout_test.mjs path/to/dermis
 // Measures the boxes of all texts and controls of each view: nothing is cut, nothing lies over something else.
 import assert from "node:assert/strict";
-import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage, VIEWS } from "./harness.mjs";
+import { it } from "node:test";
+import { assertUnhurt, becomes, bench, browser, openPage, useBench, VIEWS } from "./harness.mjs";
 
 const SIZES = [
   { width: 390, height: 844 },
@@ -12,18 +12,7 @@ const SIZES = [
   { width: 1920, height: 1080 },
 ];
 
-let bench;
-let browser;
-
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  browser = await openBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
+useBench();
 
 /** In the page: what is wrong with its boxes, a line each. */
 function faultsOfBoxes() {

@@ -3,23 +3,12 @@
 // Usage: node light_touch_test.mjs path/to/dermis
 // What shows a light touch, and what was before: scales, held values, pressures, regions, events.
 import assert from "node:assert/strict";
-import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage, WAIT_MS } from "./harness.mjs";
+import { it } from "node:test";
+import { assertUnhurt, becomes, bench, browser, openPage, useBench, WAIT_MS } from "./harness.mjs";
 
 const AREA_M2 = 38.48e-6; // as in the harness's array.toml
 
-let bench;
-let browser;
-
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  browser = await openBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
+useBench();
 
 async function shown(test) {
   const server = await bench.serve("--port", "0", "--from", "sim:contacts?rate=200", ...bench.model);

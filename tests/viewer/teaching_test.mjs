@@ -4,8 +4,8 @@
 // A person teaches three touches in the browser: a recording of simulated touches stands for the hand.
 import assert from "node:assert/strict";
 import { readdirSync, writeFileSync } from "node:fs";
-import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage, readCsv, WAIT_MS } from "./harness.mjs";
+import { it } from "node:test";
+import { assertUnhurt, becomes, bench, browser, openPage, readCsv, useBench, WAIT_MS } from "./harness.mjs";
 
 const [ROWS, COLS] = [8, 8];
 const HZ = 50;
@@ -25,9 +25,6 @@ pitch_mm = [10.0, 10.0]
 circuit = "force"
 adc_noise_counts = 0.002
 `;
-
-let bench;
-let browser;
 
 /** Numbers in 0 ... 1 by shifts (G. Marsaglia, "Xorshift RNGs", 2003): those of touches that follow are independent. */
 function chance(seed) {
@@ -68,16 +65,7 @@ function recordTouches() {
   bench.run("convert", bench.path("touches.csv"), bench.path("touches.mcap"), "--array", bench.path("palm.toml"));
 }
 
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  recordTouches();
-  browser = await openBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
+useBench(recordTouches);
 
 const part = (page, role) => page.locator(`[data-role=${role}]`);
 
