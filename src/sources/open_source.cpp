@@ -9,6 +9,7 @@
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 #include "sources/simulated_source.hpp"
+#include "sources/turned_source.hpp"
 
 namespace dermis::sources {
 namespace {
@@ -18,22 +19,35 @@ std::optional<FrameShape> shape_of(const ArrayDescription* array) {
   return FrameShape{array->rows, array->cols};
 }
 
+/// Shape of the frames before the order of the URI turns them.
+std::optional<FrameShape> sent_shape(const acquisition::SourceUri& uri, std::optional<FrameShape> turned) {
+  if (!turned) return std::nullopt;
+  return uri.order.sent(*turned);
+}
+
 Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri, const SourceOptions& options) {
   const std::optional<FrameShape> given = uri.protocol.shape;
-  const std::optional<FrameShape> wanted = shape_of(options.array);
+  const std::optional<FrameShape> wanted = sent_shape(uri, shape_of(options.array));
   if (given && wanted && *given != *wanted) {
     return bad_input("'" + uri.text + "': rows and cols are " + files::size_text(*given) + ", the array is " +
                      files::size_text(*wanted));
   }
   const Result<recordings::FrameFormat> format = recordings::recognise_frames(uri.path);
   if (!format) return format.error();
-  if (recordings::has_times(*format)) {
+  if (uri.rate_hz && recordings::has_times(*format)) {
     return bad_input("'" + uri.text + "': the file has times of its own; write '" + uri.path +
                      "' alone, without file: and rate");
   }
   return recordings::open_frames(
       uri.path,
       {.shape = given ? given : wanted, .rate_hz = uri.rate_hz, .notice = options.notice, .loss = options.loss});
+}
+
+/// Its frames as they are sent are turned by the array's description. Those of files were turned when they were written.
+Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& uri, const SourceOptions& options) {
+  std::optional<FrameShape> shape = shape_of(options.array);
+  if (shape) shape = options.array->order.sent(*shape);
+  return acquisition::open_device(uri, {sent_shape(uri, shape), options.stop, options.notice});
 }
 
 }  // namespace
@@ -44,8 +58,12 @@ Result<std::unique_ptr<FrameSource>> open_source(const SourceName& from, const S
                                    {.shape = shape_of(options.array), .notice = options.notice, .loss = options.loss});
   }
   if (from.kind == SourceKind::simulation) return open_simulation(*from.uri, options);
-  if (from.kind == SourceKind::file) return open_file(*from.uri, options);
-  return acquisition::open_device(*from.uri, {shape_of(options.array), options.stop, options.notice});
+  const bool is_file = from.kind == SourceKind::file;
+  Result<std::unique_ptr<FrameSource>> source = is_file ? open_file(*from.uri, options) : open_device(*from.uri, options);
+  if (!source) return source.error();
+  std::unique_ptr<FrameSource> turned = turned_source(*std::move(source), from.uri->order, from.text);
+  return is_file || options.array == nullptr ? std::move(turned)
+                                             : turned_source(std::move(turned), options.array->order, from.text);
 }
 
 Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const SourceOptions& options) {
