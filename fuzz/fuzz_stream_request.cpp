@@ -21,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       {[] {
          return std::vector<Parameter>{{"/a", 1.0}};
        },
-       [](const Parameter&) -> dermis::Status { return dermis::Done{}; }},
+       [](const Parameter&, const std::string&) -> dermis::Status { return dermis::Done{}; }},
       {{"/echo", [](std::string_view request) -> dermis::Result<std::string> { return std::string(request); }}},
       PlaybackService{{}, dermis::Nanos(1), [](const dermis::PlaybackCommand&) { return dermis::PlaybackStatus{}; }}};
   std::vector<Question> questions;

@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "commands.hpp"
 #include "dermis/acquisition/source_uri.hpp"
@@ -36,9 +37,11 @@ struct ServeOptions {
 
 Status check(const ServeOptions& options) {
   const serve::SuitPlace& place = options.place;
-  if (place.suit.empty() && place.from.empty())
-    return bad_input("serve: give --from with its --model, or --suit; a device needs no model to begin");
-  if (place.suit.empty() && place.model.empty() && !acquisition::is_source_uri(place.from)) {
+  if (place.suit.empty() && place.from.empty() && !place.model.empty()) {
+    return bad_input("serve: give --from with its --model; without both the page asks for the device");
+  }
+  const bool is_path = !place.from.empty() && !acquisition::is_source_uri(place.from);
+  if (place.suit.empty() && place.model.empty() && is_path) {
     return bad_input("serve: give the --model of the recording");
   }
   if (!place.suit.empty() && !place.model.empty()) return bad_input("--model: suit.toml names the models");
@@ -92,7 +95,9 @@ Status set_up_array(ServeOptions& options) {
   options.session.server.port = (*setup)->port();
   say(fmt::format("describe the array at {} (Ctrl-C ends it)",
                   address(options.session.server, options.session.server.port)));
-  options.place.model = (*setup)->run(stop_flag());
+  serve::DescribedArray array = (*setup)->run(stop_flag());
+  options.place.from = std::move(array.from);
+  options.place.model = std::move(array.model);
   if (!options.place.model.empty()) say("wrote " + options.place.model);
   return Done{};
 }
@@ -129,7 +134,7 @@ Status serve_suit(ServeOptions& options) {
 
 void add_serve(Command& command) {
   auto options = std::make_shared<ServeOptions>();
-  command.option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
+  command.option("--from", options->place.from, "URI of a device or of the simulator, or a recording; without it the page lists the serial ports");
   command.option("--model", options->place.model,
                  "Its model, or the array.toml of an array to be calibrated; without it the page asks");
   command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
