@@ -224,6 +224,19 @@ Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, pipeline::Mo
   return suit;
 }
 
+Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& recording) {
+  ServedSuit played;
+  played.name = suit.name;
+  for (const ServedArray& array : suit.arrays) {
+    played.arrays.push_back({array.name, nullptr, array.model, array.surface, array.suit_from_array, array.description,
+                             array.model_path, array.classes});
+  }
+  played.classes = suit.classes;
+  played.threats = suit.threats;
+  if (Status opened = open_playback(recording, played); !opened) return opened.error();
+  return played;
+}
+
 Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions options) {
   const Result<SuitDescription> described = describe(place);
   if (!described) return described.error();

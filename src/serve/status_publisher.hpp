@@ -64,6 +64,7 @@ class StatusPublisher {
   stream::Server& server_;
   Channels channels_;
   PlaybackStatus last_playback_{};
+  std::uint64_t last_subscriptions_ = 0;  // when the playback was told last
   std::vector<std::uint8_t> message_;
 };
 
