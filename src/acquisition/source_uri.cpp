@@ -32,9 +32,9 @@ struct Scheme {
   bool is_target;
 };
 
-const std::set<std::string> kProtocolParameters = {
-    "protocol",  "rows",      "cols",      "nodes_per_packet", "delimited", "bit_shift",
-    "transpose", "flip_rows", "flip_cols", "skip_columns",     "row_order", "col_order"};
+const std::set<std::string> kProtocolParameters = {"protocol",  "rows",         "cols",      "nodes_per_packet",
+                                                   "delimited", "bit_shift",    "transpose", "flip_rows",
+                                                   "flip_cols", "skip_columns", "row_order", "col_order"};
 
 const std::array<Scheme, 9>& schemes() {
   static const std::array<Scheme, 9> kAll = {{
@@ -226,9 +226,7 @@ class Parser {
     return FrameShape{*rows, *cols};
   }
 
-  bool read_switch(const char* name) {
-    return read<int>(name, 0, 1, "0 or 1").value_or(0) == 1;
-  }
+  bool read_switch(const char* name) { return read<int>(name, 0, 1, "0 or 1").value_or(0) == 1; }
 
   /// "0,2,1"
   void read_list(const char* name, std::vector<std::size_t>& list) {

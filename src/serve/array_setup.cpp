@@ -169,7 +169,7 @@ class ArraySetup::Implementation {
 
   std::mutex mutex_;
   DescribedArray described_;
-  std::optional<SourceName> name_;     // this and the rest: of the services, which are called one at a time
+  std::optional<SourceName> name_;  // this and the rest: of the services, which are called one at a time
   sources::SourceOptions options_;
   std::unique_ptr<TouchWatch> watch_;  // null: nobody asked for it
   std::unique_ptr<stream::Server> server_;

@@ -30,7 +30,7 @@ class LastMinute {
 
  private:
   struct Kept {
-    RawFrame frame;                     ///< Without its counts, where `whole` has them
+    RawFrame frame;                    ///< Without its counts, where `whole` has them
     std::vector<std::uint16_t> whole;  ///< in half the room.
   };
   struct Track {

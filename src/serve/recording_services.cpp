@@ -116,9 +116,9 @@ Result<std::string> RecordingServices::save(const JsonRequest& request) {
   const std::string path = recording_name((std::filesystem::path(folder_.path()) / wanted).string(), false,
                                           std::chrono::system_clock::now());
   const Result<std::size_t> frames =
-      name->empty() ? save_recording(last_minute_, arrays, *selection, path)
-                    : save_csv(last_minute_, static_cast<std::size_t>(array - arrays.begin()), array->shape, *selection,
-                               path);
+      name->empty()
+          ? save_recording(last_minute_, arrays, *selection, path)
+          : save_csv(last_minute_, static_cast<std::size_t>(array - arrays.begin()), array->shape, *selection, path);
   if (!frames) return frames.error();
   give(path);
   return json_text(ordered_json{{"file", file_name(path)}, {"frames", *frames}});

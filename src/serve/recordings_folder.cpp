@@ -24,8 +24,7 @@ std::int64_t since_1970(fs::file_time_type time) {
 
 }  // namespace
 
-RecordingsFolder::RecordingsFolder(const std::string& recording)
-    : path_(fs::path(recording).parent_path().string()) {
+RecordingsFolder::RecordingsFolder(const std::string& recording) : path_(fs::path(recording).parent_path().string()) {
   if (path_.empty()) path_ = ".";
 }
 

@@ -13,7 +13,7 @@ namespace dermis::serve {
 
 /// A file that clients may save.
 struct SavedFile {
-  std::string name;            ///< "walk.mcap"
+  std::string name;  ///< "walk.mcap"
   std::uint64_t bytes = 0;
   std::int64_t changed_s = 0;  ///< Seconds since 1970.
 };

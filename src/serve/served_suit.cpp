@@ -14,6 +14,7 @@
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/sources/open_source.hpp"
+#include "dermis/sources/recorded_order.hpp"
 #include "dermis/threats/threat_monitor.hpp"
 #include "serve/live_recognition.hpp"
 #include "serve/model_or_array.hpp"
@@ -188,6 +189,8 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
       return bad_input(fmt::format("'{}': array '{}' has {}x{} taxels, its model {}x{}", from, array.name,
                                    found->shape.rows, found->shape.cols, shape.rows, shape.cols));
     }
+    Status order = sources::check_recorded_order(from, found->array_toml, array.model->array);
+    if (!order) return order;
     array.source = (*playback)->source(static_cast<std::size_t>(found - recorded.begin()));
   }
   suit.playback = *std::move(playback);

@@ -8,6 +8,7 @@
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/suit_recording.hpp"
+#include "dermis/sources/recorded_order.hpp"
 #include "sources/simulated_source.hpp"
 #include "sources/turned_source.hpp"
 
@@ -43,7 +44,15 @@ Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri
       {.shape = given ? given : wanted, .rate_hz = uri.rate_hz, .notice = options.notice, .loss = options.loss});
 }
 
-/// Its frames as they are sent are turned by the array's description. Those of files were turned when they were written.
+/// Costs a second look at the file where its array is turned, and nothing else.
+Status check_order(const std::string& path, const ArrayDescription* array) {
+  if (array == nullptr || array->order.is_plain()) return Done{};
+  const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(path);
+  return notes ? check_recorded_order(path, notes->array_toml, *array) : Status(Done{});
+}
+
+/// Its frames as they are sent are turned by the array's description. Those of files were turned when they were
+/// written.
 Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& uri, const SourceOptions& options) {
   std::optional<FrameShape> shape = shape_of(options.array);
   if (shape) shape = options.array->order.sent(*shape);
@@ -54,12 +63,14 @@ Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& u
 
 Result<std::unique_ptr<FrameSource>> open_source(const SourceName& from, const SourceOptions& options) {
   if (!from.uri) {
+    if (Status order = check_order(from.text, options.array); !order) return order.error();
     return recordings::open_frames(from.text,
                                    {.shape = shape_of(options.array), .notice = options.notice, .loss = options.loss});
   }
   if (from.kind == SourceKind::simulation) return open_simulation(*from.uri, options);
   const bool is_file = from.kind == SourceKind::file;
-  Result<std::unique_ptr<FrameSource>> source = is_file ? open_file(*from.uri, options) : open_device(*from.uri, options);
+  Result<std::unique_ptr<FrameSource>> source =
+      is_file ? open_file(*from.uri, options) : open_device(*from.uri, options);
   if (!source) return source.error();
   std::unique_ptr<FrameSource> turned = turned_source(*std::move(source), from.uri->order, from.text);
   return is_file || options.array == nullptr ? std::move(turned)

@@ -19,8 +19,8 @@ class TurnedSource final : public FrameSource {
     if (!more || !*more) return more;
     if (Status known = learn_shape(); !known) return known.error();
     if (frame.counts.size() != shape_->taxel_count()) {
-      return bad_input("'" + name_ + "': a frame has " + std::to_string(frame.counts.size()) + " readings, its source says " +
-                       std::to_string(shape_->taxel_count()));
+      return bad_input("'" + name_ + "': a frame has " + std::to_string(frame.counts.size()) +
+                       " readings, its source says " + std::to_string(shape_->taxel_count()));
     }
     sent_.swap(frame.counts);
     frame.counts.resize(places_.size());

@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>  // Asio 1.74 forgets it
 
+#include "stream/access.hpp"
 #include "stream/client.hpp"
 #include "stream/notice_limiter.hpp"
 #include "stream/session.hpp"

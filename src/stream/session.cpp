@@ -122,10 +122,9 @@ void Session::send_pieces() {
 
 void Session::send_piece() {
   stream_.next_layer().expires_after(kIdleTime);
-  asio::async_write(stream_.next_layer(), asio::buffer(file_->piece()),
-                    [self = shared_from_this()](const ErrorCode& error, std::size_t) {
-                      error ? self->end() : self->send_pieces();
-                    });
+  asio::async_write(
+      stream_.next_layer(), asio::buffer(file_->piece()),
+      [self = shared_from_this()](const ErrorCode& error, std::size_t) { error ? self->end() : self->send_pieces(); });
 }
 
 void Session::upgrade(const Request& request) {

@@ -2,9 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/serve/array_setup.hpp"
 
-#include <gtest/gtest.h>
-
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <atomic>

@@ -61,7 +61,8 @@ class Broadcasting : public testing::Test {
     server_ = *std::move(created);
     broadcaster_.emplace(suit_, *server_);
     end_ = server_->add_channel("/end", "none", "");
-    server_->start({[] { return std::vector<stream::Parameter>{}; }, [](const stream::Parameter&, const std::string&) { return Done{}; }});
+    server_->start({[] { return std::vector<stream::Parameter>{}; },
+                    [](const stream::Parameter&, const std::string&) { return Done{}; }});
   }
 
   void listen_to(std::vector<std::string> topics) {

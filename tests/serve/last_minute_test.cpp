@@ -6,7 +6,6 @@
 
 #include <chrono>
 
-
 namespace dermis::serve {
 namespace {
 

@@ -306,12 +306,28 @@ TEST(OpenSource, a_recording_of_a_turned_array_is_not_turned_again) {
   }
 }
 
+TEST(OpenSource, a_recording_from_before_its_array_was_turned_is_refused) {
+  const TemporaryFolder folder;
+  ArrayDescription array = turned_array();
+  array.rows = kShape.rows;
+  array.cols = kShape.cols;
+  array.order = {};
+  const auto sink =
+      recordings::create_frames(folder.file("rec.mcap"), kShape, {"mat", files::array_to_toml(array), ""});
+  ASSERT_TRUE(sink) << sink.error().message;
+  ASSERT_TRUE(support::write_all(**sink, numbered_taxels()));
+  EXPECT_TRUE(opened(folder.file("rec.mcap"), {.array = &array}));
+  array.order.flip_rows = true;
+  EXPECT_NE(refusal(folder.file("rec.mcap"), {.array = &array}).find("rec.mcap?flip_rows=1"), std::string::npos);
+}
+
 TEST(OpenSource, a_file_that_was_written_the_wrong_way_round_is_turned_by_its_uri) {
   const TemporaryFolder folder;
   const ArrayDescription array = turned_array();
   for (const char* name : {"rec.mcap", "rec.csv"}) {
     write_file(folder.file(name), numbered_taxels());
-    const auto source = opened("file:" + folder.file(name) + "?skip_columns=1&transpose=1&flip_rows=1", {.array = &array});
+    const auto source =
+        opened("file:" + folder.file(name) + "?skip_columns=1&transpose=1&flip_rows=1", {.array = &array});
     ASSERT_TRUE(source);
     EXPECT_FALSE(source->is_live());
     RawFrame frame;

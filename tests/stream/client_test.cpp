@@ -59,7 +59,11 @@ struct StreamClient : testing::Test {
                 }}},
               {}};
   std::map<ChannelId, int> subscribers;
-  Client client{offer, "somebody", true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; },
+  Client client{offer,
+                "somebody",
+                true,
+                1U << 20U,
+                [this](ChannelId channel, int change) { subscribers[channel] += change; },
                 [this](const Question& question) { question()(client); }};
 
   void say(const std::string& text) {

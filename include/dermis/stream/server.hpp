@@ -114,8 +114,8 @@ class Server {
   /// What "/name.json" is from now on. Unlike the assets it is given to those with the token only.
   void set_document(std::string path, std::string content_type, std::string content);
 
-  /// "/recordings/a.mcap" is that file from now on, to be saved by a browser, with the token only. It is read when it is
-  /// asked for; links are not followed.
+  /// "/recordings/a.mcap" is that file from now on, to be saved by a browser, with the token only. It is read when it
+  /// is asked for; links are not followed.
   void set_file(std::string path, std::string file);
 
   [[nodiscard]] bool has_subscribers(ChannelId channel) const noexcept;
