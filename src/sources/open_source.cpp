@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "dermis/acquisition/device_source.hpp"
+#include "dermis/core/turned_source.hpp"
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 #include "dermis/sources/recorded_order.hpp"
 #include "sources/simulated_source.hpp"
-#include "sources/turned_source.hpp"
 
 namespace dermis::sources {
 namespace {
@@ -20,15 +20,10 @@ std::optional<FrameShape> shape_of(const ArrayDescription* array) {
   return FrameShape{array->rows, array->cols};
 }
 
-/// Shape of the frames before the order of the URI turns them.
-std::optional<FrameShape> sent_shape(const acquisition::SourceUri& uri, std::optional<FrameShape> turned) {
-  if (!turned) return std::nullopt;
-  return uri.order.sent(*turned);
-}
-
 Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri, const SourceOptions& options) {
   const std::optional<FrameShape> given = uri.protocol.shape;
-  const std::optional<FrameShape> wanted = sent_shape(uri, shape_of(options.array));
+  std::optional<FrameShape> wanted = shape_of(options.array);
+  if (wanted) wanted = uri.order.sent(*wanted);
   if (given && wanted && *given != *wanted) {
     return bad_input("'" + uri.text + "': rows and cols are " + files::size_text(*given) + ", the array is " +
                      files::size_text(*wanted));
@@ -39,9 +34,11 @@ Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri
     return bad_input("'" + uri.text + "': the file has times of its own; write '" + uri.path +
                      "' alone, without file: and rate");
   }
-  return recordings::open_frames(
+  Result<std::unique_ptr<FrameSource>> frames = recordings::open_frames(
       uri.path,
       {.shape = given ? given : wanted, .rate_hz = uri.rate_hz, .notice = options.notice, .loss = options.loss});
+  if (!frames) return frames.error();
+  return turned_source(*std::move(frames), uri.order, uri.text);
 }
 
 /// Costs a second look at the file where its array is turned, and nothing else.
@@ -51,12 +48,14 @@ Status check_order(const std::string& path, const ArrayDescription* array) {
   return notes ? check_recorded_order(path, notes->array_toml, *array) : Status(Done{});
 }
 
-/// Its frames as they are sent are turned by the array's description. Those of files were turned when they were
-/// written.
+/// Its frames are turned as the array's description says. Those of files were turned when they were written.
 Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& uri, const SourceOptions& options) {
-  std::optional<FrameShape> shape = shape_of(options.array);
-  if (shape) shape = options.array->order.sent(*shape);
-  return acquisition::open_device(uri, {sent_shape(uri, shape), options.stop, options.notice});
+  if (options.array == nullptr) return acquisition::open_device(uri, {{}, options.stop, options.notice});
+  const LineOrder& order = options.array->order;
+  Result<std::unique_ptr<FrameSource>> device =
+      acquisition::open_device(uri, {order.sent(*shape_of(options.array)), options.stop, options.notice});
+  if (!device) return device.error();
+  return turned_source(*std::move(device), order, uri.text);
 }
 
 }  // namespace
@@ -68,13 +67,8 @@ Result<std::unique_ptr<FrameSource>> open_source(const SourceName& from, const S
                                    {.shape = shape_of(options.array), .notice = options.notice, .loss = options.loss});
   }
   if (from.kind == SourceKind::simulation) return open_simulation(*from.uri, options);
-  const bool is_file = from.kind == SourceKind::file;
-  Result<std::unique_ptr<FrameSource>> source =
-      is_file ? open_file(*from.uri, options) : open_device(*from.uri, options);
-  if (!source) return source.error();
-  std::unique_ptr<FrameSource> turned = turned_source(*std::move(source), from.uri->order, from.text);
-  return is_file || options.array == nullptr ? std::move(turned)
-                                             : turned_source(std::move(turned), options.array->order, from.text);
+  if (from.kind == SourceKind::file) return open_file(*from.uri, options);
+  return open_device(*from.uri, options);
 }
 
 Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const SourceOptions& options) {

@@ -100,7 +100,8 @@ TEST_F(StreamClient, subscribes_to_a_channel_once) {
 
 TEST_F(StreamClient, leaves_no_subscriber_behind) {
   {
-    Client other(offer, true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; }, {});
+    Client other(offer, "another", true, 1U << 20U,
+                 [this](ChannelId channel, int change) { subscribers[channel] += change; }, {});
     const std::string text = R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2}]})";
     EXPECT_TRUE(other.receive({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, true));
     EXPECT_EQ(subscribers[2], 1);

@@ -8,11 +8,11 @@
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/line_order.hpp"
 
-namespace dermis::sources {
+namespace dermis {
 
 /// The frames of `source`, turned to the array's way round. A plain order gives the source itself. next() fails where
 /// the order does not fit the frames; the error begins with `name`.
 [[nodiscard]] std::unique_ptr<FrameSource> turned_source(std::unique_ptr<FrameSource> source, const LineOrder& order,
                                                          const std::string& name);
 
-}  // namespace dermis::sources
+}  // namespace dermis

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "sources/turned_source.hpp"
+#include "dermis/core/turned_source.hpp"
 
 #include <cstddef>
 #include <utility>
 #include <vector>
 
-namespace dermis::sources {
+namespace dermis {
 namespace {
 
 class TurnedSource final : public FrameSource {
@@ -69,4 +69,4 @@ std::unique_ptr<FrameSource> turned_source(std::unique_ptr<FrameSource> source, 
   return std::make_unique<TurnedSource>(std::move(source), order, name);
 }
 
-}  // namespace dermis::sources
+}  // namespace dermis
