@@ -111,7 +111,7 @@ it("finds out which way round the lines are sent from two touches", async () => 
   try {
     const page = await openPage(browser, server.url);
     await part(page, "array-setup").waitFor();
-    const words = (text) => part(page, "corner-words").getByText(text).waitFor();
+    const words = (text) => page.locator("[data-role=corner-words]", { hasText: text }).waitFor();
     await page.locator("#array-name").fill("turned");
     await page.locator("#array-rows").fill("10");
     await page.locator("#array-cols").fill("12");
@@ -130,7 +130,7 @@ it("finds out which way round the lines are sent from two touches", async () => 
     await page.locator("[data-role=array-setup] button[type=submit]").click();
     await part(page, "uncalibrated").waitFor();
     await becomes(page, "live");
-    const highest = (taxel) => part(page, "highest-taxel").getByText(taxel, { exact: false }).waitFor();
+    const highest = (taxel) => page.locator("[data-role=highest-taxel]", { hasText: taxel }).waitFor();
     await highest("r0c9");
     mat.pressed = 11;
     await highest("r0c0");

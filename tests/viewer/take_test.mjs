@@ -24,7 +24,7 @@ after(async () => {
 });
 
 const part = (page, role) => page.locator(`[data-role=${role}]`);
-const words = (page, role, text) => part(page, role).getByText(text).waitFor();
+const words = (page, role, text) => page.locator(`[data-role=${role}]`, { hasText: text }).waitFor();
 
 /** A page of `dermis serve` with these arguments, while `look` looks at it. */
 async function served(command, look) {
@@ -69,7 +69,7 @@ it("records under a name, shows the size as it grows, plays the recording and sa
     player.setDefaultTimeout(WAIT_MS);
     await becomes(player, "live");
     await part(player, "transport").waitFor();
-    await words(player, "highest-taxel", /N {2}r\d+c\d+/);
+    await words(player, "highest-taxel", /N\s+r\d+c\d+/);
     await player.close();
     assert.ok(await part(page, "transport").isHidden(), "the page itself stays live");
   });
@@ -77,7 +77,7 @@ it("records under a name, shows the size as it grows, plays the recording and sa
 
 it("saves the last minute of all arrays as a recording and of one as a table", async () => {
   await served(LIVE, async (page) => {
-    await words(page, "highest-taxel", /N {2}r\d+c\d+/);
+    await words(page, "highest-taxel", /N\s+r\d+c\d+/);
     await part(page, "show-take").click();
     await part(page, "minute-length").selectOption("60");
     const recording = await saved(page, "save-mcap");
@@ -116,7 +116,7 @@ it("saves a picture and a film that a browser can read", async () => {
 
 it("opens a playback that is paused on its frame, and says so", async () => {
   await served(["--port", "0", "--from", bench.path("recording.mcap")], async (page, server) => {
-    await words(page, "highest-taxel", /N {2}r\d+c\d+/);
+    await words(page, "highest-taxel", /N\s+r\d+c\d+/);
     await part(page, "play").click();
     await words(page, "connection", "Paused");
     const highest = await part(page, "highest-taxel").textContent();
