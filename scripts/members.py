@@ -4,7 +4,7 @@
 """Lists the classes with more than 15 data members, the most first. Usage: scripts/members.py [MOST]
 
 A class may have more if the comment above it says why, after the words "Many members:". Exit status 1 if one does not.
-Static members do not count, nor do those of base classes. Needs universal-ctags."""
+Static members do not count, nor do those of base classes. Exit status 77 where there is no universal-ctags."""
 import json
 import re
 import subprocess
@@ -16,6 +16,14 @@ ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("include", "src", "apps", "c", "python")
 MOST = 15
 STATIC = re.compile(r"\bstatic\b")
+SKIPPED = 77
+
+
+def has_ctags():
+    try:
+        return "Universal Ctags" in subprocess.run(["ctags", "--version"], check=False, capture_output=True, text=True).stdout
+    except FileNotFoundError:
+        return False
 
 
 def members(root):
@@ -29,23 +37,32 @@ def members(root):
 
 
 def reason(path, name):
-    """What the comment above the class says, or None."""
+    """What the comment above the class in this file says, or None."""
     own = re.escape(name.split("::")[-1])
     head = re.compile(r"((?:^ *///[^\n]*\n)+) *(?:struct|class) (?:\w+::)*" + own + r"\b[^;{]*\{", re.MULTILINE)
-    found = head.search((ROOT / path).read_text())
+    found = head.search(path.read_text())
     told = re.search(r"Many members: ((?:.|\n)+?\.)\n", found.group(1)) if found else None
     return " ".join(told.group(1).replace("///", " ").split()) if told else None
 
 
+def large_classes(root, most):
+    """(members, class, file, reason or None), the most first; and how many classes there are."""
+    counts = Counter(members(root))
+    large = [(count, name, path, reason(root / path, name)) for (path, name), count in counts.most_common() if count > most]
+    return large, len(counts)
+
+
 def main():
+    if not has_ctags():
+        print("needs universal-ctags")
+        return SKIPPED
     most = int(sys.argv[1]) if len(sys.argv) > 1 else MOST
-    counts = Counter(members(ROOT))
-    large = [(count, path, name) for (path, name), count in counts.most_common() if count > most]
-    reasons = [reason(path, name) for _, path, name in large]
-    for (count, path, name), why in zip(large, reasons):
+    large, classes = large_classes(ROOT, most)
+    for count, name, path, why in large:
         print(f"{count:4d} {name} ({path}): {why or 'NO REASON'}")
-    print(f"{len(large)} of {len(counts)} classes have more than {most} data members, {reasons.count(None)} without a reason")
-    return 1 if None in reasons else 0
+    unexplained = sum(why is None for *_, why in large)
+    print(f"{len(large)} of {classes} classes have more than {most} data members, {unexplained} without a reason")
+    return 1 if unexplained else 0
 
 
 if __name__ == "__main__":

@@ -14,6 +14,7 @@
 #include "evaluate_classes.hpp"
 #include "example_options.hpp"
 #include "interruption.hpp"
+#include "report_origin.hpp"
 #include "source_options.hpp"
 
 namespace dermis::app {
@@ -93,7 +94,9 @@ Status evaluate_forces(const EvaluateOptions& options) {
   const Result<Evaluation> evaluation = calibration::evaluate(*model, *frames, *loads, bank ? &*bank : nullptr);
   if (!evaluation) return evaluation.error();
   if (!options.report.empty()) {
-    if (Status written = report::write_evaluation_report(options.report, *evaluation, *model); !written) return written;
+    const report::Origin origin = report_origin({options.frames, options.loads, options.model}, *frames);
+    Status written = report::write_evaluation_report(options.report, *evaluation, *model, origin);
+    if (!written) return written;
   }
   options.json ? fmt::print("{}\n", calibration::to_json(*evaluation)) : print_text(*evaluation);
   if (evaluation->most_have_forces) return Done{};

@@ -16,11 +16,11 @@
 #include <utility>
 
 #include "commands.hpp"
-#include "dermis/acquisition/source_uri.hpp"
 #include "dermis/dds/publisher.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/serve/array_setup.hpp"
 #include "dermis/serve/session.hpp"
+#include "dermis/sources/source_name.hpp"
 #include "status_line.hpp"
 #include "stop_flag.hpp"
 #include "viewer/viewer_assets.hpp"
@@ -40,9 +40,10 @@ Status check(const ServeOptions& options) {
   if (place.suit.empty() && place.from.empty() && !place.model.empty()) {
     return bad_input("serve: give --from with its --model; without both the page asks for the device");
   }
-  const bool is_path = !place.from.empty() && !acquisition::is_source_uri(place.from);
-  if (place.suit.empty() && place.model.empty() && is_path) {
-    return bad_input("serve: give the --model of the recording");
+  if (place.suit.empty() && place.model.empty() && !place.from.empty()) {
+    const Result<sources::SourceName> from = sources::SourceName::parse(place.from);
+    if (!from) return from.error();
+    if (!from->uri) return bad_input("serve: give the --model of the recording");
   }
   if (!place.suit.empty() && !place.model.empty()) return bad_input("--model: suit.toml names the models");
   if (!place.suit.empty() && !place.classes.empty()) return bad_input("--classes: suit.toml names the classes");

@@ -13,6 +13,7 @@
 #include "dermis/files/atomic_file.hpp"
 #include "dermis/files/frames_csv.hpp"
 #include "dermis/files/loads_csv.hpp"
+#include "dermis/files/origin_toml.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "interruption.hpp"
 #include "status_line.hpp"
@@ -57,6 +58,11 @@ Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOp
   if (Status set = set_memory(options, physics.rubber); !set) return set.error();
   physics.scene = {options.rate_hz, options.taxels};
   return simulation::Simulator::create(array, physics, options.scene, options.seed, options.frames);
+}
+
+/// As the same frames are named among sources; other options are not told.
+std::string source_of(const SimulateOptions& options) {
+  return fmt::format("sim:{}?seed={}", options.scene, options.seed);
 }
 
 /// What the simulator tells of the truth besides the frames themselves.
@@ -116,6 +122,7 @@ Status simulate(const SimulateOptions& options) {
   }
   if (Status written = (*frames)->commit(); !written) return written;
   Status written = truth.write(folder, *array, simulation::find_scene(options.scene)->has_contacts);
+  if (written) written = files::write_origin((folder / "frames.csv").string(), source_of(options));
   if (!written) std::filesystem::remove(folder / "frames.csv", error);  // worth nothing without its truth
   return written;
 }
@@ -128,7 +135,7 @@ void add_simulate(Command& command) {
   std::vector<std::string> scenes;
   for (const simulation::SceneKind& scene : simulation::scene_kinds()) scenes.emplace_back(scene.name);
   command.option("--scene", options->scene, "What happens to the array").one_of(scenes).required();
-  command.option("--out", options->out, "Folder for frames.csv, loads.csv and contacts.csv").required();
+  command.option("--out", options->out, "Folder for frames.csv, loads.csv, contacts.csv and origin.toml").required();
   command.option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise").shows_default();
   command.option("--frames", options->frames, "Length of the scenes multitouch, contacts, idle and touches");
   command.option("--rate", options->rate_hz, "Frames a second of the scenes touches and two_weights, 10 to 1000");

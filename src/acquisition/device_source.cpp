@@ -124,7 +124,7 @@ class DeviceSource final : public FrameSource {
     }
     clock_.stamp(decoder_->frame_end(), frame);
     if (uri_.rate_hz) frame.time = time_in_file();
-    if (frames_++ == 0) tell_recognised_protocol();
+    if (frames_++ == 0) tell_detected_protocol();
     undecoded_.clear();
     if (!decoder_->request().empty()) request();
     return true;
@@ -134,8 +134,8 @@ class DeviceSource final : public FrameSource {
     return Nanos(std::llround(1e9 * static_cast<double>(frames_) / *uri_.rate_hz));
   }
 
-  void tell_recognised_protocol() const {
-    const std::string_view protocol = decoder_->recognised();
+  void tell_detected_protocol() const {
+    const std::string_view protocol = decoder_->detected_protocol();
     if (!protocol.empty()) notify("these bytes are " + std::string(protocol) + ", " + shape_text(*decoder_->shape()));
   }
 

@@ -34,7 +34,7 @@ Result<std::unique_ptr<Encoder>> make_wuji_encoder(const ProtocolOptions& option
 
 Result<std::unique_ptr<Decoder>> make_3dvitac_decoder(const ProtocolOptions& options);
 Result<std::unique_ptr<Encoder>> make_3dvitac_encoder(const ProtocolOptions& options);
-/// `any_size` takes lines of any number of values for frames, as one row each: to recognise them.
+/// `any_size` takes lines of any number of values for frames, as one row each: to detect them.
 std::unique_ptr<Decoder> make_csv_decoder(const ProtocolOptions& options, bool any_size);
 Result<std::unique_ptr<Encoder>> make_csv_encoder(const ProtocolOptions& options);
 std::unique_ptr<Decoder> make_json_decoder(const ProtocolOptions& options, bool any_size);

@@ -53,7 +53,7 @@ bool UndecodedBytes::are_too_many(const std::optional<FrameShape>& shape, Nanos 
 Error UndecodedBytes::error(const SourceUri& uri) const {
   const ProtocolOptions& protocol = uri.protocol;
   const bool is_auto = protocol.name == "auto";
-  const std::string looks_like = recognise_protocol(first_);
+  const std::string looks_like = detect_protocol(first_);
   const std::string advice = is_auto || looks_like == protocol.name ? advice_of(looks_like, protocol, first_) : "";
   const std::string place = "'" + uri.text + "': ";
   if (!advice.empty()) return bad_input(place + "these bytes are " + looks_like + ", but " + advice);

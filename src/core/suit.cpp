@@ -39,11 +39,13 @@ Status check_array(const SuitArray& array) {
 }  // namespace
 
 Status SuitDescription::validate() const {
+  if (!(body_scale > 0.0)) return bad_input("body_scale: must be more than 0");
   if (arrays.empty() || arrays.size() > kMostArrays) return bad_input("array: must be 1 to 256 arrays");
   std::set<std::string_view> names;
   for (const SuitArray& array : arrays) {
     const std::string place = "array '" + array.name + "': ";
     if (const Status valid = check_array(array); !valid) return bad_input(place + valid.error().message);
+    if (!array.link.empty() && body.empty()) return bad_input(place + "link: needs the body of the suit");
     if (!names.insert(array.name).second) return bad_input(place + "name: is taken by another array");
   }
   return Done{};

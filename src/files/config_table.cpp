@@ -27,6 +27,16 @@ std::optional<double> finite_number(const toml::node& node) {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
+template <typename Integer>
+std::optional<Integer> whole_number(const toml::node& node) {
+  const std::optional<std::int64_t> whole = node.value_exact<std::int64_t>();
+  return whole && std::in_range<Integer>(*whole) ? std::optional(static_cast<Integer>(*whole)) : std::nullopt;
+}
+
+std::optional<std::string> text_of(const toml::node& node) {
+  return node.value_exact<std::string>();
+}
+
 using OptionalWord = std::optional<ConfigFile::Word>;
 
 std::optional<double> finite_number_or(const OptionalWord& word, const toml::node& node) {
@@ -113,6 +123,31 @@ struct ConfigFile::Parsed {
     text.append(" ").append(key).append(": ").append(message);
     first_error = bad_input(std::move(text));
     first_error_is_missing_key = node == nullptr;
+  }
+
+  /// `read(node)`: the value, or nothing where the node is not what is wanted.
+  template <typename Value, typename Read>
+  void read_value(std::string_view key, const char* wanted, Value& value, const Read& read) {
+    const toml::node* node = ask(key);
+    if (node == nullptr) return;
+    std::optional<Value> found = read(*node);
+    if (!found) return keep(node, key, wanted);
+    value = *std::move(found);
+  }
+
+  /// The same of each element of a list.
+  template <typename Value, typename Read>
+  void read_values(std::string_view key, const char* wanted, std::vector<Value>& values, const Read& read) {
+    const toml::node* node = ask(key);
+    if (node == nullptr) return;
+    const toml::array* list = node->as_array();
+    if (list == nullptr) return keep(node, key, wanted);
+    values.clear();
+    for (const toml::node& element : *list) {
+      std::optional<Value> found = read(element);
+      if (!found) return keep(node, key, wanted);
+      values.push_back(*std::move(found));
+    }
   }
 
   void read_list(const toml::node& node, std::string_view key, std::size_t size, const OptionalWord& word,
@@ -214,11 +249,7 @@ bool ConfigFile::holds_text(std::string_view key) {
 }
 
 void ConfigFile::number(std::string_view key, double& value) {
-  const toml::node* node = parsed_->ask(key);
-  if (node == nullptr) return;
-  const std::optional<double> number = finite_number(*node);
-  if (!number) return parsed_->keep(node, key, "must be a number");
-  value = *number;
+  parsed_->read_value(key, "must be a number", value, finite_number);
 }
 
 void ConfigFile::number(std::string_view key, std::optional<double>& value) {
@@ -228,35 +259,20 @@ void ConfigFile::number(std::string_view key, std::optional<double>& value) {
 }
 
 void ConfigFile::integer(std::string_view key, int& value) {
-  const toml::node* node = parsed_->ask(key);
-  if (node == nullptr) return;
-  const toml::value<std::int64_t>* whole = node->as_integer();
-  if (whole == nullptr || !std::in_range<int>(whole->get())) {
-    return parsed_->keep(node, key, "must be a whole number");
-  }
-  value = static_cast<int>(whole->get());
+  parsed_->read_value(key, "must be a whole number", value, whole_number<int>);
 }
 
 void ConfigFile::count(std::string_view key, std::size_t& value) {
-  const toml::node* node = parsed_->ask(key);
-  if (node == nullptr) return;
-  const toml::value<std::int64_t>* whole = node->as_integer();
-  if (whole == nullptr || whole->get() < 0) return parsed_->keep(node, key, "must be a whole number of 0 or more");
-  value = static_cast<std::size_t>(whole->get());
+  parsed_->read_value(key, "must be a whole number of 0 or more", value, whole_number<std::size_t>);
 }
 
 void ConfigFile::boolean(std::string_view key, bool& value) {
-  const toml::node* node = parsed_->ask(key);
-  if (node == nullptr) return;
-  if (!node->is_boolean()) return parsed_->keep(node, key, "must be true or false");
-  value = node->as_boolean()->get();
+  parsed_->read_value(key, "must be true or false", value,
+                      [](const toml::node& node) { return node.value_exact<bool>(); });
 }
 
 void ConfigFile::text(std::string_view key, std::string& value) {
-  const toml::node* node = parsed_->ask(key);
-  if (node == nullptr) return;
-  if (!node->is_string()) return parsed_->keep(node, key, "must be a text in quotes");
-  value = node->as_string()->get();
+  parsed_->read_value(key, "must be a text in quotes", value, text_of);
 }
 
 void ConfigFile::number_per_line(std::string_view key, std::size_t size, std::vector<double>& values) {
@@ -305,30 +321,11 @@ std::size_t ConfigFile::table_count(std::string_view key) {
 }
 
 void ConfigFile::counts(std::string_view key, std::vector<std::size_t>& values) {
-  const toml::node* node = parsed_->ask(key);
-  if (node == nullptr) return;
-  constexpr const char* kWanted = "must be a list of whole numbers of 0 or more";
-  const toml::array* list = node->as_array();
-  if (list == nullptr) return parsed_->keep(node, key, kWanted);
-  values.clear();
-  for (const toml::node& element : *list) {
-    const toml::value<std::int64_t>* whole = element.as_integer();
-    if (whole == nullptr || whole->get() < 0) return parsed_->keep(node, key, kWanted);
-    values.push_back(static_cast<std::size_t>(whole->get()));
-  }
+  parsed_->read_values(key, "must be a list of whole numbers of 0 or more", values, whole_number<std::size_t>);
 }
 
 void ConfigFile::texts(std::string_view key, std::vector<std::string>& values) {
-  const toml::node* node = parsed_->ask(key);
-  if (node == nullptr) return;
-  constexpr const char* kWanted = "must be a list of texts in quotes";
-  const toml::array* list = node->as_array();
-  if (list == nullptr) return parsed_->keep(node, key, kWanted);
-  values.clear();
-  for (const toml::node& element : *list) {
-    if (!element.is_string()) return parsed_->keep(node, key, kWanted);
-    values.push_back(element.as_string()->get());
-  }
+  parsed_->read_values(key, "must be a list of texts in quotes", values, text_of);
 }
 
 void ConfigFile::choice(std::string_view key, const std::vector<std::string>& names, std::size_t& index) {

@@ -83,6 +83,9 @@ class SuitReader {
     file_.text("suit.name", suit.name);
     file_.text("suit.classes", suit.classes);
     suit.classes = path_beside(name_, suit.classes);
+    file_.text("suit.body", suit.body);
+    file_.number("suit.body_scale", suit.body_scale);
+    suit.body = path_beside(name_, suit.body);
     suit.arrays.resize(file_.table_count("array"));
     for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
       read_array(fmt::format("array[{}]", k), suit.arrays[k]);
@@ -100,6 +103,7 @@ class SuitReader {
     file_.text(key + ".from", array.from);
     file_.text(key + ".model", array.model);
     file_.text(key + ".classes", array.classes);
+    file_.text(key + ".link", array.link);
     file_.boolean(key + ".mirrored", array.mirrored);
     if (!is_uri(array.from)) array.from = path_beside(name_, array.from);
     array.model = path_beside(name_, array.model);

@@ -198,9 +198,7 @@ class Dsa final : public FrameSource {
 
 Result<std::unique_ptr<FrameSource>> open_dsa(std::unique_ptr<std::istream> in, const std::string& name,
                                               const ImportOptions& options) {
-  auto dsa = std::make_unique<Dsa>(std::move(in), name, options);
-  if (const Status opened = dsa->open(); !opened) return opened.error();
-  return std::unique_ptr<FrameSource>(std::move(dsa));
+  return open_as<Dsa>(std::move(in), name, options);
 }
 
 }  // namespace dermis::importers

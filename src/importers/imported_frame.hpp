@@ -3,8 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <istream>
+#include <memory>
 #include <string>
+#include <utility>
 
+#include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/importers/import_options.hpp"
@@ -24,5 +28,14 @@ inline void begin_frame(RawFrame& frame, Nanos time) {
 
 /// Tells that the last frame is left out.
 void tell_cut(const ImportOptions& options, const std::string& place, std::size_t frames);
+
+/// A source of frames that its open() has found to be good.
+template <typename Source>
+Result<std::unique_ptr<FrameSource>> open_as(std::unique_ptr<std::istream> in, const std::string& name,
+                                             const ImportOptions& options) {
+  auto source = std::make_unique<Source>(std::move(in), name, options);
+  if (const Status opened = source->open(); !opened) return opened.error();
+  return std::unique_ptr<FrameSource>(std::move(source));
+}
 
 }  // namespace dermis::importers

@@ -237,9 +237,7 @@ class NovelLst final : public FrameSource {
 
 Result<std::unique_ptr<FrameSource>> open_novel_lst(std::unique_ptr<std::istream> in, const std::string& name,
                                                     const ImportOptions& options) {
-  auto listing = std::make_unique<NovelLst>(std::move(in), name, options);
-  if (const Status opened = listing->open(); !opened) return opened.error();
-  return std::unique_ptr<FrameSource>(std::move(listing));
+  return open_as<NovelLst>(std::move(in), name, options);
 }
 
 }  // namespace dermis::importers

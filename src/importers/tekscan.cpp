@@ -163,9 +163,7 @@ class Tekscan final : public FrameSource {
 
 Result<std::unique_ptr<FrameSource>> open_tekscan(std::unique_ptr<std::istream> in, const std::string& name,
                                                   const ImportOptions& options) {
-  auto tekscan = std::make_unique<Tekscan>(std::move(in), name, options);
-  if (const Status opened = tekscan->open(); !opened) return opened.error();
-  return std::unique_ptr<FrameSource>(std::move(tekscan));
+  return open_as<Tekscan>(std::move(in), name, options);
 }
 
 }  // namespace dermis::importers

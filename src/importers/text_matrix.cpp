@@ -130,9 +130,7 @@ class TextMatrix final : public FrameSource {
 
 Result<std::unique_ptr<FrameSource>> open_text_matrix(std::unique_ptr<std::istream> in, const std::string& name,
                                                       const ImportOptions& options) {
-  auto matrix = std::make_unique<TextMatrix>(std::move(in), name, options);
-  if (const Status opened = matrix->open(); !opened) return opened.error();
-  return std::unique_ptr<FrameSource>(std::move(matrix));
+  return open_as<TextMatrix>(std::move(in), name, options);
 }
 
 }  // namespace dermis::importers

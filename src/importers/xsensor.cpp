@@ -231,9 +231,7 @@ class Xsensor final : public FrameSource {
 
 Result<std::unique_ptr<FrameSource>> open_xsensor(std::unique_ptr<std::istream> in, const std::string& name,
                                                   const ImportOptions& options) {
-  auto xsensor = std::make_unique<Xsensor>(std::move(in), name, options);
-  if (const Status opened = xsensor->open(); !opened) return opened.error();
-  return std::unique_ptr<FrameSource>(std::move(xsensor));
+  return open_as<Xsensor>(std::move(in), name, options);
 }
 
 }  // namespace dermis::importers

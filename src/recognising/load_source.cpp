@@ -74,7 +74,7 @@ Status check_loads(const Layout& examples, const std::string& classes, const std
   return Done{};
 }
 
-LoadSource::LoadSource(ArrayLoads first, bool has_forces) : first_(std::move(first)), has_forces_(has_forces) {}
+LoadSource::LoadSource(ArrayLoads first) : first_(std::move(first)) {}
 
 Result<LoadSource> LoadSource::open(const LoadInput& input) {
   const Result<sources::SourceName> from = sources::SourceName::parse(input.from);
@@ -83,7 +83,7 @@ Result<LoadSource> LoadSource::open(const LoadInput& input) {
   if (!arrays) return arrays.error();
   Result<ArrayLoads> first = ArrayLoads::open(arrays->front());
   if (!first) return first.error();
-  LoadSource source(*std::move(first), !input.model.empty());
+  LoadSource source(*std::move(first));
   source.from_ = *from;
   for (std::size_t i = 1; i < arrays->size(); ++i) {
     Result<HeldLoads> other = HeldLoads::open((*arrays)[i]);
@@ -135,7 +135,7 @@ std::optional<Layout> LoadSource::layout() const {
     layout.arrays.push_back(std::move(array));
   }
   layout.extras = extras().size();
-  if (has_forces_) layout.least_reading = recognition::kLeastNewtons;
+  layout.quantity = first_.quantity();
   return layout;
 }
 

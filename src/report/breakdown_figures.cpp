@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "dermis/report/plot.hpp"
+#include "dermis/report/wording.hpp"
 #include "report/figures.hpp"
 
 namespace dermis::report {
@@ -22,7 +23,7 @@ using calibration::JudgedTaxel;
 using calibration::JudgedTotal;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kShift = 5.0;  // Between the marks of two estimators in one bin [px].
+constexpr double kShift = 5.0;  // Between the whiskers of two estimators in one bin [px].
 
 /// How the errors of one breakdown are drawn.
 struct Breakdown {
@@ -127,7 +128,7 @@ void draw_estimator(const Evaluation& evaluation, std::span<const Bin> bins, std
   const double middle = static_cast<double>(evaluation.estimators.size() - 1) / 2.0;
   const double shift = kShift * (static_cast<double>(estimator) - middle);
   plot.whiskers(estimator, medians, std::move(tails), shift);
-  plot.curve(evaluation.estimators[estimator].name, estimator, std::move(medians), shift);
+  plot.curve(estimator_words(evaluation.estimators[estimator].name), estimator, std::move(medians));
 }
 
 bool has_missing_force(std::span<const Bin> bins) {
@@ -153,8 +154,8 @@ Figure breakdown_figure(const Breakdown& breakdown, const Evaluation& evaluation
   for (std::size_t i = 0; i < evaluation.estimators.size(); ++i) draw_estimator(evaluation, bins, i, plot);
   figure.panels.push_back(plot.drawing());
   figure.caption = fmt::format(
-      "Marks: median of the relative error; whiskers: up to the 95th percentile; "
-      "n: judged {} in each bin, drawn at their mean.",
+      "Marks: median of the relative error, at the mean of their bin; whiskers, side by side: up to the 95th "
+      "percentile; n: judged {} in each bin.",
       evaluation.taxels.empty() ? "totals" : "taxels");
   if (has_missing_force(bins)) figure.caption += " What reaches the upper edge includes taxels without any force.";
   return figure;

@@ -62,14 +62,14 @@ std::size_t without_force(const Samples& samples, std::size_t estimator) {
   }));
 }
 
-/// "raw_lookup gives no force for 3 of 48. " for each estimator that leaves some out.
+/// "raw look-up gives no force for 3 of 48. " for each estimator that leaves some out.
 std::string missing_sentences(const calibration::Evaluation& evaluation, const Samples& samples) {
   std::string sentences;
   for (std::size_t i = 0; i < evaluation.estimators.size(); ++i) {
     const std::size_t missing = without_force(samples, i);
     if (missing == 0) continue;
-    sentences += fmt::format(" {} gives no force for {} of {}; they are not drawn.", evaluation.estimators[i].name,
-                             grouped(missing), grouped(samples.size()));
+    sentences += fmt::format(" {} gives no force for {} of {}; they are not drawn.",
+                             estimator_words(evaluation.estimators[i].name), grouped(missing), grouped(samples.size()));
   }
   return sentences;
 }
@@ -97,7 +97,7 @@ Drawing level_panel(const calibration::Evaluation& evaluation, double level, con
       points.push_back({static_cast<double>(points.size() + 1),
                         std::isfinite(sample.estimates[i]) ? sample.estimates[i] : kMissing});
     }
-    plot.curve(evaluation.estimators[i].name, i, std::move(points));
+    plot.curve(estimator_words(evaluation.estimators[i].name), i, std::move(points));
   }
   return plot.drawing();
 }
@@ -112,7 +112,7 @@ double worst_error(const Samples& samples, std::size_t estimator) {
   return worst;
 }
 
-/// "Largest relative error at 10, 20, 50 N: dermis 1.2 %, 0.9 %, 2 %; raw_lookup ..."
+/// "Largest relative error at 10, 20, 50 N: dermis 1.2 %, 0.9 %, 2 %; raw look-up ..."
 std::string worst_errors_sentence(const calibration::Evaluation& evaluation, const Levels& levels) {
   std::string sentence = "Largest relative error at ";
   for (const auto& [level, samples] : levels) {
@@ -120,7 +120,7 @@ std::string worst_errors_sentence(const calibration::Evaluation& evaluation, con
   }
   sentence += " N:";
   for (std::size_t i = 0; i < evaluation.estimators.size(); ++i) {
-    sentence += (i == 0 ? " " : "; ") + evaluation.estimators[i].name;
+    sentence += (i == 0 ? " " : "; ") + estimator_words(evaluation.estimators[i].name);
     for (const auto& [level, samples] : levels) {
       sentence += (level == levels.begin()->first ? " " : ", ") + percent(worst_error(samples, i));
     }
@@ -176,7 +176,7 @@ void draw_scatter(const calibration::Evaluation& evaluation, const Samples& samp
       const double estimate = samples[k].estimates[i];
       points.push_back({samples[k].truth, std::isfinite(estimate) ? estimate : kMissing});
     }
-    Plot plot(evaluation.estimators[i].name, x, y, 480.0, 380.0);
+    Plot plot(estimator_words(evaluation.estimators[i].name), x, y, 480.0, 380.0);
     draw_identity(plot, x, y);
     plot.cloud("", i, std::move(points));
     figure.panels.push_back(plot.drawing());

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "dermis/report/plot.hpp"
@@ -36,6 +38,30 @@ std::vector<Point> reliability(const std::vector<JudgedTaxel>& taxels) {
   return points;
 }
 
+/// Which errors the bound is compared with, and why others on the page may be below it.
+std::string bound_sentences(const Evaluation& evaluation) {
+  const calibration::BoundComparison& bound = evaluation.bound;
+  std::string words = fmt::format(
+      " Under the noise of the ADC alone no unbiased estimator scatters less than the Cramer-Rao bound: {:.2f} % of "
+      "the force (median of {} taxels of {}); dermis scatters by {:.2f} % on them, and the root mean square of its "
+      "error over the bound is {:.2f}.",
+      100.0 * bound.median_bound, grouped(bound.taxels), counted(bound.frames, "frame"), 100.0 * bound.median_deviation,
+      bound.rms_ratio);
+  const std::optional<double> median = evaluation.estimators.front().relative_error.median;
+  if (median && *median < bound.median_bound) {
+    words += fmt::format(
+        " The median error of {} above is lower than the bound because it is another quantity of other taxels: it is "
+        "of all {}, not of these {}, and half of all errors are below 0.67 standard deviations.",
+        percent(*median), grouped(evaluation.taxels.size()), grouped(bound.taxels));
+  }
+  if (bound.median_deviation < bound.median_bound) {
+    words +=
+        " It scatters less than the bound where its networks, which are smooth, give the usual force: it is not "
+        "unbiased.";
+  }
+  return words;
+}
+
 Axis percent_axis(std::string label) {
   return {std::move(label), Scale::linear, 0.0, 100.0, {0, 20, 40, 60, 80, 100}};
 }
@@ -59,14 +85,7 @@ Figure coverage_figure(const Evaluation& evaluation) {
       "{:.1f} %. Below the straight line dermis is too sure, above it too modest. Taxels of which only a lower bound "
       "is known (saturated, or beyond eight times the heaviest calibrated load) are not counted.",
       grouped(evaluation.coverage.count), 100.0 * *evaluation.coverage.share_68, 100.0 * *evaluation.coverage.share_95);
-  if (evaluation.bound.frames == 0) return figure;
-  figure.caption += fmt::format(
-      " Under the noise of the ADC alone no unbiased estimator scatters less than the Cramer-Rao bound: {:.2f} % of "
-      "the "
-      "force (median of {} taxels of {}); dermis scatters by {:.2f} %, and the root mean square of its error over the "
-      "bound is {:.2f}.",
-      100.0 * evaluation.bound.median_bound, grouped(evaluation.bound.taxels),
-      counted(evaluation.bound.frames, "frame"), 100.0 * evaluation.bound.median_deviation, evaluation.bound.rms_ratio);
+  if (evaluation.bound.frames > 0) figure.caption += bound_sentences(evaluation);
   return figure;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -18,6 +19,9 @@ namespace {
 
 using calibration::EstimatorResult;
 using calibration::Evaluation;
+using calibration::JudgedTaxel;
+
+constexpr const char* kLargestError = "largest error";
 
 /// One column of the table of estimators: the smaller the better, except for shares.
 struct Column {
@@ -56,7 +60,7 @@ std::vector<Column> table_columns(const Evaluation& evaluation) {
       {single, "median", "median error", of([](const EstimatorResult& e) { return e.relative_error.median; }), percent},
       {single, "p95", "p95 error", of([](const EstimatorResult& e) { return e.relative_error.p95; }), percent},
       {single, "p99", "p99 error", of([](const EstimatorResult& e) { return e.relative_error.p99; }), percent},
-      {single, "max", "largest error", of([](const EstimatorResult& e) { return e.relative_error.max; }), percent},
+      {single, "max", kLargestError, of([](const EstimatorResult& e) { return e.relative_error.max; }), percent},
       {single, "within 5 %", "", [&evaluation](std::size_t i) { return share_within(evaluation, i, kPaperTolerance); },
        share_words, true},
       {ghost, "p99", "ghost force p99", of([](const EstimatorResult& e) { return e.ghost_n.p99; }), newtons},
@@ -81,6 +85,30 @@ std::vector<Table::Group> groups_of(const std::vector<Column>& columns) {
     ++groups.back().columns;
   }
   return groups;
+}
+
+/// The taxel that the first estimator gets most wrong; null where none is judged.
+const JudgedTaxel* worst_taxel(const Evaluation& evaluation) {
+  const auto error = [](const JudgedTaxel& taxel) {
+    const double relative = std::abs(static_cast<double>(taxel.newtons.front()) / taxel.true_newtons - 1.0);
+    return std::isfinite(relative) ? relative : std::numeric_limits<double>::infinity();
+  };
+  const auto worst = std::max_element(evaluation.taxels.begin(), evaluation.taxels.end(),
+                                      [&](const JudgedTaxel& a, const JudgedTaxel& b) { return error(a) < error(b); });
+  return worst == evaluation.taxels.end() ? nullptr : &*worst;
+}
+
+/// "r5c7 in frame 812: 1.3 N, in truth 1.0 N, beside 48 N"
+std::string explain(const JudgedTaxel& taxel, const Evaluation& evaluation) {
+  std::string words =
+      fmt::format("{} in frame {}: {}, in truth {}", evaluation.array.taxel_name(taxel.taxel), taxel.frame,
+                  newtons(static_cast<double>(taxel.newtons.front())), newtons(taxel.true_newtons));
+  double heaviest = 0.0;
+  for (const JudgedTaxel& other : evaluation.taxels) {
+    if (other.frame == taxel.frame) heaviest = std::max(heaviest, other.true_newtons);
+  }
+  if (heaviest > taxel.true_newtons) words += ", beside " + newtons(heaviest);
+  return words;
 }
 
 /// The best finite value of the estimators from `first` on.
@@ -120,7 +148,7 @@ Table estimator_table(const Evaluation& evaluation) {
   for (const Column& column : columns) table.heads.push_back(column.head);
   const std::size_t count = evaluation.estimators.size();
   for (std::size_t i = 0; i < count; ++i) {
-    Row row{i, evaluation.estimators[i].name, {}};
+    Row row{i, estimator_words(evaluation.estimators[i].name), {}};
     for (const Column& column : columns) {
       const std::optional<double> value = column.value(i);
       const bool is_best = count > 1 && value && value == best_value(column, 0, count);
@@ -138,6 +166,8 @@ std::vector<Tile> headline_tiles(const Evaluation& evaluation) {
     const std::optional<double> other = best_value(column, 1, evaluation.estimators.size());
     tiles.push_back(
         {column.headline, column.words(*column.value(0)), other ? "best other: " + column.words(*other) : ""});
+    const JudgedTaxel* const worst = column.headline == kLargestError ? worst_taxel(evaluation) : nullptr;
+    if (worst != nullptr) tiles.back().explanation = explain(*worst, evaluation);
   }
   return tiles;
 }
@@ -150,10 +180,13 @@ void add_estimator_legend(Page& page, const Evaluation& evaluation, const pipeli
                   evaluation.judged_from_n),
       "note");
   std::vector<Fact> facts;
-  if (!evaluation.estimators.empty()) facts.emplace_back(evaluation.estimators.front().name, describe(model));
-  for (const fusion::LookUpTables& tables : model.baselines) facts.emplace_back(tables.name, describe(tables));
+  const auto add = [&](const std::string& name, std::string description) {
+    facts.emplace_back(estimator_words(name), std::move(description));
+  };
+  if (!evaluation.estimators.empty()) add(evaluation.estimators.front().name, describe(model));
+  for (const fusion::LookUpTables& tables : model.baselines) add(tables.name, describe(tables));
   for (const EstimatorResult& estimator : evaluation.estimators) {
-    if (!estimator.description.empty()) facts.emplace_back(estimator.name, estimator.description);
+    if (!estimator.description.empty()) add(estimator.name, estimator.description);
   }
   page.facts(facts, "facts note");
 }

@@ -26,9 +26,11 @@ Figures all_figures(const calibration::Evaluation& evaluation) {
           coverage_figure(evaluation), tactile_figures(evaluation)};
 }
 
-std::string page_of(const calibration::Evaluation& evaluation, const pipeline::Model& model, const Figures& figures) {
+std::string page_of(const calibration::Evaluation& evaluation, const pipeline::Model& model, const Origin& origin,
+                    const Figures& figures) {
   const std::string name = evaluation.array.name.empty() ? "array" : evaluation.array.name;
   Page page(name + ": force evaluation", name + ": force against known loads");
+  if (!origin.summary.empty()) page.paragraph(origin.summary);
   add_summary(page, evaluation);
   add_estimators(page, evaluation, model);
   page.figure(figures.calibration);
@@ -37,25 +39,27 @@ std::string page_of(const calibration::Evaluation& evaluation, const pipeline::M
   page.figure(figures.coverage);
   for (const Figure& figure : figures.tactile) page.figure(figure);
   add_array(page, evaluation.array);
+  add_origin(page, origin);
   add_provenance(page, model);
   return std::move(page).html();
 }
 
 }  // namespace
 
-std::string evaluation_page(const calibration::Evaluation& evaluation, const pipeline::Model& model) {
-  return page_of(evaluation, model, all_figures(evaluation));
+std::string evaluation_page(const calibration::Evaluation& evaluation, const pipeline::Model& model,
+                            const Origin& origin) {
+  return page_of(evaluation, model, origin, all_figures(evaluation));
 }
 
 Status write_evaluation_report(const std::string& directory, const calibration::Evaluation& evaluation,
-                               const pipeline::Model& model) {
+                               const pipeline::Model& model, const Origin& origin) {
   const Figures figures = all_figures(evaluation);
   std::vector<Figure> files = {figures.calibration};
   files.insert(files.end(), figures.breakdowns.begin(), figures.breakdowns.end());
   files.push_back(figures.touch);
   files.push_back(figures.coverage);
   files.insert(files.end(), figures.tactile.begin(), figures.tactile.end());
-  return write_files(directory, files, page_of(evaluation, model, figures));
+  return write_files(directory, files, page_of(evaluation, model, origin, figures));
 }
 
 }  // namespace dermis::report

@@ -15,16 +15,16 @@ namespace {
 using calibration::EstimatorResult;
 using calibration::Evaluation;
 
-/// "20 ohm", or "18 ... 22 ohm" where the lines differ.
+/// "20 ohm", or "18 to 22 ohm" where the lines differ.
 std::string resistances(const std::vector<double>& ohms) {
   const auto [low, high] = std::minmax_element(ohms.begin(), ohms.end());
   if (*low == *high) return fmt::format("{:.4g} ohm", *low);
-  return fmt::format("{:.4g} ... {:.4g} ohm", *low, *high);
+  return fmt::format("{:.4g} to {:.4g} ohm", *low, *high);
 }
 
 std::string summary_sentence(const Evaluation& evaluation) {
   const EstimatorResult& first = evaluation.estimators.front();
-  std::string sentence = first.name + " on ";
+  std::string sentence = estimator_words(first.name) + " on ";
   if (first.relative_error.count > 0) {
     sentence += counted(first.relative_error.count, "loaded taxel") +
                 fmt::format(" of at least {:.3g} N", evaluation.judged_from_n);
@@ -65,7 +65,7 @@ void add_array(Page& page, const ArrayDescription& array) {
       {"taxels", fmt::format("{} rows x {} columns", array.rows, array.cols)},
       {"pitch", fmt::format("{:.4g} mm x {:.4g} mm", 1e3 * array.row_pitch_m, 1e3 * array.col_pitch_m)}};
   if (array.taxel_area_m2) {
-    facts.emplace_back("pressed area of a taxel", fmt::format("{:.4g} mm2", 1e6 * *array.taxel_area_m2));
+    facts.emplace_back("pressed area of a taxel", fmt::format("{:.4g} mm\u00b2", 1e6 * *array.taxel_area_m2));
   }
   facts.emplace_back("circuit", to_string(readout.circuit));
   if (readout.circuit == Circuit::divider || readout.circuit == Circuit::transimpedance) {
@@ -86,13 +86,21 @@ void add_array(Page& page, const ArrayDescription& array) {
   page.facts(facts);
 }
 
+void add_origin(Page& page, const Origin& origin) {
+  if (origin.facts.empty()) return;
+  page.heading("What was judged");
+  page.facts(origin.facts);
+}
+
 void add_provenance(Page& page, const pipeline::Model& model) {
   page.heading("Provenance of the model");
   if (model.provenance.empty()) {
     page.paragraph("The model says nothing about its calibration.");
     return;
   }
-  page.facts({model.provenance.begin(), model.provenance.end()});
+  std::vector<Fact> facts;
+  for (const auto& [name, text] : model.provenance) facts.emplace_back(name, with_signs(text));
+  page.facts(facts);
 }
 
 }  // namespace dermis::report

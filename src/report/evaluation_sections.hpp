@@ -5,6 +5,7 @@
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/report/evaluation_report.hpp"
 #include "dermis/report/page.hpp"
 
 namespace dermis::report {
@@ -17,6 +18,8 @@ void add_summary(Page& page, const calibration::Evaluation& evaluation);
 void add_estimators(Page& page, const calibration::Evaluation& evaluation, const pipeline::Model& model);
 
 void add_array(Page& page, const ArrayDescription& array);
+/// The files that were judged; nothing where none are known.
+void add_origin(Page& page, const Origin& origin);
 void add_provenance(Page& page, const pipeline::Model& model);
 
 }  // namespace dermis::report

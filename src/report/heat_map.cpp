@@ -12,6 +12,7 @@
 #include <numbers>
 
 #include "dermis/report/canvas.hpp"
+#include "report/palette.hpp"
 
 namespace dermis::report {
 namespace {
@@ -54,6 +55,18 @@ Colour from_oklab(double lightness, double a, double b) {
 Colour from_oklch(double lightness, double chroma, double hue_degrees) {
   const double hue = hue_degrees * std::numbers::pi / 180.0;
   return from_oklab(lightness, chroma * std::cos(hue), chroma * std::sin(hue));
+}
+
+/// Where in the palette a share of the scale lies.
+double palette_place(double share) {
+  if (share < kToeShare) return share * kToeColours / kToeShare;
+  return kToeColours + (share - kToeShare) * (1.0 - kToeColours) / (1.0 - kToeShare);
+}
+
+std::uint8_t palette_part(std::size_t part, double place) {
+  double value = 0.0;
+  for (std::size_t power = kPalette.size(); power-- > 0;) value = value * place + kPalette[power][part];
+  return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
 }
 
 std::string fill(Colours colours, std::size_t level) {
@@ -193,10 +206,8 @@ class Painter {
 }  // namespace
 
 Colour sequential_colour(double share) noexcept {
-  const double t = std::clamp(share, 0.0, 1.0);
-  const double lightness = 0.24 + 0.70 * t;
-  const double chroma = 0.105 - 0.02 * std::sin(std::numbers::pi * t) + 0.06 * t * t;
-  return from_oklch(lightness, chroma, 300.0 - 195.0 * t);
+  const double place = palette_place(std::clamp(share, 0.0, 1.0));
+  return {palette_part(0, place), palette_part(1, place), palette_part(2, place)};
 }
 
 Colour diverging_colour(double share) noexcept {

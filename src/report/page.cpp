@@ -27,7 +27,12 @@ constexpr std::string_view kPageCss =
     "white-space:nowrap}\n"
     ".tile .long{font-size:1.2rem;line-height:2.1875rem}\n"
     ".tile span{display:block;font-size:.82rem;color:#59636e;overflow-wrap:anywhere}\n"
-    ".scroll{overflow-x:auto}\n"
+    // A shadow at each edge beyond which the table goes on; what covers it there moves with the table.
+    ".scroll{overflow-x:auto;scrollbar-width:thin;scrollbar-color:#8b949e #0000;"
+    "background:linear-gradient(90deg,#fff 30%,#fff0) 0 0/40px 100% no-repeat local,"
+    "linear-gradient(270deg,#fff 30%,#fff0) 100% 0/40px 100% no-repeat local,"
+    "linear-gradient(90deg,#59636e88,#59636e00) 0 0/14px 100% no-repeat,"
+    "linear-gradient(270deg,#59636e88,#59636e00) 100% 0/14px 100% no-repeat}\n"
     "table{border-collapse:collapse;font-size:.9rem;font-variant-numeric:tabular-nums}\n"
     "th,td{padding:6px 12px 6px 0;text-align:left;vertical-align:top;border-bottom:1px solid #e3e7ec}\n"
     "thead th{vertical-align:bottom;border-bottom:1px solid #59636e;font-weight:600}\n"
@@ -67,12 +72,15 @@ constexpr std::string_view kPageCss =
     "1fr}}\n"
     "@media screen and (prefers-color-scheme:dark){\n"
     "body{background:#14181d;color:#e6eaf0}\n"
+    ".scroll{background-image:linear-gradient(90deg,#14181d 30%,#14181d00),"
+    "linear-gradient(270deg,#14181d 30%,#14181d00),linear-gradient(90deg,#9aa5b188,#9aa5b100),"
+    "linear-gradient(270deg,#9aa5b188,#9aa5b100)}\n"
     "h2,.tile,.claims tr{border-color:#39424d}\n"
     "th,td{border-color:#2b323b}thead th{border-color:#8b96a3}.numbers .group{border-color:#2b323b}\n"
     ".muted,figcaption,.note,.tile span,.numbers .group,.claims tbody th{color:#9aa5b1}figcaption b{color:#e6eaf0}\n"
     "}\n"
     "@media print{main{max-width:none;padding:0}html,body{font-size:10pt}h2{break-after:avoid;margin-top:28px}"
-    "tr{break-inside:avoid}.scroll{overflow:visible}.numbers th+th,.numbers td{padding-left:8px}}\n";
+    "tr{break-inside:avoid}.scroll{overflow:visible;background:none}.numbers th+th,.numbers td{padding-left:8px}}\n";
 
 std::string series_key(std::size_t style) {
   return fmt::format(
@@ -131,6 +139,7 @@ void Page::tiles(const std::vector<Tile>& tiles) {
     element("span", "", tile.name);
     element("b", tile.value.size() > kLongTile ? "long" : "", tile.value);
     element("span", "", tile.note);
+    if (!tile.explanation.empty()) element("span", "", tile.explanation);
     html_ += "</div>\n";
   }
   html_ += "</div>\n";

@@ -243,8 +243,8 @@ void Plot::reference(std::string name, std::vector<Point> points) {
   layers_.push_back({Kind::reference, std::move(name), 0, std::move(points), {}, 0.0});
 }
 
-void Plot::curve(std::string name, std::size_t style, std::vector<Point> points, double shift) {
-  layers_.push_back({Kind::curve, std::move(name), style, std::move(points), {}, shift});
+void Plot::curve(std::string name, std::size_t style, std::vector<Point> points) {
+  layers_.push_back({Kind::curve, std::move(name), style, std::move(points), {}, 0.0});
 }
 
 void Plot::line(std::string name, std::size_t style, std::vector<Point> points, std::size_t marks) {

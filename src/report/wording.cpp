@@ -5,11 +5,20 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 namespace dermis::report {
 namespace {
 
 constexpr const char* kNoForce = "no force";
+
+std::string replaced(std::string text, std::string_view old, std::string_view by) {
+  for (std::size_t at = text.find(old); at != std::string::npos; at = text.find(old, at + by.size())) {
+    text.replace(at, old.size(), by);
+  }
+  return text;
+}
 
 }  // namespace
 
@@ -54,6 +63,14 @@ std::string steps(double count) {
 
 std::string counted(std::size_t count, const std::string& noun) {
   return grouped(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+std::string estimator_words(std::string name) {
+  return replaced(replaced(std::move(name), "_", " "), "lookup", "look-up");
+}
+
+std::string with_signs(std::string text) {
+  return replaced(std::move(text), "+-", "\u00b1");
 }
 
 }  // namespace dermis::report

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "serve/contacts_in_suit.hpp"
-
 namespace dermis::serve {
 namespace {
 
@@ -21,10 +19,10 @@ bool begins_or_ends(const ContactReport& report) {
 }  // namespace
 
 Broadcaster::Broadcaster(const ServedSuit& suit, stream::Server& server) : server_(server), points_(suit) {
-  for (const ServedArray& array : suit.arrays) {
-    Channels& channels = arrays_.emplace_back();
+  for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
+    const ServedArray& array = suit.arrays[k];
+    Channels& channels = arrays_.emplace_back(Channels{.array = &array, .contacts = ContactsInSuit(suit, k)});
     const ArrayDescription& description = array.model->array;
-    channels.array = &array;
     channels.shape = {description.rows, description.cols};
     channels.pitch = {description.row_pitch_m, description.col_pitch_m};
     channels.raw = add_channel(server, "/" + array.name + "/raw", messages::image_type());
@@ -81,7 +79,8 @@ void Broadcaster::publish_images(Channels& channels, const live::ArrayResult& re
 
 void Broadcaster::publish_contacts(Channels& channels, const live::ArrayResult& result) {
   if (!server_.has_subscribers(contacts_)) return;
-  encode_contacts_in_suit(channels.array->name, channels.array->surface, result, channels.message);
+  channels.contacts.take(result);
+  channels.contacts.encode(result, channels.message);
   server_.publish(contacts_, result.raw.time, channels.message);
 }
 

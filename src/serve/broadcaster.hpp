@@ -15,6 +15,7 @@
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
 #include "dermis/stream/server.hpp"
+#include "serve/contacts_in_suit.hpp"
 #include "serve/suit_points.hpp"
 
 namespace dermis::serve {
@@ -41,6 +42,7 @@ class Broadcaster {
   /// An array, touched by its thread alone.
   struct Channels {
     const ServedArray* array = nullptr;
+    ContactsInSuit contacts;
     FrameShape shape{};
     messages::Pitch pitch{};
     stream::ChannelId raw = 0;

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <utility>
 
-#include "serve/contacts_in_suit.hpp"
+#include "serve/suit_transforms.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -17,11 +17,11 @@ constexpr Nanos kPresent = std::chrono::milliseconds(500);
 
 }  // namespace
 
-DdsTopics::Array::Array(const ServedArray& array)
-    : name(array.name),
-      shape{array.model->array.rows, array.model->array.cols},
-      surface(array.surface),
-      suit_from_array(array.suit_from_array) {}
+DdsTopics::Array::Array(const ServedSuit& suit, std::size_t index)
+    : name(suit.arrays[index].name),
+      shape{suit.arrays[index].model->array.rows, suit.arrays[index].model->array.cols},
+      suit_from_array(suit.arrays[index].suit_from_array),
+      contacts(suit, index) {}
 
 Result<std::unique_ptr<DdsTopics>> DdsTopics::create(const ServedSuit& suit, const dds::PublisherOptions& options) {
   Result<std::unique_ptr<dds::Publisher>> publisher = dds::Publisher::create(options);
@@ -33,8 +33,8 @@ Result<std::unique_ptr<DdsTopics>> DdsTopics::create(const ServedSuit& suit, con
 }
 
 DdsTopics::DdsTopics(const ServedSuit& suit, std::unique_ptr<dds::Publisher> publisher)
-    : publisher_(std::move(publisher)), points_(suit) {
-  for (const ServedArray& array : suit.arrays) arrays_.emplace_back(array);
+    : suit_(suit), publisher_(std::move(publisher)), points_(suit) {
+  for (std::size_t k = 0; k < suit.arrays.size(); ++k) arrays_.emplace_back(suit, k);
 }
 
 Status DdsTopics::add_topics() {
@@ -68,17 +68,16 @@ Status DdsTopics::add_topics() {
 }
 
 void DdsTopics::publish_transforms() {
-  std::vector<messages::Transform> transforms;
-  for (const Array& array : arrays_) transforms.push_back({kSuitFrame, array.name, array.suit_from_array});
-  messages::encode_transforms(transforms, std::chrono::system_clock::now().time_since_epoch(), message_);
+  messages::encode_transforms(suit_transforms(suit_), std::chrono::system_clock::now().time_since_epoch(), message_);
   publisher_->publish(transforms_topic_, message_);
 }
 
 void DdsTopics::publish(const live::ArrayResult& result) {
   Array& array = arrays_[result.array];
   publish_images(array, result);
+  array.contacts.take(result);
   if (publisher_->has_subscribers(contacts_topic_)) {
-    encode_contacts_in_suit(array.name, array.surface, result, array.message);
+    array.contacts.encode(result, array.message);
     publisher_->publish(contacts_topic_, array.message);
   }
   if (!has(result.force.status, FrameStatus::rejected)) publish_wrench(array, result);
@@ -108,7 +107,7 @@ void DdsTopics::publish_wrench(Array& array, const live::ArrayResult& result) {
     publisher_->publish(array.wrench, array.message);
   }
   const std::lock_guard lock(array.press_mutex);
-  array.press = {time, wrench_of(result.contacts)};
+  array.press = {time, wrench_of(array.contacts.contacts())};
 }
 
 void DdsTopics::take_presses() {
@@ -120,6 +119,8 @@ void DdsTopics::take_presses() {
 }
 
 void DdsTopics::publish_suit() {
+  const std::uint64_t moved = suit_.body ? suit_.body->version() : 0;
+  if (std::exchange(body_version_, moved) != moved) publish_transforms();
   take_presses();
   const std::optional<Nanos> newest = std::ranges::max(presses_, {}, &Press::time).time;
   if (!newest) return;

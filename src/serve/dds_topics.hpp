@@ -20,6 +20,7 @@
 #include "dermis/live/live_suit.hpp"
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
+#include "serve/contacts_in_suit.hpp"
 #include "serve/suit_points.hpp"
 
 namespace dermis::serve {
@@ -27,7 +28,8 @@ namespace dermis::serve {
 /// The topics of docs/ros.md. Thread-safe: each array on a thread of its own.
 class DdsTopics {
  public:
-  /// Publishes where the arrays are, once and for all. Fails as dds::Publisher does.
+  /// `suit` must outlive it. Publishes where the arrays are; again when a body moves them. Fails as dds::Publisher
+  /// does.
   [[nodiscard]] static Result<std::unique_ptr<DdsTopics>> create(const ServedSuit& suit,
                                                                  const dds::PublisherOptions& options);
 
@@ -52,8 +54,8 @@ class DdsTopics {
   struct Array {
     std::string name;
     FrameShape shape;
-    ArraySurface surface;
     Pose suit_from_array;
+    ContactsInSuit contacts;
     dds::TopicId raw = 0;
     dds::TopicId force = 0;
     dds::TopicId force_sigma = 0;
@@ -62,7 +64,7 @@ class DdsTopics {
     std::mutex press_mutex{};
     Press press{};
 
-    explicit Array(const ServedArray& array);
+    Array(const ServedSuit& suit, std::size_t index);
   };
 
   DdsTopics(const ServedSuit& suit, std::unique_ptr<dds::Publisher> publisher);
@@ -74,6 +76,7 @@ class DdsTopics {
   void take_presses();
   void publish_suit_wrench(Nanos newest);
 
+  const ServedSuit& suit_;
   std::unique_ptr<dds::Publisher> publisher_;
   std::deque<Array> arrays_;
   SuitPoints points_;
@@ -82,6 +85,7 @@ class DdsTopics {
   dds::TopicId wrench_topic_ = 0;
   dds::TopicId diagnostics_topic_ = 0;
   dds::TopicId transforms_topic_ = 0;
+  std::uint64_t body_version_ = 0;     // Of which the transforms were published.
   std::vector<Press> presses_;         // Of all arrays at one time.
   std::vector<std::uint8_t> message_;  // Of the suit.
 };

@@ -44,7 +44,7 @@ recognition::Layout taught_layout(const ServiceArray& array) {
   layout.arrays = {recognition::sensed_array(array.description, array.name)};
   layout.readings = array.description.taxel_count();
   layout.rate_hz = TouchCollector::kRateHz;
-  layout.least_reading = recognition::kLeastNewtons;
+  layout.quantity = Quantity::force;
   return layout;
 }
 

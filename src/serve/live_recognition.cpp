@@ -34,7 +34,7 @@ Layout layout_of(std::vector<recognition::SensedArray> arrays, std::size_t furth
   layout.arrays = std::move(arrays);
   layout.extras = further;
   layout.rate_hz = rate_for(classes);
-  layout.least_reading = classes.layout.least_reading;
+  layout.quantity = Quantity::force;
   return layout;
 }
 

@@ -128,23 +128,54 @@ Status read_threats(const std::string& path, const Notice& notice, ServedSuit& s
   return Done{};
 }
 
-Result<ServedArray> open_array(const SuitArray& described, const Notice& notice, Models& models) {
+/// Where an array is on a body that stands at rest.
+struct RestPlace {
+  WornBody::Carried carried;
+  Pose suit_from_array;
+};
+
+Result<RestPlace> place_of(const SuitArray& array, const BodyParts* parts) {
+  if (parts == nullptr) return RestPlace{{}, array.base_from_array};
+  const std::optional<std::size_t> link = array.link.empty() ? std::size_t{0} : parts->body.link(array.link);
+  if (!link) {
+    return bad_input(
+        fmt::format("array '{}': link: the body '{}' has no '{}'", array.name, parts->body.name, array.link));
+  }
+  const std::vector<double> rest(parts->body.joints.size(), 0.0);
+  return RestPlace{{*link, array.base_from_array},
+                   chained(link_poses(parts->body, rest)[*link], array.base_from_array)};
+}
+
+Result<ServedArray> open_array(const SuitArray& described, const Pose& suit_from_array, const Notice& notice,
+                               Models& models) {
   Result<Models::Known> known = models.read(described.model);
   if (!known) return known.error();
   const ArrayDescription& array = known->model->array;
   std::string name = described.name.empty() ? topic_name(array.name) : described.name;
-  Result<ArraySurface> surface =
-      ArraySurface::create(array, described.shape, described.base_from_array, described.mirrored);
+  Result<ArraySurface> surface = ArraySurface::create(array, described.shape, suit_from_array, described.mirrored);
   if (!surface) return bad_input(fmt::format("array '{}': {}", name, surface.error().message));
-  ServedArray served{std::move(name),
-                     nullptr,
-                     std::move(known->model),
-                     *std::move(surface),
-                     described.base_from_array,
-                     std::move(known->description),
+  ServedArray served{std::move(name),     nullptr,         std::move(known->model),
+                     *std::move(surface), suit_from_array, std::move(known->description),
                      described.model};
   if (Status read = read_classes_of_array(described.classes, notice, served); !read) return read.error();
   return served;
+}
+
+/// All arrays, and the body that carries them.
+Status open_arrays(const SuitDescription& described, const Notice& notice, std::optional<BodyParts> parts,
+                   ServedSuit& suit) {
+  Models models;
+  std::vector<WornBody::Carried> carried;
+  for (const SuitArray& one : described.arrays) {
+    const Result<RestPlace> place = place_of(one, parts ? &*parts : nullptr);
+    if (!place) return place.error();
+    Result<ServedArray> array = open_array(one, place->suit_from_array, notice, models);
+    if (!array) return array.error();
+    suit.arrays.push_back(*std::move(array));
+    carried.push_back(place->carried);
+  }
+  if (parts) suit.body = std::make_shared<WornBody>(*std::move(parts), std::move(carried));
+  return Done{};
 }
 
 /// What cannot be served, and its mend.
@@ -236,6 +267,7 @@ Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& record
   }
   played.classes = suit.classes;
   played.threats = suit.threats;
+  played.body = suit.body;
   if (Status opened = open_playback(recording, played); !opened) return opened.error();
   return played;
 }
@@ -245,12 +277,13 @@ Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions opti
   if (!described) return described.error();
   ServedSuit suit;
   suit.name = described->name;
-  Models models;
-  for (const SuitArray& one : described->arrays) {
-    Result<ServedArray> array = open_array(one, options.notice, models);
-    if (!array) return array.error();
-    suit.arrays.push_back(*std::move(array));
+  std::optional<BodyParts> parts;
+  if (!described->body.empty()) {
+    Result<BodyParts> read = read_body(described->body, described->body_scale, options.notice);
+    if (!read) return read.error();
+    parts = *std::move(read);
   }
+  if (Status opened = open_arrays(*described, options.notice, std::move(parts), suit); !opened) return opened.error();
   if (Status read = read_classes_of_suit(described->classes, options.notice, suit); !read) return read.error();
   if (Status read = read_threats(place.threats, options.notice, suit); !read) return read.error();
   options.guide = suit.guide;

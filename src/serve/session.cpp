@@ -117,6 +117,8 @@ Result<SessionParts> make_parts(ServedSuit& suit, const SessionOptions& options)
 
 }  // namespace
 
+/// Joins the parts of a server, which know nothing of each other. Many members: each part is one, in the order in which
+/// they are made.
 class Session::Implementation {
  public:
   Implementation(ServedSuit suit, SessionParts parts, const SessionOptions& options);
@@ -138,6 +140,7 @@ class Session::Implementation {
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
   [[nodiscard]] Status use_classes(std::size_t array, recognition::Classes classes);
   void show_suit();
+  void show_body();
   void report_failed_recording(const std::string& why);
   void report_left_out();
   void publish_to_dds(std::int64_t tick);
@@ -231,6 +234,7 @@ Status Session::Implementation::start(const SessionOptions& options) {
   }
   listen();
   show_suit();
+  show_body();
   server_->start(handlers(), services());
   return options.record.empty() ? Status(Done{}) : recorder_.begin();
 }
@@ -256,6 +260,12 @@ std::vector<stream::Service> Session::Implementation::services() {
     services.push_back({SuitRecognition::kService,
                         [this](std::string_view request) { return suit_recognition_->take_readings(request); }});
   }
+  if (suit_.body) {
+    services.push_back({"/body/joints", [this](std::string_view request) -> Result<std::string> {
+                          if (Status set = suit_.body->set_joints(request); !set) return set.error();
+                          return std::string("{}");
+                        }});
+  }
   if (threats_) {
     services.push_back({"/threats/reset", [this](std::string_view request) { return threats_->reset(request); }});
   }
@@ -276,6 +286,14 @@ std::optional<PlayedRecording::PlayedSuit> Session::Implementation::player() {
 /// /suit.json, as the suit is now.
 void Session::Implementation::show_suit() {
   server_->set_document("/suit.json", "application/json", suit_json(suit_, models_));
+}
+
+/// The meshes of the body, which /suit.json names.
+void Session::Implementation::show_body() {
+  if (!suit_.body) return;
+  for (const BodyFile& file : suit_.body->files()) {
+    server_->set_document(file.path, file.path.ends_with(".stl") ? "model/stl" : "model/gltf-binary", file.bytes);
+  }
 }
 
 Status Session::Implementation::set_parameter(const stream::Parameter& parameter, const std::string& client) {

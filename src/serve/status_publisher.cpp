@@ -10,6 +10,7 @@
 
 #include "dermis/messages/live_messages.hpp"
 #include "serve/status_messages.hpp"
+#include "serve/suit_transforms.hpp"
 
 namespace dermis::serve {
 
@@ -28,7 +29,8 @@ void StatusPublisher::publish(std::int64_t tick) {
   if (tick % 3 == 1) publish_playback();
   if (tick % 15 == 2) publish_statistics();
   if (tick % 30 == 5) publish_health();
-  if (tick % 30 == 20) publish_transforms();
+  const std::uint64_t moved = work_.suit.body ? work_.suit.body->version() : 0;
+  if (tick % 30 == 20 || std::exchange(body_version_, moved) != moved) publish_transforms();
 }
 
 Nanos StatusPublisher::now() const {
@@ -75,11 +77,7 @@ std::vector<messages::Diagnosis> StatusPublisher::diagnoses() const {
 
 void StatusPublisher::publish_transforms() {
   if (!server_.has_subscribers(channels_.transforms)) return;
-  std::vector<messages::Transform> transforms;
-  for (const ServedArray& array : work_.suit.arrays) {
-    transforms.push_back({kSuitFrame, array.name, array.suit_from_array});
-  }
-  messages::encode_transforms(transforms, now(), message_);
+  messages::encode_transforms(suit_transforms(work_.suit), now(), message_);
   publish_message(channels_.transforms);
 }
 

@@ -28,6 +28,52 @@ nlohmann::ordered_json json_of(const Vector3& vector) {
   return {vector.x, vector.y, vector.z};
 }
 
+nlohmann::ordered_json json_of(const Pose& pose) {
+  const Quaternion& turn = pose.rotation;
+  return {{"position", json_of(pose.translation)}, {"rotation", {turn.x, turn.y, turn.z, turn.w}}};
+}
+
+/// "mesh" has a file where the server gives it.
+nlohmann::ordered_json json_of(const BodyVisual& visual, const std::vector<BodyFile>& files) {
+  nlohmann::ordered_json json = {{"pose", json_of(visual.link_from_visual)}};
+  if (const auto* const box = std::get_if<BoxSolid>(&visual.solid)) {
+    json["solid"] = "box";
+    json["size"] = json_of(box->size);
+  } else if (const auto* const cylinder = std::get_if<CylinderSolid>(&visual.solid)) {
+    json["solid"] = "cylinder";
+    json["size"] = {cylinder->radius_m, cylinder->length_m};
+  } else if (const auto* const sphere = std::get_if<SphereSolid>(&visual.solid)) {
+    json["solid"] = "sphere";
+    json["size"] = nlohmann::ordered_json::array({sphere->radius_m});
+  } else if (const auto* const mesh = std::get_if<MeshSolid>(&visual.solid)) {
+    json["solid"] = "mesh";
+    json["size"] = json_of(mesh->scale);
+    json["name"] = mesh->file;
+    const auto file =
+        std::find_if(files.begin(), files.end(), [&](const BodyFile& one) { return one.name == mesh->file; });
+    if (file != files.end()) json["file"] = file->path.substr(1);
+  }
+  if (visual.rgba) json["rgba"] = *visual.rgba;
+  return json;
+}
+
+/// Links where they are at rest; /tf tells where they are.
+nlohmann::ordered_json json_of(const WornBody& worn) {
+  const Body& body = worn.body();
+  nlohmann::ordered_json json = {{"name", body.name}, {"links", nlohmann::ordered_json::array()}};
+  const std::vector<Pose> rest = link_poses(body, std::vector<double>(body.joints.size(), 0.0));
+  for (std::size_t k = 0; k < body.links.size(); ++k) {
+    nlohmann::ordered_json& link = json["links"].emplace_back();
+    link = {{"name", body.links[k].name}, {"pose", json_of(rest[k])}, {"visuals", nlohmann::ordered_json::array()}};
+    for (const BodyVisual& visual : body.links[k].visuals) link["visuals"].push_back(json_of(visual, worn.files()));
+  }
+  json["joints"] = nlohmann::ordered_json::array();
+  for (const BodyJoint& joint : body.joints) {
+    if (joint.kind != BodyJoint::Kind::fixed) json["joints"].push_back(joint.name);
+  }
+  return json;
+}
+
 /// The limits that hold for the array; `zone` null: everywhere.
 nlohmann::ordered_json limits_of(const ServedArray& array, const threats::ThreatLimits& limits) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
@@ -60,6 +106,7 @@ nlohmann::ordered_json json_of(const ServedArray& array, const pipeline::Model& 
   json["full_scale_n"] = full_scale_newtons(model.networks);
   json["calibrated"] = !calibration::is_uncalibrated(model);
   if (array.classes) json["classes"] = array.classes->names;
+  json["pose"] = json_of(array.suit_from_array);
   for (const SurfacePoint& taxel : array.surface.taxels()) {
     json["positions"].push_back(json_of(taxel.position));
     json["normals"].push_back(json_of(taxel.normal));
@@ -73,10 +120,12 @@ std::string suit_json(const ServedSuit& suit, const ModelsInUse& models) {
   nlohmann::ordered_json json;
   json["name"] = suit.name;
   if (suit.classes) json["classes"] = suit.classes->names;
+  if (suit.body) json["body"] = json_of(*suit.body);
   json["arrays"] = nlohmann::ordered_json::array();
   for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
     nlohmann::ordered_json array = json_of(suit.arrays[k], *models.of(k));
     if (suit.threats) array["limits"] = limits_of(suit.arrays[k], *suit.threats);
+    if (suit.body) array["link"] = suit.body->link_of(k);
     json["arrays"].push_back(std::move(array));
   }
   return json_text(json);

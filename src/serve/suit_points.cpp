@@ -4,7 +4,7 @@
 
 namespace dermis::serve {
 
-SuitPoints::SuitPoints(const ServedSuit& suit) {
+SuitPoints::SuitPoints(const ServedSuit& suit) : body_(suit.body.get()) {
   for (const ServedArray& array : suit.arrays) {
     Part& part = arrays_.emplace_back();
     for (const SurfacePoint& taxel : array.surface.taxels()) {
@@ -25,11 +25,27 @@ void SuitPoints::keep(std::size_t array, const ForceFrame& force) {
   }
 }
 
+/// The points of the array, from the first of it in all_ on.
+void SuitPoints::move(std::size_t array, std::size_t first) {
+  const Pose move = body_->move_of(array);
+  if (move == Pose{}) return;
+  for (std::size_t k = first; k < all_.size(); ++k) {
+    messages::TaxelPoint& point = all_[k];
+    const Vector3 place = moved(move, {point.x, point.y, point.z});
+    point.x = static_cast<float>(place.x);
+    point.y = static_cast<float>(place.y);
+    point.z = static_cast<float>(place.z);
+  }
+}
+
 void SuitPoints::encode(Nanos time, std::vector<std::uint8_t>& message) {
   all_.clear();
-  for (Part& part : arrays_) {
+  for (std::size_t array = 0; array < arrays_.size(); ++array) {
+    Part& part = arrays_[array];
+    const std::size_t first = all_.size();
     const std::lock_guard lock(part.mutex);
     all_.insert(all_.end(), part.points.begin(), part.points.end());
+    if (body_ != nullptr) move(array, first);
   }
   messages::encode_points(all_, time, kSuitFrame, message);
 }

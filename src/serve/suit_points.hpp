@@ -17,6 +17,7 @@ namespace dermis::serve {
 /// The taxels of a suit in space with their last forces. Thread-safe.
 class SuitPoints {
  public:
+  /// `suit` must outlive it.
   explicit SuitPoints(const ServedSuit& suit);
 
   void keep(std::size_t array, const ForceFrame& force);
@@ -27,9 +28,12 @@ class SuitPoints {
  private:
   struct Part {
     std::mutex mutex{};
-    std::vector<messages::TaxelPoint> points{};
+    std::vector<messages::TaxelPoint> points{};  // of a body at rest
   };
 
+  void move(std::size_t array, std::size_t first);
+
+  const WornBody* const body_;  // null: nothing moves
   std::deque<Part> arrays_;
   std::vector<messages::TaxelPoint> all_;  // On their way out.
 };

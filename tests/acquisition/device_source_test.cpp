@@ -145,7 +145,7 @@ TEST(DeviceSource, gives_the_last_frame_of_a_device_that_pauses) {
   }
 }
 
-TEST(DeviceSource, says_what_it_has_recognised) {
+TEST(DeviceSource, says_which_protocol_it_has_detected) {
   const BytesInFile file(encoded(random_frames(30, 12)));
   Notices notices;
   const auto source = open(file.uri("protocol=auto"), notices.options());

@@ -58,6 +58,7 @@ def include_violations(root, allowed):
 def folder_violations(root, architecture):
     for module, allowed in folder_tables(architecture):
         home = root / "src" / module
+        used = {folder: {folder} for folder in allowed}
         for path in sorted(home.glob("*/**/*.[ch]pp")):
             place, folder = path.relative_to(root), path.relative_to(home).parts[0]
             if folder not in allowed:
@@ -65,8 +66,23 @@ def folder_violations(root, architecture):
                 continue
             for _, name in INCLUDE.findall(path.read_text()):
                 parts = name.split("/")
-                if parts[0] == module and len(parts) > 2 and parts[1] not in allowed[folder]:
+                if parts[0] != module or len(parts) < 3:
+                    continue
+                used[folder].add(parts[1])
+                if parts[1] not in allowed[folder]:
                     yield f"{place}: the folder {folder} must not include {parts[1]} ({name})"
+        for folder, names in allowed.items():
+            for name in sorted(names - used[folder]):
+                yield f"ARCHITECTURE.md: {module}/{folder} makes no use of {name}"
+
+
+def folder_order_violations(architecture):
+    """A folder may include those above it, so there is no circle."""
+    for module, allowed in folder_tables(architecture):
+        folders = list(allowed)
+        for place, folder in enumerate(folders):
+            for name in sorted(allowed[folder] - set(folders[: place + 1])):
+                yield f"ARCHITECTURE.md: {module}/{folder} may include {name}, which is not above it"
 
 
 def header_violations(root):
@@ -127,6 +143,7 @@ def violations(root):
     allowed = allowed_includes(architecture)
     yield from include_violations(root, allowed)
     yield from folder_violations(root, architecture)
+    yield from folder_order_violations(architecture)
     yield from header_violations(root)
     yield from licence_violations(root)
     yield from message_violations(root)

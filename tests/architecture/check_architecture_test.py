@@ -66,6 +66,15 @@ class Rules(unittest.TestCase):
         self.write("src/fusion/tables/knots.cpp", SPDX + '#include "fusion/fit/fit.hpp"\n')
         self.expect("tables must not include fit")
 
+    def test_a_folder_may_include_one_that_is_below_it(self):
+        self.write("ARCHITECTURE.md", TABLE.replace("| look up | |", "| look up | `fit` |"))
+        self.write("src/fusion/tables/knots.cpp", SPDX + '#include "fusion/fit/fit.hpp"\n')
+        self.expect("fusion/tables may include fit, which is not above it")
+
+    def test_a_permission_of_a_folder_that_nobody_uses(self):
+        self.write("src/fusion/fit/fit.cpp", SPDX + '#include "fusion/table.hpp"\n')
+        self.expect("fusion/fit makes no use of tables")
+
     def test_a_folder_is_not_in_the_table(self):
         self.write("src/fusion/plots/plot.cpp", SPDX)
         self.expect("the folder plots is not in the table")

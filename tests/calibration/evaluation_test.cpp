@@ -110,13 +110,18 @@ TEST(Evaluation, after_totals_judges_from_what_single_taxels_carried_of_them) {
   EXPECT_NEAR(evaluation->judged_from_n, report.heaviest_taxel_newtons / 50.0, 1e-5);
 }
 
-TEST(Evaluation, of_readings_that_are_forces_judges_from_what_the_loads_say) {
+/// Two taxels whose readings are newtons.
+pipeline::Model pair_of_forces() {
   ArrayDescription array;
   array.rows = 1;
   array.cols = 2;
   array.readout.circuit = Circuit::none;
   array.readout.quantity = Quantity::force;
-  const pipeline::Model model = pipeline::direct_model(array);
+  return pipeline::direct_model(array);
+}
+
+TEST(Evaluation, of_readings_that_are_forces_judges_from_what_the_loads_say) {
+  const pipeline::Model model = pair_of_forces();
   RawFrame frame;
   frame.counts = {0.25F, 0.004F};
   const auto evaluation =
@@ -128,12 +133,7 @@ TEST(Evaluation, of_readings_that_are_forces_judges_from_what_the_loads_say) {
 }
 
 TEST(Evaluation, of_readings_that_are_forces_judges_from_what_single_taxels_carry_of_totals) {
-  ArrayDescription array;
-  array.rows = 1;
-  array.cols = 2;
-  array.readout.circuit = Circuit::none;
-  array.readout.quantity = Quantity::force;
-  const pipeline::Model model = pipeline::direct_model(array);
+  const pipeline::Model model = pair_of_forces();
   RawFrame frame;
   frame.counts = {3.0F, 5.0F};
   const auto judged_from = [&](double total) {

@@ -52,6 +52,9 @@ TEST(SuitDescription, names_the_array_and_the_field_that_is_wrong) {
             "array 'chest': shape.radius_m: must be more than 0 m");
   EXPECT_EQ(message_after([](Suit& suit) { suit.arrays[0].base_from_array.rotation.w = 0.5; }),
             "array 'chest': base_from_array.rotation: must be a quaternion of length 1");
+  EXPECT_EQ(message_after([](Suit& suit) { suit.arrays[0].link = "torso"; }),
+            "array 'chest': link: needs the body of the suit");
+  EXPECT_EQ(message_after([](Suit& suit) { suit.body_scale = 0.0; }), "body_scale: must be more than 0");
 }
 
 }  // namespace

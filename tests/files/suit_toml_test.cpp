@@ -92,6 +92,17 @@ TEST(SuitToml, reads_every_key) {
   EXPECT_EQ(suit->arrays[3].shape, (ArrayShape{FreeShape{{{1.0, 2.0, 3.0}}}}));
 }
 
+TEST(SuitToml, reads_the_body_and_the_link_of_an_array) {
+  const std::string array = "[[array]]\nname = \"chest\"\nfrom = \"sim:idle\"\nmodel = \"m\"\nlink = \"torso\"\n";
+  const Result<SuitDescription> suit =
+      suit_from_toml("[suit]\nbody = \"robot.stl\"\nbody_scale = 0.001\n" + array, "s/suit.toml", no_positions);
+  ASSERT_TRUE(suit) << suit.error().message;
+  EXPECT_EQ(suit->body, "s/robot.stl");
+  EXPECT_EQ(suit->body_scale, 0.001);
+  EXPECT_EQ(suit->arrays[0].link, "torso");
+  EXPECT_EQ(error_of(array), "suit.toml: array 'chest': link: needs the body of the suit");
+}
+
 TEST(SuitToml, turns_by_roll_pitch_and_yaw_about_fixed_axes_in_this_order) {
   const Result<SuitDescription> suit = suit_from_toml(with("[90, 0, 0]", "[90, 30, -60]"), "suit.toml", one_position);
   ASSERT_TRUE(suit) << suit.error().message;

@@ -32,19 +32,19 @@ std::vector<std::pair<float, float>> pairs_of(LoadSource& source) {
   return pairs;
 }
 
-recognition::Layout layout(double least_reading) {
+recognition::Layout layout(Quantity quantity) {
   recognition::Layout layout;
-  layout.least_reading = least_reading;
+  layout.quantity = quantity;
   return layout;
 }
 
 TEST(CheckLoads, wants_forces_for_classes_of_forces_and_readings_for_those_of_readings) {
-  EXPECT_TRUE(check_loads(layout(recognition::kLeastNewtons), "c", "model"));
-  EXPECT_TRUE(check_loads(layout(1.0), "c", ""));
-  const Status without = check_loads(layout(recognition::kLeastNewtons), "c", "");
+  EXPECT_TRUE(check_loads(layout(Quantity::force), "c", "model"));
+  EXPECT_TRUE(check_loads(layout(Quantity::counts), "c", ""));
+  const Status without = check_loads(layout(Quantity::force), "c", "");
   ASSERT_FALSE(without);
   EXPECT_EQ(without.error().message, "model: the classes of c were learned from forces; name the model of the array");
-  const Status with = check_loads(layout(1.0), "c", "model");
+  const Status with = check_loads(layout(Quantity::counts), "c", "model");
   ASSERT_FALSE(with);
   EXPECT_NE(with.error().message.find("leave it out"), std::string::npos);
 }

@@ -25,10 +25,43 @@ TEST(ClassesFile, reads_back_what_was_written) {
   const TemporaryFolder folder;
   Classes classes = support::small_classes();
   classes.layout.arrays[0].name = "two words, \"quoted\" \xC3\xA4";
-  ASSERT_TRUE(write_classes(folder.file("c"), classes));
-  const Result<Classes> read = read_classes(folder.file("c"));
-  ASSERT_TRUE(read) << read.error().message;
-  EXPECT_EQ(*read, classes);
+  for (const Quantity quantity : {Quantity::counts, Quantity::pressure, Quantity::force}) {
+    classes.layout.quantity = quantity;
+    ASSERT_TRUE(write_classes(folder.file("c"), classes));
+    const Result<Classes> read = read_classes(folder.file("c"));
+    ASSERT_TRUE(read) << read.error().message;
+    EXPECT_EQ(*read, classes);
+  }
+}
+
+/// Small classes whose description has `text` in the place of what says that they are of forces.
+std::string with_quantity(const TemporaryFolder& folder, const std::string& text) {
+  Classes classes = support::small_classes();
+  classes.layout.quantity = Quantity::force;
+  EXPECT_TRUE(write_classes(folder.file("q"), classes));
+  Result<files::SafetensorsFile> file = files::read_safetensors(folder.file("q"));
+  EXPECT_TRUE(file);
+  std::string& description = file->metadata["classes"];
+  const std::string key = R"("quantity":"force",)";
+  const std::size_t place = description.find(key);
+  EXPECT_NE(place, std::string::npos) << description;
+  description.replace(place, key.size(), text);
+  EXPECT_TRUE(files::write_safetensors(folder.file("q"), *file));
+  return folder.file("q");
+}
+
+TEST(ClassesFile, of_before_its_quantity_was_written_is_of_forces_by_its_least_reading) {
+  const TemporaryFolder folder;
+  const Result<Classes> of_forces = read_classes(with_quantity(folder, ""));
+  ASSERT_TRUE(of_forces) << of_forces.error().message;
+  EXPECT_TRUE(of_forces->layout.has_forces());
+}
+
+TEST(ClassesFile, of_a_quantity_that_there_is_not_is_damaged) {
+  const TemporaryFolder folder;
+  for (const char* const text : {R"("quantity":"torque",)", R"("quantity":2,)"}) {
+    EXPECT_NE(error_of(with_quantity(folder, text)).find("is damaged"), std::string::npos) << text;
+  }
 }
 
 TEST(ClassesFile, gives_the_same_bytes_for_the_same_classes) {

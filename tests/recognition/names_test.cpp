@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "recognition/classes/names.hpp"
+#include "recognition/names.hpp"
 
 #include <gtest/gtest.h>
 

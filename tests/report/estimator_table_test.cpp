@@ -65,7 +65,7 @@ TEST(EstimatorTable, the_legend_describes_further_estimators_after_the_baselines
   EXPECT_EQ(xml_error(html), "");
   const std::size_t oracle = html.find("<th>oracle</th><td>knows the force</td>");
   ASSERT_NE(oracle, std::string::npos);
-  EXPECT_GT(oracle, html.find("<th>crosstalk_lookup</th>"));
+  EXPECT_GT(oracle, html.find("<th>crosstalk look-up</th>"));
 }
 
 }  // namespace

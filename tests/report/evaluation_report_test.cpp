@@ -58,10 +58,24 @@ const std::set<std::string> kAllFiles = {"index.html",
 TEST_F(ReportTest, writes_the_page_and_every_figure) {
   EXPECT_EQ(write(sample_evaluation(16, 16, 300)), kAllFiles);
   EXPECT_TRUE(says("2,400 loaded taxels of at least 1 N, from 300 labelled frames."));
-  EXPECT_TRUE(says("temperature_lookup"));
+  EXPECT_TRUE(says("temperature look-up"));
   EXPECT_TRUE(says("one in 2 is drawn"));
   EXPECT_TRUE(says("9f86d081884c7d65")) << "provenance";
   EXPECT_TRUE(says("BP networks of 2-4-1 units"));
+}
+
+TEST_F(ReportTest, the_marks_of_all_estimators_stand_at_the_x_of_their_bin) {
+  write(sample_evaluation(16, 16, 300));
+  const std::string figure = read(directory_ / "error_vs_contacts.svg");
+  constexpr std::string_view kCurve = "class=\"curve\" d=\"";
+  std::set<std::string> beginnings;
+  std::size_t curves = 0;
+  for (std::size_t at = figure.find(kCurve); at != std::string::npos; at = figure.find(kCurve, at + 1), ++curves) {
+    const std::size_t begin = at + kCurve.size();
+    beginnings.insert(figure.substr(begin, figure.find(' ', begin) - begin));
+  }
+  EXPECT_EQ(curves, 4U);
+  EXPECT_EQ(beginnings.size(), 1U);
 }
 
 TEST_F(ReportTest, shows_the_longest_touch_over_time_and_its_loop) {
@@ -88,6 +102,38 @@ TEST_F(ReportTest, shows_how_sure_it_is_and_the_bound) {
   EXPECT_TRUE(says("The true force of 2,400 taxels is within the 68 % interval of dermis in"));
   EXPECT_TRUE(
       says("Cramer-Rao bound: 0.45 % of the force (median of 160 taxels of 20 frames); dermis scatters by 0.61 %"));
+  EXPECT_TRUE(says("is of all 2,400, not of these 160"));
+  evaluation.bound.median_bound = 0.001;
+  write(evaluation);
+  EXPECT_FALSE(says("lower than the bound")) << "the median error is above it";
+}
+
+TEST_F(ReportTest, explains_the_largest_error_in_its_tile) {
+  calibration::Evaluation evaluation = sample_evaluation(4, 4, 20);
+  calibration::JudgedTaxel heavy = evaluation.taxels.back();
+  heavy.frame = 20;
+  heavy.true_newtons = 48.0;
+  heavy.newtons.assign(4, 48.0F);
+  evaluation.taxels.push_back(heavy);
+  evaluation.taxels.push_back(heavy);
+  evaluation.taxels.back().taxel = 6;
+  evaluation.taxels.back().true_newtons = 1.0;
+  evaluation.taxels.back().newtons.assign(4, 1.3F);
+  summarise_sample(evaluation);
+  write(evaluation);
+  EXPECT_TRUE(says("r1c2 in frame 20: 1.3 N, in truth 1.0 N, beside 48 N"));
+  evaluation.taxels.back().newtons.front() = std::numeric_limits<float>::quiet_NaN();
+  write(evaluation);
+  EXPECT_TRUE(says("r1c2 in frame 20: no force, in truth 1.0 N, beside 48 N"));
+}
+
+TEST_F(ReportTest, says_where_its_frames_come_from) {
+  const calibration::Evaluation evaluation = paper_sample();
+  const Origin origin{"Simulated frames (sim:paper?seed=3).", {{"frames", "frames.csv, fnv1a64:0123"}}};
+  const std::string page = evaluation_page(evaluation, sample_model(evaluation), origin);
+  EXPECT_EQ(xml_error(page), "");
+  EXPECT_NE(page.find("<p>Simulated frames (sim:paper?seed=3).</p>"), std::string::npos);
+  EXPECT_NE(page.find("<th>frames</th><td>frames.csv, fnv1a64:0123</td>"), std::string::npos);
 }
 
 TEST_F(ReportTest, loads_nothing_from_elsewhere) {
@@ -146,7 +192,7 @@ TEST_F(ReportTest, says_where_an_estimator_gives_no_force) {
   summarise_sample(evaluation);
   EXPECT_EQ(write(evaluation), kAllFiles);
   EXPECT_TRUE(says("<b>no force</b>"));
-  EXPECT_TRUE(says("raw_lookup gives no force for 400 of 400; they are not drawn."));
+  EXPECT_TRUE(says("raw look-up gives no force for 400 of 400; they are not drawn."));
   EXPECT_TRUE(says("What reaches the upper edge includes taxels without any force."));
   EXPECT_TRUE(says("0.0 %</td>")) << "within 5 %";
 }

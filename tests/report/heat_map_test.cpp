@@ -71,15 +71,23 @@ double oklab_distance(const Linear& one, const Linear& other) {
 }
 
 TEST(SequentialColour, gets_lighter_in_even_steps) {
-  double before = lightness(sequential_colour(0.0));
-  EXPECT_LT(before, 20.0);
+  EXPECT_LT(lightness(sequential_colour(0.0)), 20.0);
+  double before = lightness(sequential_colour(0.01));
   for (int i = 1; i <= 32; ++i) {
-    const double now = lightness(sequential_colour(i / 32.0));
+    const double now = lightness(sequential_colour(0.01 + 0.99 * i / 32.0));
     EXPECT_GT(now - before, 1.2) << i;
     EXPECT_LT(now - before, 3.8) << i;
     before = now;
   }
   EXPECT_GT(before, 88.0);
+}
+
+TEST(SequentialColour, tells_the_first_percent_from_nothing_to_any_colour_vision) {
+  constexpr double kJustSeen = 0.02;
+  for (const auto& vision : kVisions) {
+    const double distance = oklab_distance(seen(vision, sequential_colour(0.0)), seen(vision, sequential_colour(0.01)));
+    EXPECT_GT(distance, 3.0 * kJustSeen) << vision.name;
+  }
 }
 
 TEST(SequentialColour, clamps_its_argument) {

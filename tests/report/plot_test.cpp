@@ -82,7 +82,7 @@ Plot hard_plot() {
   const std::vector<Point> points = {{1, 2}, {kNan, 3}, {5, kNan}, {10, kInfinity}, {20, -kInfinity}, {0, 0}, {50, 7}};
   plot.region("band", {{1, 1}, {50, 50}, {50, 40}});
   plot.reference("truth", points);
-  plot.curve("<b>", 0, points, 3.0);
+  plot.curve("<b>", 0, points);
   plot.cloud("dots", 1, points);
   plot.whiskers(2, points, points);
   plot.line("line", 3, points, 4);

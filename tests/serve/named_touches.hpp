@@ -40,7 +40,7 @@ inline recognition::Classes learned(recognition::LabelledFrames data) {
   const ArrayDescription array = touched_array();
   data.layout.arrays = {{"skin", kTouchRows, kTouchCols, 0, 1e3 * array.row_pitch_m, 1e3 * array.col_pitch_m}};
   data.layout.readings = array.taxel_count();
-  data.layout.least_reading = 0.01;
+  data.layout.quantity = Quantity::force;
   std::vector<std::size_t> all;
   for (std::size_t k = 0; k < data.labels.size(); ++k) all.push_back(k);
   const Result<recognition::LearningSet> set = recognition::LearningSet::create(data);

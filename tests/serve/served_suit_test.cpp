@@ -94,6 +94,26 @@ TEST(ServedSuit, opens_all_arrays_of_a_suit_where_they_sit) {
   EXPECT_EQ(suit->arrays[0].model, suit->arrays[1].model) << "a file that two arrays name is read once";
 }
 
+TEST(ServedSuit, puts_arrays_on_the_links_of_a_body) {
+  const ModelFolder folder;
+  write_bytes(folder.file("robot.urdf"),
+              "<robot name=\"r\"><link name=\"trunk\"/><link name=\"arm\"/><joint name=\"j\" type=\"revolute\">"
+              "<parent link=\"trunk\"/><child link=\"arm\"/><origin xyz=\"0 0 1\"/></joint></robot>");
+  const auto suit_on = [&](const std::string& link) {
+    write_bytes(folder.file("suit.toml"),
+                "[suit]\nbody = \"robot.urdf\"\n[[array]]\nname = \"sleeve\"\n"
+                "from = \"sim:contacts?rate=50\"\nmodel = \"model.safetensors\"\nlink = \"" +
+                    link + "\"\nbase_from_array = {translation_mm = [100, 0, 0]}\n");
+    return folder.file("suit.toml");
+  };
+  const Result<ServedSuit> suit = open_suit({.suit = suit_on("arm")});
+  ASSERT_TRUE(suit) << suit.error().message;
+  EXPECT_EQ(suit->arrays[0].surface.taxels()[0].position, (Vector3{0.1, 0.0, 1.0}));
+  ASSERT_NE(suit->body, nullptr);
+  EXPECT_EQ(suit->body->link_of(0), "arm");
+  EXPECT_EQ(refusal({.suit = suit_on("leg")}), "array 'sleeve': link: the body 'r' has no 'leg'");
+}
+
 TEST(ServedSuit, opens_the_arrays_of_a_recording_by_their_names) {
   const ModelFolder folder;
   const auto writer = recordings::SuitRecordingWriter::create(

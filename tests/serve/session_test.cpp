@@ -161,6 +161,23 @@ TEST(Session, streams_every_topic_of_all_arrays) {
   for (const std::string& topic : topics) EXPECT_FALSE(client.next_message(topic).bytes.empty()) << topic;
 }
 
+TEST(Session, moves_the_body_as_its_clients_say) {
+  const std::atomic<bool> never = false;
+  ServedSuit suit = small_suit({"sleeve"}, never);
+  Body body{"arm", {{"trunk"}, {"forearm"}}, {}};
+  body.joints.push_back({"slide", BodyJoint::Kind::sliding, 0, 1, {}, {1.0, 0.0, 0.0}});
+  suit.body =
+      std::make_shared<WornBody>(BodyParts{*make_body(std::move(body)), {}}, std::vector<WornBody::Carried>{{1, {}}});
+  Work work(session_of(std::move(suit), options_with()));
+  StreamClient client(work.port());
+  client.subscribe({"/tf"});
+  EXPECT_EQ(client.call("/body/joints", R"({"name": ["slide"], "position": [0.25]})"), "{}");
+  const json moved = await(client, "/tf", messages::transforms_type(), [](const json& message) {
+    return message["transforms"][0]["transform"]["translation"]["x"] == 0.25;
+  });
+  EXPECT_EQ(moved["transforms"][0]["child_frame_id"], "sleeve");
+}
+
 TEST(Session, takes_parameters_from_its_clients) {
   const std::atomic<bool> never = false;
   Work work(session_of(small_suit({"left", "right"}, never), options_with()));

@@ -46,7 +46,7 @@ recognition::Classes classes_named(const std::function<std::string(bool, bool)>&
   data.layout.arrays[1].first_column = kTaxels;
   data.layout.readings = 2 * kTaxels;
   data.layout.extras = 1;
-  data.layout.least_reading = recognition::kLeastNewtons;
+  data.layout.quantity = Quantity::force;
   for (std::size_t k = 0; k < 48; ++k) {
     const bool is_left = k % 2 == 0;
     const bool is_bent = k % 4 < 2;

@@ -2,37 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 // Usage: node browser_test.mjs path/to/dermis
 import assert from "node:assert/strict";
-import { after, before, describe, it } from "node:test";
-import { assertUnhurt, becomes, Bench, freePort, openBrowser, openPage, WAIT_MS } from "./harness.mjs";
+import { describe, it } from "node:test";
+import { assertUnhurt, becomes, bench, browser, freePort, openPage, shown, useBench, WAIT_MS } from "./harness.mjs";
 
-let bench;
-let browser;
-
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  browser = await openBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
+useBench();
 
 const loop = () => ["--from", "sim:contacts?rate=200", ...bench.model];
-
-/** Serves and shows for the time of a test. */
-async function shown(command, view, test) {
-  const server = await bench.serve("--port", "0", ...command);
-  try {
-    const page = await openPage(browser, `${server.url}#/${view}`);
-    await becomes(page, "live");
-    await test(page, server);
-    assertUnhurt(page);
-    await page.close();
-  } finally {
-    await server.stop();
-  }
-}
 
 async function eventually(page, check, argument) {
   await page.waitForFunction(check, argument, { polling: 50, timeout: WAIT_MS });

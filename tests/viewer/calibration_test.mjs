@@ -3,22 +3,10 @@
 // Usage: node calibration_test.mjs path/to/dermis
 import assert from "node:assert/strict";
 import { readdirSync, writeFileSync } from "node:fs";
-import { after, before, it } from "node:test";
-import { arrayToml, assertUnhurt, becomes, Bench, openBrowser, openPage, readCsv, WAIT_MS } from "./harness.mjs";
+import { it } from "node:test";
+import { arrayToml, assertUnhurt, becomes, bench, browser, openPage, readCsv, useBench, WAIT_MS } from "./harness.mjs";
 
-let bench;
-let browser;
-
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  writeFileSync(bench.path("palm.toml"), arrayToml("palm", 2, 3));
-  browser = await openBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
+useBench(() => writeFileSync(bench.path("palm.toml"), arrayToml("palm", 2, 3)));
 
 const part = (page, role) => page.locator(`[data-role=${role}]`);
 

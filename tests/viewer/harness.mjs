@@ -8,10 +8,13 @@ import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { createRequire } from "node:module";
+import { after, before } from "node:test";
 
 const { chromium } = createRequire(new URL("../npm/package.json", import.meta.url))("playwright-core");
 
 export const WAIT_MS = 60_000;
+/** As the tabs name them. */
+export const VIEWS = ["array", "time", "suit", "recognition", "health", "calibration"];
 
 /** An array.toml. */
 export function arrayToml(name, rows, cols) {
@@ -144,4 +147,35 @@ export async function becomes(page, connection) {
 
 export function assertUnhurt(page) {
   assert.deepEqual(page.failures, []);
+}
+
+/** Those of useBench(), during the tests of a file. */
+export let bench;
+export let browser;
+
+/** The tests of this file share a bench and a browser; `prepare()` adds to the bench what they need. */
+export function useBench(prepare = () => {}) {
+  before(async () => {
+    bench = new Bench(process.argv[2]);
+    prepare();
+    browser = await openBrowser();
+  });
+  after(async () => {
+    await browser?.close();
+    bench?.close();
+  });
+}
+
+/** Serves and shows for the time of a test. */
+export async function shown(command, view, test) {
+  const server = await bench.serve("--port", "0", ...command);
+  try {
+    const page = await openPage(browser, `${server.url}#/${view}`);
+    await becomes(page, "live");
+    await test(page, server);
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+  }
 }

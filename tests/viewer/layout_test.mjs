@@ -3,28 +3,16 @@
 // Usage: node layout_test.mjs path/to/dermis
 // Measures the boxes of all texts and controls of each view: nothing is cut, nothing lies over something else.
 import assert from "node:assert/strict";
-import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage } from "./harness.mjs";
+import { it } from "node:test";
+import { assertUnhurt, becomes, bench, browser, openPage, useBench, VIEWS } from "./harness.mjs";
 
-const VIEWS = ["array", "time", "suit", "recognition", "health", "calibration"];
 const SIZES = [
   { width: 390, height: 844 },
   { width: 1280, height: 720 },
   { width: 1920, height: 1080 },
 ];
 
-let bench;
-let browser;
-
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  browser = await openBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
+useBench();
 
 /** In the page: what is wrong with its boxes, a line each. */
 function faultsOfBoxes() {
@@ -81,9 +69,25 @@ function faultsOfBoxes() {
   });
   const map = document.querySelector(".map-panel:not([hidden]) .map-plot, .calibration-picture");
   if (map !== null && Math.min(map.clientWidth, map.clientHeight) < 150) faults.push(`the map has ${map.clientWidth}x${map.clientHeight} px`);
+  const { scrollHeight } = document.documentElement;
+  if (innerWidth > 700 && scrollHeight > innerHeight) faults.push(`the page is ${scrollHeight} px high`);
   if (document.documentElement.scrollWidth > innerWidth) faults.push(`the page is ${document.documentElement.scrollWidth} px wide`);
   return [...new Set(faults)];
 }
+
+/** Views with all that a user can bring into them. */
+const fill = {
+  array: async (page) => {
+    for (const role of ["show-centre", "show-pressure"]) await page.check(`[data-role=${role}]`);
+    await page.selectOption("[data-role=share]", "highest");
+    for (const select of await page.locator(".map-panel:visible select").all()) await select.selectOption("-1");
+    await page.click("[data-role=draw-region]");
+    await page.locator("[data-role=maps]").focus();
+    for (const key of ["ArrowDown", "ArrowDown", "Enter", "ArrowRight", "Enter"]) await page.keyboard.press(key);
+    await page.locator(".summary[data-region^=r]").waitFor();
+  },
+  time: (page) => page.click("[data-role=mark]"),
+};
 
 it("shows the whole guide to somebody with a telephone beside the mat", async () => {
   const server = await bench.serve("--port", "0", "--from", "sim:rehearsal?rate=100", ...bench.model);
@@ -118,6 +122,7 @@ for (const size of SIZES) {
         for (const view of VIEWS) {
           await page.locator(`[data-tab=${view}]`).click();
           await page.locator(`[data-view=${view}]`).waitFor();
+          await fill[view]?.(page);
           await page.waitForTimeout(400);
           const faults = await page.evaluate(faultsOfBoxes);
           if (faults.length > 0) found[view] = faults;

@@ -3,8 +3,8 @@
 // Usage: node recognition_test.mjs path/to/dermis
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
-import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage, WAIT_MS } from "./harness.mjs";
+import { it } from "node:test";
+import { bench, shown, useBench, WAIT_MS } from "./harness.mjs";
 
 const [ROWS, COLS] = [4, 5];
 const LIMITS = `[[zone]]
@@ -26,9 +26,6 @@ quantity = "total_force"
 limit_n = 1000
 `;
 
-let bench;
-let browser;
-
 /** Floats as numpy.save writes them. */
 function writeNpy(path, rows) {
   const header = Buffer.from(`{'descr': '<f4', 'fortran_order': False, 'shape': (${rows.length}, ${rows[0].length}), }\n`);
@@ -48,30 +45,12 @@ function learn() {
   bench.run("learn", "--frames", bench.path("frames.npy"), "--arrays", bench.path("arrays.csv"), "--labels", bench.path("labels.csv"), "--out", bench.path("classes.safetensors"));
 }
 
-before(async () => {
-  bench = new Bench(process.argv[2]);
+useBench(() => {
   learn();
   writeFileSync(bench.path("threats.toml"), LIMITS);
-  browser = await openBrowser();
 });
 
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
-
-async function shown(view, test, ...options) {
-  const server = await bench.serve("--port", "0", "--from", "sim:contacts?rate=200", ...bench.model, ...options);
-  try {
-    const page = await openPage(browser, `${server.url}#/${view}`);
-    await becomes(page, "live");
-    await test(page);
-    assertUnhurt(page);
-    await page.close();
-  } finally {
-    await server.stop();
-  }
-}
+const showContacts = (view, test, ...options) => shown(["--from", "sim:contacts?rate=200", ...bench.model, ...options], view, test);
 
 const served = () => ["--classes", bench.path("classes.safetensors"), "--threats", bench.path("threats.toml")];
 
@@ -80,7 +59,7 @@ async function eventually(page, check, argument) {
 }
 
 it("shows a bar for each class, the answer, and unknown with its reason", async () => {
-  await shown("recognition", async (page) => {
+  await showContacts("recognition", async (page) => {
     await eventually(page, () => ["upper", "left", "right"].includes(document.querySelector("[data-role=answer]").textContent));
     await eventually(page, () => {
       const bars = [...document.querySelectorAll("[data-role=class-bars] li")];
@@ -99,7 +78,7 @@ it("shows a bar for each class, the answer, and unknown with its reason", async 
 });
 
 it("warns of a threat above every view, logs it, and resets one that is latched", async () => {
-  await shown("time", async (page) => {
+  await showContacts("time", async (page) => {
     const banner = page.locator("[data-role=threat-banner]");
     await banner.waitFor();
     assert.match(await banner.textContent(), /edge \(small, edge\): taxel pressure (was )?\d+\.\d kPa, limit 5\.0 kPa/);
@@ -113,7 +92,7 @@ it("warns of a threat above every view, logs it, and resets one that is latched"
 });
 
 it("frames the zones of limits on the map of forces", async () => {
-  await shown("array", async (page) => {
+  await showContacts("array", async (page) => {
     const zone = page.locator("[data-zone=edge]");
     await zone.waitFor({ state: "attached" });
     assert.equal(await page.locator(".zone").count(), 1);
@@ -125,7 +104,7 @@ it("frames the zones of limits on the map of forces", async () => {
 });
 
 it("fits on a telephone", async () => {
-  await shown("recognition", async (page) => {
+  await showContacts("recognition", async (page) => {
     await page.setViewportSize({ width: 390, height: 844 });
     await page.locator("[data-role=threat-banner]").waitFor();
     assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= 390);
@@ -133,7 +112,7 @@ it("fits on a telephone", async () => {
 });
 
 it("says how classes and limits are served where there are none", async () => {
-  await shown("recognition", async (page) => {
+  await showContacts("recognition", async (page) => {
     await page.getByText("dermis serve --classes").waitFor();
     await page.getByText("dermis serve --threats").waitFor();
     assert.ok(await page.locator("[data-role=threat-banner]").isHidden());

@@ -18,6 +18,30 @@ export interface Limit {
   zone: Zone | null;
 }
 
+/** Where something is: metres, and a rotation as x, y, z, w. */
+export interface PlacedPose {
+  position: [number, number, number];
+  rotation: [number, number, number, number];
+}
+
+/** What is seen of a link. `size`: sides of a box; radius and length of a cylinder; radius of a sphere; scale of a mesh. */
+export interface BodyVisual {
+  pose: PlacedPose;
+  solid: "box" | "cylinder" | "sphere" | "mesh";
+  size: number[];
+  /** Of a mesh: where the server has it; missing where it does not give it. */
+  file?: string;
+  /** Of a mesh: as the description names it. */
+  name?: string;
+  rgba?: [number, number, number, number];
+}
+
+/** The body that wears the suit; its links are where they are now. */
+export interface BodyDescription {
+  name: string;
+  links: { name: string; pose: PlacedPose; visuals: BodyVisual[] }[];
+}
+
 /** One array, as /suit.json describes it. */
 export interface ArrayDescription {
   name: string;
@@ -29,6 +53,10 @@ export interface ArrayDescription {
   full_scale_n: number;
   positions: [number, number, number][];
   normals: [number, number, number][];
+  /** Of the array's frame in the suit's, as the positions have it. */
+  pose: PlacedPose;
+  /** Of the body, which carries it; missing where there is none. */
+  link?: string;
   /** No taxel has a force yet: there are counts alone. */
   calibrated: boolean;
   /** What its touches are named; missing where they are not. */
@@ -48,6 +76,7 @@ export interface ArraySetup {
 export interface SuitDescription {
   name: string;
   arrays: ArrayDescription[];
+  body?: BodyDescription;
   /** Where a user has to describe the array first. */
   setup?: ArraySetup;
 }

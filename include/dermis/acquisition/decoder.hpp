@@ -67,8 +67,8 @@ class Decoder {
   /// What bytes that hold no frame lack, and the mend; empty where nothing is known.
   [[nodiscard]] virtual std::string advice() const { return {}; }
 
-  /// The name of the protocol that "auto" has recognised; empty until then, and for decoders of one protocol.
-  [[nodiscard]] virtual std::string_view recognised() const noexcept { return {}; }
+  /// The name of the protocol that "auto" has detected; empty until then, and for decoders of one protocol.
+  [[nodiscard]] virtual std::string_view detected_protocol() const noexcept { return {}; }
 };
 
 }  // namespace dermis::acquisition

@@ -38,6 +38,6 @@ struct ProtocolOptions {
 [[nodiscard]] Result<std::unique_ptr<Encoder>> make_encoder(const ProtocolOptions& options);
 
 /// Name of the protocol whose decoder finds the most frames in the bytes; empty if none finds any.
-[[nodiscard]] std::string recognise_protocol(std::span<const std::uint8_t> bytes);
+[[nodiscard]] std::string detect_protocol(std::span<const std::uint8_t> bytes);
 
 }  // namespace dermis::acquisition

@@ -129,6 +129,7 @@ struct TactileExample {
   std::vector<double> true_newtons;
 };
 
+/// What evaluate() found. Many members: reports show each of them.
 struct Evaluation {
   ArrayDescription array;
   std::size_t frames = 0;  ///< Labelled frames judged.

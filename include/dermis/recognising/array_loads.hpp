@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/core/array_description.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/operation/operation.hpp"
@@ -55,6 +56,8 @@ class ArrayLoads {
   /// Whether the frame belongs to the tare; its loads are 0.
   [[nodiscard]] bool is_tare() const noexcept { return is_tare_; }
   [[nodiscard]] const std::vector<float>& loads() const noexcept { return loads_; }
+  /// What a load is: a force by a model, else a reading, whatever the source gives.
+  [[nodiscard]] Quantity quantity() const noexcept { return work_ ? Quantity::force : Quantity::counts; }
   [[nodiscard]] Nanos time() const noexcept { return raw_.time; }
 
   /// The array as far as it is known: with the pitch by a model; empty where only the first frame will tell.

@@ -59,12 +59,11 @@ class LoadSource {
   [[nodiscard]] std::vector<std::string> describe_troubles() const;
 
  private:
-  LoadSource(ArrayLoads first, bool has_forces);
+  explicit LoadSource(ArrayLoads first);
 
   ArrayLoads first_;
   std::vector<HeldLoads> others_;
   std::optional<FurtherReadings> further_;
-  bool has_forces_;
   sources::SourceName from_;
   std::vector<float> loads_;
 };

@@ -42,19 +42,19 @@ struct SensedArray {
 /// Whether so many frames a second can be, or 0: not known.
 [[nodiscard]] bool is_rate(double rate_hz) noexcept;
 
-inline constexpr double kLeastNewtons = 0.01;  ///< Layout::least_reading of forces [N].
+inline constexpr double kLeastNewtons = 0.01;  ///< The least force that means anything [N].
 
 /// How a frame is laid out, and what its numbers mean.
 struct Layout {
-  std::vector<SensedArray> arrays;  ///< 1 ... 64, that do not overlap.
-  std::size_t readings = 0;         ///< Of a frame, of all arrays.
-  std::size_t extras = 0;           ///< Further readings beside a frame, such as joint angles.
-  double rate_hz = 0.0;             ///< Frames a second, 0.001 ... 1e6; 0 where it is not known.
-  double least_reading =
-      1.0;  ///< The least reading that means anything, > 0: 1 count, or kLeastNewtons. Logarithms begin here.
+  std::vector<SensedArray> arrays;       ///< 1 ... 64, that do not overlap.
+  std::size_t readings = 0;              ///< Of a frame, of all arrays.
+  std::size_t extras = 0;                ///< Further readings beside a frame, such as joint angles.
+  double rate_hz = 0.0;                  ///< Frames a second, 0.001 ... 1e6; 0 where it is not known.
+  Quantity quantity = Quantity::counts;  ///< What a reading is; counts also where nobody has said it.
 
-  /// Whether the readings are newtons, not counts or whatever else a device gives.
-  [[nodiscard]] bool has_forces() const noexcept { return least_reading == kLeastNewtons; }
+  [[nodiscard]] bool has_forces() const noexcept { return quantity == Quantity::force; }
+  /// The least reading that means anything: kLeastNewtons, or 1 of any other quantity. Logarithms begin here.
+  [[nodiscard]] double least_reading() const noexcept { return has_forces() ? kLeastNewtons : 1.0; }
 
   /// What is wrong with it, as "arrays: ...".
   [[nodiscard]] Status validate() const;

@@ -22,11 +22,12 @@ struct Figure {
   std::size_t columns = 1;  ///< Panels beside each other, where there is room.
 };
 
-/// A large number with its name above and a remark below.
+/// A large number with its name above and remarks below.
 struct Tile {
   std::string name;
   std::string value;
   std::string note;
+  std::string explanation{};  ///< Where such a number comes from; may be empty.
 };
 
 /// A name and what is to be said about it.

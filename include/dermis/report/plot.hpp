@@ -56,13 +56,14 @@ class Plot {
   void region(std::string name, std::vector<Point> outline);
   /// A neutral line to compare with.
   void reference(std::string name, std::vector<Point> points);
-  /// Marks joined by lines, the whole series shifted to the right by `shift` px.
-  void curve(std::string name, std::size_t style, std::vector<Point> points, double shift = 0.0);
+  /// Marks joined by lines.
+  void curve(std::string name, std::size_t style, std::vector<Point> points);
   /// A line with up to `marks` marks, evenly along the x axis: for curves of many points.
   void line(std::string name, std::size_t style, std::vector<Point> points, std::size_t marks = 0);
   /// Small dots.
   void cloud(std::string name, std::size_t style, std::vector<Point> points);
-  /// Vertical lines from each of `from` to `to` at the same place, ending in a bar.
+  /// Vertical lines from each of `from` to `to` at the same place, ending in a bar; all moved to the right by `shift`
+  /// px.
   void whiskers(std::size_t style, std::vector<Point> from, std::vector<Point> to, double shift = 0.0);
   /// A number above the plot at `x`: of how many values the marks at this x are made.
   void count(double x, std::size_t values);

@@ -31,4 +31,10 @@ namespace dermis::report {
 /// "1 frame", "12 frames"
 [[nodiscard]] std::string counted(std::size_t count, const std::string& noun);
 
+/// The name of an estimator for people: "raw_lookup" is "raw look-up".
+[[nodiscard]] std::string estimator_words(std::string name);
+
+/// "+-" as its sign.
+[[nodiscard]] std::string with_signs(std::string text);
+
 }  // namespace dermis::report

@@ -14,6 +14,7 @@
 #include "dermis/live/playback.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recognition/classes.hpp"
+#include "dermis/serve/worn_body.hpp"
 #include "dermis/sources/guide_voice.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "dermis/threats/threat_limits.hpp"
@@ -30,7 +31,7 @@ struct ServedArray {
   std::unique_ptr<FrameSource> source;
   std::shared_ptr<const pipeline::Model> model;
   ArraySurface surface;
-  Pose suit_from_array{};
+  Pose suit_from_array{};        ///< With all joints of a body at 0, as `surface` has it.
   ArrayDescription description;  ///< As calibration takes it: parts of the circuit may still be unknown.
   std::string model_path{};      ///< Of the model or its array.toml: a calibration saves into that folder.
   std::optional<recognition::Classes> classes{};  ///< What touches it are named by; learned from newtons.
@@ -43,6 +44,7 @@ struct ServedSuit {
   std::optional<recognition::Classes> classes{};           ///< What touches several of them together, or one beside
                                                            ///< further readings; learned from newtons.
   std::optional<dermis::threats::ThreatLimits> threats{};  ///< Zones name arrays as `arrays` does.
+  std::shared_ptr<WornBody> body{};                        ///< What wears it; null: nothing is known of it.
   std::unique_ptr<live::Playback> playback{};  ///< Of the recording from which all sources come; null: they are live.
   /// Heard by the simulated hands among the sources. Not null.
   std::shared_ptr<sources::GuideVoice> guide = std::make_shared<sources::GuideVoice>();

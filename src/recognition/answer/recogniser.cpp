@@ -11,7 +11,8 @@
 #include "dermis/files/text.hpp"
 #include "recognition/answer/rank_table.hpp"
 #include "recognition/features/segment_features.hpp"
-#include "recognition/learning/standardisation.hpp"
+#include "recognition/features/standardisation.hpp"
+#include "recognition/matrix.hpp"
 
 namespace dermis::recognition {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "recognition/features/load.hpp"
+#include "recognition/load.hpp"
 
 namespace dermis::recognition {
 namespace {

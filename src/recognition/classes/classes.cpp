@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "recognition/classes/names.hpp"
 #include "recognition/features/feature_columns.hpp"
+#include "recognition/names.hpp"
 
 namespace dermis::recognition {
 namespace {

@@ -3,6 +3,7 @@
 #include "dermis/recognition/classes_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -23,6 +24,7 @@ using Shape = std::vector<std::size_t>;
 
 constexpr const char* kFormat = "dermis classes 1";
 constexpr std::size_t kMostColumns = 65536;
+constexpr std::array kQuantities{"counts", "pressure", "force"};  // in the order of Quantity
 
 Json to_json(const Layout& layout) {
   Json arrays = Json::array();
@@ -38,7 +40,8 @@ Json to_json(const Layout& layout) {
           {"readings", layout.readings},
           {"extras", layout.extras},
           {"rate_hz", layout.rate_hz},
-          {"least_reading", layout.least_reading}};
+          {"quantity", kQuantities.at(static_cast<std::size_t>(layout.quantity))},
+          {"least_reading", layout.least_reading()}};  // by which readers before `quantity` know forces
 }
 
 /// Takes values out of JSON objects; remembers whether one was missing or of another type.
@@ -69,6 +72,14 @@ class JsonReader {
     return {};
   }
 
+  /// The place of a text among `names`.
+  std::size_t choice(const Json& object, const char* key, std::span<const char* const> names) {
+    const auto found = std::find(names.begin(), names.end(), text(object, key));
+    if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+    is_good_ = false;
+    return 0;
+  }
+
   /// Empty where there is no array.
   Json array(const Json& object, const char* key) {
     const Json* const value = find(object, key);
@@ -88,6 +99,13 @@ class JsonReader {
   bool is_good_ = true;
 };
 
+/// Files before `quantity` tell forces by the least reading that means anything.
+Quantity quantity_from(const Json& json, JsonReader& reader) {
+  const double least_reading = reader.number(json, "least_reading");
+  if (!json.contains("quantity")) return least_reading == kLeastNewtons ? Quantity::force : Quantity::counts;
+  return static_cast<Quantity>(reader.choice(json, "quantity", kQuantities));
+}
+
 Layout layout_from(const Json& json, JsonReader& reader) {
   Layout layout;
   for (const Json& array : reader.array(json, "arrays")) {
@@ -101,7 +119,7 @@ Layout layout_from(const Json& json, JsonReader& reader) {
   layout.readings = reader.count(json, "readings");
   layout.extras = reader.count(json, "extras");
   layout.rate_hz = reader.number(json, "rate_hz");
-  layout.least_reading = reader.number(json, "least_reading");
+  layout.quantity = quantity_from(json, reader);
   return layout;
 }
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <numeric>
 
-#include "recognition/evaluation/calibration_error.hpp"
-#include "recognition/learning/standardisation.hpp"
+#include "recognition/answer/calibration_error.hpp"
+#include "recognition/features/standardisation.hpp"
 
 namespace dermis::recognition {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "dermis/recognition/recogniser.hpp"
-#include "recognition/evaluation/calibration_error.hpp"
+#include "recognition/answer/calibration_error.hpp"
 
 namespace dermis::recognition {
 

@@ -12,7 +12,7 @@
 
 #include "dermis/files/npy.hpp"
 #include "dermis/files/text.hpp"
-#include "recognition/classes/names.hpp"
+#include "recognition/names.hpp"
 
 namespace dermis::recognition {
 namespace {

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <set>
 
-#include "recognition/features/load.hpp"
+#include "recognition/load.hpp"
 
 namespace dermis::recognition {
 namespace {

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <numbers>
 
 namespace dermis::recognition {
 namespace {
@@ -103,13 +102,7 @@ FormBlock::FormBlock(const Lattice& lattice, double least_reading)
       coarse_(lattice, kCoarseBlur),
       sorted_(lattice.taxels()),
       blurred_(lattice.taxels()),
-      blurred_more_(lattice.taxels()) {
-  for (std::size_t i = 0; i < kDirections; ++i) {
-    const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(kDirections);
-    cosine_[i] = std::cos(angle);
-    sine_[i] = std::sin(angle);
-  }
-}
+      blurred_more_(lattice.taxels()) {}
 
 constexpr std::array<FeatureRow<FormBlock, ImageAnalysis>, 11> FormBlock::kRows{{
     {{"force and peak", FeatureAspect::force, 2},
@@ -195,13 +188,7 @@ void FormBlock::put_directions(const ImageAnalysis& analysis, std::span<double> 
   }
   const double scale = sum > 0.0 ? 1.0 / sum : 0.0;
   for (std::size_t harmonic = 1; harmonic <= out.size(); ++harmonic) {
-    double real = 0.0;
-    double imaginary = 0.0;
-    for (std::size_t i = 0; i < kDirections; ++i) {
-      real += histogram[i] * cosine_[harmonic * i % kDirections];
-      imaginary += histogram[i] * sine_[harmonic * i % kDirections];
-    }
-    out[harmonic - 1] = scale * std::sqrt(real * real + imaginary * imaginary);
+    out[harmonic - 1] = scale * std::sqrt(directions_.power(histogram, harmonic));
   }
 }
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "recognition/features/circle.hpp"
 #include "recognition/features/connected_areas.hpp"
 #include "recognition/features/feature_group.hpp"
 #include "recognition/features/image_analysis.hpp"
@@ -36,8 +37,7 @@ class FormBlock {
   ConnectedAreas areas_;
   GaussianBlur medium_;
   GaussianBlur coarse_;
-  std::array<double, kDirections> cosine_{};
-  std::array<double, kDirections> sine_{};
+  Circle<kDirections> directions_;
   std::vector<double> sorted_;
   std::vector<double> blurred_;
   std::vector<double> blurred_more_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "recognition/matrix.hpp"
+
 namespace dermis::recognition {
 namespace {
 
@@ -32,17 +34,11 @@ double sample(const Lattice& lattice, std::span<const double> image, double row,
 }  // namespace
 
 PolarBlock::PolarBlock() {
-  const Eigen::Index angles = ring_.size();
-  for (Eigen::Index i = 0; i < angles; ++i) {
-    const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(angles);
-    cosine_[i] = std::cos(angle);
-    sine_[i] = std::sin(angle);
-  }
-  for (Eigen::Index harmonic = 0; harmonic < real_.rows(); ++harmonic) {
-    const double scale = (harmonic > 0 ? std::numbers::sqrt2 : 1.0) / static_cast<double>(angles);
-    for (Eigen::Index i = 0; i < angles; ++i) {
-      real_(harmonic, i) = scale * cosine_[harmonic * i % angles];
-      imaginary_(harmonic, i) = scale * sine_[harmonic * i % angles];
+  for (std::size_t harmonic = 0; harmonic < kHarmonics; ++harmonic) {
+    const double scale = (harmonic > 0 ? std::numbers::sqrt2 : 1.0) / static_cast<double>(kAngles);
+    for (std::size_t i = 0; i < kAngles; ++i) {
+      real_(index(harmonic), index(i)) = scale * angles_.cosine(harmonic * i);
+      imaginary_(index(harmonic), index(i)) = scale * angles_.sine(harmonic * i);
     }
   }
 }
@@ -54,9 +50,9 @@ void PolarBlock::write(const ImageAnalysis& analysis, std::span<double> out) {
   for (std::size_t ring = 0; ring < kRings; ++ring) {
     const double share = (static_cast<double>(ring) + 0.5) / static_cast<double>(kRings);
     const double radius = share * kOuterRadius * moments.radius;
-    for (Eigen::Index i = 0; i < ring_.size(); ++i) {
-      ring_[i] = sample(lattice, analysis.root(), (moments.row + radius * sine_[i]) / lattice.row_step,
-                        (moments.col + radius * cosine_[i]) / lattice.col_step);
+    for (std::size_t i = 0; i < kAngles; ++i) {
+      ring_[index(i)] = sample(lattice, analysis.root(), (moments.row + radius * angles_.sine(i)) / lattice.row_step,
+                               (moments.col + radius * angles_.cosine(i)) / lattice.col_step);
     }
     Eigen::Map<Eigen::Array<double, kHarmonics, 1>> sizes(out.data() + ring * kHarmonics);
     sizes = ((real_ * ring_).array().square() + (imaginary_ * ring_).array().square()).sqrt();

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "recognition/features/circle.hpp"
 #include "recognition/features/feature_group.hpp"
 #include "recognition/features/image_analysis.hpp"
 
@@ -28,8 +29,7 @@ class PolarBlock {
   static constexpr std::size_t kAngles = 32;
   static constexpr std::size_t kHarmonics = 7;  ///< 0 to 6
 
-  Eigen::Matrix<double, kAngles, 1> cosine_;
-  Eigen::Matrix<double, kAngles, 1> sine_;
+  Circle<kAngles> angles_;
   Eigen::Matrix<double, kHarmonics, kAngles> real_;  ///< Of the Fourier components.
   Eigen::Matrix<double, kHarmonics, kAngles> imaginary_;
   Eigen::Matrix<double, kAngles, 1> ring_;

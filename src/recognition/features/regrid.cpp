@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "recognition/features/load.hpp"
+#include "recognition/load.hpp"
 
 namespace dermis::recognition {
 namespace {

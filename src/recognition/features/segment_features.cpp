@@ -9,8 +9,8 @@
 #include <numeric>
 #include <utility>
 
-#include "recognition/features/load.hpp"
 #include "recognition/features/pose_block.hpp"
+#include "recognition/load.hpp"
 
 namespace dermis::recognition {
 namespace {
@@ -85,7 +85,7 @@ SegmentFeatures::SegmentFeatures(const Layout& examples, const Layout& source, b
   assert(examples.arrays.size() == source.arrays.size() && examples.extras == source.extras);
   const std::size_t most = resampled_count(most_frames, source_frames_per_frame_);
   for (std::size_t i = 0; i < examples.arrays.size(); ++i) {
-    arrays_.emplace_back(examples.arrays[i], source.arrays[i], examples.least_reading, most);
+    arrays_.emplace_back(examples.arrays[i], source.arrays[i], examples.least_reading(), most);
   }
   force_.reserve(most);
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace dermis::recognition {
@@ -102,11 +101,6 @@ void FrameSeries::resize(std::size_t frames) {
 
 TimeBlock::TimeBlock(double least_reading, std::size_t most_frames) : least_reading_(least_reading) {
   for (auto* const values : {&force_, &slope_, &signal_}) values->reserve(most_frames);
-  for (std::size_t i = 0; i < kPeriod; ++i) {
-    const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(kPeriod);
-    cosine_[i] = std::cos(angle);
-    sine_[i] = std::sin(angle);
-  }
 }
 
 void TimeBlock::scale(const FrameSeries& series) {
@@ -227,18 +221,12 @@ void TimeBlock::put_changes(const FrameSeries& series, std::span<double> out) co
 /// Root of the shares of power in four bands.
 void TimeBlock::put_spectrum(std::span<const double> signal, std::span<double> out) const {
   constexpr std::array<std::size_t, 5> kBands{1, 3, 6, 12, 33};  // where each begins, and the end
-  const std::size_t points = std::min(signal.size(), kPeriod);
+  const std::span<const double> points = signal.first(std::min(signal.size(), kPeriod));
   double sum = 0.0;
   for (std::size_t band = 0; band < out.size(); ++band) {
     out[band] = 0.0;
     for (std::size_t harmonic = kBands[band]; harmonic < kBands[band + 1]; ++harmonic) {
-      double real = 0.0;
-      double imaginary = 0.0;
-      for (std::size_t i = 0; i < points; ++i) {
-        real += signal[i] * cosine_[harmonic * i % kPeriod];
-        imaginary += signal[i] * sine_[harmonic * i % kPeriod];
-      }
-      out[band] += real * real + imaginary * imaginary;
+      out[band] += period_.power(points, harmonic);
     }
     sum += out[band];
   }

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "recognition/features/circle.hpp"
 #include "recognition/features/feature_group.hpp"
 
 namespace dermis::recognition {
@@ -53,8 +54,7 @@ class TimeBlock {
   std::vector<double> force_;  ///< Over its largest.
   std::vector<double> slope_;  ///< Differences of force_.
   std::vector<double> signal_;
-  std::array<double, kPeriod> cosine_{};
-  std::array<double, kPeriod> sine_{};
+  Circle<kPeriod> period_;
 };
 
 }  // namespace dermis::recognition

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "recognition/learning/standardisation.hpp"
+#include "recognition/features/standardisation.hpp"
 
 /// The linear discriminant with a shrunken covariance: docs/recognition.md, eqs. (1) to (3).
 namespace dermis::recognition {

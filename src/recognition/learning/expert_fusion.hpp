@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "recognition/learning/standardisation.hpp"
+#include "recognition/matrix.hpp"
 
 /// One answer from those of several experts: docs/recognition.md, eqs. (4) and (5).
 namespace dermis::recognition {

@@ -10,10 +10,8 @@
 #include <utility>
 
 #include "dermis/recognition/stream_recogniser.hpp"
-#include "recognition/classes/names.hpp"
 #include "recognition/features/aspects.hpp"
 #include "recognition/features/feature_columns.hpp"
-#include "recognition/features/load.hpp"
 #include "recognition/features/segment_features.hpp"
 #include "recognition/learning/confused_pair.hpp"
 #include "recognition/learning/discriminant.hpp"
@@ -22,6 +20,8 @@
 #include "recognition/learning/folds.hpp"
 #include "recognition/learning/learning_judgement.hpp"
 #include "recognition/learning/unknown_learning.hpp"
+#include "recognition/load.hpp"
+#include "recognition/names.hpp"
 
 namespace dermis::recognition {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "recognition/evaluation/calibration_error.hpp"
+#include "recognition/answer/calibration_error.hpp"
 
 namespace dermis::recognition {
 namespace {

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import type { Contact, ContactsFrame } from "../messages/contacts";
+import { type Contact, ContactPhase, type ContactsFrame } from "../messages/contacts";
 import { ForceHistory } from "./force_history";
 
 /** So many contacts of an array at once have a colour, a trail and a line in the plot. */
 export const SLOTS = 8;
+/** Two seconds. */
 const TRAIL_POINTS = 48;
 const TRAIL_STEP_S = 1 / 24;
 
-/** Where a contact has been in the last two seconds. */
+/** Where something has been: the last so many points, 24 a second. */
 export class Trail {
-  readonly #xs = new Float32Array(TRAIL_POINTS);
-  readonly #ys = new Float32Array(TRAIL_POINTS);
+  readonly #xs: Float32Array;
+  readonly #ys: Float32Array;
   #count = 0;
   #lastS = -Infinity;
+
+  constructor(points = TRAIL_POINTS) {
+    this.#xs = new Float32Array(points);
+    this.#ys = new Float32Array(points);
+  }
 
   clear(): void {
     this.#count = 0;
@@ -21,24 +27,25 @@ export class Trail {
   }
 
   add(stampS: number, x: number, y: number): void {
+    if (stampS < this.#lastS) this.clear();
     if (stampS - this.#lastS < TRAIL_STEP_S) return;
-    this.#xs[this.#count % TRAIL_POINTS] = x;
-    this.#ys[this.#count % TRAIL_POINTS] = y;
+    this.#xs[this.#count % this.#xs.length] = x;
+    this.#ys[this.#count % this.#ys.length] = y;
     this.#count += 1;
     this.#lastS = stampS;
   }
 
   get length(): number {
-    return Math.min(this.#count, TRAIL_POINTS);
+    return Math.min(this.#count, this.#xs.length);
   }
 
   /** From the oldest, 0, on. */
   x(index: number): number {
-    return this.#xs[(this.#count - this.length + index) % TRAIL_POINTS]!;
+    return this.#xs[(this.#count - this.length + index) % this.#xs.length]!;
   }
 
   y(index: number): number {
-    return this.#ys[(this.#count - this.length + index) % TRAIL_POINTS]!;
+    return this.#ys[(this.#count - this.length + index) % this.#xs.length]!;
   }
 }
 
@@ -53,7 +60,9 @@ export class ContactSlot {
 export class ContactSlots {
   readonly slots: readonly ContactSlot[] = Array.from({ length: SLOTS }, () => new ContactSlot());
 
-  add(frame: ContactsFrame): void {
+  /** The contacts that began with this frame. */
+  add(frame: ContactsFrame): number[] {
+    const begun: number[] = [];
     for (const slot of this.slots) {
       const contact = slot.id === 0 ? undefined : find(frame, slot.id);
       if (contact === undefined) {
@@ -62,7 +71,12 @@ export class ContactSlots {
         slot.history.add(frame.stampS, NaN);
       }
     }
-    for (let index = 0; index < frame.count; ++index) this.#update(frame.stampS, frame.contacts[index]!);
+    for (let index = 0; index < frame.count; ++index) {
+      const contact = frame.contacts[index]!;
+      if (contact.phase === ContactPhase.onset && this.indexOf(contact.id) < 0) begun.push(contact.id);
+      this.#update(frame.stampS, contact);
+    }
+    return begun;
   }
 
   /** -1: the contact has none. */

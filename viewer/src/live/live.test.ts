@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { describe, expect, it } from "vitest";
-import { Contact, ContactsFrame } from "../messages/contacts";
+import { Contact, ContactPhase, ContactsFrame } from "../messages/contacts";
 import { ContactSlots, SLOTS } from "./contact_slots";
+import { EventLog } from "./event_log";
 import { BIN_S, BINS, binOf, ForceHistory } from "./force_history";
+import type { ArrayDescription } from "../suit";
+import { regionBetween, regionName } from "./region_force";
 
 function frame(stampS: number, ids: number[]): ContactsFrame {
   const result = new ContactsFrame();
@@ -48,6 +51,27 @@ describe("the history of a force", () => {
   });
 });
 
+describe("the log of events", () => {
+  it("forgets at a rewind what the recording will bring again, and keeps the marks of the user", () => {
+    const log = new EventLog();
+    log.add("contact", 1, "contact 1");
+    log.mark(8);
+    log.add("contact", 9, "contact 2");
+    log.rewind(5);
+    expect(log.events.map(({ words }) => words)).toEqual(["contact 1", "mark 1"]);
+    log.mark(6);
+    expect(log.events.at(-1)).toEqual({ kind: "mark", atS: 6, words: "mark 2", array: "" });
+  });
+});
+
+describe("a region", () => {
+  it("lies between two taxels, in whatever order they were drawn", () => {
+    const array = { name: "a", rows: 4, cols: 5 } as ArrayDescription;
+    expect(regionBetween(array, 13, 6)).toEqual({ array: "a", rows: [1, 2], cols: [1, 3] });
+    expect(regionName(regionBetween(array, 8, 11))).toBe("r1c1 \u2013 r2c3");
+  });
+});
+
 describe("the slots of contacts", () => {
   it("stay with a contact for as long as it lasts", () => {
     const slots = new ContactSlots();
@@ -69,6 +93,14 @@ describe("the slots of contacts", () => {
     expect([trail.x(0), trail.x(1)]).toEqual([1, Math.fround(1.1)]);
     slots.add(frame(1.2, []));
     expect(trail.length).toBe(0);
+  });
+
+  it("tell which contacts began, and not those that were there before", () => {
+    const slots = new ContactSlots();
+    const first = frame(1, [5, 6]);
+    first.contacts[1]!.phase = ContactPhase.held;
+    expect(slots.add(first)).toEqual([5]);
+    expect(slots.add(frame(1.1, [5, 6, 7]))).toEqual([7]);
   });
 
   it("are given to so many and no more", () => {

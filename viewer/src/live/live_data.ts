@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { ContactsFrame, readContacts, readContactsArray } from "../messages/contacts";
+import { ContactPhase, ContactsFrame, readContacts, readContactsArray } from "../messages/contacts";
 import { type HealthStatus, type Statistics, readHealth, readStatistics } from "../messages/statistics";
 import { Signal } from "../signal";
 import type { Stream } from "../stream/stream";
 import type { Suit } from "../suit";
-import { readThreat } from "../messages/threat";
-import { ContactSlots } from "./contact_slots";
+import { readThreat, stands, type Threat } from "../messages/threat";
+import { ContactSlots, Trail } from "./contact_slots";
+import { EventLog } from "./event_log";
 import { ForceHistory } from "./force_history";
+import { RegionForce } from "./region_force";
 import { ThreatBoard } from "./threat_board";
+
+const CENTRE_POINTS = 240;
 
 /** What is known of one array, whatever is shown. */
 export class ArrayLive {
@@ -17,6 +21,22 @@ export class ArrayLive {
   version = 0;
   readonly total = new ForceHistory();
   readonly slots = new ContactSlots();
+  /** Where the centre of pressure has been in the last ten seconds, as long as something touches. */
+  readonly centre = new Trail(CENTRE_POINTS);
+
+  /** The force of each contact, at its place: what /contacts tells of the suit, in the plane of the array. */
+  addCentre(): void {
+    let [force, x, y] = [0, 0, 0];
+    for (let index = 0; index < this.contacts.count; ++index) {
+      const contact = this.contacts.contacts[index]!;
+      if (contact.phase === ContactPhase.release) continue;
+      force += contact.forceN;
+      x += contact.forceN * contact.x;
+      y += contact.forceN * contact.y;
+    }
+    if (force > 0) this.centre.add(this.contacts.stampS, x / force, y / force);
+    else this.centre.clear();
+  }
 }
 
 /** Messages that wait for the end of a pause: a minute of a suit. */
@@ -28,19 +48,25 @@ export class LiveData {
   arrays: ArrayLive[] = [];
   readonly statistics = new Signal<Statistics | undefined>(undefined);
   readonly threats = new ThreatBoard();
+  readonly events = new EventLog();
+  readonly region: RegionForce;
   readonly health = new Signal<readonly HealthStatus[]>([]);
   /** Time of the newest frame of any array. */
   latestS = 0;
   version = 0;
   #names: string[] = [];
+  #tare: unknown;
   readonly #held: DataView[] = [];
 
   constructor(stream: Stream, suit: Suit, paused: Signal<boolean>) {
+    this.region = new RegionForce(stream);
     suit.description.follow(({ arrays }) => this.#restart(arrays.map(({ name }) => name)));
     stream.subscribe("/contacts", (message) => (paused.value ? this.#hold(message) : this.#receive(message)));
     paused.follow((isPaused) => !isPaused && this.#held.splice(0).forEach((message) => this.#receive(message)));
     stream.subscribe("/threat", (message) => this.threats.add(readThreat(message)));
+    this.threats.log.follow(([newest]) => newest !== undefined && this.#logThreat(newest));
     stream.serverInfo.follow(() => this.threats.restart());
+    stream.parameters.follow((parameters) => this.#seeTare(parameters.get("/tare")));
     stream.subscribe("/statistics", (message) => (this.statistics.value = readStatistics(message)));
     stream.subscribe("/health", (message) => (this.health.value = readHealth(message)));
   }
@@ -56,13 +82,27 @@ export class LiveData {
     if (this.#held.length > 2 * MOST_HELD) this.#held.splice(0, MOST_HELD);
   }
 
+  #logThreat(threat: Threat): void {
+    const isBegin = stands(threat);
+    this.events.add("threat", isBegin ? threat.crossedS : threat.stampS, isBegin ? threat.name : `${threat.name} over`, threat.array);
+  }
+
+  /** The first value tells how it was, not that it changed. */
+  #seeTare(tare: unknown): void {
+    if (typeof tare !== "boolean" || tare === this.#tare) return;
+    if (this.#tare !== undefined) this.events.add("tare", this.latestS, tare ? "tare" : "tare taken back");
+    this.#tare = tare;
+  }
+
   #receive(message: DataView): void {
     const array = this.arrays[readContactsArray(message, this.#names)];
     if (array === undefined) return;
     const { contacts } = array;
     readContacts(message, contacts);
     array.total.add(contacts.stampS, contacts.totalForceN);
-    array.slots.add(contacts);
+    if (contacts.stampS < this.latestS - 1) this.events.rewind(contacts.stampS);
+    for (const id of array.slots.add(contacts)) this.events.add("contact", contacts.stampS, `contact ${id}`, this.#names[this.arrays.indexOf(array)]);
+    array.addCentre();
     array.version += 1;
     this.version += 1;
     if (contacts.stampS > this.latestS || contacts.stampS < this.latestS - 1) this.latestS = contacts.stampS;

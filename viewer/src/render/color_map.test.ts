@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { describe, expect, it } from "vitest";
-import { colorOf, rgbOf, shaderSource } from "./color_map";
+import { readFileSync } from "node:fs";
+import { COEFFICIENTS, colorOf, cssGradient, rgbOf, shaderSource, TOE_COLORS, TOE_SHARE } from "./color_map";
 
 /** OKLab: distances in it are differences to the eye (Ottosson, 2020). */
-function oklab(share: number): [number, number, number] {
-  const [red, green, blue] = rgbOf(share).map((value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4)) as [number, number, number];
+function oklab(share: number, fromLight = false): [number, number, number] {
+  const [red, green, blue] = rgbOf(share, fromLight).map((value) => (value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4)) as [number, number, number];
   const long = Math.cbrt(0.4122214708 * red + 0.5363325363 * green + 0.0514459929 * blue);
   const medium = Math.cbrt(0.2119034982 * red + 0.6806995451 * green + 0.1073969566 * blue);
   const short = Math.cbrt(0.0883024619 * red + 0.2817188376 * green + 0.6299787005 * blue);
@@ -17,19 +18,38 @@ function oklab(share: number): [number, number, number] {
 }
 
 const STEPS = 64;
-const colors = Array.from({ length: STEPS + 1 }, (_, step) => oklab(step / STEPS));
+/** From the first percent on. */
+const colors = Array.from({ length: STEPS + 1 }, (_, step) => oklab(TOE_SHARE + ((1 - TOE_SHARE) * step) / STEPS));
+
+function distance(one: readonly number[], other: readonly number[]): number {
+  return Math.hypot(...one.map((value, index) => value - other[index]!));
+}
 
 describe("the colour map", () => {
   it("becomes lighter with every step, from nearly black to nearly white", () => {
     for (let step = 1; step <= STEPS; ++step) expect(colors[step]![0]).toBeGreaterThan(colors[step - 1]![0]);
-    expect(colors[0]![0]).toBeLessThan(0.2);
+    expect(oklab(0)[0]).toBeLessThan(0.2);
     expect(colors[STEPS]![0]).toBeGreaterThan(0.93);
   });
 
   it("changes by equal steps to the eye, within a fifth", () => {
-    const distances = colors.slice(1).map((color, step) => Math.hypot(...color.map((value, index) => value - colors[step]![index]!)));
-    const mean = distances.reduce((sum, distance) => sum + distance, 0) / STEPS;
-    for (const distance of distances) expect(Math.abs(distance / mean - 1)).toBeLessThan(0.2);
+    const distances = colors.slice(1).map((color, step) => distance(color, colors[step]!));
+    const mean = distances.reduce((sum, one) => sum + one, 0) / STEPS;
+    for (const one of distances) expect(Math.abs(one / mean - 1)).toBeLessThan(0.2);
+  });
+
+  it("tells the first percent from nothing, dark and light", () => {
+    const justSeen = 0.02;
+    for (const fromLight of [false, true]) expect(distance(oklab(0.01, fromLight), oklab(0, fromLight))).toBeGreaterThan(4 * justSeen);
+    expect(cssGradient(true)).toContain(`${colorOf(0.01, true)} 1.00%`);
+  });
+
+  it("is the palette of terminals, pictures and reports", () => {
+    const header = readFileSync("../src/report/palette.hpp", "utf8");
+    const rows = [...header.matchAll(/\{(-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\}/g)].map((match) => match.slice(1).map(Number));
+    expect(rows).toEqual(COEFFICIENTS);
+    const constant = (name: string): number => Number(new RegExp(`${name} = ([\\d.]+);`).exec(header)![1]);
+    expect([constant("kToeShare"), constant("kToeColours")]).toEqual([TOE_SHARE, TOE_COLORS]);
   });
 
   it("keeps the colour of its ends beyond them", () => {
@@ -42,7 +62,8 @@ describe("the colour map", () => {
     const source = shaderSource();
     const vectors = [...source.matchAll(/vec3\((-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\)/g)].map((match) => match.slice(1).map(Number));
     const share = 0.37;
-    const green = vectors.reduce((sum, vector, power) => sum + vector[1]! * share ** power, 0);
+    const place = TOE_COLORS + ((share - TOE_SHARE) * (1 - TOE_COLORS)) / (1 - TOE_SHARE);
+    const green = vectors.reduce((sum, vector, power) => sum + vector[1]! * place ** power, 0);
     expect(green).toBeCloseTo(rgbOf(share)[1], 3);
   });
 });

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 /**
- * The light theme reads it backwards: there an empty map is pale.
+ * The palette of every map, also in terminals, pictures and reports (src/report/palette.hpp, held equal by a test).
  *
  * From ink through red to pale yellow, in equal steps to the eye: lightness and distance in OKLab rise evenly, so a map shows
  * no edge that the forces have not, and reads the same in grey. Rows: coefficients of share^0, share^1, ... for red, green,
@@ -18,27 +18,44 @@ export const COEFFICIENTS: readonly (readonly [number, number, number])[] = [
   [8.755, 7.6851, 9.9848],
 ];
 
+/** What barely presses differs from nothing: so much of the colours lies between 0 and the first percent of the scale. */
+export const TOE_SHARE = 0.01;
+export const TOE_COLORS = 0.1;
+
+function toed(share: number): number {
+  const inside = Math.min(1, Math.max(0, share));
+  return inside < TOE_SHARE ? (inside * TOE_COLORS) / TOE_SHARE : TOE_COLORS + ((inside - TOE_SHARE) * (1 - TOE_COLORS)) / (1 - TOE_SHARE);
+}
+
 function channel(share: number, index: 0 | 1 | 2): number {
   let value = 0;
   for (let power = COEFFICIENTS.length - 1; power >= 0; --power) value = value * share + COEFFICIENTS[power]![index];
   return Math.min(1, Math.max(0, value));
 }
 
-/** Red, green and blue in 0 ... 1 of a share of the scale; beyond its ends the colour of the end. */
-export function rgbOf(share: number): [number, number, number] {
-  const inside = Math.min(1, Math.max(0, share));
-  return [channel(inside, 0), channel(inside, 1), channel(inside, 2)];
+/**
+ * Red, green and blue in 0 ... 1 of a share of the scale; beyond its ends the colour of the end. The light theme reads the
+ * palette backwards (`fromLight`): there an empty map is pale.
+ */
+export function rgbOf(share: number, fromLight = false): [number, number, number] {
+  const place = fromLight ? 1 - toed(share) : toed(share);
+  return [channel(place, 0), channel(place, 1), channel(place, 2)];
 }
 
-export function colorOf(share: number): string {
-  const [red, green, blue] = rgbOf(share);
+export function colorOf(share: number, fromLight = false): string {
+  const [red, green, blue] = rgbOf(share, fromLight);
   return `rgb(${Math.round(255 * red)} ${Math.round(255 * green)} ${Math.round(255 * blue)})`;
 }
 
 /** The scale from left to right. */
 export function cssGradient(fromLight: boolean): string {
-  const stops = Array.from({ length: 25 }, (_, index) => colorOf((fromLight ? 24 - index : index) / 24));
+  const shares = [0, TOE_SHARE, ...Array.from({ length: 24 }, (_, index) => (index + 1) / 24)];
+  const stops = shares.map((share) => `${colorOf(share, fromLight)} ${(100 * share).toFixed(2)}%`);
   return `linear-gradient(to right, ${stops.join(", ")})`;
+}
+
+function slope(value: number): string {
+  return value.toFixed(6);
 }
 
 /** GLSL: vec3 color_map(float share), and the uniform from_light. */
@@ -48,7 +65,8 @@ export function shaderSource(): string {
   return `uniform bool from_light;
 
 vec3 color_map(float share) {
-  float x = clamp(share, 0.0, 1.0);
+  float inside = clamp(share, 0.0, 1.0);
+  float x = inside < ${TOE_SHARE} ? inside * ${slope(TOE_COLORS / TOE_SHARE)} : ${TOE_COLORS} + (inside - ${TOE_SHARE}) * ${slope((1 - TOE_COLORS) / (1 - TOE_SHARE))};
   if (from_light) x = 1.0 - x;
   return clamp(${horner}, 0.0, 1.0);
 }`;

@@ -47,6 +47,10 @@ float between_taxels(vec2 place) {
   return weights > 0.0 ? sum / weights : 0.0;
 }
 
+float opposite(vec3 shade) {
+  return dot(shade, vec3(0.3, 0.6, 0.1)) > 0.5 ? 0.0 : 1.0;
+}
+
 void main() {
   vec2 pixel = gl_FragCoord.xy - area.xy;
   pixel.y = area.w - pixel.y;
@@ -60,9 +64,12 @@ void main() {
     float stripe = mod(pixel.x + pixel.y, 7.0 * pixel_ratio);
     shade = stripe < 2.5 * pixel_ratio ? fault_stripe : fault;
   } else {
-    float value = interpolated ? between_taxels(place - 0.5) : texelFetch(values, taxel, 0).r;
-    shade = color_map(value / scale_end);
-    if (status > 0u && inside.x + inside.y < 0.45 * min(cell_pixels.x, cell_pixels.y)) shade = vec3(dot(shade, vec3(0.3, 0.6, 0.1)) > 0.5 ? 0.0 : 1.0);
+    float measured = texelFetch(values, taxel, 0).r;
+    float smaller = min(cell_pixels.x, cell_pixels.y);
+    shade = color_map((interpolated ? between_taxels(place - 0.5) : measured) / scale_end);
+    bool on_dot = measured > scale_end && distance(inside, 0.5 * cell_pixels) < max(0.14 * smaller, pixel_ratio);
+    bool on_corner = status > 0u && inside.x + inside.y < 0.45 * smaller;
+    if (on_dot || on_corner) shade = vec3(opposite(shade));
   }
   bool on_line = !interpolated && min(cell_pixels.x, cell_pixels.y) > 6.0 * pixel_ratio &&
                  min(inside.x, inside.y) < pixel_ratio;

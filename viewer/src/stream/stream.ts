@@ -131,6 +131,13 @@ export class Stream {
     if (response?.ok === true && attempt === this.#attempts) this.#onSuit((await response.json()) as SuitDescription);
   }
 
+  /** A file that /suit.json names. */
+  async fetchFile(path: string): Promise<ArrayBuffer> {
+    const response = await fetch(this.#address(path));
+    if (!response.ok) throw new Error(`the server answers ${response.status}`);
+    return response.arrayBuffer();
+  }
+
   #fetchSuit(): Promise<Response> {
     return fetch(this.#address("suit.json"), { signal: AbortSignal.timeout(5000), cache: "no-store" });
   }

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { timeOfDay } from "../format";
 import { TaxelStatus, type GridFrame } from "../messages/grids";
-import { rgbOf } from "../render/color_map";
+import { colorOf, rgbOf, TOE_COLORS, TOE_SHARE } from "../render/color_map";
 
 /** A frame to be drawn, with what stands beside it. */
 export interface Pictured {
@@ -54,11 +54,6 @@ export function pictureSize(frame: GridFrame): [width: number, height: number] {
   return [Math.max(220, frame.cols * cell) + 2 * MARGIN_PX, frame.rows * cell + 2 * LINE_PX + SCALE_PX + 2 * MARGIN_PX];
 }
 
-function colorOf(share: number): string {
-  const [red, green, blue] = rgbOf(share).map((channel) => Math.round(255 * channel));
-  return `rgb(${red} ${green} ${blue})`;
-}
-
 /** On white, with name, time and scale: it can be read without the page. */
 export function drawPicture(context: CanvasRenderingContext2D, { array, unit, end, frame }: Pictured): void {
   const [width, height] = pictureSize(frame);
@@ -72,7 +67,7 @@ export function drawPicture(context: CanvasRenderingContext2D, { array, unit, en
   const top = MARGIN_PX + LINE_PX;
   for (let taxel = 0; taxel < frame.rows * frame.cols; ++taxel) {
     const value = frame.values[taxel]!;
-    context.fillStyle = hasValue(value, frame.statuses[taxel]!) ? colorOf(1 - value / end) : NO_VALUE;
+    context.fillStyle = hasValue(value, frame.statuses[taxel]!) ? colorOf(value / end, true) : NO_VALUE;
     context.fillRect(MARGIN_PX + (taxel % frame.cols) * cell, top + Math.floor(taxel / frame.cols) * cell, cell, cell);
   }
   drawScale(context, top + frame.rows * cell + MARGIN_PX / 2, width - 2 * MARGIN_PX, `${end} ${unit}`);
@@ -80,7 +75,7 @@ export function drawPicture(context: CanvasRenderingContext2D, { array, unit, en
 
 function drawScale(context: CanvasRenderingContext2D, top: number, width: number, end: string): void {
   for (let x = 0; x < width; ++x) {
-    context.fillStyle = colorOf(1 - x / (width - 1));
+    context.fillStyle = colorOf(x / (width - 1), true);
     context.fillRect(MARGIN_PX + x, top, 1, SCALE_PX);
   }
   context.fillStyle = "#000000";
@@ -90,12 +85,17 @@ function drawScale(context: CanvasRenderingContext2D, top: number, width: number
   context.textAlign = "left";
 }
 
+/** The share of the scale at a place of the palette. */
+function shareOf(place: number): number {
+  return place < TOE_COLORS ? (place * TOE_SHARE) / TOE_COLORS : TOE_SHARE + ((place - TOE_COLORS) * (1 - TOE_SHARE)) / (1 - TOE_COLORS);
+}
+
 /** The colours of the pictures of a film. */
 export function filmPalette(): Uint8Array {
   const palette = new Uint8Array(768);
   for (let index = 0; index < 256; ++index) {
     const grey = (index - SCALE_COLORS) / (255 - SCALE_COLORS);
-    const color = index < SCALE_COLORS ? rgbOf(index / (SCALE_COLORS - 1)) : [grey, grey, grey];
+    const color = index < SCALE_COLORS ? rgbOf(shareOf(index / (SCALE_COLORS - 1)), true) : [grey, grey, grey];
     color.forEach((channel, at) => (palette[3 * index + at] = Math.round(255 * channel)));
   }
   return palette;

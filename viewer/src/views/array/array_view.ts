@@ -2,64 +2,51 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setData, setHidden, setText } from "../../dom";
 import { fixed, statusWord } from "../../format";
-import { emptyGrid, type GridFrame, readCounts, readGrid } from "../../messages/grids";
+import { Signal } from "../../signal";
 import { type Area, HeatMaps } from "../../render/heat_maps";
-import { setting } from "../../settings";
-import type { Signal } from "../../signal";
 import type { ArrayDescription } from "../../suit";
 import { rgbColor } from "../../theme";
 import type { View, ViewContext, ViewFactory } from "../../view";
 import { drawAxes } from "./axes";
 import { ContactTable } from "./contact_table";
+import { Feeds } from "./feeds";
 import { fitMap, taxelAt, taxelName } from "./geometry";
 import { MapPanel } from "./map_panel";
+import { MapPointer } from "./map_pointer";
+import { MapChoices, makeMapToolbar } from "./map_toolbar";
 import { Overlay } from "./overlay";
-import { QUANTITIES } from "./quantities";
+import { FORCE, QUANTITIES, RAW } from "./quantities";
 import { Summary } from "./summary";
-import { MOST_PINS, TaxelTable } from "./taxel_table";
+import { TaxelTable } from "./taxel_table";
 import { drawZones } from "./zones";
 
 const TEXT_PERIOD_MS = 100;
-const RAW = 0;
-const FORCE = 2;
 const NOWHERE: Area = { left: 0, top: 0, width: 0, height: 0 };
-
-/** What arrives of one quantity: the newest message, decoded when it is drawn. */
-interface Feed {
-  readonly frame: GridFrame;
-  message: DataView | undefined;
-  end: () => void;
-}
 
 class ArrayView implements View {
   readonly name = "array";
   readonly title = "Array";
   readonly element: HTMLElement;
   readonly #context: ViewContext;
+  readonly #choices = new MapChoices();
   readonly #panels = QUANTITIES.map((quantity) => new MapPanel(quantity));
-  readonly #feeds: Feed[] = QUANTITIES.map(() => ({ frame: emptyGrid(), message: undefined, end: () => undefined }));
+  readonly #feeds = new Feeds();
   readonly #maps: HeatMaps;
   readonly #overlay = new Overlay(element("canvas", { class: "layer", "aria-hidden": "true" }));
   readonly #axes = element("canvas", { class: "layer", "aria-hidden": "true" });
   readonly #zones = element("div", { class: "layer zones", "aria-hidden": "true" });
   readonly #room: HTMLElement;
+  readonly #pointer: MapPointer;
   readonly #spoken = element("p", { class: "only-spoken", "aria-live": "polite" });
   readonly #taxels = new TaxelTable();
   readonly #contacts = new ContactTable();
   readonly #summary = new Summary();
-  readonly #interpolated = setting<boolean>("interpolated", false, () => true);
-  /** The one that a narrow page shows. */
-  readonly #chosenMap = setting<number>("map", FORCE, (value) => value in QUANTITIES);
   readonly #narrow = window.matchMedia("(max-width: 700px)");
   readonly #uncalibrated: HTMLElement;
-  readonly #contactsShown = setting<boolean>("contacts", true, () => true);
   readonly #resizing = new ResizeObserver(() => (this.#layoutDue = true));
-  readonly #unfollow: (() => void)[] = [];
   #isShown = false;
   #array: ArrayDescription | undefined;
   #areas: Area[] = [];
-  #pins: number[] = [];
-  #cursor = -1;
   #layoutDue = true;
   #mapsDue = true;
   #overlayDue = true;
@@ -72,6 +59,12 @@ class ArrayView implements View {
     this.#maps = new HeatMaps(element("canvas", { class: "layer", "aria-hidden": "true" }), QUANTITIES.length, () => this.#restore());
     this.#uncalibrated = this.#makeUncalibrated();
     this.#room = this.#makeRoom();
+    this.#pointer = new MapPointer(this.#room, this.#choices.drawing, {
+      taxelUnder: (event) => this.#taxelUnder(event),
+      changed: () => this.#pointed(),
+      speak: () => this.#speak(),
+      drawn: (region) => (context.live.region.region.value = region),
+    });
     this.element = element(
       "div",
       { class: "view array-view", "data-view": "array" },
@@ -95,7 +88,7 @@ class ArrayView implements View {
 
   hide(): void {
     this.#isShown = false;
-    for (const end of this.#unfollow.splice(0)) end();
+    this.#feeds.end();
     this.#resizing.disconnect();
   }
 
@@ -113,50 +106,29 @@ class ArrayView implements View {
   }
 
   key(event: KeyboardEvent): boolean {
-    if (event.key === "i") this.#interpolated.value = !this.#interpolated.value;
-    else if (event.key === "c") this.#contactsShown.value = !this.#contactsShown.value;
+    const { interpolated, contacts } = this.#choices;
+    if (event.key === "i") interpolated.value = !interpolated.value;
+    else if (event.key === "c") contacts.value = !contacts.value;
     else return false;
     return true;
   }
 
   #makeToolbar(): HTMLElement {
-    const check = (label: string, signal: Signal<boolean>, role: string): HTMLElement => {
-      const box = element("input", { type: "checkbox", "data-role": role, onchange: () => (signal.value = box.checked) });
-      signal.follow((value) => (box.checked = value));
-      return element("label", { class: "check" }, box, label);
-    };
-    this.#interpolated.follow((value) => {
+    const { interpolated, contacts, centre, pressure, narrowMap, share } = this.#choices;
+    const { region } = this.#context.live.region;
+    interpolated.follow((value) => {
       this.#maps.interpolated = value;
       this.#mapsDue = true;
     });
-    this.#contactsShown.follow((value) => {
-      this.#overlay.showContacts = value;
+    for (const signal of [contacts, centre]) signal.follow(() => (this.#overlayDue = true));
+    for (const signal of [pressure, narrowMap]) signal.follow(() => (this.#layoutDue = true));
+    share.follow((value) => (this.#feeds.share = value));
+    const hasRegion = new Signal(false);
+    region.follow((drawn) => {
+      hasRegion.value = drawn !== undefined;
       this.#overlayDue = true;
     });
-    const chosen = element(
-      "select",
-      { class: "field map-choice", "aria-label": "Map", "data-role": "map", onchange: () => (this.#chosenMap.value = Number(chosen.value)) },
-      ...QUANTITIES.map(({ title }, index) => element("option", { value: index }, title)),
-    );
-    this.#chosenMap.follow((value) => {
-      chosen.value = String(value);
-      this.#layoutDue = true;
-    });
-    return element(
-      "div",
-      { class: "toolbar" },
-      chosen,
-      check("Interpolate between taxels", this.#interpolated, "interpolate"),
-      check("Contacts", this.#contactsShown, "show-contacts"),
-      element(
-        "p",
-        { class: "marks dim" },
-        element("span", { class: "mark-fault" }),
-        "faulty taxel",
-        element("span", { class: "mark-saturated" }),
-        "saturated or above range",
-      ),
-    );
+    return makeMapToolbar(this.#choices, { reset: () => this.#feeds.reset(), clearRegion: () => (region.value = undefined), hasRegion });
   }
 
   #makeUncalibrated(): HTMLElement {
@@ -171,11 +143,13 @@ class ArrayView implements View {
 
   #isShownMap(index: number, { calibrated }: ArrayDescription): boolean {
     if (!calibrated) return index === RAW;
-    return !this.#narrow.matches || index === this.#chosenMap.value;
+    const { load, narrowMap } = this.#choices;
+    if (this.#narrow.matches) return index === (narrowMap.value === FORCE ? load : narrowMap.value);
+    return index < FORCE || index === load;
   }
 
   #makeRoom(): HTMLElement {
-    const room = element(
+    return element(
       "div",
       {
         class: "maps",
@@ -191,13 +165,6 @@ class ArrayView implements View {
       this.#zones,
       this.#overlay.canvas,
     );
-    room.addEventListener("pointermove", (event) => this.#point(event));
-    room.addEventListener("pointerleave", () => this.#moveCursor(-1));
-    room.addEventListener("click", (event) => {
-      if (event.target instanceof Element && event.target.closest("select, button") === null) this.#pin(this.#taxelUnder(event));
-    });
-    room.addEventListener("keydown", (event) => this.#steer(event));
-    return room;
   }
 
   #readColors(): void {
@@ -212,36 +179,25 @@ class ArrayView implements View {
   }
 
   #restore(): void {
-    if (this.#array !== undefined) for (let index = 0; index < this.#feeds.length; ++index) this.#upload(index);
+    if (this.#array !== undefined) QUANTITIES.forEach((_, index) => this.#upload(index));
     this.#describe();
   }
 
   #choose(array: ArrayDescription | undefined): void {
     if (array !== this.#array && array?.name !== this.#array?.name) {
-      this.#pins = [];
-      this.#cursor = -1;
-      this.#feeds.forEach(({ frame }, index) => {
-        frame.values.fill(NaN);
-        frame.statuses.fill(0);
-        this.#maps.clear(index);
-      });
+      this.#feeds.forget();
+      QUANTITIES.forEach((_, index) => this.#maps.clear(index));
     }
     this.#array = array;
+    this.#pointer.array = array;
     if (this.#isShown) this.#follow();
     this.#layoutDue = true;
     this.#describe();
   }
 
   #follow(): void {
-    for (const end of this.#unfollow.splice(0)) end();
-    if (this.#array === undefined) return;
-    QUANTITIES.forEach((quantity, index) => {
-      const feed = this.#feeds[index]!;
-      feed.message = undefined;
-      this.#unfollow.push(
-        this.#context.stream.subscribe(`/${this.#array!.name}/${quantity.name}`, (message) => (feed.message = message)),
-      );
-    });
+    if (this.#array === undefined) this.#feeds.end();
+    else this.#feeds.follow(this.#context.stream, this.#array);
   }
 
   #describe(): void {
@@ -271,28 +227,24 @@ class ArrayView implements View {
       return area;
     });
     drawAxes(this.#axes, this.#areas, array, pixelRatio);
-    drawZones(this.#zones, this.#areas[FORCE], array);
+    drawZones(this.#zones, this.#areas[this.#choices.load], array);
     this.#mapsDue = true;
     this.#overlayDue = true;
     this.#textDue = true;
   }
 
   #decode(array: ArrayDescription): void {
-    for (const [index, feed] of this.#feeds.entries()) {
-      const { message } = feed;
-      if (message === undefined) continue;
-      feed.message = undefined;
-      (index === 0 ? readCounts : readGrid)(message, feed.frame);
-      if (feed.frame.rows !== array.rows || feed.frame.cols !== array.cols) continue;
-      this.#upload(index);
-      if (index === FORCE) this.#context.display.drawn(feed.frame.stampS);
-    }
+    const fresh = this.#feeds.decode(array);
+    for (const index of fresh) this.#upload(index);
+    if (fresh.includes(FORCE)) this.#context.display.drawn(this.#feeds.frames[FORCE]!.stampS);
+    const steps = fresh.filter((index) => this.#panels[index]!.see(this.#feeds.frames[index]!));
+    if (steps.length > 0) this.#describe();
   }
 
   #upload(index: number): void {
-    const { rows, cols, values, statuses } = this.#feeds[index]!.frame;
+    const { rows, cols, values, statuses } = this.#feeds.frames[index]!;
     if (rows === 0) return;
-    const known = this.#feeds[FORCE]!.frame.statuses;
+    const known = this.#feeds.frames[FORCE]!.statuses;
     const areKnown = this.#array?.calibrated === true && known.length === statuses.length;
     this.#maps.setValues(index, rows, cols, values, areKnown ? known : statuses);
     this.#mapsDue = true;
@@ -300,26 +252,37 @@ class ArrayView implements View {
   }
 
   #drawContacts(array: ArrayDescription): void {
-    const live = this.#context.live.arrays[this.#context.suit.indexOf(array.name)];
-    const hasNews = live !== undefined && live.version !== this.#contactsVersion;
+    const { live, suit } = this.#context;
+    const shown = live.arrays[suit.indexOf(array.name)];
+    const hasNews = shown !== undefined && shown.version !== this.#contactsVersion;
     if (!hasNews && !this.#overlayDue) return;
-    this.#contactsVersion = live?.version ?? -1;
+    this.#contactsVersion = shown?.version ?? -1;
     this.#overlayDue = false;
     this.#textDue = true;
-    this.#overlay.draw(this.#areas, array, live, this.#cursor, this.#pins);
+    const { contacts, centre, load } = this.#choices;
+    this.#overlay.draw(this.#areas, array, {
+      load: this.#areas[load] ?? NOWHERE,
+      contacts: contacts.value ? shown : undefined,
+      centre: centre.value ? shown?.centre : undefined,
+      region: this.#pointer.preview ?? live.region.region.value,
+      cursor: this.#pointer.cursor,
+      pins: this.#pointer.pins,
+    });
   }
 
   #showText(array: ArrayDescription, nowMs: number): void {
     this.#textMs = nowMs;
     this.#textDue = false;
-    const [raw, conductance, force] = this.#feeds.map(({ frame }) => frame) as [GridFrame, GridFrame, GridFrame];
-    this.#taxels.show(array, { raw, conductance, force }, this.#cursor, this.#pins);
-    setData(this.element, "stamp", fixed(force.stampS, 6));
-    setData(this.element, "frames", String(this.#context.display.framesDrawn));
-    const live = this.#context.live.arrays[this.#context.suit.indexOf(array.name)];
-    if (live === undefined) return;
-    this.#contacts.show(live);
-    this.#summary.show(array, live, array.calibrated ? force : raw);
+    const { live, suit, display } = this.#context;
+    const [raw, conductance, force] = this.#feeds.frames;
+    this.#taxels.show(array, { raw: raw!, conductance: conductance!, force: force! }, this.#pointer.cursor, this.#pointer.pins);
+    setData(this.element, "stamp", fixed(force!.stampS, 6));
+    setData(this.element, "frames", String(display.framesDrawn));
+    const shown = live.arrays[suit.indexOf(array.name)];
+    if (shown === undefined) return;
+    this.#contacts.show(shown);
+    this.#summary.show(array, shown, array.calibrated ? force! : raw!);
+    this.#summary.showRegion(live.region.region.value?.array === array.name ? live.region : undefined);
   }
 
   #taxelUnder(event: MouseEvent): number {
@@ -332,55 +295,20 @@ class ArrayView implements View {
     return -1;
   }
 
-  #point(event: PointerEvent): void {
-    this.#moveCursor(this.#taxelUnder(event));
-  }
-
-  #moveCursor(taxel: number): void {
-    if (taxel === this.#cursor) return;
-    this.#cursor = taxel;
+  #pointed(): void {
     this.#overlayDue = true;
     this.#textDue = true;
     this.#textMs = 0;
   }
 
-  #pin(taxel: number): void {
-    if (taxel < 0) return;
-    const place = this.#pins.indexOf(taxel);
-    if (place >= 0) this.#pins.splice(place, 1);
-    else if (this.#pins.length < MOST_PINS) this.#pins.push(taxel);
-    this.#overlayDue = true;
-    this.#textDue = true;
-  }
-
-  #steer(event: KeyboardEvent): void {
-    const array = this.#array;
-    if (array === undefined || event.target !== this.#room) return;
-    const row = Math.floor(Math.max(0, this.#cursor) / array.cols);
-    const col = Math.max(0, this.#cursor) % array.cols;
-    const to = (newRow: number, newCol: number): void => {
-      const inside = Math.min(array.rows - 1, Math.max(0, newRow)) * array.cols + Math.min(array.cols - 1, Math.max(0, newCol));
-      this.#moveCursor(this.#cursor < 0 ? 0 : inside);
-    };
-    if (event.key === "ArrowLeft") to(row, col - 1);
-    else if (event.key === "ArrowRight") to(row, col + 1);
-    else if (event.key === "ArrowUp") to(row - 1, col);
-    else if (event.key === "ArrowDown") to(row + 1, col);
-    else if (event.key === "Enter") this.#pin(this.#cursor);
-    else if (event.key === "Escape") this.#moveCursor(-1);
-    else return;
-    event.preventDefault();
-    event.stopPropagation();
-    this.#speak(array);
-  }
-
-  #speak(array: ArrayDescription): void {
-    const force = this.#feeds[FORCE]!.frame;
-    const newtons = fixed(force.values[this.#cursor] ?? NaN, 2);
-    const counts = fixed(this.#feeds[RAW]!.frame.values[this.#cursor] ?? NaN, 0);
-    const reading = array.calibrated ? `${newtons} newtons, ${statusWord(force.statuses[this.#cursor] ?? 0)}` : `${counts} counts`;
-    const words = `${taxelName(this.#cursor, array)}: ${reading}`;
-    setText(this.#spoken, this.#cursor < 0 ? "" : words);
+  #speak(): void {
+    const { cursor } = this.#pointer;
+    if (this.#array === undefined || cursor < 0) return setText(this.#spoken, "");
+    const force = this.#feeds.frames[FORCE]!;
+    const newtons = fixed(force.values[cursor] ?? NaN, 2);
+    const counts = fixed(this.#feeds.frames[RAW]!.values[cursor] ?? NaN, 0);
+    const reading = this.#array.calibrated ? `${newtons} newtons, ${statusWord(force.statuses[cursor] ?? 0)}` : `${counts} counts`;
+    setText(this.#spoken, `${taxelName(cursor, this.#array)}: ${reading}`);
   }
 }
 

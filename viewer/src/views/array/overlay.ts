@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { SLOTS } from "../../live/contact_slots";
+import { SLOTS, type Trail } from "../../live/contact_slots";
 import type { ArrayLive } from "../../live/live_data";
+import { type Region, regionName } from "../../live/region_force";
 import { type Contact, ContactPhase } from "../../messages/contacts";
 import type { Area } from "../../render/heat_maps";
 import type { ArrayDescription } from "../../suit";
@@ -9,14 +10,43 @@ import { cssColor } from "../../theme";
 import { AXIS_LEFT } from "./geometry";
 
 const TURN = 2 * Math.PI;
+const CENTRE_PIXELS = 7;
 const HALO = "rgb(0 0 0 / 70%)";
 const INK = "#ffffff";
 const FONT = '600 12px "Inter", "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", Arial, sans-serif';
 
-/** What is drawn over the maps: contacts with their trails, cursor, pins. */
+/** What is drawn over the maps; what is undefined is not. */
+export interface Marks {
+  /** The map of forces or pressures, which alone has contacts and their centre. */
+  readonly load: Area;
+  readonly contacts: ArrayLive | undefined;
+  readonly centre: Trail | undefined;
+  readonly region: Region | undefined;
+  /** -1: nowhere. */
+  readonly cursor: number;
+  readonly pins: readonly number[];
+}
+
+/** From metres in the plane of an array to pixels on a map of it. */
+interface Scale {
+  readonly originX: number;
+  readonly originY: number;
+  readonly pixelsX: number;
+  readonly pixelsY: number;
+}
+
+function scaleOf(area: Area, array: ArrayDescription): Scale {
+  return {
+    originX: area.left + (0.5 * area.width) / array.cols,
+    originY: area.top + (0.5 * area.height) / array.rows,
+    pixelsX: area.width / (array.cols * array.pitch_m[1]),
+    pixelsY: area.height / (array.rows * array.pitch_m[0]),
+  };
+}
+
+/** Draws contacts with their trails, the centre of pressure, a region, cursor and pins. */
 export class Overlay {
   readonly canvas: HTMLCanvasElement;
-  showContacts = true;
   readonly #pen: CanvasRenderingContext2D;
   #seriesColors: string[] = [];
   #plate = "";
@@ -39,7 +69,7 @@ export class Overlay {
     this.#pen.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
   }
 
-  draw(areas: readonly Area[], array: ArrayDescription, live: ArrayLive | undefined, cursor: number, pins: readonly number[]): void {
+  draw(areas: readonly Area[], array: ArrayDescription, { load, contacts, centre, region, cursor, pins }: Marks): void {
     this.#pen.save();
     this.#pen.resetTransform();
     this.#pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -48,9 +78,44 @@ export class Overlay {
       if (area.width === 0) continue;
       pins.forEach((taxel, index) => this.#drawPin(area, array, taxel, index + 1));
       if (cursor >= 0) this.#drawCursor(area, array, cursor);
+      if (region?.array === array.name) this.#drawRegion(area, array, region);
     }
-    const force = areas[areas.length - 1];
-    if (force !== undefined && force.width > 0 && live !== undefined && this.showContacts) this.#drawContacts(force, array, live);
+    if (load.width === 0) return;
+    if (contacts !== undefined) this.#drawContacts(load, array, contacts);
+    if (centre !== undefined) this.#drawCentre(centre, scaleOf(load, array));
+  }
+
+  #drawRegion(area: Area, array: ArrayDescription, region: Region): void {
+    const [width, height] = [area.width / array.cols, area.height / array.rows];
+    const left = area.left + region.cols[0] * width;
+    const top = area.top + region.rows[0] * height;
+    const pen = this.#pen;
+    pen.setLineDash([7, 4]);
+    this.#strokeTwice(() => pen.strokeRect(left, top, (region.cols[1] - region.cols[0] + 1) * width, (region.rows[1] - region.rows[0] + 1) * height), 2);
+    pen.setLineDash([]);
+    pen.font = FONT;
+    pen.textAlign = "left";
+    pen.textBaseline = "bottom";
+    this.#textTwice(regionName(region), left + 4, top + (region.rows[1] - region.rows[0] + 1) * height - 3);
+  }
+
+  /** A cross in a ring, and the way that led there. */
+  #drawCentre(trail: Trail, { originX, originY, pixelsX, pixelsY }: Scale): void {
+    if (trail.length === 0) return;
+    const pen = this.#pen;
+    const x = (point: number): number => originX + trail.x(point) * pixelsX;
+    const y = (point: number): number => originY + trail.y(point) * pixelsY;
+    pen.beginPath();
+    for (let point = 0; point < trail.length; ++point) pen.lineTo(x(point), y(point));
+    this.#strokeTwice(() => pen.stroke(), 1.5);
+    const [endX, endY] = [x(trail.length - 1), y(trail.length - 1)];
+    pen.beginPath();
+    pen.arc(endX, endY, CENTRE_PIXELS, 0, TURN);
+    for (const [dx, dy] of [[CENTRE_PIXELS, 0], [0, CENTRE_PIXELS]] as const) {
+      pen.moveTo(endX - 1.6 * dx, endY - 1.6 * dy);
+      pen.lineTo(endX + 1.6 * dx, endY + 1.6 * dy);
+    }
+    this.#strokeTwice(() => pen.stroke(), 2);
   }
 
   #drawCursor(area: Area, array: ArrayDescription, taxel: number): void {
@@ -78,10 +143,7 @@ export class Overlay {
   }
 
   #drawContacts(area: Area, array: ArrayDescription, live: ArrayLive): void {
-    const pixelsX = area.width / (array.cols * array.pitch_m[1]);
-    const pixelsY = area.height / (array.rows * array.pitch_m[0]);
-    const originX = area.left + (0.5 * area.width) / array.cols;
-    const originY = area.top + (0.5 * area.height) / array.rows;
+    const { originX, originY, pixelsX, pixelsY } = scaleOf(area, array);
     const pen = this.#pen;
     pen.save();
     pen.beginPath();

@@ -1,24 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setText } from "../../dom";
+import { element, setData, setText } from "../../dom";
 import { fixed, statusWord } from "../../format";
 import type { ArrayLive } from "../../live/live_data";
+import { type RegionForce, regionName } from "../../live/region_force";
 import { type Contact, ContactPhase } from "../../messages/contacts";
 import { type GridFrame, TaxelStatus } from "../../messages/grids";
 import type { ArrayDescription } from "../../suit";
 import { taxelName } from "./geometry";
 
-const NAMES = ["Contacts", "Highest taxel", "Sum of taxels", "Faulty taxels"] as const;
+/** Words and data-role. */
+const FIGURES = [
+  ["Contacts", "contacts"],
+  ["Highest", "highest-taxel"],
+  ["Sum", "sum-of-taxels"],
+  ["Faulty", "faulty-taxels"],
+  ["Centre", "centre"],
+  ["Region", "region"],
+] as const;
 
 /** The figures of the whole array. */
 export class Summary {
   readonly element: HTMLElement;
   readonly #total = element("span", { class: "large figure", "data-role": "total-force" });
   readonly #sigma = element("span", { class: "dim figure" });
-  readonly #values = NAMES.map((name) => element("dd", { class: "figure", "data-role": name.toLowerCase().replaceAll(" ", "-") }));
+  readonly #values = FIGURES.map(([, role]) => element("dd", { class: "figure", "data-role": role }));
 
   constructor() {
-    const pairs = NAMES.flatMap((name, index) => [element("dt", {}, name), this.#values[index]!]);
+    const pairs = FIGURES.flatMap(([words], index) => [element("dt", {}, words), this.#values[index]!]);
     this.element = element(
       "section",
       { class: "panel summary", "aria-label": "Total" },
@@ -29,7 +38,7 @@ export class Summary {
   }
 
   /** `shown`: the forces, or the counts of an array without a model. */
-  show(array: ArrayDescription, { contacts }: ArrayLive, shown: GridFrame): void {
+  show(array: ArrayDescription, { contacts, centre }: ArrayLive, shown: GridFrame): void {
     const { highest, sum, faulty, worst } = survey(shown);
     if (!array.calibrated) return this.#showCounts(array, shown, highest);
     setText(this.#total, fixed(contacts.totalForceN, 2));
@@ -38,6 +47,14 @@ export class Summary {
     setText(this.#values[1]!, highest < 0 ? fixed(NaN, 0) : `${fixed(shown.values[highest]!, 2)} N  ${taxelName(highest, array)}`);
     setText(this.#values[2]!, `${fixed(sum, 2)} N`);
     setText(this.#values[3]!, faulty === 0 ? "none" : `${faulty}, ${statusWord(worst)}`);
+    const last = centre.length - 1;
+    setText(this.#values[4]!, last < 0 ? fixed(NaN, 0) : `${fixed(1e3 * centre.x(last), 1)}, ${fixed(1e3 * centre.y(last), 1)} mm`);
+  }
+
+  showRegion(force: RegionForce | undefined): void {
+    const region = force?.region.value;
+    setData(this.element, "region", region === undefined ? "" : regionName(region));
+    setText(this.#values[5]!, force === undefined ? "none drawn" : `${fixed(force.newtons, 2)} N`);
   }
 
   #showCounts(array: ArrayDescription, { values }: GridFrame, highest: number): void {

@@ -5,10 +5,10 @@ import { engineering, fixed, statusWord } from "../../format";
 import type { GridFrame } from "../../messages/grids";
 import type { ArrayDescription } from "../../suit";
 import { taxelName } from "./geometry";
-import { ohms } from "./quantities";
+import { ohms, taxelAreaM2 } from "./quantities";
 
 export const MOST_PINS = 6;
-const COLUMNS = ["counts", "ohms", "siemens", "newtons", "sigma", "status"] as const;
+const COLUMNS = ["counts", "ohms", "siemens", "newtons", "sigma", "pressure", "status"] as const;
 
 export interface Frames {
   raw: GridFrame;
@@ -41,6 +41,7 @@ class Row {
     this.#set("siemens", Number.isNaN(siemens) ? fixed(NaN, 0) : engineering(siemens, "S"));
     this.#set("newtons", `${fixed(valueAt(force, taxel), 3)} N`);
     this.#set("sigma", `\u00b1 ${fixed(force.sigmas[taxel] ?? NaN, 3)} N`);
+    this.#set("pressure", `${fixed((1e-3 * valueAt(force, taxel)) / taxelAreaM2(array), 1)} kPa`);
     this.#set("status", statusWord(status));
     setData(this.element, "status", statusWord(status));
   }
@@ -76,7 +77,7 @@ export class TaxelTable {
   readonly #pins = Array.from({ length: MOST_PINS }, (_, index) => new Row(`pin-${index + 1}`));
 
   constructor() {
-    const heads = ["Taxel", "Counts", "Resistance", "Conductance", "Force", "1 \u03c3", "Status"];
+    const heads = ["Taxel", "Counts", "Resistance", "Conductance", "Force", "1 \u03c3", "Pressure", "Status"];
     this.element = element(
       "section",
       { class: "panel", "aria-label": "Taxels" },

@@ -5,11 +5,11 @@ import type { Contact } from "../../messages/contacts";
 
 export const MOST_ARROWS = 64;
 /** Of an arrow at the end of the scale, as a share of the suit's size. */
-const LONGEST_SHARE = 0.2;
-const SHORTEST_SHARE = 0.04;
+export const LONGEST_SHARE = 0.2;
+const HEAD_SHARE = 0.025;
 const DOWN = new three.Vector3(0, -1, 0);
 
-/** Arrows that press on the suit where it is touched, as long as their forces. */
+/** Arrows that press on the suit where it is touched, as long as their forces. One beyond the scale has a second head. */
 export class ContactArrows {
   readonly group = new three.Group();
   readonly #material = new three.MeshBasicMaterial();
@@ -41,10 +41,12 @@ export class ContactArrows {
     arrow.position.set(position[0]!, position[1]!, position[2]!);
     this.#direction.set(-normal[0]!, -normal[1]!, -normal[2]!);
     arrow.quaternion.setFromUnitVectors(DOWN, this.#direction);
-    const length = size * (SHORTEST_SHARE + (LONGEST_SHARE - SHORTEST_SHARE) * Math.min(1, forceN / scaleEnd));
-    const [shaft, head] = arrow.children as [three.Mesh, three.Mesh];
-    const headLength = 0.025 * size;
-    head.scale.set(0.008 * size, headLength, 0.008 * size);
+    const length = size * LONGEST_SHARE * Math.min(1, forceN / scaleEnd);
+    const [shaft, head, second] = arrow.children as [three.Mesh, three.Mesh, three.Mesh];
+    const headLength = Math.min(HEAD_SHARE * size, length);
+    for (const each of [head, second]) each.scale.set(0.32 * headLength, headLength, 0.32 * headLength);
+    second.visible = forceN > scaleEnd;
+    second.position.y = headLength;
     shaft.position.y = headLength;
     shaft.scale.set(0.0022 * size, Math.max(1e-6, length - headLength), 0.0022 * size);
     tail.copy(arrow.position).addScaledVector(this.#direction, -length);
@@ -57,7 +59,7 @@ export class ContactArrows {
 
   #make(): three.Group {
     const arrow = new three.Group();
-    arrow.add(new three.Mesh(this.#shaft, this.#material), new three.Mesh(this.#head, this.#material));
+    arrow.add(...[this.#shaft, this.#head, this.#head].map((geometry) => new three.Mesh(geometry, this.#material)));
     this.#arrows.push(arrow);
     this.group.add(arrow);
     return arrow;

@@ -4,10 +4,13 @@ import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { type Contact, type ContactsFrame, ContactPhase } from "../../messages/contacts";
 import type { PointsFrame } from "../../messages/grids";
-import type { SuitDescription } from "../../suit";
+import type { Transform } from "../../messages/transforms";
+import type { PlacedPose, SuitDescription } from "../../suit";
 import { cssColor, rgbColor } from "../../theme";
 import { limitedZones } from "../array/zones";
-import { ContactArrows, MOST_ARROWS } from "./contact_arrows";
+import { BodyModel, type FetchFile } from "./body_model";
+import { ContactArrows, LONGEST_SHARE, MOST_ARROWS } from "./contact_arrows";
+import { mannequinOf } from "./mannequin";
 import { TaxelCloud } from "./taxel_cloud";
 
 const TURN_STEP = 0.12;
@@ -20,6 +23,14 @@ const CLICK_SHARE = 0.03;
 
 /** Of the lines round zones above their taxels, as a share of the suit's size. */
 const LIFT_SHARE = 0.01;
+
+/** How the server names the links of the body among its frames. */
+const LINK_PREFIX = "body/";
+
+function matrixOf({ position, rotation }: PlacedPose): three.Matrix4 {
+  const one = new three.Vector3(1, 1, 1);
+  return new three.Matrix4().compose(new three.Vector3().fromArray(position), new three.Quaternion().fromArray(rotation), one);
+}
 
 /** The taxels at the border of a rectangle, in the order of a walk round it. */
 function outline([top, bottom]: [number, number], [left, right]: [number, number]): [number, number][] {
@@ -47,8 +58,14 @@ export class SuitScene {
   /** Where the arrows begin, and what presses there. */
   readonly #tails = Array.from({ length: MOST_ARROWS }, () => new three.Vector3());
   readonly #forces = new Float64Array(MOST_ARROWS);
+  readonly #sight = new three.Raycaster();
   #arrowCount = 0;
+  /** Of each array, from where /suit.json has it to where it is now. */
+  #moves: three.Matrix4[] = [];
   #cloud: TaxelCloud | undefined;
+  #body: BodyModel | undefined;
+  #mannequin: three.Group | undefined;
+  readonly #mannequinInk = new three.MeshLambertMaterial();
   #suit: SuitDescription | undefined;
   #size = 1;
   #width = 1;
@@ -57,7 +74,12 @@ export class SuitScene {
   /** By the user: a new size of the page leaves it as it is. */
   #isTurned = false;
 
-  constructor(canvas: HTMLCanvasElement) {
+  /** `fetchFile`: of the meshes of a body; `failed`: one of them cannot be read. */
+  constructor(
+    canvas: HTMLCanvasElement,
+    readonly fetchFile: FetchFile,
+    readonly failed: (why: string) => void,
+  ) {
     this.#renderer = new three.WebGLRenderer({ canvas, antialias: true });
     this.#renderer.outputColorSpace = three.LinearSRGBColorSpace;
     three.ColorManagement.enabled = false;
@@ -65,7 +87,10 @@ export class SuitScene {
     this.#controls.enableDamping = false;
     this.#controls.addEventListener("change", () => (this.#isDue = true));
     this.#controls.addEventListener("start", () => (this.#isTurned = true));
-    this.#scene.add(this.#arrows.group, this.#zones);
+    const lamp = new three.DirectionalLight(0xffffff, 2);
+    lamp.position.set(-0.6, 1, 0.8);
+    this.#camera.add(lamp, lamp.target);
+    this.#scene.add(this.#arrows.group, this.#zones, this.#camera, new three.AmbientLight(0xffffff, 1.6));
   }
 
   setSuit(suit: SuitDescription): void {
@@ -81,23 +106,71 @@ export class SuitScene {
     for (const { positions } of suit.arrays) for (const position of positions) box.expandByPoint(point.fromArray(position));
     box.getCenter(this.#centre);
     this.#size = Math.max(0.02, box.getSize(point).length());
+    this.#moves = suit.arrays.map(() => new three.Matrix4());
+    this.#dress(suit);
     this.#drawZones(suit);
     this.home();
     this.readColors();
+  }
+
+  /** The body under the arrays, or a mannequin. */
+  #dress(suit: SuitDescription): void {
+    if (this.#body !== undefined) this.#scene.remove(this.#body.group);
+    this.#body?.dispose();
+    this.#body = undefined;
+    if (this.#mannequin !== undefined) this.#scene.remove(this.#mannequin);
+    for (const part of this.#mannequin?.children ?? []) for (const { geometry } of part.children as three.Mesh[]) geometry.dispose();
+    this.#mannequin = undefined;
+    if (suit.body === undefined) {
+      this.#mannequin = mannequinOf(suit, this.#size, this.#mannequinInk);
+      this.#scene.add(this.#mannequin);
+    } else {
+      this.#body = new BodyModel(suit.body, this.fetchFile, () => (this.#isDue = true), this.failed);
+      this.#scene.add(this.#body.group);
+    }
+  }
+
+  /** Moves arrays and links to where the server has them now. */
+  setTransforms(transforms: readonly Transform[]): void {
+    for (const transform of transforms) {
+      const { child } = transform;
+      if (child.startsWith(LINK_PREFIX)) this.#body?.move(child.slice(LINK_PREFIX.length), transform);
+      const array = this.#suit?.arrays.findIndex(({ name }) => name === child) ?? -1;
+      if (array >= 0) this.#moveArray(array, transform);
+    }
+    this.#isDue = true;
+  }
+
+  #moveArray(array: number, pose: PlacedPose): void {
+    const move = matrixOf(pose).multiply(matrixOf(this.#suit!.arrays[array]!.pose).invert());
+    const isSame = move.elements.every((value, index) => Math.abs(value - this.#moves[array]!.elements[index]!) < 1e-9);
+    if (isSame) return;
+    this.#moves[array] = move;
+    this.#cloud?.move(array, move);
+    for (const line of this.#zones.children) if (line.userData["array"] === array) line.matrix.copy(move);
+  }
+
+  /** Where a point of an array is now that /suit.json has at `position`. */
+  placeOf(array: number, position: readonly [number, number, number]): [number, number, number] {
+    const { x, y, z } = this.#projected.fromArray(position).applyMatrix4(this.#moves[array]!);
+    return [x, y, z];
   }
 
   /** A line through the outer taxels of each zone that is limited, a little above them. */
   #drawZones({ arrays }: SuitDescription): void {
     for (const line of this.#zones.children) (line as three.LineLoop).geometry.dispose();
     this.#zones.clear();
-    for (const array of arrays) {
+    for (const [index, array] of arrays.entries()) {
       for (const [{ rows, cols }] of limitedZones(array)) {
         const points = outline(rows, cols).map(([row, col]) => {
           const taxel = row * array.cols + col;
           const normal = new three.Vector3().fromArray(array.normals[taxel]!);
           return new three.Vector3().fromArray(array.positions[taxel]!).addScaledVector(normal, LIFT_SHARE * this.#size);
         });
-        this.#zones.add(new three.LineLoop(new three.BufferGeometry().setFromPoints(points), this.#zoneInk));
+        const line = new three.LineLoop(new three.BufferGeometry().setFromPoints(points), this.#zoneInk);
+        line.matrixAutoUpdate = false;
+        line.userData["array"] = index;
+        this.#zones.add(line);
       }
     }
   }
@@ -157,6 +230,7 @@ export class SuitScene {
     this.#scene.background = new three.Color(cssColor("--surface"));
     this.#arrows.setColor(cssColor("--accent"));
     this.#zoneInk.color.set(cssColor("--bad"));
+    this.#mannequinInk.color.set(cssColor("--fault"));
     this.#cloud?.setColors(rgbColor("--fault"), rgbColor("--fault-stripe"), rgbColor("--accent"), rgbColor("--rim"), document.documentElement.dataset["theme"] === "light");
     this.#isDue = true;
   }
@@ -205,6 +279,19 @@ export class SuitScene {
     this.#arrowCount += 1;
   }
 
+  /** How long an arrow at the end of the scale is in the middle of the suit, in CSS pixels. */
+  get longestArrow(): number {
+    const distance = this.#camera.position.distanceTo(this.#controls.target);
+    const high = 2 * distance * Math.tan(three.MathUtils.degToRad(0.5 * this.#camera.fov));
+    return (LONGEST_SHARE * this.#size * this.#height) / high;
+  }
+
+  /** Of x, y and z where they point on the picture: right, up and towards the eye. */
+  axes(): [number, number, number][] {
+    const { elements } = this.#camera.matrixWorldInverse;
+    return [0, 4, 8].map((at) => [elements[at]!, elements[at + 1]!, elements[at + 2]!]);
+  }
+
   get arrowCount(): number {
     return this.#arrowCount;
   }
@@ -213,9 +300,21 @@ export class SuitScene {
     return this.#forces[index]!;
   }
 
+  /** Where its figure belongs; undefined: it is behind the body or the camera. */
   arrowPlace(index: number): [number, number] | undefined {
     const { x, y, z } = this.#tails[index]!;
-    return this.project(x, y, z);
+    return this.#isHidden(this.#tails[index]!) ? undefined : this.project(x, y, z);
+  }
+
+  /** By solids and hulls: meshes of files may have too many triangles to ask. */
+  #isHidden(point: three.Vector3): boolean {
+    const solids = this.#body?.solids ?? this.#mannequin?.children ?? [];
+    const { ray } = this.#sight;
+    ray.origin.copy(this.#camera.position);
+    ray.direction.copy(point).sub(ray.origin);
+    this.#sight.far = ray.direction.length();
+    ray.direction.normalize();
+    return this.#sight.intersectObjects(solids).length > 0;
   }
 
   turn(right: number, up: number): void {
@@ -262,7 +361,7 @@ export class SuitScene {
     let nearest = Infinity;
     (this.#suit?.arrays ?? []).forEach(({ positions }, array) => {
       for (const position of positions) {
-        point.fromArray(position);
+        point.fromArray(this.placeOf(array, position));
         const depth = point.distanceTo(this.#camera.position);
         if (depth < nearest && ray.ray.distanceToPoint(point) < CLICK_SHARE * this.#size) [found, nearest] = [array, depth];
       }

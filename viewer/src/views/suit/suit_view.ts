@@ -3,9 +3,13 @@
 import { element, setHidden, setText } from "../../dom";
 import { fixed } from "../../format";
 import { type PointsFrame, readPoints } from "../../messages/grids";
+import { readTransforms } from "../../messages/transforms";
 import { setting } from "../../settings";
 import type { View, ViewContext, ViewFactory } from "../../view";
+import { LabelRoom } from "./label_room";
+import { OrientationGizmo } from "./orientation_gizmo";
 import type { SuitScene } from "./suit_scene";
+import "./suit.css";
 
 const ENDS_N = [0.5, 1, 2, 5, 10, 20, 50, 100];
 const LABEL_PERIOD_MS = 200;
@@ -18,12 +22,7 @@ class ArrayLabel {
   readonly #force = element("span", { class: "figure" });
 
   constructor(name: string, open: () => void) {
-    this.element = element("button", { class: "array-label", onclick: open, "data-array": name, "aria-label": `Open ${name}` }, name, this.#force);
-  }
-
-  place(at: [number, number] | undefined): void {
-    this.element.hidden = at === undefined;
-    if (at !== undefined) this.element.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px) translate(-50%, -120%)`;
+    this.element = element("button", { class: "array-label", onclick: open, "data-array": name, title: `Open ${name}` }, name, this.#force);
   }
 
   show(newtons: number, isCalibrated: boolean): void {
@@ -36,12 +35,22 @@ function forceText(newtons: number, scaleEnd: number): string {
   return `${fixed(newtons, 1)} N${newtons > scaleEnd ? " (beyond the scale)" : ""}`;
 }
 
-/** Above the middle of what is seen of these points. */
-function above(scene: SuitScene, points: readonly [number, number, number][]): [number, number] | undefined {
+/** Puts a label where there is room, so that its middle is at `at` or near it. */
+function putInto(room: LabelRoom, label: HTMLElement, at: [number, number] | undefined, share: number): void {
+  setHidden(label, at === undefined);
+  if (at === undefined) return;
+  const [width, height] = [label.offsetWidth, label.offsetHeight];
+  const box = room.place({ x: at[0], y: at[1] - share * height, width, height });
+  setHidden(label, box === undefined);
+  if (box !== undefined) label.style.transform = `translate(${(box.x - 0.5 * width).toFixed(1)}px, ${(box.y - 0.5 * height).toFixed(1)}px)`;
+}
+
+/** Above the middle of what is seen of these points of an array. */
+function above(scene: SuitScene, array: number, points: readonly [number, number, number][]): [number, number] | undefined {
   let top = Infinity;
   let sum = 0;
   for (const point of points) {
-    const at = scene.project(...point);
+    const at = scene.project(...scene.placeOf(array, point));
     if (at === undefined) return undefined;
     top = Math.min(top, at[1]);
     sum += at[0];
@@ -61,12 +70,16 @@ class SuitView implements View {
   readonly #frame: PointsFrame = { stampS: 0, newtons: new Float32Array(0), statuses: new Uint8Array(0) };
   readonly #resizing = new ResizeObserver(() => this.#resize());
   readonly #forces = Array.from({ length: MOST_FORCES }, () => element("span", { class: "force-label figure", hidden: true, "aria-hidden": "true" }));
+  readonly #gizmo = new OrientationGizmo();
+  readonly #arrowShaft = element("span", { class: "arrow-length" });
+  readonly #arrowForce = element("span", { class: "figure" });
   #labels: ArrayLabel[] = [];
   /** Of each array the taxels at its border, one of which is the highest on the screen. */
   #anchors: [number, number, number][][] = [];
   #scene: SuitScene | undefined;
   #isLoading = false;
   #message: DataView | undefined;
+  #transforms: DataView | undefined;
   #unsubscribe: () => void = () => undefined;
   #contactsVersion = -1;
   #labelMs = 0;
@@ -85,6 +98,8 @@ class SuitView implements View {
       },
       this.#canvas,
       ...this.#forces,
+      element("p", { class: "arrow-scale" }, this.#arrowShaft, this.#arrowForce),
+      this.#gizmo.element,
     );
     this.element = element("div", { class: "view suit-view", "data-view": "suit" }, this.#makeToolbar(), this.#room);
     this.#room.addEventListener("pointerdown", ({ clientX, clientY }) => (this.#pressed = [clientX, clientY]));
@@ -99,7 +114,12 @@ class SuitView implements View {
   show(): void {
     void this.#load();
     this.#resizing.observe(this.#room);
-    this.#unsubscribe = this.#context.stream.subscribe("/suit/points", (message) => (this.#message = message));
+    const { stream } = this.#context;
+    const ends = [
+      stream.subscribe("/suit/points", (message) => (this.#message = message)),
+      stream.subscribe("/tf", (message) => (this.#transforms = message)),
+    ];
+    this.#unsubscribe = () => ends.forEach((end) => end());
   }
 
   hide(): void {
@@ -118,6 +138,10 @@ class SuitView implements View {
       scene.setForces(this.#frame);
       display.drawn(this.#frame.stampS);
     }
+    if (!paused.value && this.#transforms !== undefined) {
+      scene.setTransforms(readTransforms(this.#transforms));
+      this.#transforms = undefined;
+    }
     if (live.version !== this.#contactsVersion) {
       this.#contactsVersion = live.version;
       scene.setContacts(live.arrays.map(({ contacts }) => contacts), this.#end.value);
@@ -131,7 +155,9 @@ class SuitView implements View {
     if (this.#isLoading) return;
     this.#isLoading = true;
     const { SuitScene } = await import("./suit_scene");
-    this.#scene = new SuitScene(this.#canvas);
+    const { stream } = this.#context;
+    const failed = (why: string): void => void (stream.notice.value = { level: 1, message: `The body is not shown whole. ${why}` });
+    this.#scene = new SuitScene(this.#canvas, (path) => stream.fetchFile(path), failed);
     this.#describe();
     this.#resize();
   }
@@ -157,6 +183,7 @@ class SuitView implements View {
     this.#ticks.replaceChildren(
       ...[0, 0.25, 0.5, 0.75, 1].map((share) => element("span", { style: `left: ${100 * share}%` }, String(share * end))),
     );
+    setText(this.#arrowForce, `${end} N`);
     this.#contactsVersion = -1;
     this.#scene?.setScale(end);
   }
@@ -181,13 +208,11 @@ class SuitView implements View {
   }
 
   #placeLabels(scene: SuitScene): void {
-    this.#labels.forEach((label, index) => label.place(above(scene, this.#anchors[index]!)));
-    this.#forces.forEach((label, index) => {
-      const at = index < scene.arrowCount ? scene.arrowPlace(index) : undefined;
-      setHidden(label, at === undefined);
-      if (at === undefined) return;
-      label.style.transform = `translate(${at[0].toFixed(1)}px, ${at[1].toFixed(1)}px) translate(-50%, -50%)`;
-    });
+    const room = new LabelRoom(this.#room.clientWidth, this.#room.clientHeight);
+    this.#labels.forEach((label, index) => putInto(room, label.element, above(scene, index, this.#anchors[index]!), 0.7));
+    this.#forces.forEach((label, index) => putInto(room, label, index < scene.arrowCount ? scene.arrowPlace(index) : undefined, 0));
+    this.#gizmo.show(scene.axes());
+    this.#arrowShaft.style.width = `${scene.longestArrow.toFixed(1)}px`;
   }
 
   #showTotals(nowMs: number): void {

@@ -73,8 +73,13 @@ export class TaxelCloud {
   readonly #statuses: three.InstancedBufferAttribute;
   readonly #chosen: three.InstancedBufferAttribute;
   readonly #firsts: number[] = [];
+  readonly #places: three.InstancedBufferAttribute;
+  readonly #facings: three.InstancedBufferAttribute;
+  readonly #suit: SuitDescription;
 
-  constructor({ arrays }: SuitDescription) {
+  constructor(suit: SuitDescription) {
+    this.#suit = suit;
+    const { arrays } = suit;
     const total = arrays.reduce((sum, { positions }) => sum + positions.length, 0);
     const places = new Float32Array(3 * total);
     const facings = new Float32Array(3 * total);
@@ -100,8 +105,10 @@ export class TaxelCloud {
     geometry.instanceCount = total;
     geometry.setAttribute("position", new three.BufferAttribute(new Float32Array([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0]), 3));
     geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    geometry.setAttribute("place", new three.InstancedBufferAttribute(places, 3));
-    geometry.setAttribute("facing", new three.InstancedBufferAttribute(facings, 3));
+    this.#places = new three.InstancedBufferAttribute(places, 3);
+    this.#facings = new three.InstancedBufferAttribute(facings, 3);
+    geometry.setAttribute("place", this.#places);
+    geometry.setAttribute("facing", this.#facings);
     geometry.setAttribute("radius", new three.InstancedBufferAttribute(radii, 1));
     geometry.setAttribute("newtons", this.#newtons);
     geometry.setAttribute("status", this.#statuses);
@@ -135,6 +142,17 @@ export class TaxelCloud {
     uniforms["chosen_color"]!.value.set(...chosen);
     uniforms["rim_color"]!.value.set(...rim);
     uniforms["from_light"]!.value = fromLight;
+  }
+
+  /** `move`: of an array, from where /suit.json has it. */
+  move(array: number, move: three.Matrix4): void {
+    const { positions, normals } = this.#suit.arrays[array]!;
+    const point = new three.Vector3();
+    const first = this.#firsts[array]!;
+    positions.forEach((position, taxel) => point.fromArray(position).applyMatrix4(move).toArray(this.#places.array, 3 * (first + taxel)));
+    normals.forEach((normal, taxel) => point.fromArray(normal).transformDirection(move).toArray(this.#facings.array, 3 * (first + taxel)));
+    this.#places.needsUpdate = true;
+    this.#facings.needsUpdate = true;
   }
 
   setScale(end: number): void {

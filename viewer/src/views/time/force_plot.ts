@@ -4,7 +4,9 @@ import uPlot from "uplot";
 import { element, setText } from "../../dom";
 import { fixed } from "../../format";
 import { BIN_S, type ForceHistory } from "../../live/force_history";
+import type { TimedEvent } from "../../live/event_log";
 import { cssColor } from "../../theme";
+import { drawEvents } from "./event_marks";
 import { linePath } from "./line_path";
 
 const AXIS_FONT = '11px "Inter", "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", Arial, sans-serif';
@@ -32,6 +34,8 @@ export class ForcePlot {
   #data: Float64Array[] = [];
   #windowS = 10;
   #endN = 1;
+  #events: readonly TimedEvent[] = [];
+  #nowS = 0;
 
   constructor(title: string, role: string) {
     this.element = element(
@@ -69,8 +73,10 @@ export class ForcePlot {
     this.#plot = new uPlot(this.#options(), this.#data as unknown as uPlot.AlignedData, this.#room);
   }
 
-  draw(endBin: number): void {
+  draw(endBin: number, events: readonly TimedEvent[]): void {
     if (this.#plot === undefined) return;
+    this.#events = events;
+    this.#nowS = endBin * BIN_S;
     this.#lines.forEach(({ history }, index) => history.copy(endBin, this.#binsPerPoint, this.#data[index + 1]!));
     this.#endN = this.#roundEnd();
     this.#plot.setData(this.#data as unknown as uPlot.AlignedData);
@@ -127,7 +133,7 @@ export class ForcePlot {
           points: { show: false },
         })),
       ],
-      hooks: { setCursor: [() => this.#showFigures()] },
+      hooks: { setCursor: [() => this.#showFigures()], draw: [(plot) => drawEvents(plot, this.#events, this.#nowS)] },
     };
   }
 }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import "uplot/dist/uPlot.min.css";
-import { element } from "../../dom";
+import { element, setText } from "../../dom";
+import { fixed } from "../../format";
 import { SLOTS } from "../../live/contact_slots";
+import { EVENT_KINDS } from "../../live/event_log";
 import { binOf } from "../../live/force_history";
+import { regionName } from "../../live/region_force";
 import { setting } from "../../settings";
 import type { View, ViewContext, ViewFactory } from "../../view";
+import { EVENT_LOOKS } from "./event_marks";
 import { ForcePlot, type Line } from "./force_plot";
 
 const WINDOWS_S = [10, 60];
@@ -21,6 +25,7 @@ class TimeView implements View {
   readonly #totals = new ForcePlot("Total force of each array", "plot-totals");
   readonly #contacts = new ForcePlot("Force of each contact of the array", "plot-contacts");
   readonly #windowS = setting<number>("window", 10, (value) => WINDOWS_S.includes(value));
+  readonly #lastEvent = element("p", { class: "dim", "data-role": "last-event" });
   #isShown = false;
   #linesDue = true;
   #version = -1;
@@ -39,6 +44,7 @@ class TimeView implements View {
     context.theme.shown.follow(changed);
     context.suit.selected.follow(changed);
     context.suit.description.follow(changed);
+    context.live.region.region.follow(changed);
     this.#windowS.follow(changed);
   }
 
@@ -63,8 +69,25 @@ class TimeView implements View {
     this.#version = live.version;
     this.#drawnMs = nowMs;
     const endBin = binOf(live.latestS);
-    this.#totals.draw(endBin);
-    this.#contacts.draw(endBin);
+    const chosen = this.#context.suit.selected.value?.name;
+    const events = live.events.events.filter(({ array }) => array === "" || array === chosen);
+    this.#totals.draw(endBin, events);
+    this.#contacts.draw(endBin, events);
+    const last = events.at(-1);
+    setText(this.#lastEvent, last === undefined ? "" : `last: ${last.words}, ${fixed(live.latestS - last.atS, 1)} s ago`);
+  }
+
+  key(event: KeyboardEvent): boolean {
+    if (event.key !== "m") return false;
+    this.#mark();
+    return true;
+  }
+
+  /** At the moment that is shown. */
+  #mark(): void {
+    const { live } = this.#context;
+    live.events.mark(live.latestS);
+    this.#linesDue = true;
   }
 
   #makeToolbar(): HTMLElement {
@@ -73,7 +96,15 @@ class TimeView implements View {
       this.#windowS.follow((value) => (radio.checked = value === seconds));
       return element("label", { class: "check" }, radio, `${seconds} s`);
     };
-    return element("fieldset", { class: "toolbar" }, element("legend", { class: "only-spoken" }, "Window"), ...WINDOWS_S.map(choice));
+    const kinds = EVENT_KINDS.map((kind) => element("span", { class: "group" }, element("span", { class: "event-swatch", style: `background: var(${EVENT_LOOKS[kind].color})` }), EVENT_LOOKS[kind].words));
+    return element(
+      "div",
+      { class: "toolbar" },
+      element("fieldset", { class: "group" }, element("legend", { class: "only-spoken" }, "Window"), ...WINDOWS_S.map(choice)),
+      element("button", { class: "button compact", "data-role": "mark", title: "A line at this moment (M)", onclick: () => this.#mark() }, "Mark this moment"),
+      this.#lastEvent,
+      element("p", { class: "marks dim" }, ...kinds),
+    );
   }
 
   #setLines(): void {
@@ -87,7 +118,10 @@ class TimeView implements View {
       history: live.arrays[suit.indexOf(name)]!.total,
     });
     const shown = arrays.length > MOST_LINES ? arrays.filter(({ name }) => name === chosen) : arrays;
-    this.#totals.setLines(shown.map(({ name }, index) => line(name, index)), this.#windowS.value);
+    const { region, history } = live.region;
+    const drawn = region.value;
+    const ofRegion: Line[] = drawn === undefined ? [] : [{ name: () => `region ${regionName(drawn)}`, color: "--text", history }];
+    this.#totals.setLines([...shown.map(({ name }, index) => line(name, index)), ...ofRegion], this.#windowS.value);
     const slots = live.arrays[suit.indexOf(chosen)]?.slots.slots ?? [];
     const contacts = slots.slice(0, SLOTS).map((slot, index) => ({
       name: () => (slot.id === 0 ? "ended" : `contact ${slot.id}`),

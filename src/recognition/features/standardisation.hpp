@@ -2,18 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <vector>
 
+#include "recognition/matrix.hpp"
+
 namespace dermis::recognition {
-
-using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-using Vector = Eigen::VectorXd;
-
-[[nodiscard]] inline Eigen::Index index(std::size_t value) noexcept {
-  return static_cast<Eigen::Index>(value);
-}
 
 /// A standardised feature goes no further than this from 0.
 inline constexpr double kMostDeviations = 4.0;

@@ -47,11 +47,11 @@ void drain(Decoder& decoder, RawFrame& frame) {
 }
 
 /// Shows the same bytes to all decoders.
-class Recogniser {
+class ProtocolDetector {
  public:
   /// What the options say is taken as known. `name_only`: protocols count too whose frames cannot be had without being
   /// told more.
-  Recogniser(const ProtocolOptions& known, bool name_only) : known_(known), name_only_(name_only) {
+  ProtocolDetector(const ProtocolOptions& known, bool name_only) : known_(known), name_only_(name_only) {
     for (const Trait& trait : kByStrictness) add(trait, known_);
     if (name_only) {
       ProtocolOptions other_shift = known_;
@@ -131,10 +131,10 @@ class Recogniser {
   RawFrame frame_;
 };
 
-/// Keeps the bytes until they are recognised, and decodes them then from the first on.
+/// Keeps the bytes until their protocol is detected, and decodes them then from the first on.
 class AutoDecoder final : public Decoder {
  public:
-  explicit AutoDecoder(const ProtocolOptions& options) : options_(options), recogniser_(start()) {}
+  explicit AutoDecoder(const ProtocolOptions& options) : options_(options), detector_(start()) {}
 
   void push(std::span<const std::uint8_t> bytes) override {
     if (chosen_) return chosen_->push(bytes);
@@ -144,7 +144,7 @@ class AutoDecoder final : public Decoder {
   }
 
   bool next(RawFrame& frame) override {
-    if (!chosen_) recognise();
+    if (!chosen_) detect();
     const bool found = chosen_ && next_of_chosen(frame);
     if (chosen_) counts_ = chosen_->counts();
     counts_.skipped_bytes = given_up_ + (chosen_ ? chosen_->counts().skipped_bytes : 0);
@@ -174,42 +174,44 @@ class AutoDecoder final : public Decoder {
     return chosen_ ? chosen_->request() : "start_reading\n";
   }
   [[nodiscard]] std::string advice() const override { return chosen_ ? chosen_->advice() : std::string(); }
-  [[nodiscard]] std::string_view recognised() const noexcept override { return name_; }
+  [[nodiscard]] std::string_view detected_protocol() const noexcept override { return name_; }
 
  private:
-  [[nodiscard]] std::unique_ptr<Recogniser> start() const { return std::make_unique<Recogniser>(options_, false); }
+  [[nodiscard]] std::unique_ptr<ProtocolDetector> start() const {
+    return std::make_unique<ProtocolDetector>(options_, false);
+  }
 
   /// Looks after each kStep bytes, wherever the pieces end: the choice depends on the bytes alone.
-  void recognise() {
+  void detect() {
     while (kept_.size() - examined_ >= kStep || (ended_ && kept_.size() > examined_)) {
       const std::size_t step = std::min(kStep, kept_.size() - examined_);
       examined_ += step;
-      recogniser_->look_at(std::span(kept_).first(examined_), step);
+      detector_->look_at(std::span(kept_).first(examined_), step);
       if (choose()) return;
       if (examined_ >= kMostKept) give_up(examined_);
     }
     if (std::exchange(paused_, false) && !ended_) {
       const std::size_t step = kept_.size() - examined_;
       examined_ = kept_.size();
-      recogniser_->pause(kept_, step);
+      detector_->pause(kept_, step);
       paused_ = choose();
       if (paused_) return;
     }
     if (!ended_) return;
-    recogniser_->finish(kept_);
+    detector_->finish(kept_);
     if (choose()) return;
     give_up(kept_.size());
     ended_ = false;
   }
 
   bool choose() {
-    const Candidate* const best = recogniser_->best();
+    const Candidate* const best = detector_->best();
     if (best == nullptr) return false;
     name_ = best->name;
     ProtocolOptions options = best->options;
     if (!options.shape) options.shape = best->decoder->shape();  // a pause may have told it
     chosen_ = make_decoder(options).value();
-    recogniser_.reset();
+    detector_.reset();
     return true;
   }
 
@@ -217,7 +219,7 @@ class AutoDecoder final : public Decoder {
     given_up_ += bytes;
     kept_.erase(kept_.begin(), kept_.begin() + static_cast<std::ptrdiff_t>(bytes));
     examined_ = 0;
-    recogniser_ = start();
+    detector_ = start();
   }
 
   bool next_of_chosen(RawFrame& frame) {
@@ -238,7 +240,7 @@ class AutoDecoder final : public Decoder {
   }
 
   ProtocolOptions options_;
-  std::unique_ptr<Recogniser> recogniser_;
+  std::unique_ptr<ProtocolDetector> detector_;
   std::unique_ptr<Decoder> chosen_;
   std::string_view name_;
   std::vector<std::uint8_t> kept_;
@@ -256,15 +258,15 @@ Result<std::unique_ptr<Decoder>> make_auto_decoder(const ProtocolOptions& option
   return std::unique_ptr<Decoder>(std::make_unique<AutoDecoder>(options));
 }
 
-std::string recognise_protocol(std::span<const std::uint8_t> bytes) {
+std::string detect_protocol(std::span<const std::uint8_t> bytes) {
   const std::span<const std::uint8_t> first = bytes.first(std::min(bytes.size(), kMostKept));
-  Recogniser recogniser({}, true);
+  ProtocolDetector detector({}, true);
   for (std::size_t at = 0; at < first.size(); at += kStep) {
     const std::size_t step = std::min(kStep, first.size() - at);
-    recogniser.look_at(first.first(at + step), step);
+    detector.look_at(first.first(at + step), step);
   }
-  recogniser.finish(first);
-  const Candidate* const best = recogniser.best();
+  detector.finish(first);
+  const Candidate* const best = detector.best();
   return best == nullptr ? std::string() : std::string(best->name);
 }
 

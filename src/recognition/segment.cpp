@@ -2,10 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/recognition/segment.hpp"
 
-#include <cmath>
-
 #include "dermis/core/millimetres.hpp"
-#include "recognition/classes/names.hpp"
+#include "recognition/names.hpp"
 
 namespace dermis::recognition {
 namespace {
@@ -68,7 +66,6 @@ Status Layout::validate() const {
   if (readings > kMostReadings) return bad_input("readings: must be at most 1048576");
   if (extras > kMostExtras) return bad_input("extras: must be at most 1024");
   if (!is_rate(rate_hz)) return bad_input("rate_hz: must be 0.001 to 1e6, or 0 where it is not known");
-  if (!(least_reading > 0.0) || !std::isfinite(least_reading)) return bad_input("least_reading: must be above 0");
   for (const SensedArray& array : arrays) {
     if (Status checked = check_array(array, readings); !checked) return checked;
   }

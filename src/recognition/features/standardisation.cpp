@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "recognition/learning/standardisation.hpp"
+#include "recognition/features/standardisation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// protocol=auto and recognise_protocol().
+// protocol=auto and detect_protocol().
 #include <gtest/gtest.h>
 
 #include <string>
@@ -52,7 +52,7 @@ Counts decoded_by(const ProtocolOptions& options, const Bytes& bytes) {
   return counts_of(push_all(*decoder_for(options), bytes));
 }
 
-TEST(Recognition, finds_each_protocol_in_its_bytes_and_delivers_every_frame) {
+TEST(ProtocolDetection, finds_each_protocol_in_its_bytes_and_delivers_every_frame) {
   for (const std::string& name : protocol_names()) {
     if (name == "auto") continue;
     ProtocolOptions options = {.name = name, .shape = usual_shape(name)};
@@ -62,18 +62,18 @@ TEST(Recognition, finds_each_protocol_in_its_bytes_and_delivers_every_frame) {
       const Stream stream = stream_of(options, 40'000, seed);
       const auto decoder = decoder_for({});
       const Counts frames = counts_of(push_all(*decoder, stream.bytes));
-      ASSERT_EQ(decoder->recognised(), name);
+      ASSERT_EQ(decoder->detected_protocol(), name);
       ASSERT_EQ(decoder->shape(), options.shape);
       ASSERT_EQ(frames, decoded_by(options, stream.bytes));
       ASSERT_GE(frames.size() + 1, stream.ends.size());
       if (seed < 5) {
-        ASSERT_EQ(recognise_protocol(stream.bytes), name);
+        ASSERT_EQ(detect_protocol(stream.bytes), name);
       }
     }
   }
 }
 
-TEST(Recognition, does_not_depend_on_how_the_bytes_are_cut) {
+TEST(ProtocolDetection, does_not_depend_on_how_the_bytes_are_cut) {
   for (const std::string& name : protocol_names()) {
     if (name == "auto") continue;
     SCOPED_TRACE(name);
@@ -82,7 +82,7 @@ TEST(Recognition, does_not_depend_on_how_the_bytes_are_cut) {
     bytes.insert(bytes.end(), stream.bytes.begin(), stream.bytes.end());
     const auto whole = decoder_for({});
     const std::vector<RawFrame> frames = decode_all(*whole, bytes);
-    EXPECT_EQ(whole->recognised(), name);
+    EXPECT_EQ(whole->detected_protocol(), name);
     for (const std::size_t piece : {1U, 7U, 255U, 4096U}) {
       const auto cut = decoder_for({});
       EXPECT_EQ(counts_of(decode_all(*cut, bytes, piece)), counts_of(frames));
@@ -92,7 +92,7 @@ TEST(Recognition, does_not_depend_on_how_the_bytes_are_cut) {
   }
 }
 
-TEST(Recognition, delivers_the_last_frame_when_the_device_pauses) {
+TEST(ProtocolDetection, delivers_the_last_frame_when_the_device_pauses) {
   for (const std::string name : {"flexitac", "m1616"}) {
     SCOPED_TRACE(name);
     const Stream stream = stream_of({.name = name, .shape = FrameShape{16, 16}}, 40'000, 3);
@@ -105,7 +105,7 @@ TEST(Recognition, delivers_the_last_frame_when_the_device_pauses) {
   }
 }
 
-TEST(Recognition, delivers_every_frame_where_it_is_the_pause_that_tells) {
+TEST(ProtocolDetection, delivers_every_frame_where_it_is_the_pause_that_tells) {
   const Stream stream = stream_of({.name = "flexitac", .shape = FrameShape{12, 16}}, 776, 4);
   const auto decoder = decoder_for({.shape = FrameShape{12, 16}});
   decoder->push(stream.bytes);
@@ -117,19 +117,19 @@ TEST(Recognition, delivers_every_frame_where_it_is_the_pause_that_tells) {
   EXPECT_EQ(delivered, 4U);
 }
 
-TEST(Recognition, uses_the_shape_that_is_given) {
+TEST(ProtocolDetection, uses_the_shape_that_is_given) {
   for (const std::string name : {"3dvitac", "csv", "dermis", "flexitac", "stag", "tactileglove", "wiresens"}) {
     SCOPED_TRACE(name);
     const ProtocolOptions options = {.name = name, .shape = FrameShape{6, 7}};
     const Stream stream = stream_of(options, 20'000, 2);
     const auto decoder = decoder_for({.shape = options.shape});
     EXPECT_EQ(counts_of(push_all(*decoder, stream.bytes)), decoded_by(options, stream.bytes));
-    EXPECT_EQ(decoder->recognised(), name);
+    EXPECT_EQ(decoder->detected_protocol(), name);
     EXPECT_EQ(decoder->shape(), options.shape);
   }
 }
 
-TEST(Recognition, finds_wiresens_that_leaves_packets_out) {
+TEST(ProtocolDetection, finds_wiresens_that_leaves_packets_out) {
   for (const std::optional<FrameShape> shape : {std::optional<FrameShape>{}, std::optional(FrameShape{16, 16})}) {
     const Stream stream =
         stream_of({.name = "wiresens", .shape = FrameShape{16, 16}, .nodes_per_packet = 100}, 60'000, 8);
@@ -142,12 +142,12 @@ TEST(Recognition, finds_wiresens_that_leaves_packets_out) {
     }
     const auto decoder = decoder_for({.shape = shape});
     const Counts frames = counts_of(push_all(*decoder, sent));
-    EXPECT_EQ(decoder->recognised(), "wiresens");
+    EXPECT_EQ(decoder->detected_protocol(), "wiresens");
     EXPECT_GT(frames.size(), stream.ends.size() - 5);
   }
 }
 
-TEST(Recognition, finds_wiresens_behind_damaged_packets) {
+TEST(ProtocolDetection, finds_wiresens_behind_damaged_packets) {
   Stream stream = stream_of({.name = "wiresens", .shape = FrameShape{32, 32}}, 100'000, 9);
   for (std::size_t at = 0; at < 6; ++at)
     stream.bytes.erase(stream.bytes.begin() + static_cast<std::ptrdiff_t>(900 * at));
@@ -155,10 +155,10 @@ TEST(Recognition, finds_wiresens_behind_damaged_packets) {
   const auto decoder = decoder_for(known);
   EXPECT_EQ(counts_of(push_all(*decoder, stream.bytes)),
             decoded_by({.name = "wiresens", .shape = known.shape}, stream.bytes));
-  EXPECT_EQ(decoder->recognised(), "wiresens");
+  EXPECT_EQ(decoder->detected_protocol(), "wiresens");
 }
 
-TEST(Recognition, finds_nothing_in_noise_and_keeps_no_more_than_it_may) {
+TEST(ProtocolDetection, finds_nothing_in_noise_and_keeps_no_more_than_it_may) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
@@ -167,13 +167,13 @@ TEST(Recognition, finds_nothing_in_noise_and_keeps_no_more_than_it_may) {
     for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random.below(range));
     const auto decoder = decoder_for({});
     EXPECT_TRUE(decode_all(*decoder, noise).empty());
-    EXPECT_EQ(decoder->recognised(), "");
+    EXPECT_EQ(decoder->detected_protocol(), "");
     EXPECT_EQ(decoder->counts(), (DecoderCounts{.skipped_bytes = noise.size()}));
-    EXPECT_EQ(recognise_protocol(noise), "");
+    EXPECT_EQ(detect_protocol(noise), "");
   }
 }
 
-TEST(Recognition, recovers_from_noise_at_the_beginning) {
+TEST(ProtocolDetection, recovers_from_noise_at_the_beginning) {
   Random random(3);
   Bytes bytes(kMostKept + 5000);
   for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random.below(256));
@@ -181,18 +181,16 @@ TEST(Recognition, recovers_from_noise_at_the_beginning) {
   bytes.insert(bytes.end(), stream.bytes.begin(), stream.bytes.end());
   const auto decoder = decoder_for({});
   EXPECT_GE(push_all(*decoder, bytes).size() + 1, stream.ends.size());
-  EXPECT_EQ(decoder->recognised(), "dermis");
+  EXPECT_EQ(decoder->detected_protocol(), "dermis");
 }
 
-TEST(Recognition, names_a_protocol_that_needs_to_be_told_more) {
-  EXPECT_EQ(recognise_protocol(stream_of({.name = "wiresens", .shape = FrameShape{12, 32}}, 30'000, 5).bytes),
-            "wiresens");
-  EXPECT_EQ(
-      recognise_protocol(stream_of({.name = "stag", .shape = FrameShape{32, 32}, .bit_shift = 6}, 30'000, 6).bytes),
-      "stag");
+TEST(ProtocolDetection, names_a_protocol_that_needs_to_be_told_more) {
+  EXPECT_EQ(detect_protocol(stream_of({.name = "wiresens", .shape = FrameShape{12, 32}}, 30'000, 5).bytes), "wiresens");
+  EXPECT_EQ(detect_protocol(stream_of({.name = "stag", .shape = FrameShape{32, 32}, .bit_shift = 6}, 30'000, 6).bytes),
+            "stag");
 }
 
-TEST(Recognition, asks_devices_that_wait_for_a_request) {
+TEST(ProtocolDetection, asks_devices_that_wait_for_a_request) {
   const auto decoder = decoder_for({});
   EXPECT_NE(decoder->request().find('a'), std::string_view::npos);
   EXPECT_EQ(decoder->request(), "start_reading\n");

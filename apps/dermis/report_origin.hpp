@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/report/evaluation_report.hpp"
+
+namespace dermis::app {
+
+/// The files of an evaluation.
+struct JudgedFiles {
+  std::string frames;  ///< As the user names the source.
+  std::string loads;
+  std::string model;
+};
+
+/// What a report says of these files: simulated or measured, when, with which hashes, by which dermis.
+[[nodiscard]] report::Origin report_origin(const JudgedFiles& files, const std::vector<RawFrame>& frames);
+
+}  // namespace dermis::app

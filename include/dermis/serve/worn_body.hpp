@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/body.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::serve {
+
+/// A mesh of a body, as clients get it.
+struct BodyFile {
+  std::string name;  ///< As the description of the body names it.
+  std::string path;  ///< "/body/0.stl"
+  std::string bytes;
+};
+
+/// What a body is made of.
+struct BodyParts {
+  Body body;
+  std::vector<BodyFile> files;
+};
+
+/// Reads a body: URDF with its meshes, or one mesh (.stl, .glb), of which `scale` makes metres. Meshes of URDF must lie
+/// in its folder: STL and GLB of at most 20 MB each, 60 MB together. One that is not there or another is left out, and
+/// told to `notice`.
+[[nodiscard]] Result<BodyParts> read_body(const std::string& path, double scale,
+                                          const std::function<void(const std::string&)>& notice);
+
+/// The body that wears a suit: how it stands, and where it carries the arrays. Thread-safe.
+class WornBody {
+ public:
+  /// An array on a link.
+  struct Carried {
+    std::size_t link = 0;
+    Pose link_from_array{};
+  };
+
+  /// `arrays`: in the order of the suit. All joints are at 0.
+  WornBody(BodyParts parts, std::vector<Carried> arrays);
+
+  [[nodiscard]] const Body& body() const noexcept { return parts_.body; }
+  [[nodiscard]] const std::vector<BodyFile>& files() const noexcept { return parts_.files; }
+  [[nodiscard]] const std::string& link_of(std::size_t array) const { return body().links[arrays_[array].link].name; }
+
+  /// Of a JSON object of the names and positions of sensor_msgs/JointState: {"name": ["elbow"], "position": [1.2]}
+  /// [rad] or [m]. Joints that are not named stay. Errors: another text, a joint that is not there; nothing moves then.
+  [[nodiscard]] Status set_joints(std::string_view request);
+
+  /// Rises with each set_joints().
+  [[nodiscard]] std::uint64_t version() const noexcept { return version_; }
+
+  [[nodiscard]] std::vector<double> positions() const;          ///< Of all joints.
+  [[nodiscard]] std::vector<Pose> suit_from_links() const;      ///< Of all links, now.
+  [[nodiscard]] Pose suit_from_array(std::size_t array) const;  ///< Now.
+  [[nodiscard]] Pose rest_pose(std::size_t array) const;        ///< The same with all joints at 0.
+  /// From where an array is at rest to where it is now.
+  [[nodiscard]] Pose move_of(std::size_t array) const;
+
+ private:
+  const BodyParts parts_;
+  const std::vector<Carried> arrays_;
+  const std::vector<Pose> rest_;  // of links
+  std::atomic<std::uint64_t> version_ = 0;
+  mutable std::mutex mutex_;  // of those below
+  std::vector<double> positions_;
+  std::vector<Pose> links_;
+  std::vector<Pose> moves_;  // of arrays
+};
+
+}  // namespace dermis::serve

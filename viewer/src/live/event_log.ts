@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+export const EVENT_KINDS = ["threat", "contact", "tare", "mark"] as const;
+export type EventKind = (typeof EVENT_KINDS)[number];
+
+/** Something that happened at a moment of the stream. */
+export interface TimedEvent {
+  readonly kind: EventKind;
+  readonly atS: number;
+  readonly words: string;
+  /** Empty: of the whole suit. */
+  readonly array: string;
+}
+
+const MOST_EVENTS = 1000;
+
+/** What happened, the oldest first. */
+export class EventLog {
+  readonly events: TimedEvent[] = [];
+  /** Rises with each change. */
+  version = 0;
+  #marks = 0;
+
+  add(kind: EventKind, atS: number, words: string, array = ""): void {
+    this.events.push({ kind, atS, words, array });
+    if (this.events.length > MOST_EVENTS) this.events.shift();
+    this.version += 1;
+  }
+
+  /** The user's own. */
+  mark(atS: number): void {
+    this.#marks += 1;
+    this.add("mark", atS, `mark ${this.#marks}`);
+  }
+
+  /** A recording is played from this time on anew: what it holds comes again, the marks of the user stay. */
+  rewind(toS: number): void {
+    const kept = this.events.filter(({ kind, atS }) => kind === "mark" || atS < toS);
+    this.events.splice(0, this.events.length, ...kept);
+    this.version += 1;
+  }
+}

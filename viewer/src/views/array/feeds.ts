@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { emptyGrid, type GridFrame, readCounts, readGrid, TaxelStatus } from "../../messages/grids";
+import type { ArrayDescription } from "../../suit";
+import type { Stream } from "../../stream/stream";
+import { HeldValues, type TimeShare } from "./held_values";
+import { FORCE, PRESSURE, QUANTITIES, RAW, taxelAreaM2 } from "./quantities";
+
+/** One topic: its newest message, decoded when it is drawn, and what is held of all that came. */
+interface Feed {
+  readonly frame: GridFrame;
+  readonly heard: GridFrame;
+  readonly held: HeldValues;
+  message: DataView | undefined;
+}
+
+const TOPICS = QUANTITIES.filter(({ name }) => name !== "pressure");
+
+/** The frames of one array, quantity by quantity; pressures are its forces over the area of a taxel. */
+export class Feeds {
+  /** Of each quantity the newest frame that is shown. */
+  readonly frames: readonly GridFrame[];
+  readonly #feeds: readonly Feed[] = TOPICS.map(() => ({ frame: emptyGrid(), heard: emptyGrid(), held: new HeldValues(), message: undefined }));
+  readonly #pressure = emptyGrid();
+  readonly #ends: (() => void)[] = [];
+  #share: TimeShare = "now";
+
+  constructor() {
+    this.frames = [...this.#feeds.map(({ frame }) => frame), this.#pressure];
+  }
+
+  follow(stream: Stream, array: ArrayDescription): void {
+    this.end();
+    TOPICS.forEach(({ name }, index) => {
+      this.#feeds[index]!.message = undefined;
+      this.#ends.push(stream.subscribe(`/${array.name}/${name}`, (message) => this.#hear(index, message)));
+    });
+  }
+
+  end(): void {
+    for (const end of this.#ends.splice(0)) end();
+  }
+
+  /** Another array: nothing is known of it. */
+  forget(): void {
+    for (const { values, statuses } of this.frames) {
+      values.fill(NaN);
+      statuses.fill(0);
+    }
+    this.reset();
+  }
+
+  get share(): TimeShare {
+    return this.#share;
+  }
+
+  set share(share: TimeShare) {
+    this.#share = share;
+    this.reset();
+  }
+
+  /** The highest values and averages begin anew. */
+  reset(): void {
+    for (const { held } of this.#feeds) held.reset();
+  }
+
+  /** Decodes what has come; the quantities that are new. */
+  decode(array: ArrayDescription): number[] {
+    const fresh: number[] = [];
+    this.#feeds.forEach((feed, index) => {
+      if (feed.message === undefined) return;
+      read(index, feed.message, feed.frame);
+      feed.message = undefined;
+      if (feed.frame.rows !== array.rows || feed.frame.cols !== array.cols) return;
+      if (this.#share !== "now" && feed.held.values.length === feed.frame.values.length) feed.frame.values.set(feed.held.values);
+      if (this.#share !== "now") feed.frame.sigmas.fill(NaN);
+      fresh.push(index);
+    });
+    if (fresh.includes(FORCE)) fresh.push(this.#press(array));
+    return fresh;
+  }
+
+  #hear(index: number, message: DataView): void {
+    const feed = this.#feeds[index]!;
+    feed.message = message;
+    if (this.#share === "now") return;
+    read(index, message, feed.heard);
+    feed.held.add(feed.heard, this.#share);
+  }
+
+  #press(array: ArrayDescription): number {
+    const force = this.frames[FORCE]!;
+    const pressure = this.#pressure;
+    const area = taxelAreaM2(array);
+    if (pressure.values.length !== force.values.length) pressure.values = new Float32Array(force.values.length);
+    Object.assign(pressure, { stampS: force.stampS, rows: force.rows, cols: force.cols, statuses: force.statuses });
+    force.values.forEach((newtons, taxel) => (pressure.values[taxel] = newtons / area));
+    return PRESSURE;
+  }
+}
+
+function read(index: number, message: DataView, frame: GridFrame): void {
+  (index === RAW ? readCounts : readGrid)(message, frame);
+}
+
+/** Of the taxels that read; 0 where none does. */
+export function highestOf({ values, statuses }: GridFrame): number {
+  let highest = 0;
+  values.forEach((value, taxel) => {
+    if (value > highest && (statuses[taxel] ?? 0) < TaxelStatus.dead) highest = value;
+  });
+  return highest;
+}
