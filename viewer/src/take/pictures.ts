@@ -20,11 +20,13 @@ export interface Picture {
 interface Source {
   topic: string;
   unit: string;
+  /** The end of the scale is at least this: noise alone looks like nothing. */
+  leastEnd: number;
   read: (message: DataView, frame: GridFrame) => void;
 }
 
 function sourceOf({ name, calibrated }: ArrayDescription): Source {
-  return calibrated ? { topic: `/${name}/force`, unit: "N", read: readGrid } : { topic: `/${name}/raw`, unit: "counts", read: readCounts };
+  return calibrated ? { topic: `/${name}/force`, unit: "N", leastEnd: 1, read: readGrid } : { topic: `/${name}/raw`, unit: "counts", leastEnd: 100, read: readCounts };
 }
 
 /** Frames of an array as they come, every tenth of a second. What stands still is there once. */
@@ -64,7 +66,7 @@ export async function takePicture(stream: Stream, array: ArrayDescription): Prom
   const source = sourceOf(array);
   const frame = (await collect(stream, source, 0)).at(-1)!;
   const [canvas, context] = canvasFor(frame);
-  drawPicture(context, { array: array.name, unit: source.unit, end: roundEnd(highest(frame)), frame });
+  drawPicture(context, { array: array.name, unit: source.unit, end: roundEnd(Math.max(source.leastEnd, highest(frame))), frame });
   const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
   if (blob === null) throw new Error("The picture is too large for this browser.");
   return { blob, stampS: frame.stampS };
@@ -77,7 +79,7 @@ export async function takeFilm(stream: Stream, array: ArrayDescription, seconds:
   const [canvas, context] = canvasFor(frames[0]!);
   const palette = filmPalette();
   const finder = new PaletteFinder(palette);
-  const end = roundEnd(Math.max(...frames.map(highest)));
+  const end = roundEnd(Math.max(source.leastEnd, ...frames.map(highest)));
   const drawn = frames.map((frame) => {
     drawPicture(context, { array: array.name, unit: source.unit, end, frame });
     return finder.indices(context.getImageData(0, 0, canvas.width, canvas.height).data);
