@@ -63,7 +63,6 @@ class Server::Implementation final : public SessionOwner {
       : options_(std::move(options)),
         offer_{.playback = std::move(playback)},
         site_(options_, std::move(assets)),
-        subscribers_(kMostChannels),
         notices_(options_.notice) {}
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
@@ -79,9 +78,11 @@ class Server::Implementation final : public SessionOwner {
   }
   void set_file(std::string path, std::string file) { site_.set_file(std::move(path), std::move(file)); }
   [[nodiscard]] bool has_subscribers(ChannelId channel) const {
-    return subscribers_[channel].load(std::memory_order_relaxed) > 0;
+    return subscriptions_.now[channel].load(std::memory_order_relaxed) > 0;
   }
-  [[nodiscard]] std::uint64_t subscriptions() const noexcept { return subscriptions_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t subscriptions() const noexcept {
+    return subscriptions_.so_far.load(std::memory_order_relaxed);
+  }
   void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message);
 
   /// Runs `send` for each client, on the server's thread.
@@ -114,6 +115,11 @@ class Server::Implementation final : public SessionOwner {
     std::set<std::shared_ptr<Session>> clients;
   };
 
+  struct Subscriptions {
+    std::vector<std::atomic<int>> now{kMostChannels};  // [channel]
+    std::atomic<std::uint64_t> so_far = 0;
+  };
+
   void accept();
   void accept_waiting();
   void admit(tcp::socket socket);
@@ -127,8 +133,7 @@ class Server::Implementation final : public SessionOwner {
   Offer offer_;  // Complete when the server starts.
   Site site_;
   const std::string session_name_ = random_session();
-  std::atomic<std::uint64_t> subscriptions_ = 0;
-  std::vector<std::atomic<int>> subscribers_;  // [channel]; outlives the sessions that the context still holds
+  Subscriptions subscriptions_;  // outlives the sessions that the context still holds
   std::atomic<bool> parameters_pending_{false};
   asio::io_context context_{1};
   asio::thread_pool desk_{1};  // the owner's handlers and services run here
@@ -247,8 +252,8 @@ std::vector<Channel> Server::Implementation::channels() const {
 }
 
 void Server::Implementation::change_subscribers(ChannelId channel, int change) {
-  if (channel < kMostChannels) subscribers_[channel].fetch_add(change, std::memory_order_relaxed);
-  if (change > 0) subscriptions_.fetch_add(1, std::memory_order_relaxed);
+  if (channel < kMostChannels) subscriptions_.now[channel].fetch_add(change, std::memory_order_relaxed);
+  if (change > 0) subscriptions_.so_far.fetch_add(1, std::memory_order_relaxed);
 }
 
 void Server::Implementation::publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message) {
