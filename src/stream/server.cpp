@@ -116,7 +116,7 @@ class Server::Implementation final : public SessionOwner {
   };
 
   struct Subscriptions {
-    std::vector<std::atomic<int>> now{kMostChannels};  // [channel]
+    std::vector<std::atomic<int>> now = std::vector<std::atomic<int>>(kMostChannels);  // [channel]
     std::atomic<std::uint64_t> so_far = 0;
   };
 
