@@ -53,6 +53,7 @@ export class CornerGuide {
     this.#round += 1;
     this.#way = AS_SENT;
     this.#first = undefined;
+    this.#steady = { corner: undefined, answers: 0 };
     setHidden(this.#picture, true);
     setText(this.#words, "If rows and columns may be exchanged, or run backwards: two touches tell.");
   }
