@@ -15,11 +15,11 @@
 #include <vector>
 
 #include "dermis/messages/live_messages.hpp"
-#include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/mcap.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 #include "messages/read_by_definition.hpp"
 #include "serve/named_touches.hpp"
+#include "serve/session_at_work.hpp"
 #include "serve/small_suit.hpp"
 #include "serve/stream_client.hpp"
 #include "support/stalled_disk.hpp"
@@ -33,61 +33,12 @@ using support::TemporaryFolder;
 
 constexpr std::uint64_t kSeed = 3;
 
-SessionOptions options_with(const std::string& record = {}) {
-  SessionOptions options;
-  options.server.port = 0;
-  options.record = record;
-  return options;
-}
-
-/// A session at work.
-class Work {
- public:
-  explicit Work(std::unique_ptr<Session> session) : session_(std::move(session)) {
-    thread_ = std::thread([this] { outcome_ = session_->run(stop_); });
-  }
-  Work(const Work&) = delete;
-  Work& operator=(const Work&) = delete;
-  ~Work() { static_cast<void>(end()); }
-
-  std::uint16_t port() const { return session_->port(); }
-  Status end() {
-    stop_ = true;
-    if (thread_.joinable()) thread_.join();
-    return outcome_;
-  }
-
- private:
-  std::unique_ptr<Session> session_;
-  std::atomic<bool> stop_ = false;
-  Status outcome_ = Done{};
-  std::thread thread_;
-};
-
-std::unique_ptr<Session> session_of(ServedSuit suit, const SessionOptions& options) {
-  Result<std::unique_ptr<Session>> session = Session::create(std::move(suit), options);
-  EXPECT_TRUE(session) << session.error().message;
-  return *std::move(session);
-}
-
 json value_of(const std::string& parameters, const std::string& name) {
   for (const json& parameter : json::parse(parameters)) {
     if (parameter["name"] == name) return parameter["value"];
   }
   ADD_FAILURE() << "no " << name << " in " << parameters;
   return {};
-}
-
-/// Frames of each array in a complete recording.
-std::vector<std::size_t> recorded_frames(const std::string& path) {
-  const auto reader = recordings::SuitRecordingReader::open(path);
-  EXPECT_TRUE(reader) << reader.error().message;
-  EXPECT_TRUE((*reader)->complete());
-  std::vector<std::size_t> frames((*reader)->arrays().size());
-  std::size_t array = 0;
-  RawFrame frame;
-  for (auto more = (*reader)->next(array, frame); more && *more; more = (*reader)->next(array, frame)) ++frames[array];
-  return frames;
 }
 
 /// An array under a hand that does what the guide says, as fast as it is read.
@@ -209,63 +160,6 @@ TEST(Session, records_from_its_beginning_and_again_when_a_client_asks) {
     EXPECT_GT(frames[0], 0U) << path;
     EXPECT_GT(frames[1], 0U) << path;
   }
-}
-
-/// The answer of a service of recordings.
-json ask(StreamClient& client, const std::string& service, const std::string& request = "{}") {
-  const std::string answer = client.call("/recordings/" + service, request);
-  json parsed = json::parse(answer, nullptr, false);
-  if (!parsed.is_object()) ADD_FAILURE() << service << ": " << answer;
-  return parsed;
-}
-
-TEST(Session, records_under_the_name_that_a_client_chooses_and_plays_it_beside_the_arrays) {
-  const TemporaryFolder folder;
-  const std::atomic<bool> never = false;
-  Work work(session_of(small_suit({"left", "right"}, never), options_with(folder.file("first.mcap"))));
-  StreamClient client(work.port());
-  client.set_parameter("/recording", "false");
-  EXPECT_EQ(client.call("/recordings/begin", R"({"name":"../walk"})"), "name: must be letters, digits, '_' and '-'");
-  EXPECT_EQ(ask(client, "begin", R"({"name":"walk"})")["file"], "walk.mcap");
-  EXPECT_NE(client.call("/recordings/begin", R"({"name":"other"})").find("a recording goes on"), std::string::npos);
-  EXPECT_EQ(ask(client, "list")["recording"], "walk.mcap");
-  client.subscribe({"/left/raw"});
-  for (int frame = 0; frame < 20; ++frame) EXPECT_FALSE(client.next_message("/left/raw").bytes.empty());
-  client.set_parameter("/recording", "false");
-  EXPECT_NE(client.call("/recordings/begin", R"({"name":"walk"})").find("is there already"), std::string::npos);
-  const json files = ask(client, "list")["files"];
-  ASSERT_EQ(files.size(), 2U);
-
-  EXPECT_NE(client.call("/recordings/play", R"({"name":"../walk.mcap"})").find("no recording"), std::string::npos);
-  for (int time = 0; time < 2; ++time) {
-    StreamClient player(ask(client, "play", R"({"name":"walk.mcap"})")["port"].get<std::uint16_t>());
-    player.subscribe({"/right/force"});
-    EXPECT_FALSE(player.next_message("/right/force").bytes.empty());
-  }
-  EXPECT_FALSE(client.next_message("/left/raw").bytes.empty()) << "the arrays are served as before";
-  EXPECT_TRUE(work.end());
-}
-
-TEST(Session, saves_what_nobody_has_recorded_while_it_is_of_the_last_minute) {
-  const TemporaryFolder folder;
-  const std::atomic<bool> never = false;
-  Work work(session_of(small_suit({"left", "right"}, never), options_with(folder.file("first.mcap"))));
-  StreamClient client(work.port());
-  client.subscribe({"/left/raw", "/right/raw"});
-  for (int frame = 0; frame < 20; ++frame) EXPECT_FALSE(client.next_message("/left/raw").bytes.empty());
-  EXPECT_FALSE(client.next_message("/right/raw").bytes.empty());
-  const json cut = ask(client, "save");
-  EXPECT_GT(cut["frames"], 20U);
-  const std::vector<std::size_t> frames = recorded_frames(folder.file(cut["file"]));
-  EXPECT_EQ(frames[0] + frames[1], cut["frames"]);
-  const json csv = ask(client, "save", R"({"array":"right"})");
-  EXPECT_TRUE(csv["file"].get<std::string>().starts_with("right-"));
-  EXPECT_EQ(recordings::read_frames(folder.file(csv["file"]))->size(), csv["frames"]);
-  EXPECT_EQ(client.call("/recordings/save", R"({"array":"back"})"), "array: there is none of that name");
-  EXPECT_EQ(client.call("/recordings/save", R"({"to_ms":1})"),
-            "there is no frame of that time any more; the last minute is kept");
-  EXPECT_NE(client.call("/recordings/save", R"({"from_ms":9999999999999999999})").find("from_ms"), std::string::npos);
-  EXPECT_TRUE(work.end());
 }
 
 TEST(Session, calibrates_an_array_at_work_and_takes_the_model_into_use) {
