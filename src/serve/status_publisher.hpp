@@ -64,7 +64,8 @@ class StatusPublisher {
   stream::Server& server_;
   Channels channels_;
   PlaybackStatus last_playback_{};
-  std::uint64_t body_version_ = 0;  // of which /tf was published
+  std::uint64_t last_subscriptions_ = 0;  // when the playback was told last
+  std::uint64_t body_version_ = 0;        // of which /tf was published
   std::vector<std::uint8_t> message_;
 };
 
