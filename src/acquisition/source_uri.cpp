@@ -44,7 +44,11 @@ const std::array<Scheme, 9>& schemes() {
       {"udp", Transport::udp, {}, true, true},
       {"stdin", Transport::standard_input, {}, true, false},
       {"file", Transport::file, {"rate"}, true, false},
-      {"sim", Transport::simulation, {"rows", "cols", "rate", "seed", "array", "frames", "memory"}, true, false},
+      {"sim",
+       Transport::simulation,
+       {"rows", "cols", "rate", "seed", "array", "frames", "memory", "gain", "gain_spread"},
+       true,
+       false},
       {"pty", Transport::pseudo_terminal, {}, false, true},
       {"stdout", Transport::standard_output, {}, false, true},
   }};
@@ -293,6 +297,8 @@ class Parser {
     uri_.frames = read<std::size_t>("frames", 1, 200'000, "1 to 200000");
     if (const auto found = parameters_.find("array"); found != parameters_.end()) uri_.array = found->second;
     if (const auto found = parameters_.find("memory"); found != parameters_.end()) uri_.memory = found->second;
+    uri_.gain = read<double>("gain", 0.1, 10.0, "0.1 to 10").value_or(1.0);
+    uri_.gain_spread = read<double>("gain_spread", 0.0, 1.0, "0 to 1").value_or(0.0);
   }
 
   std::string_view text_;

@@ -15,6 +15,7 @@
 
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/content_hash.hpp"
+#include "serve/ageing_watch.hpp"
 #include "serve/broadcaster.hpp"
 #include "serve/calibration_services.hpp"
 #include "serve/dds_topics.hpp"
@@ -153,6 +154,7 @@ class Session::Implementation {
   std::unique_ptr<stream::Server> server_;
   std::unique_ptr<FrameListeners> listeners_;
   std::unique_ptr<live::LiveSuit> live_;
+  AgeingWatch ageing_;
   SuitRecorder recorder_;
   RecordingServices recordings_;
   Broadcaster broadcaster_;
@@ -175,6 +177,7 @@ Session::Implementation::Implementation(ServedSuit suit, SessionParts parts, con
       server_(std::move(parts.server)),
       listeners_(std::move(parts.listeners)),
       live_(std::move(parts.live)),
+      ageing_(suit_),
       recorder_(
           options.record, [this] { return recorded_arrays(suit_, models_); },
           [this](const std::string& why) { report_failed_recording(why); }),
@@ -192,7 +195,7 @@ Session::Implementation::Implementation(ServedSuit suit, SessionParts parts, con
           service_arrays(suit_),
           [this](std::size_t array, recognition::Classes classes) { return use_classes(array, std::move(classes)); }),
       parameters_(suit_, *live_, broadcaster_, recorder_),
-      status_(SuitAtWork{suit_, models_, *live_, recorder_, calibration_, threats_}, *server_),
+      status_(SuitAtWork{suit_, models_, *live_, ageing_, recorder_, calibration_, threats_}, *server_),
       dds_(std::move(parts.dds)) {
   if (suit_.threats) {
     threats_.emplace(suit_, std::move(parts.monitors), *server_, recorder_,
@@ -213,6 +216,7 @@ void Session::Implementation::listen() {
   if (threats_) listeners_->add([this](const auto& result) { threats_->publish(result); });
   if (dds_) listeners_->add([this](const auto& result) { dds_->publish(result); });
   listeners_->add([this](const auto& result) { broadcaster_.publish(result); });
+  listeners_->add([this](const auto& result) { ageing_.add(result); });
   listeners_->add([this](const auto& result) { recognition_.publish(result); });
   if (suit_recognition_) listeners_->add([this](const auto& result) { suit_recognition_->publish(result); });
   listeners_->add([this](const auto& result) { calibration_.feed(result.array, result.raw); });
@@ -307,6 +311,7 @@ Status Session::Implementation::set_parameter(const stream::Parameter& parameter
 Status Session::Implementation::use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model) {
   if (Status used = live_->set_model(array, model); !used) return used;
   models_.replace(array, model);
+  ageing_.begin_anew(array, *model);
   parameters_.forget_tare(array);
   show_suit();
   server_->parameters_changed();

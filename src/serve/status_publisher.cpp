@@ -69,7 +69,8 @@ void StatusPublisher::publish_health() {
 std::vector<messages::Diagnosis> StatusPublisher::diagnoses() const {
   std::vector<messages::Diagnosis> diagnoses;
   for (std::size_t k = 0; k < work_.suit.arrays.size(); ++k) {
-    diagnoses.push_back(diagnosis_message(work_.suit.arrays[k].name, *work_.models.of(k), work_.live.statistics(k)));
+    diagnoses.push_back(diagnosis_message(work_.suit.arrays[k].name, *work_.models.of(k), work_.live.statistics(k),
+                                          work_.ageing.evidence(k)));
   }
   if (work_.threats) std::ranges::move(work_.threats->diagnoses(), std::back_inserter(diagnoses));
   return diagnoses;

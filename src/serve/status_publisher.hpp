@@ -12,6 +12,7 @@
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
 #include "dermis/stream/server.hpp"
+#include "serve/ageing_watch.hpp"
 #include "serve/calibration_services.hpp"
 #include "serve/models_in_use.hpp"
 #include "serve/suit_recorder.hpp"
@@ -24,6 +25,7 @@ struct SuitAtWork {
   const ServedSuit& suit;
   const ModelsInUse& models;
   const live::LiveSuit& live;
+  const AgeingWatch& ageing;
   const SuitRecorder& recorder;
   const CalibrationServices& calibration;
   const std::optional<ThreatPublisher>& threats;  ///< Empty: nothing is limited.

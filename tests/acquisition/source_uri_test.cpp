@@ -79,6 +79,9 @@ TEST(SourceUri, takes_a_simulation_apart) {
   EXPECT_FALSE(parsed("sim:idle").rate_hz);
   EXPECT_EQ(parsed("sim:touches?memory=rubber").memory, "rubber");
   EXPECT_EQ(parsed("sim:touches").memory, "");
+  EXPECT_EQ(parsed("sim:touches?gain=0.9&gain_spread=0.1").gain, 0.9);
+  EXPECT_EQ(parsed("sim:touches?gain=0.9&gain_spread=0.1").gain_spread, 0.1);
+  EXPECT_EQ(parsed("sim:touches").gain, 1.0);
 }
 
 TEST(SourceUri, names_what_is_wrong_and_the_mend) {
@@ -102,6 +105,7 @@ TEST(SourceUri, names_what_is_wrong_and_the_mend) {
   expect_words(message(std::string("serial:///dev/a\0b", 17)), {"byte of 0"});
   expect_words(message("sim:idle?rate=0"), {"rate", "above 0"});
   expect_words(message("sim:idle?rate=nan"), {"rate"});
+  expect_words(message("sim:idle?gain=0"), {"gain", "0.1 to 10"});
   expect_words(message("serial:///dev/x?reconnect_s=-1"), {"reconnect_s"});
   expect_words(message("usb://1"), {"usb://1", "serial:", "tcp-listen:"});
   expect_words(message("pty:"), {"begins with none of"});

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/files/array_toml.hpp"
@@ -176,6 +177,18 @@ TEST(OpenSource, touches_begin_again_on_rested_rubber) {
     ASSERT_TRUE(has_next(*source, frame));
     EXPECT_EQ(frame.counts, scene[*frame.acquisition.sequence % 3].counts);
   }
+}
+
+TEST(OpenSource, an_aged_sheet_reads_more_where_it_is_pressed) {
+  const ArrayDescription array = small_array();
+  const auto fresh = support::read_all(*opened("sim:multitouch?frames=20", {.array = &array}));
+  const auto aged = support::read_all(*opened("sim:multitouch?frames=20&gain=1.5", {.array = &array}));
+  const auto sum = [](const std::vector<RawFrame>& frames) {
+    double counts = 0.0;
+    for (const RawFrame& frame : frames) counts += std::accumulate(frame.counts.begin(), frame.counts.end(), 0.0);
+    return counts;
+  };
+  EXPECT_GT(sum(*aged), 1.1 * sum(*fresh));
 }
 
 TEST(OpenSource, every_scene_takes_a_memory) {

@@ -48,6 +48,8 @@ struct SourceUri {
   std::string array{};                  ///< simulation: path of an array.toml.
   std::optional<std::size_t> frames{};  ///< simulation: length of the scenes multitouch, contacts, idle and touches.
   std::string memory{};                 ///< simulation: what the material remembers, by its name; empty: as usual.
+  double gain = 1.0;                    ///< simulation: of an aged sheet, 0.1 ... 10.
+  double gain_spread = 0.0;             ///< simulation: sd of its logarithm over the taxels, 0 ... 1.
 };
 
 /// True if `text` begins like a URI of a transport, valid or not; false: the path of a file.
