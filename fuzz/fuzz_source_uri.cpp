@@ -15,6 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       continue;
     }
     if (!dermis::acquisition::is_source_uri(text) || uri->path.find('\0') != std::string::npos) std::abort();
+    if (!uri->order.validate()) std::abort();
   }
   return 0;
 }

@@ -21,12 +21,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       {[] {
          return std::vector<Parameter>{{"/a", 1.0}};
        },
-       [](const Parameter&) -> dermis::Status { return dermis::Done{}; }},
+       [](const Parameter&, const std::string&) -> dermis::Status { return dermis::Done{}; }},
       {{"/echo", [](std::string_view request) -> dermis::Result<std::string> { return std::string(request); }}},
       PlaybackService{{}, dermis::Nanos(1), [](const dermis::PlaybackCommand&) { return dermis::PlaybackStatus{}; }}};
   std::vector<Question> questions;
   Client client(
-      offer, true, 1U << 20U, [](ChannelId, int) {},
+      offer, "a client", true, 1U << 20U, [](ChannelId, int) {},
       [&](Question question) { questions.push_back(std::move(question)); });
   client.greet("dermis", "session", {});
   static_cast<void>(client.receive(std::span(data, size).subspan(1), data[0] % 2 == 0));

@@ -9,12 +9,14 @@ namespace dermis::app {
 // Each declares the options of one command, and what it does.
 void add_simulate(Command& command);
 void add_calibrate(Command& command);
+void add_recalibrate(Command& command);
 void add_run(Command& command);
 void add_evaluate(Command& command);
 void add_learn(Command& command);
 void add_recognise(Command& command);
 void add_circuit(Command& command);
 void add_doctor(Command& command);
+void add_check(Command& command);
 void add_paper(Command& command);
 void add_record(Command& command);
 void add_replay(Command& command);

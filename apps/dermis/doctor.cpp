@@ -52,6 +52,9 @@ void print_json(const Diagnosis& diagnosis, const ArrayDescription& array) {
                {"calibrated_noise_counts", array.readout.adc_noise_counts},
                {"saturated_share", diagnosis.saturated_share},
                {"offset_drift", or_null(diagnosis.offset_drift)},
+               {"offset_spread", or_null(diagnosis.offset_spread)},
+               {"gain_spread", or_null(diagnosis.ageing.gain_spread)},
+               {"gain_spread_sigma", diagnosis.ageing.gain_spread ? Json(diagnosis.ageing.spread_sigma) : Json()},
                {"coldest_celsius", temperature ? Json(temperature->coldest_celsius) : Json()},
                {"hottest_celsius", temperature ? Json(temperature->hottest_celsius) : Json()},
                {"frames_unsolved", diagnosis.frames_unsolved},
@@ -73,7 +76,7 @@ Result<Diagnosis> examine(Operation& operation) {
     if (!more) return more.error();
     if (!*more) break;
     operation.pipeline.process(raw, force);
-    examination.add(raw, operation.pipeline);
+    examination.add(raw, force, operation.pipeline);
   }
   return examination.diagnosis(operation.pipeline);
 }

@@ -13,6 +13,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "commands.hpp"
 #include "dermis/dds/publisher.hpp"
@@ -36,9 +37,10 @@ struct ServeOptions {
 
 Status check(const ServeOptions& options) {
   const serve::SuitPlace& place = options.place;
-  if (place.suit.empty() && place.from.empty())
-    return bad_input("serve: give --from with its --model, or --suit; a device needs no model to begin");
-  if (place.suit.empty() && place.model.empty()) {
+  if (place.suit.empty() && place.from.empty() && !place.model.empty()) {
+    return bad_input("serve: give --from with its --model; without both the page asks for the device");
+  }
+  if (place.suit.empty() && place.model.empty() && !place.from.empty()) {
     const Result<sources::SourceName> from = sources::SourceName::parse(place.from);
     if (!from) return from.error();
     if (!from->uri) return bad_input("serve: give the --model of the recording");
@@ -94,7 +96,9 @@ Status set_up_array(ServeOptions& options) {
   options.session.server.port = (*setup)->port();
   say(fmt::format("describe the array at {} (Ctrl-C ends it)",
                   address(options.session.server, options.session.server.port)));
-  options.place.model = (*setup)->run(stop_flag());
+  serve::DescribedArray array = (*setup)->run(stop_flag());
+  options.place.from = std::move(array.from);
+  options.place.model = std::move(array.model);
   if (!options.place.model.empty()) say("wrote " + options.place.model);
   return Done{};
 }
@@ -131,7 +135,8 @@ Status serve_suit(ServeOptions& options) {
 
 void add_serve(Command& command) {
   auto options = std::make_shared<ServeOptions>();
-  command.option("--from", options->place.from, "URI of a device or of the simulator, or a recording");
+  command.option("--from", options->place.from,
+                 "URI of a device or of the simulator, or a recording; without it the page lists the serial ports");
   command.option("--model", options->place.model,
                  "Its model, or the array.toml of an array to be calibrated; without it the page asks");
   command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");

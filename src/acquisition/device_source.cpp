@@ -13,6 +13,7 @@
 #include "dermis/acquisition/byte_stream.hpp"
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/acquisition/source_uri.hpp"
+#include "dermis/core/turned_source.hpp"
 
 namespace dermis::acquisition {
 namespace {
@@ -199,18 +200,22 @@ class DeviceSource final : public FrameSource {
 
 Result<std::unique_ptr<FrameSource>> open_device(SourceUri uri, const DeviceOptions& options) {
   ProtocolOptions& protocol = uri.protocol;
-  if (options.shape && protocol.shape && *protocol.shape != *options.shape) {
+  DeviceOptions sent = options;
+  if (options.shape) sent.shape = uri.order.sent(*options.shape);
+  if (sent.shape && protocol.shape && *protocol.shape != *sent.shape) {
     return bad_input("'" + uri.text + "': rows and cols are " + shape_text(*protocol.shape) + ", expected are " +
-                     shape_text(*options.shape));
+                     shape_text(*sent.shape));
   }
-  if (!protocol.shape) protocol.shape = options.shape;
+  if (!protocol.shape) protocol.shape = sent.shape;
   Result<std::unique_ptr<Decoder>> decoder = make_decoder(protocol);
   if (!decoder) return bad_input("'" + uri.text + "': " + decoder.error().message);
   Result<std::unique_ptr<ByteStream>> stream = make_source_stream(uri);
   if (!stream) return stream.error();
-  auto source = std::make_unique<DeviceSource>(std::move(uri), options, std::move(*stream), std::move(*decoder));
+  const LineOrder order = uri.order;
+  const std::string name = uri.text;
+  auto source = std::make_unique<DeviceSource>(std::move(uri), sent, std::move(*stream), std::move(*decoder));
   if (const Status opened = source->open(); !opened) return opened.error();
-  return std::unique_ptr<FrameSource>(std::move(source));
+  return turned_source(std::move(source), order, name);
 }
 
 Result<std::unique_ptr<FrameSource>> open_device(const std::string& uri, const DeviceOptions& options) {

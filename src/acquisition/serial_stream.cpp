@@ -6,34 +6,22 @@
 #include <sys/file.h>
 #include <sys/ioctl.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
-#include <vector>
 
 #include "acquisition/asio_stream.hpp"
 #include "acquisition/serial_settings.hpp"
+#include "dermis/acquisition/serial_ports.hpp"
 
 namespace dermis::acquisition {
 namespace {
 
-std::vector<std::string> serial_devices() {
-  std::vector<std::string> devices;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator("/dev", error)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with("ttyUSB") || name.starts_with("ttyACM")) devices.push_back(entry.path().string());
-  }
-  std::sort(devices.begin(), devices.end());
-  return devices;
-}
-
 Error not_there(const std::string& path) {
   std::string list;
-  for (const std::string& device : serial_devices()) list += (list.empty() ? "" : ", ") + device;
+  for (const SerialPort& port : serial_ports()) list += (list.empty() ? "" : ", ") + port.device;
   if (list.empty()) {
     return failed(in_quotes(path) +
                   " is not there, nor is any USB serial device: is it plugged in, with a data cable?");

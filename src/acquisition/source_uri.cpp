@@ -32,8 +32,9 @@ struct Scheme {
   bool is_target;
 };
 
-const std::set<std::string> kProtocolParameters = {"protocol",         "rows",      "cols",
-                                                   "nodes_per_packet", "delimited", "bit_shift"};
+const std::set<std::string> kProtocolParameters = {"protocol",  "rows",         "cols",      "nodes_per_packet",
+                                                   "delimited", "bit_shift",    "transpose", "flip_rows",
+                                                   "flip_cols", "skip_columns", "row_order", "col_order"};
 
 const std::array<Scheme, 9>& schemes() {
   static const std::array<Scheme, 9> kAll = {{
@@ -43,7 +44,11 @@ const std::array<Scheme, 9>& schemes() {
       {"udp", Transport::udp, {}, true, true},
       {"stdin", Transport::standard_input, {}, true, false},
       {"file", Transport::file, {"rate"}, true, false},
-      {"sim", Transport::simulation, {"rows", "cols", "rate", "seed", "array", "frames", "memory"}, true, false},
+      {"sim",
+       Transport::simulation,
+       {"rows", "cols", "rate", "seed", "array", "frames", "memory", "gain", "gain_spread"},
+       true,
+       false},
       {"pty", Transport::pseudo_terminal, {}, false, true},
       {"stdout", Transport::standard_output, {}, false, true},
   }};
@@ -225,9 +230,36 @@ class Parser {
     return FrameShape{*rows, *cols};
   }
 
+  bool read_switch(const char* name) { return read<int>(name, 0, 1, "0 or 1").value_or(0) == 1; }
+
+  /// "0,2,1"
+  void read_list(const char* name, std::vector<std::size_t>& list) {
+    const auto found = parameters_.find(name);
+    if (found == parameters_.end()) return;
+    for (std::size_t begin = 0; begin <= found->second.size();) {
+      const std::size_t end = std::min(found->second.find(',', begin), found->second.size());
+      const auto line = number<std::size_t>(found->second.substr(begin, end - begin), 0, kMaxLines - 1);
+      if (!line) return fail(std::string(name) + ": must be lines from 0 on, such as 0,2,1");
+      list.push_back(*line);
+      begin = end + 1;
+    }
+  }
+
+  void read_order() {
+    LineOrder& order = uri_.order;
+    order.transpose = read_switch("transpose");
+    order.flip_rows = read_switch("flip_rows");
+    order.flip_cols = read_switch("flip_cols");
+    order.skip_columns = read<std::size_t>("skip_columns", 0, kMaxLines - 1, "0 to 1023").value_or(0);
+    read_list("row_order", order.row_order);
+    read_list("col_order", order.col_order);
+    if (const Status valid = order.validate(); !valid) fail(valid.error().message);
+  }
+
   void read_parameters() {
     if (uri_.transport == Transport::simulation) return read_simulation();
     read_protocol();
+    read_order();
     uri_.baud =
         read<unsigned>("baud", kLeastBaud, kMostBaud, "50 to 20000000").value_or(usual_baud(uri_.protocol.name));
     read_rate();
@@ -265,6 +297,8 @@ class Parser {
     uri_.frames = read<std::size_t>("frames", 1, 200'000, "1 to 200000");
     if (const auto found = parameters_.find("array"); found != parameters_.end()) uri_.array = found->second;
     if (const auto found = parameters_.find("memory"); found != parameters_.end()) uri_.memory = found->second;
+    uri_.gain = read<double>("gain", 0.1, 10.0, "0.1 to 10").value_or(1.0);
+    uri_.gain_spread = read<double>("gain_spread", 0.0, 1.0, "0 to 1").value_or(0.0);
   }
 
   std::string_view text_;

@@ -130,6 +130,16 @@ Status validate_absent(const ArrayDescription& array) {
   return Done{};
 }
 
+Status validate_order(const ArrayDescription& array) {
+  const auto of_key = [](const Error& error) { return bad_input("array." + error.message); };
+  if (array.order.skip_columns >= kMaxLines) {
+    return bad_input("array.skip_columns: must be 0 to " + std::to_string(kMaxLines - 1));
+  }
+  if (const Status lists = array.order.validate(); !lists) return of_key(lists.error());
+  const Result<FrameShape> turned = array.order.turned(array.order.sent({array.rows, array.cols}));
+  return turned ? Status(Done{}) : of_key(turned.error());
+}
+
 /// Pressures and forces, which no circuit and no supply has part in.
 Status validate_calibrated(const ArrayDescription& array) {
   const Readout& readout = array.readout;
@@ -208,6 +218,7 @@ Status ArrayDescription::validate() const {
   if (cols < 1 || cols > kMaxLines) return bad_input("array.cols: must be 1 to " + std::to_string(kMaxLines));
   if (Status valid = validate_geometry(*this); !valid) return valid;
   if (Status valid = validate_absent(*this); !valid) return valid;
+  if (Status valid = validate_order(*this); !valid) return valid;
   return validate_readout(*this);
 }
 

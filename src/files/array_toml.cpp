@@ -56,6 +56,15 @@ void read_absent(ConfigFile& file, ArrayDescription& array) {
   array.absent.erase(std::unique(array.absent.begin(), array.absent.end()), array.absent.end());
 }
 
+void read_order(ConfigFile& file, LineOrder& order) {
+  file.count("array.skip_columns", order.skip_columns);
+  file.boolean("array.transpose", order.transpose);
+  file.boolean("array.flip_rows", order.flip_rows);
+  file.boolean("array.flip_cols", order.flip_cols);
+  file.counts("array.row_order", order.row_order);
+  file.counts("array.col_order", order.col_order);
+}
+
 template <typename Choice>
 void read_choice(ConfigFile& file, std::string_view key, std::initializer_list<Choice> choices, Choice& value) {
   std::vector<std::string> names;
@@ -159,6 +168,7 @@ Result<ArrayDescription> read_array(ConfigFile& file) {
   ArrayDescription array;
   read_geometry(file, array);
   read_absent(file, array);
+  read_order(file, array.order);
   read_readout(file, array);
   if (const Status read = file.finish(); !read) return read.error();
   if (const Status valid = array.validate(); !valid) fail_invalid(file, valid.error().message);
@@ -198,6 +208,18 @@ std::vector<std::string> absent_names(const ArrayDescription& array) {
   std::vector<std::string> names;
   for (const std::size_t taxel : array.absent) names.push_back(quoted_toml(array.taxel_name(taxel)));
   return names;
+}
+
+/// A line for each key that is not as usual.
+std::string order_toml(const LineOrder& order) {
+  std::string text;
+  if (order.skip_columns > 0) text += fmt::format("skip_columns = {}\n", order.skip_columns);
+  if (order.transpose) text += "transpose = true\n";
+  if (order.flip_rows) text += "flip_rows = true\n";
+  if (order.flip_cols) text += "flip_cols = true\n";
+  if (!order.row_order.empty()) text += fmt::format("row_order = [{}]\n", fmt::join(order.row_order, ", "));
+  if (!order.col_order.empty()) text += fmt::format("col_order = [{}]\n", fmt::join(order.col_order, ", "));
+  return text;
 }
 
 std::string circuit_toml(const Readout& readout) {
@@ -248,6 +270,7 @@ std::string array_to_toml(const ArrayDescription& array) {
     text += fmt::format("taxel_area_mm2 = {:.15g}\n", *array.taxel_area_m2 * kSquareMillimetresPerSquareMetre);
   }
   if (!array.absent.empty()) text += fmt::format("absent = [{}]\n", fmt::join(absent_names(array), ", "));
+  text += order_toml(array.order);
   text += "\n[readout]\n" + circuit_toml(readout);
   text += fmt::format("adc_bits = {}\nadc_noise_counts = {}\nsupply_noise = {}\nadc_reference_v = {}\n",
                       readout.adc_bits, readout.adc_noise_counts, readout.supply_noise,

@@ -27,6 +27,18 @@ std::string temperature_text(const Diagnosis& diagnosis, const pipeline::Model& 
                                 calibrated.centre_celsius + calibrated.half_span_celsius);
 }
 
+std::string unloaded_text(const Diagnosis& diagnosis) {
+  if (!diagnosis.offset_drift) return "unknown";
+  std::string text = fmt::format("{:+.1f} % against the calibration", 100.0 * *diagnosis.offset_drift);
+  if (diagnosis.offset_spread) text += fmt::format(", {:.1f} % from taxel to taxel", 100.0 * *diagnosis.offset_spread);
+  return text;
+}
+
+std::string gains_text(const AgeingEvidence& ageing) {
+  if (!ageing.gain_spread) return "unknown (too few touches of several taxels)";
+  return fmt::format("{:.1f} % from taxel to taxel against the calibration", 100.0 * *ageing.gain_spread);
+}
+
 }  // namespace
 
 std::string describe(const Diagnosis& diagnosis, const pipeline::Model& model) {
@@ -39,9 +51,8 @@ std::string describe(const Diagnosis& diagnosis, const pipeline::Model& model) {
       diagnosis.noise_counts ? fmt::format("{:.2f} counts", *diagnosis.noise_counts) : "unknown (touched all the time)",
       array.readout.adc_noise_counts);
   text += fmt::format("saturated    {:.2f} % of all readings\n", 100.0 * diagnosis.saturated_share);
-  text += fmt::format("unloaded     {}\n", diagnosis.offset_drift ? fmt::format("{:+.1f} % against the calibration",
-                                                                                100.0 * *diagnosis.offset_drift)
-                                                                  : "unknown");
+  text += fmt::format("unloaded     {}\n", unloaded_text(diagnosis));
+  text += fmt::format("gains        {}\n", gains_text(diagnosis.ageing));
   text += fmt::format("temperature  {}\n", temperature_text(diagnosis, model));
   text += fmt::format("circuit      {} frames unsolved, worst misfit {:.2f} standard deviations\n",
                       diagnosis.frames_unsolved, diagnosis.worst_misfit_sigma);

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/health/ageing_monitor.hpp"
 #include "dermis/preprocessing/missing_readings.hpp"
 #include "health/findings.hpp"
 #include "health/noise_meter.hpp"
@@ -80,9 +81,11 @@ class Examination::Implementation {
         missing_(model.array),
         unloaded_(model),
         offsets_(model.array.taxel_count()),
+        ageing_(model),
         deviation_(model.array.taxel_count()) {}
 
-  void add(const RawFrame& raw, const pipeline::Pipeline& pipeline) {
+  void add(const RawFrame& raw, const ForceFrame& force, const pipeline::Pipeline& pipeline) {
+    ageing_.add(force);
     const std::size_t frame = counted_.frames++;
     const ConductanceFrame& conductance = pipeline.conductance();
     if (has(conductance.status, FrameStatus::rejected)) {
@@ -118,6 +121,8 @@ class Examination::Implementation {
       if (const auto range = missing_.describe_range()) diagnosis.missing_readings += "; " + *range;
     }
     diagnosis.offset_drift = offsets_.drift();
+    diagnosis.offset_spread = offsets_.spread();
+    diagnosis.ageing = ageing_.evidence();
     diagnosis.blind_lines = blind_lines(pipeline.line_faults(), model_.array);
     diagnosis.findings = findings_of(diagnosis, model_);
     diagnosis.remarks = remarks_on(pipeline.line_faults().suspicions(), model_.array);
@@ -169,6 +174,7 @@ class Examination::Implementation {
   UnloadedTaxels unloaded_;
   NoiseMeter noise_;
   OffsetMeter offsets_;
+  AgeingMonitor ageing_;
   std::vector<double> deviation_;  // from the unloaded conductance, in standard deviations [taxels]
 };
 
@@ -177,8 +183,8 @@ Examination::Examination(Examination&&) noexcept = default;
 Examination& Examination::operator=(Examination&&) noexcept = default;
 Examination::~Examination() = default;
 
-void Examination::add(const RawFrame& raw, const pipeline::Pipeline& pipeline) {
-  implementation_->add(raw, pipeline);
+void Examination::add(const RawFrame& raw, const ForceFrame& force, const pipeline::Pipeline& pipeline) {
+  implementation_->add(raw, force, pipeline);
 }
 
 Diagnosis Examination::diagnosis(const pipeline::Pipeline& pipeline) const {

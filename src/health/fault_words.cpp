@@ -55,14 +55,18 @@ std::string describe(const FaultHistory& history, const ArrayDescription& array)
                             masked == 1 ? "the taxel is" : fmt::format("its {} taxels are", masked));
 }
 
-Condition condition_of(const pipeline::Model& model, std::span<const LineFault> faults) {
+Condition condition_of(const pipeline::Model& model, std::span<const LineFault> faults, const AgeingEvidence& ageing) {
   Condition condition;
   for (const LineFault& fault : faults) {
     condition.details.emplace_back(place_name(fault, model.array), describe(FaultHistory{fault}, model.array));
   }
   const std::string dead = dead_taxels(model);
   if (!dead.empty()) condition.details.emplace_back("dead since calibration", dead);
+  if (ageing.gain_spread) condition.details.emplace_back("gains", describe(ageing));
   condition.message = dead.empty() ? "healthy" : "dead taxels";
+  if (ageing.has_aged()) {
+    condition.message = fmt::format("recalibrate: gains have changed by about {:.0f} %", 100.0 * *ageing.gain_spread);
+  }
   if (!faults.empty()) condition.message = fmt::format("{} fault{}", faults.size(), faults.size() == 1 ? "" : "s");
   return condition;
 }

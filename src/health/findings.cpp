@@ -56,6 +56,7 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline:
     found.push_back(fmt::format("unloaded taxels conduct {:+.0f} % against the calibration: calibrate again",
                                 100.0 * *diagnosis.offset_drift));
   }
+  if (diagnosis.ageing.has_aged()) found.push_back(describe(diagnosis.ageing));
   if (diagnosis.temperature && leaves_calibrated_range(*diagnosis.temperature, model.networks)) {
     found.emplace_back("the temperature leaves the calibrated range: forces there are those at its end");
   }

@@ -22,7 +22,12 @@ class OffsetMeter {
   /// Median over the taxels, relative; empty where none was unloaded long enough.
   [[nodiscard]] std::optional<double> drift() const;
 
+  /// Half of the range of the middle 68 % of the taxels, relative; empty of fewer than ten.
+  [[nodiscard]] std::optional<double> spread() const;
+
  private:
+  [[nodiscard]] std::vector<double> drifts() const;
+
   std::vector<double> share_;        // sum over the frames [taxels]
   std::vector<std::size_t> frames_;  // [taxels]
 };

@@ -41,6 +41,8 @@ struct Track {
   std::deque<Waiting> waiting;
   bool is_shown_at_once = true;  ///< The next frame: after the beginning and after a seek.
   std::condition_variable changed;
+  std::optional<RawFrame> shown;  ///< The last frame that was given.
+  bool is_shown_again = false;    ///< It is to be given once more.
 
   SourceStatistics statistics;
   Clock::time_point rate_begin = Clock::now();
@@ -83,6 +85,7 @@ class Playback::Implementation {
   [[nodiscard]] SourceStatistics statistics(std::size_t track) const;
   PlaybackStatus control(const PlaybackCommand& command);
   [[nodiscard]] PlaybackStatus status() const;
+  void show_again();
   void stop();
 
  private:
@@ -194,6 +197,8 @@ void Playback::Implementation::pop(Track& track, RawFrame& frame) {
   track.waiting.pop_front();
   if (plays_ && !track.is_shown_at_once && now() - time > scaled(kMostLate, speed_)) set_clock(time, plays_);
   track.is_shown_at_once = false;
+  track.is_shown_again = false;
+  track.shown = frame;
   frame.acquisition.arrival_steady = Clock::now().time_since_epoch();
   track.count(frame);
 }
@@ -210,6 +215,11 @@ Result<bool> Playback::Implementation::next(std::size_t index, RawFrame& frame) 
         pop(track, frame);
         return true;
       }
+    }
+    if (std::exchange(track.is_shown_again, false)) {
+      frame = *track.shown;
+      frame.acquisition.arrival_steady = Clock::now().time_since_epoch();
+      return true;
     }
     wait(track, lock);
   }
@@ -245,6 +255,12 @@ PlaybackStatus Playback::Implementation::control(const PlaybackCommand& command)
   set_clock(position, command.play);
   wake_all();
   return {state(), now(), speed_};
+}
+
+void Playback::Implementation::show_again() {
+  const std::scoped_lock lock(mutex_);
+  for (Track& track : tracks_) track.is_shown_again = track.shown.has_value();
+  wake_all();
 }
 
 void Playback::Implementation::stop() {
@@ -323,6 +339,10 @@ PlaybackStatus Playback::control(const PlaybackCommand& command) {
 
 PlaybackStatus Playback::status() const {
   return implementation_->status();
+}
+
+void Playback::show_again() {
+  implementation_->show_again();
 }
 
 void Playback::stop() {

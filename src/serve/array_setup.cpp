@@ -3,7 +3,6 @@
 #include "dermis/serve/array_setup.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <filesystem>
 #include <mutex>
@@ -13,125 +12,82 @@
 #include <thread>
 #include <utility>
 
+#include "dermis/acquisition/serial_ports.hpp"
 #include "dermis/files/array_toml.hpp"
+#include "serve/array_request.hpp"
+#include "serve/first_look.hpp"
 #include "serve/json_request.hpp"
+#include "serve/touch_watch.hpp"
 
 namespace dermis::serve {
 namespace {
 
-constexpr std::chrono::seconds kPatience{8};
+using nlohmann::ordered_json;
+using sources::SourceName;
+
 constexpr std::chrono::milliseconds kPeriod{50};
 constexpr std::chrono::milliseconds kToAnswer{300};  // until a client has what it asked for
+constexpr std::size_t kMostPath = 255;
 
-/// What the source sends, as far as that tells the array.
-struct FirstLook {
-  std::optional<FrameShape> shape{};
-  std::string message{};  ///< What the bytes are, or what they lack.
-};
-
-/// Sets a flag when another is set, or after kPatience.
-class Patience {
- public:
-  explicit Patience(const std::atomic<bool>* stop)
-      : thread_([this, stop](const std::stop_token& token) {
-          const auto end = std::chrono::steady_clock::now() + kPatience;
-          const auto is_over = [&] { return std::chrono::steady_clock::now() >= end || (stop != nullptr && *stop); };
-          while (!token.stop_requested() && !is_over()) std::this_thread::sleep_for(kPeriod);
-          over_ = true;
-        }) {}
-
-  [[nodiscard]] const std::atomic<bool>* over() const noexcept { return &over_; }
-
- private:
-  std::atomic<bool> over_ = false;
-  std::jthread thread_;
-};
-
-Result<FirstLook> look(const sources::SourceName& name, sources::SourceOptions options) {
-  FirstLook found;
-  const Patience patience(options.stop);
-  options.stop = patience.over();
-  const auto log = std::move(options.notice);
-  options.notice = [&](const std::string& line) {
-    found.message = line;
-    if (log) log(line);
-  };
-  const Result<std::unique_ptr<FrameSource>> source = sources::open_source(name, options);
-  if (!source) return source.error();
-  RawFrame frame;
-  const Result<bool> came = (*source)->next(frame);
-  if (!came && came.error().kind != ErrorKind::bad_input) return came.error();
-  if (!came) found.message = came.error().message;
-  if (came && *came) found.shape = (*source)->shape();
-  if (came && !*came && found.message.empty()) found.message = "nothing came within 8 s";
-  return found;
-}
-
-nlohmann::ordered_json json_of(const std::string& from, const FirstLook& found) {
-  nlohmann::ordered_json json;
+/// /suit.json of an array that is not described yet.
+std::string suit_json(const std::string& from, const FirstLook& found) {
+  ordered_json json;
   json["name"] = "";
-  json["arrays"] = nlohmann::ordered_json::array();
-  nlohmann::ordered_json& setup = json["setup"];
+  json["arrays"] = ordered_json::array();
+  ordered_json& setup = json["setup"];
   setup["from"] = from;
-  setup["rows"] = found.shape ? nlohmann::ordered_json(found.shape->rows) : nlohmann::ordered_json();
-  setup["cols"] = found.shape ? nlohmann::ordered_json(found.shape->cols) : nlohmann::ordered_json();
+  setup["rows"] = found.shape ? ordered_json(found.shape->rows) : ordered_json();
+  setup["cols"] = found.shape ? ordered_json(found.shape->cols) : ordered_json();
   setup["message"] = found.message;
-  return json;
+  return json_text(json);
 }
 
-bool is_file_name(std::string_view name) {
-  const auto is_plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
-  return !name.empty() && std::ranges::all_of(name, is_plain);
+Result<std::string> list_ports() {
+  ordered_json answer;
+  answer["ports"] = ordered_json::array();
+  for (const acquisition::SerialPort& port : acquisition::serial_ports()) {
+    answer["ports"].push_back({{"device", port.device}, {"path", port.path}, {"product", port.product}});
+  }
+  return json_text(answer);
 }
 
-Result<std::uint64_t> whole(const JsonRequest& request, const char* field, const char* wanted) {
-  const Result<std::optional<std::uint64_t>> number = request.number(field, wanted);
-  if (!number) return number.error();
-  if (!*number) return bad_field(field, std::string("must be ") + wanted);
-  return **number;
-}
-
-/// {"name": "mat", "rows": 12, "cols": 10, "pitch_um": 10000, "adc_bits": 12}
-Result<ArrayDescription> array_of(std::string_view text) {
+/// {"path": one of those that are listed, "baud": 115200}; without a baud it is that of most boards.
+Result<SourceName> port_request(std::string_view text) {
   const Result<JsonRequest> request = JsonRequest::parse(text);
   if (!request) return request.error();
-  const Result<std::string> name = request->text("name");
-  if (!name) return name.error();
-  if (!is_file_name(*name)) return bad_field("name", "must be letters, digits, '_' and '-'");
-  const auto rows = whole(*request, "rows", "1 to 1024");
-  const auto cols = whole(*request, "cols", "1 to 1024");
-  const auto pitch_um = whole(*request, "pitch_um", "a whole number of micrometres");
-  const auto adc_bits = whole(*request, "adc_bits", "1 to 24");
-  for (const auto* number : {&rows, &cols, &pitch_um, &adc_bits}) {
-    if (!*number) return number->error();
+  const Result<std::string> path = request->text("path", kMostPath);
+  if (!path) return path.error();
+  const auto baud = request->number("baud", "50 to 20000000");
+  if (!baud) return baud.error();
+  const std::vector<acquisition::SerialPort> ports = acquisition::serial_ports();
+  if (std::ranges::find(ports, *path, &acquisition::SerialPort::path) == ports.end()) {
+    return bad_field("path", "is none of the serial ports of this machine");
   }
-  ArrayDescription array;
-  array.name = *name;
-  array.rows = *rows;
-  array.cols = *cols;
-  array.row_pitch_m = array.col_pitch_m = 1e-6 * static_cast<double>(*pitch_um);
-  array.readout.circuit = Circuit::automatic;
-  array.readout.adc_bits = static_cast<int>(std::min<std::uint64_t>(*adc_bits, 99));
-  if (Status valid = array.validate(); !valid) return valid.error();
-  return array;
+  std::string uri = "serial://" + *path;
+  if (*baud) uri += "?baud=" + std::to_string(**baud);
+  return SourceName::parse(uri);
 }
 
 }  // namespace
 
 class ArraySetup::Implementation {
  public:
-  Implementation(std::unique_ptr<stream::Server> server, const std::string& suit_json) : server_(std::move(server)) {
-    server_->set_document("/suit.json", "application/json", suit_json);
-    server_->start({}, {{"/array/describe", [this](std::string_view request) { return describe(request); }}});
+  /// `name`: empty where clients choose it.
+  Implementation(std::unique_ptr<stream::Server> server, std::optional<SourceName> name, const FirstLook& found,
+                 sources::SourceOptions options)
+      : name_(std::move(name)), options_(std::move(options)), server_(std::move(server)) {
+    const bool is_chosen = name_.has_value();
+    show(found);
+    server_->start({}, services(!is_chosen));
   }
 
   [[nodiscard]] std::uint16_t port() const noexcept { return server_->port(); }
 
-  std::string run(const std::atomic<bool>& stop) {
+  DescribedArray run(const std::atomic<bool>& stop) {
     while (!stop) {
-      if (std::string path = written(); !path.empty()) {
+      if (DescribedArray array = described(); !array.model.empty()) {
         std::this_thread::sleep_for(kToAnswer);
-        return path;
+        return array;
       }
       std::this_thread::sleep_for(kPeriod);
     }
@@ -139,13 +95,44 @@ class ArraySetup::Implementation {
   }
 
  private:
-  [[nodiscard]] std::string written() {
+  using Call = Result<std::string> (Implementation::*)(std::string_view);
+
+  std::vector<stream::Service> services(bool with_ports) {
+    const auto service = [this](const char* name, Call call) {
+      return stream::Service{name, [this, call](std::string_view request) { return (this->*call)(request); }};
+    };
+    std::vector<stream::Service> services = {service("/array/describe", &Implementation::describe),
+                                             service("/array/watch", &Implementation::watch),
+                                             service("/array/touch", &Implementation::touch)};
+    if (!with_ports) return services;
+    services.push_back({"/ports/list", [](std::string_view) { return list_ports(); }});
+    services.push_back(service("/ports/open", &Implementation::open_port));
+    return services;
+  }
+
+  void show(const FirstLook& found) {
+    server_->set_document("/suit.json", "application/json", suit_json(name_ ? name_->text : "", found));
+  }
+
+  [[nodiscard]] DescribedArray described() {
     const std::lock_guard lock(mutex_);
-    return written_;
+    return described_;
+  }
+
+  Result<std::string> open_port(std::string_view request) {
+    Result<SourceName> name = port_request(request);
+    if (!name) return name.error();
+    watch_.reset();
+    const Result<FirstLook> found = first_look(*name, options_);
+    if (!found) return found.error();
+    name_ = *std::move(name);
+    show(*found);
+    return json_text(nlohmann::json{{"from", name_->text}});
   }
 
   Result<std::string> describe(std::string_view request) {
-    const Result<ArrayDescription> array = array_of(request);
+    if (!name_) return bad_input("choose a serial port first");
+    const Result<ArrayDescription> array = array_request(request);
     if (!array) return array.error();
     const std::string path = array->name + ".toml";
     std::error_code ignored;
@@ -155,25 +142,58 @@ class ArraySetup::Implementation {
     }
     if (Status status = files::write_array(path, *array); !status) return status.error();
     const std::lock_guard lock(mutex_);
-    written_ = path;
+    described_ = {name_->text, path};
     return json_text(nlohmann::json{{"file", path}});
   }
 
+  /// From now on touch() tells where the array is touched; `request` says the shape of what its source sends.
+  Result<std::string> watch(std::string_view request) {
+    if (!name_) return bad_input("choose a serial port first");
+    const Result<FrameShape> shape = shape_request(request);
+    if (!shape) return shape.error();
+    watch_.reset();  // a device can be opened once
+    watch_ = std::make_unique<TouchWatch>(*name_, *shape, options_);
+    return std::string("{}");
+  }
+
+  Result<std::string> touch(std::string_view /*request*/) {
+    if (!watch_) return bad_input("nothing is watched");
+    const TouchWatch::Seen seen = watch_->seen();
+    const std::size_t cols = watch_->shape().cols;
+    ordered_json answer;
+    answer["ready"] = seen.is_ready;
+    answer["touched"] = seen.taxel ? ordered_json{*seen.taxel / cols, *seen.taxel % cols} : ordered_json();
+    answer["problem"] = seen.problem;
+    return json_text(answer);
+  }
+
   std::mutex mutex_;
-  std::string written_;
+  DescribedArray described_;
+  std::optional<SourceName> name_;  // this and the rest: of the services, which are called one at a time
+  sources::SourceOptions options_;
+  std::unique_ptr<TouchWatch> watch_;  // null: nobody asked for it
   std::unique_ptr<stream::Server> server_;
 };
 
 Result<std::unique_ptr<ArraySetup>> ArraySetup::create(const std::string& from, const SessionOptions& options,
                                                        sources::SourceOptions source_options) {
-  const Result<sources::SourceName> name = sources::SourceName::parse(from);
-  if (!name) return name.error();
-  const Result<FirstLook> found = look(*name, std::move(source_options));
-  if (!found) return found.error();
+  if (from.empty() && !options.server.is_local()) {
+    return bad_input("host: others reach this server, so clients may not choose a device; name its URI");
+  }
+  std::optional<SourceName> name;
+  FirstLook found;
+  if (!from.empty()) {
+    Result<SourceName> parsed = SourceName::parse(from);
+    if (!parsed) return parsed.error();
+    name = *std::move(parsed);
+    Result<FirstLook> looked = first_look(*name, source_options);
+    if (!looked) return looked.error();
+    found = *std::move(looked);
+  }
   Result<std::unique_ptr<stream::Server>> server = stream::Server::create(options.server, options.page);
   if (!server) return server.error();
-  return std::unique_ptr<ArraySetup>(
-      new ArraySetup(std::make_unique<Implementation>(*std::move(server), json_text(json_of(from, *found)))));
+  return std::unique_ptr<ArraySetup>(new ArraySetup(
+      std::make_unique<Implementation>(*std::move(server), std::move(name), found, std::move(source_options))));
 }
 
 ArraySetup::ArraySetup(std::unique_ptr<Implementation> implementation) : implementation_(std::move(implementation)) {}
@@ -184,7 +204,7 @@ std::uint16_t ArraySetup::port() const noexcept {
   return implementation_->port();
 }
 
-std::string ArraySetup::run(const std::atomic<bool>& stop) {
+DescribedArray ArraySetup::run(const std::atomic<bool>& stop) {
   return implementation_->run(stop);
 }
 

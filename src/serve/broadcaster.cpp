@@ -44,9 +44,11 @@ void Broadcaster::publish(const live::ArrayResult& result) {
   if (due || begins_or_ends(result.report)) publish_contacts(channels, result);
 }
 
-/// Evenly, whatever the jitter of the frames: what was late does not make the next one late.
+/// Evenly, whatever the jitter of the frames: what was late does not make the next one late. A frame that comes again
+/// is for somebody who has not seen it.
 bool Broadcaster::is_due(Channels& channels, Nanos time) const noexcept {
   const Nanos period(static_cast<std::int64_t>(1e9 / rate_hz()));
+  if (channels.last == time) return true;
   const bool went_back = channels.last && time < *channels.last;
   const bool due = !channels.last || went_back || time >= channels.due;
   if (due) channels.due = !went_back && time - channels.due < period ? channels.due + period : time + period;

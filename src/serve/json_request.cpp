@@ -3,6 +3,7 @@
 #include "serve/json_request.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <utility>
 
 namespace dermis::serve {
@@ -36,11 +37,28 @@ Result<std::string> JsonRequest::text(const char* field, std::size_t most_bytes)
   return text;
 }
 
+Result<std::string> JsonRequest::file_name(const char* field) const {
+  Result<std::string> name = text(field);
+  if (!name) return name;
+  const auto is_plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+  if (name->empty() || !std::ranges::all_of(*name, is_plain)) {
+    return bad_field(field, "must be letters, digits, '_' and '-'");
+  }
+  return name;
+}
+
 Result<std::optional<std::uint64_t>> JsonRequest::number(const char* field, const char* wanted) const {
   const auto found = object_.find(field);
   if (found == object_.end()) return std::optional<std::uint64_t>();
   if (!found->is_number_unsigned()) return bad_field(field, std::string("must be ") + wanted);
   return std::optional(found->get<std::uint64_t>());
+}
+
+Result<bool> JsonRequest::flag(const char* field) const {
+  const auto found = object_.find(field);
+  if (found == object_.end()) return false;
+  if (!found->is_boolean()) return bad_field(field, "must be true or false");
+  return found->get<bool>();
 }
 
 }  // namespace dermis::serve

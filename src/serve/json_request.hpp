@@ -23,8 +23,12 @@ class JsonRequest {
 
   /// A text without control characters, commas and quotes; empty where there is no such field.
   [[nodiscard]] Result<std::string> text(const char* field, std::size_t most_bytes = kMostNameBytes) const;
+  /// A name for a file: letters, digits, '_' and '-', at least one.
+  [[nodiscard]] Result<std::string> file_name(const char* field) const;
   /// A whole number from 0 on; empty where there is no such field. `wanted`: what the field must be, for the error.
   [[nodiscard]] Result<std::optional<std::uint64_t>> number(const char* field, const char* wanted) const;
+  /// True or false; false where there is no such field.
+  [[nodiscard]] Result<bool> flag(const char* field) const;
 
  private:
   explicit JsonRequest(nlohmann::json object);

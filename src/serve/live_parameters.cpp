@@ -3,12 +3,15 @@
 #include "serve/live_parameters.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <string_view>
 
 namespace dermis::serve {
 namespace {
 
 constexpr double kSlowestStreamHz = 1.0;
 constexpr double kFastestStreamHz = 1000.0;
+constexpr std::string_view kTare = "/tare";
 
 }  // namespace
 
@@ -26,7 +29,8 @@ std::vector<stream::Parameter> LiveParameters::all() const {
                                         {"/drift/track", settings.drift.track},
                                         {"/stream/rate_hz", broadcaster_.rate_hz()},
                                         {"/recording", recorder_.recording()},
-                                        {"/recording/file", recorder_.path()}};
+                                        {"/recording/file", recorder_.path()},
+                                        {"/tare/log", tare_log_.text()}};
   for (std::size_t k = 0; k < tared_.size(); ++k) {
     all.push_back({"/" + suit_.arrays[k].name + "/tare", tared_[k].load()});
   }
@@ -37,6 +41,13 @@ Status LiveParameters::set(const stream::Parameter& parameter) {
   if (const auto* number = std::get_if<double>(&parameter.value)) return set_number(parameter.name, *number);
   if (const auto* on = std::get_if<bool>(&parameter.value)) return set_switch(parameter.name, *on);
   return bad_input(parameter.name + ": takes a number or true and false");
+}
+
+std::string LiveParameters::log_tare(const stream::Parameter& tare, const std::string& who) {
+  const std::string array = tare.name == kTare ? "the suit" : tare.name.substr(1, tare.name.size() - 1 - kTare.size());
+  const auto* on = std::get_if<bool>(&tare.value);
+  return tare_log_.add(suit_.arrays.size() == 1 ? suit_.arrays.front().name : array, on != nullptr && *on, who,
+                       std::chrono::system_clock::now());
 }
 
 Status LiveParameters::set_number(const std::string& name, double value) {
@@ -72,7 +83,7 @@ Status LiveParameters::set_switch(const std::string& name, bool value) {
 Status LiveParameters::set_tare(const std::string& name, bool value) {
   bool found = false;
   for (std::size_t k = 0; k < tared_.size(); ++k) {
-    if (name != "/tare" && name != "/" + suit_.arrays[k].name + "/tare") continue;
+    if (name != kTare && name != "/" + suit_.arrays[k].name + "/tare") continue;
     value ? live_.tare(k) : live_.reset_tare(k);
     tared_[k] = value;
     found = true;

@@ -13,6 +13,7 @@
 #include "dermis/stream/server.hpp"
 #include "serve/broadcaster.hpp"
 #include "serve/suit_recorder.hpp"
+#include "serve/tare_log.hpp"
 
 namespace dermis::serve {
 
@@ -26,6 +27,8 @@ class LiveParameters {
 
   /// Errors: an unknown name, a value that it cannot have; those of a recording.
   [[nodiscard]] Status set(const stream::Parameter& parameter);
+  /// Says who has set a tare; returns the line for others.
+  std::string log_tare(const stream::Parameter& tare, const std::string& who);
 
   /// The array has another model, which begins at its own zero.
   void forget_tare(std::size_t array) { tared_[array] = false; }
@@ -41,6 +44,7 @@ class LiveParameters {
   Broadcaster& broadcaster_;
   SuitRecorder& recorder_;
   std::vector<std::atomic<bool>> tared_;  // Of each array.
+  TareLog tare_log_;
 };
 
 }  // namespace dermis::serve

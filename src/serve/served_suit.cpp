@@ -16,6 +16,7 @@
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/sources/open_source.hpp"
+#include "dermis/sources/recorded_order.hpp"
 #include "dermis/threats/threat_monitor.hpp"
 #include "serve/live_recognition.hpp"
 #include "serve/model_or_array.hpp"
@@ -221,6 +222,8 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
       return bad_input(fmt::format("'{}': array '{}' has {}x{} taxels, its model {}x{}", from, array.name,
                                    found->shape.rows, found->shape.cols, shape.rows, shape.cols));
     }
+    Status order = sources::check_recorded_order(from, found->array_toml, array.model->array);
+    if (!order) return order;
     array.source = (*playback)->source(static_cast<std::size_t>(found - recorded.begin()));
   }
   suit.playback = *std::move(playback);
@@ -267,6 +270,20 @@ Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, pipeline::Mo
                          {},
                          std::move(description)});
   return suit;
+}
+
+Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& recording) {
+  ServedSuit played;
+  played.name = suit.name;
+  for (const ServedArray& array : suit.arrays) {
+    played.arrays.push_back({array.name, nullptr, array.model, array.surface, array.suit_from_array, array.description,
+                             array.model_path, array.classes});
+  }
+  played.classes = suit.classes;
+  played.threats = suit.threats;
+  played.body = suit.body;
+  if (Status opened = open_playback(recording, played); !opened) return opened.error();
+  return played;
 }
 
 Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions options) {

@@ -15,12 +15,14 @@
 
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/content_hash.hpp"
+#include "serve/ageing_watch.hpp"
 #include "serve/broadcaster.hpp"
 #include "serve/calibration_services.hpp"
 #include "serve/dds_topics.hpp"
 #include "serve/live_parameters.hpp"
 #include "serve/models_in_use.hpp"
 #include "serve/recognition_publisher.hpp"
+#include "serve/recording_services.hpp"
 #include "serve/service_arrays.hpp"
 #include "serve/status_publisher.hpp"
 #include "serve/suit_json.hpp"
@@ -34,6 +36,7 @@ namespace {
 
 using Notice = std::function<void(const std::string&)>;
 
+constexpr int kInfoLevel = 0;
 constexpr int kErrorLevel = 2;
 constexpr std::int64_t kTicksToReport = std::int64_t{5} * StatusPublisher::kTicksPerSecond;
 
@@ -133,7 +136,8 @@ class Session::Implementation {
   void listen();
   [[nodiscard]] stream::Handlers handlers();
   [[nodiscard]] std::vector<stream::Service> services();
-  [[nodiscard]] Status set_parameter(const stream::Parameter& parameter);
+  [[nodiscard]] Status set_parameter(const stream::Parameter& parameter, const std::string& client);
+  [[nodiscard]] std::optional<PlayedRecording::PlayedSuit> player();
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
   [[nodiscard]] Status use_classes(std::size_t array, recognition::Classes classes);
   void show_suit();
@@ -142,7 +146,7 @@ class Session::Implementation {
   void report_left_out();
   void publish_to_dds(std::int64_t tick);
   void log(const std::string& line) const;
-  void tell(const std::string& line);
+  void tell(const std::string& line, int level = kErrorLevel);
 
   const Notice notice_;
   ServedSuit suit_;
@@ -150,7 +154,9 @@ class Session::Implementation {
   std::unique_ptr<stream::Server> server_;
   std::unique_ptr<FrameListeners> listeners_;
   std::unique_ptr<live::LiveSuit> live_;
+  AgeingWatch ageing_;
   SuitRecorder recorder_;
+  RecordingServices recordings_;
   Broadcaster broadcaster_;
   RecognitionPublisher recognition_;
   std::optional<ThreatPublisher> threats_;  // empty: nothing is limited
@@ -171,9 +177,12 @@ Session::Implementation::Implementation(ServedSuit suit, SessionParts parts, con
       server_(std::move(parts.server)),
       listeners_(std::move(parts.listeners)),
       live_(std::move(parts.live)),
+      ageing_(suit_),
       recorder_(
           options.record, [this] { return recorded_arrays(suit_, models_); },
           [this](const std::string& why) { report_failed_recording(why); }),
+      recordings_(
+          suit_, options, [this] { return recorded_arrays(suit_, models_); }, recorder_, *server_, player()),
       broadcaster_(suit_, *server_),
       recognition_(suit_, *server_, recorder_),
       calibration_(
@@ -186,7 +195,7 @@ Session::Implementation::Implementation(ServedSuit suit, SessionParts parts, con
           service_arrays(suit_),
           [this](std::size_t array, recognition::Classes classes) { return use_classes(array, std::move(classes)); }),
       parameters_(suit_, *live_, broadcaster_, recorder_),
-      status_(SuitAtWork{suit_, models_, *live_, recorder_, calibration_, threats_}, *server_),
+      status_(SuitAtWork{suit_, models_, *live_, ageing_, recorder_, calibration_, threats_}, *server_),
       dds_(std::move(parts.dds)) {
   if (suit_.threats) {
     threats_.emplace(suit_, std::move(parts.monitors), *server_, recorder_,
@@ -207,11 +216,13 @@ void Session::Implementation::listen() {
   if (threats_) listeners_->add([this](const auto& result) { threats_->publish(result); });
   if (dds_) listeners_->add([this](const auto& result) { dds_->publish(result); });
   listeners_->add([this](const auto& result) { broadcaster_.publish(result); });
+  listeners_->add([this](const auto& result) { ageing_.add(result); });
   listeners_->add([this](const auto& result) { recognition_.publish(result); });
   if (suit_recognition_) listeners_->add([this](const auto& result) { suit_recognition_->publish(result); });
   listeners_->add([this](const auto& result) { calibration_.feed(result.array, result.raw); });
   listeners_->add([this](const auto& result) { teaching_.feed(result); });
   listeners_->add([this](const auto& result) { recorder_.write(result.array, result.raw); });
+  listeners_->add([this](const auto& result) { recordings_.feed(result); });
 }
 
 Status Session::Implementation::start(const SessionOptions& options) {
@@ -234,7 +245,8 @@ Status Session::Implementation::start(const SessionOptions& options) {
 
 stream::Handlers Session::Implementation::handlers() {
   return {.parameters = [this] { return parameters_.all(); },
-          .set_parameter = [this](const stream::Parameter& parameter) { return set_parameter(parameter); }};
+          .set_parameter = [this](const stream::Parameter& parameter,
+                                  const std::string& client) { return set_parameter(parameter, client); }};
 }
 
 std::vector<stream::Service> Session::Implementation::services() {
@@ -244,6 +256,9 @@ std::vector<stream::Service> Session::Implementation::services() {
   }
   for (const std::string& name : TeachingServices::names()) {
     services.push_back({name, [this, name](std::string_view request) { return teaching_.call(name, request); }});
+  }
+  for (const std::string& name : recordings_.names()) {
+    services.push_back({name, [this, name](std::string_view request) { return recordings_.call(name, request); }});
   }
   if (suit_recognition_ && suit_.classes->layout.extras > 0) {
     services.push_back({SuitRecognition::kService,
@@ -261,6 +276,17 @@ std::vector<stream::Service> Session::Implementation::services() {
   return services;
 }
 
+/// What is played itself plays no other.
+std::optional<PlayedRecording::PlayedSuit> Session::Implementation::player() {
+  if (suit_.playback) return std::nullopt;
+  return [this](const std::string& recording) -> Result<ServedSuit> {
+    Result<ServedSuit> played = played_suit(suit_, recording);
+    if (!played) return played;
+    for (std::size_t k = 0; k < played->arrays.size(); ++k) played->arrays[k].model = models_.of(k);
+    return played;
+  };
+}
+
 /// /suit.json, as the suit is now.
 void Session::Implementation::show_suit() {
   server_->set_document("/suit.json", "application/json", suit_json(suit_, models_));
@@ -274,8 +300,9 @@ void Session::Implementation::show_body() {
   }
 }
 
-Status Session::Implementation::set_parameter(const stream::Parameter& parameter) {
+Status Session::Implementation::set_parameter(const stream::Parameter& parameter, const std::string& client) {
   Status set = parameters_.set(parameter);
+  if (set && parameter.name.ends_with("/tare")) tell(parameters_.log_tare(parameter, client), kInfoLevel);
   // Others change with it: the file of a recording, the tare of each array.
   if (set && std::holds_alternative<bool>(parameter.value)) server_->parameters_changed();
   return set;
@@ -284,6 +311,7 @@ Status Session::Implementation::set_parameter(const stream::Parameter& parameter
 Status Session::Implementation::use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model) {
   if (Status used = live_->set_model(array, model); !used) return used;
   models_.replace(array, model);
+  ageing_.begin_anew(array, *model);
   parameters_.forget_tare(array);
   show_suit();
   server_->parameters_changed();
@@ -307,9 +335,9 @@ void Session::Implementation::log(const std::string& line) const {
 }
 
 /// The log and all clients.
-void Session::Implementation::tell(const std::string& line) {
+void Session::Implementation::tell(const std::string& line, int level) {
   log(line);
-  server_->status(kErrorLevel, line);
+  server_->status(level, line);
 }
 
 /// Here, where no array waits: a log may stall as a disk does.

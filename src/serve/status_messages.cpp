@@ -39,11 +39,11 @@ messages::ArrayStatistics statistics_message(const std::string& name, const live
 }
 
 messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::Model& model,
-                                      const live::ArrayStatistics& statistics) {
+                                      const live::ArrayStatistics& statistics, const health::AgeingEvidence& ageing) {
   messages::Diagnosis diagnosis;
   diagnosis.name = name;
   diagnosis.hardware_id = model.array.name;
-  health::Condition condition = health::condition_of(model, statistics.faults);
+  health::Condition condition = health::condition_of(model, statistics.faults, ageing);
   diagnosis.values = std::move(condition.details);
   if (!statistics.error.empty()) {
     diagnosis.level = messages::Diagnosis::Level::error;
@@ -56,7 +56,7 @@ messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::M
     diagnosis.message = "not calibrated yet: calibrate";
     diagnosis.values.clear();
   } else {
-    if (!statistics.faults.empty()) diagnosis.level = messages::Diagnosis::Level::warning;
+    if (!statistics.faults.empty() || ageing.has_aged()) diagnosis.level = messages::Diagnosis::Level::warning;
     diagnosis.message = std::move(condition.message);
   }
   return diagnosis;

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "dermis/health/ageing_monitor.hpp"
 #include "dermis/live/live_suit.hpp"
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/pipeline/model.hpp"
@@ -15,9 +16,10 @@ namespace dermis::serve {
 [[nodiscard]] messages::ArrayStatistics statistics_message(const std::string& array,
                                                            const live::ArrayStatistics& statistics);
 
-/// The worst that is wrong with the array, and the faults of its lines and taxels.
+/// The worst that is wrong with the array, the faults of its lines and taxels, and how its gains have aged.
 [[nodiscard]] messages::Diagnosis diagnosis_message(const std::string& array, const pipeline::Model& model,
-                                                    const live::ArrayStatistics& statistics);
+                                                    const live::ArrayStatistics& statistics,
+                                                    const health::AgeingEvidence& ageing = {});
 
 [[nodiscard]] messages::CalibrationState calibration_message(CalibrationProgress progress);
 

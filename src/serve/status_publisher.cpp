@@ -69,7 +69,8 @@ void StatusPublisher::publish_health() {
 std::vector<messages::Diagnosis> StatusPublisher::diagnoses() const {
   std::vector<messages::Diagnosis> diagnoses;
   for (std::size_t k = 0; k < work_.suit.arrays.size(); ++k) {
-    diagnoses.push_back(diagnosis_message(work_.suit.arrays[k].name, *work_.models.of(k), work_.live.statistics(k)));
+    diagnoses.push_back(diagnosis_message(work_.suit.arrays[k].name, *work_.models.of(k), work_.live.statistics(k),
+                                          work_.ageing.evidence(k)));
   }
   if (work_.threats) std::ranges::move(work_.threats->diagnoses(), std::back_inserter(diagnoses));
   return diagnoses;
@@ -91,11 +92,16 @@ void StatusPublisher::publish_calibration() {
   publish_message(channels_.calibration);
 }
 
-/// The clock of a recording, ten times a second while it runs and once when it stands still.
+/// The clock of a recording, ten times a second while it runs and once when it stands still. Who comes while it stands
+/// still is told, too, and shown the frame at which it stands.
 void StatusPublisher::publish_playback() {
   if (!work_.suit.playback) return;
-  const PlaybackStatus status = work_.suit.playback->status();
-  if (status != last_playback_) server_.playback_changed(status);
+  live::Playback& playback = *work_.suit.playback;
+  const PlaybackStatus status = playback.status();
+  const std::uint64_t subscriptions = server_.subscriptions();
+  const bool is_somebody_new = subscriptions != std::exchange(last_subscriptions_, subscriptions);
+  if (status != last_playback_ || is_somebody_new) server_.playback_changed(status);
+  if (is_somebody_new && status.state != PlaybackStatus::State::playing) playback.show_again();
   last_playback_ = status;
 }
 

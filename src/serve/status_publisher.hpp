@@ -12,6 +12,7 @@
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
 #include "dermis/stream/server.hpp"
+#include "serve/ageing_watch.hpp"
 #include "serve/calibration_services.hpp"
 #include "serve/models_in_use.hpp"
 #include "serve/suit_recorder.hpp"
@@ -24,6 +25,7 @@ struct SuitAtWork {
   const ServedSuit& suit;
   const ModelsInUse& models;
   const live::LiveSuit& live;
+  const AgeingWatch& ageing;
   const SuitRecorder& recorder;
   const CalibrationServices& calibration;
   const std::optional<ThreatPublisher>& threats;  ///< Empty: nothing is limited.
@@ -64,7 +66,8 @@ class StatusPublisher {
   stream::Server& server_;
   Channels channels_;
   PlaybackStatus last_playback_{};
-  std::uint64_t body_version_ = 0;  // of which /tf was published
+  std::uint64_t last_subscriptions_ = 0;  // when the playback was told last
+  std::uint64_t body_version_ = 0;        // of which /tf was published
   std::vector<std::uint8_t> message_;
 };
 

@@ -27,11 +27,11 @@ SuitRecorder::~SuitRecorder() {
   static_cast<void>(end());
 }
 
-Status SuitRecorder::begin() {
+Status SuitRecorder::begin(std::string path) {
   const std::lock_guard switching(switch_mutex_);
-  if (recording_) return bad_input("a recording goes on: " + path());
+  if (recording_) return bad_input("a recording goes on: " + this->path());
   await_closing();
-  const std::string path = recording_name(wanted_, this->path().empty(), std::chrono::system_clock::now());
+  if (path.empty()) path = recording_name(wanted_, this->path().empty(), std::chrono::system_clock::now());
   Result<std::unique_ptr<recordings::SuitRecordingWriter>> writer =
       recordings::SuitRecordingWriter::create(path, arrays_());
   if (!writer) return writer.error();

@@ -42,8 +42,9 @@ class SuitRecorder {
   /// As end().
   ~SuitRecorder();
 
-  /// Fails where the file cannot be made, or a recording goes on.
-  [[nodiscard]] Status begin();
+  /// Fails where the file cannot be made, or a recording goes on. `path`: of a file that is not there yet; empty: the
+  /// recorder names it.
+  [[nodiscard]] Status begin(std::string path = {});
   /// Takes no more frames; the file is closed in the background.
   void stop();
   /// stop(), and waits for it; the outcome of the recording. Done where there is none.

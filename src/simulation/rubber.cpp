@@ -19,7 +19,8 @@ constexpr double kReferenceCelsius = 20.0;
 constexpr double kReferenceForceN = 10.0;
 constexpr std::size_t kCreepElements = std::size(ConductiveRubber::kCreepSeconds);
 constexpr std::size_t kNoiseProcesses = std::size(ConductiveRubber::kNoiseCornersHz);
-constexpr std::uint64_t kTouchStream = 1;  // Of the noise seed.
+constexpr std::uint64_t kTouchStream = 1;   // Of the noise seed.
+constexpr std::uint64_t kAgeingStream = 1;  // Of the piece's seed.
 
 std::string taxel_message(const char* field, std::size_t taxel, std::size_t cols, const char* problem) {
   return std::string(field) + ": leaves taxel r" + std::to_string(taxel / cols) + "c" + std::to_string(taxel % cols) +
@@ -42,6 +43,8 @@ Status RubberOptions::validate() const {
                                     {"rubber.temperature_curvature", temperature_curvature, -1e-3, 1e-3},
                                     {"rubber.hysteresis", hysteresis, 0.0, 0.5},
                                     {"rubber.creep", creep, 0.0, 0.5},
+                                    {"rubber.gain", gain, 0.1, 10.0},
+                                    {"rubber.gain_spread", gain_spread, 0.0, 1.0},
                                     {"rubber.pink_noise", pink_noise, 0.0, 1e-4},
                                     {"rubber.mechanical_spread", mechanical_spread, 0.0, 0.5}});
       !ranges) {
@@ -104,6 +107,7 @@ Result<ConductiveRubber> ConductiveRubber::create(const RubberOptions& options, 
   if (rows == 0 || cols == 0) return bad_input("array.rows, array.cols: must be at least 1");
   ConductiveRubber rubber(options, rows, cols, noise_seed);
   if (Status drawn = rubber.draw_taxels(); !drawn) return drawn.error();
+  if (options.gain != 1.0 || options.gain_spread > 0.0) rubber.age();
   return rubber;
 }
 
@@ -124,6 +128,14 @@ Status ConductiveRubber::draw_taxels() {
     }
   }
   return Done{};
+}
+
+void ConductiveRubber::age() {
+  Random piece = Random::stream(options_.seed, kAgeingStream);
+  for (Taxel& taxel : taxels_) {
+    const double gain = options_.gain * std::exp(options_.gain_spread * piece.normal());
+    taxel.scale_ohm *= std::pow(gain, -taxel.exponent);
+  }
 }
 
 void ConductiveRubber::press(std::span<const double> force_n, double seconds) {

@@ -38,6 +38,8 @@ void read_rubber(files::ConfigFile& file, RubberOptions& rubber) {
   file.number("rubber.temperature_curvature", rubber.temperature_curvature);
   file.number("rubber.hysteresis", rubber.hysteresis);
   file.number("rubber.creep", rubber.creep);
+  file.number("rubber.gain", rubber.gain);
+  file.number("rubber.gain_spread", rubber.gain_spread);
   file.number("rubber.pink_noise", rubber.pink_noise);
   file.number("rubber.mechanical_spread", rubber.mechanical_spread);
 }

@@ -5,9 +5,11 @@
 #include <optional>
 
 #include "dermis/acquisition/device_source.hpp"
+#include "dermis/core/turned_source.hpp"
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/recordings/frame_files.hpp"
 #include "dermis/recordings/suit_recording.hpp"
+#include "dermis/sources/recorded_order.hpp"
 #include "sources/simulated_source.hpp"
 
 namespace dermis::sources {
@@ -20,32 +22,53 @@ std::optional<FrameShape> shape_of(const ArrayDescription* array) {
 
 Result<std::unique_ptr<FrameSource>> open_file(const acquisition::SourceUri& uri, const SourceOptions& options) {
   const std::optional<FrameShape> given = uri.protocol.shape;
-  const std::optional<FrameShape> wanted = shape_of(options.array);
+  std::optional<FrameShape> wanted = shape_of(options.array);
+  if (wanted) wanted = uri.order.sent(*wanted);
   if (given && wanted && *given != *wanted) {
     return bad_input("'" + uri.text + "': rows and cols are " + files::size_text(*given) + ", the array is " +
                      files::size_text(*wanted));
   }
   const Result<recordings::FrameFormat> format = recordings::recognise_frames(uri.path);
   if (!format) return format.error();
-  if (recordings::has_times(*format)) {
+  if (uri.rate_hz && recordings::has_times(*format)) {
     return bad_input("'" + uri.text + "': the file has times of its own; write '" + uri.path +
                      "' alone, without file: and rate");
   }
-  return recordings::open_frames(
+  Result<std::unique_ptr<FrameSource>> frames = recordings::open_frames(
       uri.path,
       {.shape = given ? given : wanted, .rate_hz = uri.rate_hz, .notice = options.notice, .loss = options.loss});
+  if (!frames) return frames.error();
+  return turned_source(*std::move(frames), uri.order, uri.text);
+}
+
+/// Costs a second look at the file where its array is turned, and nothing else.
+Status check_order(const std::string& path, const ArrayDescription* array) {
+  if (array == nullptr || array->order.is_plain()) return Done{};
+  const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(path);
+  return notes ? check_recorded_order(path, notes->array_toml, *array) : Status(Done{});
+}
+
+/// Its frames are turned as the array's description says. Those of files were turned when they were written.
+Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& uri, const SourceOptions& options) {
+  if (options.array == nullptr) return acquisition::open_device(uri, {{}, options.stop, options.notice});
+  const LineOrder& order = options.array->order;
+  Result<std::unique_ptr<FrameSource>> device =
+      acquisition::open_device(uri, {order.sent(*shape_of(options.array)), options.stop, options.notice});
+  if (!device) return device.error();
+  return turned_source(*std::move(device), order, uri.text);
 }
 
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> open_source(const SourceName& from, const SourceOptions& options) {
   if (!from.uri) {
+    if (Status order = check_order(from.text, options.array); !order) return order.error();
     return recordings::open_frames(from.text,
                                    {.shape = shape_of(options.array), .notice = options.notice, .loss = options.loss});
   }
   if (from.kind == SourceKind::simulation) return open_simulation(*from.uri, options);
   if (from.kind == SourceKind::file) return open_file(*from.uri, options);
-  return acquisition::open_device(*from.uri, {shape_of(options.array), options.stop, options.notice});
+  return open_device(*from.uri, options);
 }
 
 Result<std::unique_ptr<FrameSource>> open_source(const std::string& from, const SourceOptions& options) {

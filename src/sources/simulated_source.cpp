@@ -66,6 +66,8 @@ class UnpacedScene final : public FrameSource {
 
 Result<simulation::RubberOptions> rubber_of(const acquisition::SourceUri& uri) {
   simulation::RubberOptions rubber;
+  rubber.gain = uri.gain;
+  rubber.gain_spread = uri.gain_spread;
   if (uri.memory.empty()) return rubber;
   if (Status chosen = simulation::choose_memory(uri.memory, rubber); !chosen) return chosen.error();
   return rubber;

@@ -13,9 +13,9 @@ namespace {
 
 using acquisition::Transport;
 
-/// With a rate and without a protocol, a file may be more than the bytes of a device.
+/// With a rate or an order of lines, and without a protocol, a file may be more than the bytes of a device.
 bool is_file_of_frames(const acquisition::SourceUri& uri) {
-  return uri.transport == Transport::file && uri.rate_hz && uri.protocol.name == "auto" &&
+  return uri.transport == Transport::file && (uri.rate_hz || !uri.order.is_plain()) && uri.protocol.name == "auto" &&
          recordings::frame_format(recordings::recording_place(uri.path).path);
 }
 

@@ -24,11 +24,12 @@ std::vector<Parameter> parameters_of(const Offer& offer, const Names& names) {
 }
 
 /// What went wrong.
-std::vector<std::string> set_parameters(const Offer& offer, std::span<const Parameter> parameters) {
+std::vector<std::string> set_parameters(const Offer& offer, std::span<const Parameter> parameters,
+                                        const std::string& client) {
   std::vector<std::string> errors;
   if (!offer.handlers.set_parameter) return errors;
   for (const Parameter& parameter : parameters) {
-    const Status set = offer.handlers.set_parameter(parameter);
+    const Status set = offer.handlers.set_parameter(parameter, client);
     if (!set) errors.push_back(set.error().message);
   }
   return errors;
@@ -36,8 +37,10 @@ std::vector<std::string> set_parameters(const Offer& offer, std::span<const Para
 
 }  // namespace
 
-Client::Client(const Offer& offer, bool is_sdk, std::size_t queue_bytes, SubscriptionsChanged changed, Ask ask)
+Client::Client(const Offer& offer, std::string address, bool is_sdk, std::size_t queue_bytes,
+               SubscriptionsChanged changed, Ask ask)
     : offer_(offer),
+      address_(std::move(address)),
       is_sdk_(is_sdk),
       changed_(std::move(changed)),
       ask_(std::move(ask)),
@@ -129,8 +132,8 @@ void Client::handle(const GetParameters& request) {
 }
 
 void Client::handle(const SetParameters& request) {
-  ask_([&offer = offer_, request]() -> Answer {
-    const std::vector<std::string> errors = set_parameters(offer, request.parameters);
+  ask_([&offer = offer_, request, address = address_]() -> Answer {
+    const std::vector<std::string> errors = set_parameters(offer, request.parameters, address);
     Names names;
     for (const Parameter& parameter : request.parameters) names.insert(parameter.name);
     std::string text;

@@ -41,8 +41,10 @@ using Ask = std::function<void(Question)>;
 /// Not thread-safe.
 class Client {
  public:
-  /// `offer` must outlive it and its questions. `is_sdk`: speaks foxglove.sdk.v1, which has playback.
-  Client(const Offer& offer, bool is_sdk, std::size_t queue_bytes, SubscriptionsChanged changed, Ask ask);
+  /// `offer` must outlive it and its questions. `address`: "127.0.0.1:53412". `is_sdk`: speaks foxglove.sdk.v1, which
+  /// has playback.
+  Client(const Offer& offer, std::string address, bool is_sdk, std::size_t queue_bytes, SubscriptionsChanged changed,
+         Ask ask);
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
   ~Client();
@@ -78,6 +80,7 @@ class Client {
   void follow(const FollowParameters& request, std::span<const Parameter> all);
 
   const Offer& offer_;
+  std::string address_;
   bool is_sdk_;
   SubscriptionsChanged changed_;
   Ask ask_;

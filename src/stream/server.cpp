@@ -29,7 +29,6 @@ constexpr std::size_t kMostChannels = 4096;
 constexpr std::size_t kMostWaitingBytes = 64U << 20U;  // published, not yet handed to the clients
 constexpr std::size_t kMostVisitors = 64;              // connections that are no clients of the stream
 constexpr std::size_t kMostAtOnce = 16;                // connections that are taken in a row
-constexpr std::size_t kShortestToken = 8;
 
 std::string random_session() {
   std::random_device device;
@@ -58,25 +57,12 @@ struct Published {
 
 }  // namespace
 
-Status ServerOptions::validate() const {
-  if (!is_address(host)) return bad_field("host", "'" + host + "' is no address; give one like 127.0.0.1 or 0.0.0.0");
-  if (token.empty() && !is_loopback(host)) {
-    return bad_field("host", "others could reach " + host + "; give a token that they must know, or use 127.0.0.1");
-  }
-  if (!token.empty() && token.size() < kShortestToken) return bad_field("token", "must have 8 characters or more");
-  if (!is_url_safe(token)) return bad_field("token", "letters, digits and -._~ only, as it stands in a URL");
-  if (most_clients < 1 || most_clients > 1000) return bad_input("most_clients: must be 1 ... 1000");
-  if (client_queue_bytes < 65'536) return bad_input("client_queue_bytes: must be at least 65536");
-  return Done{};
-}
-
 class Server::Implementation final : public SessionOwner {
  public:
   Implementation(ServerOptions options, std::vector<Asset> assets, std::optional<PlaybackService> playback)
       : options_(std::move(options)),
         offer_{.playback = std::move(playback)},
         site_(options_, std::move(assets)),
-        subscribers_(kMostChannels),
         notices_(options_.notice) {}
   Implementation(const Implementation&) = delete;
   Implementation& operator=(const Implementation&) = delete;
@@ -90,8 +76,12 @@ class Server::Implementation final : public SessionOwner {
   void set_document(std::string path, std::string content_type, std::string content) {
     site_.set_document(std::move(path), std::move(content_type), std::move(content));
   }
+  void set_file(std::string path, std::string file) { site_.set_file(std::move(path), std::move(file)); }
   [[nodiscard]] bool has_subscribers(ChannelId channel) const {
-    return subscribers_[channel].load(std::memory_order_relaxed) > 0;
+    return subscriptions_.now[channel].load(std::memory_order_relaxed) > 0;
+  }
+  [[nodiscard]] std::uint64_t subscriptions() const noexcept {
+    return subscriptions_.so_far.load(std::memory_order_relaxed);
   }
   void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message);
 
@@ -103,7 +93,7 @@ class Server::Implementation final : public SessionOwner {
 
   [[nodiscard]] const Site& site() const override { return site_; }
   [[nodiscard]] bool enter(const std::shared_ptr<Session>& session) override;
-  [[nodiscard]] std::unique_ptr<Client> make_client(bool is_sdk, Ask ask) override;
+  [[nodiscard]] std::unique_ptr<Client> make_client(const std::string& peer, bool is_sdk, Ask ask) override;
   [[nodiscard]] asio::thread_pool& desk() override { return desk_; }
   void leave(const std::shared_ptr<Session>& session) override;
   void on_refused(const std::string& line) override;
@@ -125,6 +115,11 @@ class Server::Implementation final : public SessionOwner {
     std::set<std::shared_ptr<Session>> clients;
   };
 
+  struct Subscriptions {
+    std::vector<std::atomic<int>> now = std::vector<std::atomic<int>>(kMostChannels);  // [channel]
+    std::atomic<std::uint64_t> so_far = 0;
+  };
+
   void accept();
   void accept_waiting();
   void admit(tcp::socket socket);
@@ -138,7 +133,7 @@ class Server::Implementation final : public SessionOwner {
   Offer offer_;  // Complete when the server starts.
   Site site_;
   const std::string session_name_ = random_session();
-  std::vector<std::atomic<int>> subscribers_;  // [channel]; outlives the sessions that the context still holds
+  Subscriptions subscriptions_;  // outlives the sessions that the context still holds
   std::atomic<bool> parameters_pending_{false};
   asio::io_context context_{1};
   asio::thread_pool desk_{1};  // the owner's handlers and services run here
@@ -220,9 +215,9 @@ bool Server::Implementation::enter(const std::shared_ptr<Session>& session) {
   return true;
 }
 
-std::unique_ptr<Client> Server::Implementation::make_client(bool is_sdk, Ask ask) {
+std::unique_ptr<Client> Server::Implementation::make_client(const std::string& peer, bool is_sdk, Ask ask) {
   const auto changed = [this](ChannelId channel, int change) { change_subscribers(channel, change); };
-  auto client = std::make_unique<Client>(offer_, is_sdk, options_.client_queue_bytes, changed, std::move(ask));
+  auto client = std::make_unique<Client>(offer_, peer, is_sdk, options_.client_queue_bytes, changed, std::move(ask));
   client->greet(options_.name, session_name_, channels());
   return client;
 }
@@ -257,7 +252,8 @@ std::vector<Channel> Server::Implementation::channels() const {
 }
 
 void Server::Implementation::change_subscribers(ChannelId channel, int change) {
-  if (channel < kMostChannels) subscribers_[channel].fetch_add(change, std::memory_order_relaxed);
+  if (channel < kMostChannels) subscriptions_.now[channel].fetch_add(change, std::memory_order_relaxed);
+  if (change > 0) subscriptions_.so_far.fetch_add(1, std::memory_order_relaxed);
 }
 
 void Server::Implementation::publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message) {
@@ -366,8 +362,16 @@ void Server::set_document(std::string path, std::string content_type, std::strin
   implementation_->set_document(std::move(path), std::move(content_type), std::move(content));
 }
 
+void Server::set_file(std::string path, std::string file) {
+  implementation_->set_file(std::move(path), std::move(file));
+}
+
 bool Server::has_subscribers(ChannelId channel) const noexcept {
   return implementation_->has_subscribers(channel);
+}
+
+std::uint64_t Server::subscriptions() const noexcept {
+  return implementation_->subscriptions();
 }
 
 void Server::publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message) {

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <chrono>
+#include <filesystem>
+#include <utility>
 
 namespace dermis::stream {
 namespace {
@@ -61,7 +63,10 @@ void Session::on_request(const ErrorCode& error) {
   if (is_no_http(error)) return cut("sent no HTTP: " + error.message());
   if (error) return end();
   const Request& request = parser_->get();
-  if (!websocket::is_upgrade(request)) return respond(owner_.site().answer(request));
+  if (!websocket::is_upgrade(request)) {
+    if (const std::optional<std::string> file = owner_.site().file(request)) return send_file(*file);
+    return respond(owner_.site().answer(request));
+  }
   if (std::optional<Response> refusal = owner_.site().refuse_upgrade(request)) return refuse(*std::move(refusal));
   if (!owner_.enter(shared_from_this())) {
     return refuse(make_refusal(request, http::status::service_unavailable, "too many clients; close one of them"));
@@ -84,6 +89,44 @@ void Session::respond(Response response) {
   });
 }
 
+void Session::send_file(const std::string& path) {
+  file_ = std::make_shared<FileOnItsWay>();
+  read_file([path](FileOnItsWay& file) { return file.open(path); },
+            [this, path](bool is_open) {
+              if (is_open) return send_head(path);
+              respond(make_refusal(parser_->get(), http::status::not_found, "the file is not there any more"));
+            });
+}
+
+void Session::read_file(std::function<bool(FileOnItsWay&)> read, std::function<void(bool)> then) {
+  asio::post(owner_.desk(), [weak = weak_from_this(), executor = stream_.get_executor(), file = file_,
+                             read = std::move(read), then = std::move(then)] {
+    asio::post(executor, [weak, then, done = read(*file)] {
+      if (const auto self = weak.lock()) then(done);
+    });
+  });
+}
+
+void Session::send_head(const std::string& path) {
+  head_.emplace(make_file_head(parser_->get(), std::filesystem::path(path).filename().string(), file_->size()));
+  stream_.next_layer().expires_after(kIdleTime);
+  http::async_write(stream_.next_layer(), *head_, [self = shared_from_this()](const ErrorCode& error, std::size_t) {
+    error ? self->end() : self->send_pieces();
+  });
+}
+
+void Session::send_pieces() {
+  read_file([](FileOnItsWay& file) { return file.read_piece(); },
+            [this](bool is_more) { is_more ? send_piece() : end(); });
+}
+
+void Session::send_piece() {
+  stream_.next_layer().expires_after(kIdleTime);
+  asio::async_write(
+      stream_.next_layer(), asio::buffer(file_->piece()),
+      [self = shared_from_this()](const ErrorCode& error, std::size_t) { error ? self->end() : self->send_pieces(); });
+}
+
 void Session::upgrade(const Request& request) {
   const std::string_view subprotocol = choose_subprotocol(view(request[http::field::sec_websocket_protocol]));
   stream_.next_layer().expires_never();  // the stream has time-outs of its own
@@ -100,7 +143,7 @@ void Session::upgrade(const Request& request) {
 
 void Session::on_upgrade(const ErrorCode& error, bool is_sdk) {
   if (error) return end();
-  client_ = owner_.make_client(is_sdk, [this](Question question) { ask(std::move(question)); });
+  client_ = owner_.make_client(peer_, is_sdk, [this](Question question) { ask(std::move(question)); });
   flush();
   read_on();
 }

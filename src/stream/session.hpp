@@ -7,11 +7,13 @@
 // clang-format on
 #include <boost/asio.hpp>
 #include <boost/beast.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "stream/client.hpp"
+#include "stream/file_on_its_way.hpp"
 #include "stream/site.hpp"
 
 namespace dermis::stream {
@@ -29,7 +31,7 @@ class SessionOwner {
   [[nodiscard]] virtual const Site& site() const = 0;
   /// Takes a connection among the clients of the stream; false where there are too many.
   [[nodiscard]] virtual bool enter(const std::shared_ptr<Session>& session) = 0;
-  [[nodiscard]] virtual std::unique_ptr<Client> make_client(bool is_sdk, Ask ask) = 0;
+  [[nodiscard]] virtual std::unique_ptr<Client> make_client(const std::string& peer, bool is_sdk, Ask ask) = 0;
   /// Where what the clients ask of the owner of the server may take its time.
   [[nodiscard]] virtual boost::asio::thread_pool& desk() = 0;
   /// Known no more; twice does no harm.
@@ -61,6 +63,12 @@ class Session : public std::enable_shared_from_this<Session> {
   void on_request(const ErrorCode& error);
   void refuse(Response refusal);
   void respond(Response response);
+  void send_file(const std::string& path);
+  void send_head(const std::string& path);
+  void send_pieces();
+  void send_piece();
+  /// Reads at the owner's desk, so that a disk that stalls holds no stream up; then goes on here.
+  void read_file(std::function<bool(FileOnItsWay&)> read, std::function<void(bool)> then);
   void upgrade(const Request& request);
   void on_upgrade(const ErrorCode& error, bool is_sdk);
   void read_on();
@@ -76,6 +84,8 @@ class Session : public std::enable_shared_from_this<Session> {
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::empty_body>> parser_;
   std::optional<Response> response_;
+  std::shared_ptr<FileOnItsWay> file_;  // null: none is on its way
+  std::optional<FileHead> head_;
   std::unique_ptr<Client> client_;
   OutgoingMessage outgoing_;
   bool is_writing_ = false;

@@ -18,16 +18,21 @@ constexpr const char* kContentSecurityPolicy =
     "default-src 'self'; connect-src 'self' ws: wss:; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
     "frame-ancestors 'none'";
 constexpr const char* kOtherHost = "the Host is not this machine's loopback";
+constexpr const char* kNoPage = "there is no such page";
 constexpr const char* kNoToken = "the token is missing or wrong";
+
+void set_head(http::fields& head, std::string_view type) {
+  head.set(http::field::server, "dermis");
+  head.set(http::field::content_type, beast::string_view(type.data(), type.size()));
+  head.set("X-Content-Type-Options", "nosniff");
+  head.set("Content-Security-Policy", kContentSecurityPolicy);
+  head.set("Referrer-Policy", "no-referrer");
+  head.set(http::field::cache_control, "no-cache");
+}
 
 Response make_response(const Request& request, http::status status, std::string_view type, std::string body) {
   Response response(status, request.version());
-  response.set(http::field::server, "dermis");
-  response.set(http::field::content_type, beast::string_view(type.data(), type.size()));
-  response.set("X-Content-Type-Options", "nosniff");
-  response.set("Content-Security-Policy", kContentSecurityPolicy);
-  response.set("Referrer-Policy", "no-referrer");
-  response.set(http::field::cache_control, "no-cache");
+  set_head(response, type);
   response.keep_alive(request.keep_alive());
   response.content_length(body.size());
   if (request.method() != http::verb::head) response.body() = std::move(body);
@@ -40,10 +45,24 @@ Response make_refusal(const Request& request, http::status status, const std::st
   return make_response(request, status, "text/plain; charset=utf-8", line + "\n");
 }
 
+FileHead make_file_head(const Request& request, const std::string& name, std::uint64_t bytes) {
+  FileHead head(http::status::ok, request.version());
+  set_head(head, "application/octet-stream");
+  head.set(http::field::content_disposition, "attachment; filename=\"" + name + "\"");
+  head.keep_alive(false);
+  head.content_length(bytes);
+  return head;
+}
+
 void Site::set_document(std::string path, std::string content_type, std::string content) {
   auto document = std::make_shared<const Document>(Document{std::move(content_type), std::move(content)});
   const std::lock_guard lock(mutex_);
   documents_.insert_or_assign(std::move(path), std::move(document));
+}
+
+void Site::set_file(std::string path, std::string file) {
+  const std::lock_guard lock(mutex_);
+  files_.insert_or_assign(std::move(path), std::move(file));
 }
 
 bool Site::names_other_host(const Request& request) const {
@@ -70,8 +89,9 @@ Response Site::answer(const Request& request) const {
   if (asset != assets_.end()) return answer_with(request, *asset);
 
   const std::shared_ptr<const Document> document = find_document(path);
-  if (!document) return make_refusal(request, http::status::not_found, "there is no such page");
+  if (!document && !find_file(path)) return make_refusal(request, http::status::not_found, kNoPage);
   if (!has_token(request)) return make_refusal(request, http::status::unauthorized, kNoToken);
+  if (!document) return make_refusal(request, http::status::not_found, kNoPage);  // a file that is gone
   return make_response(request, http::status::ok, document->content_type, document->content);
 }
 
@@ -90,6 +110,17 @@ std::shared_ptr<const Site::Document> Site::find_document(std::string_view path)
   const std::lock_guard lock(mutex_);
   const auto found = documents_.find(path);
   return found == documents_.end() ? nullptr : found->second;
+}
+
+std::optional<std::string> Site::file(const Request& request) const {
+  const bool may_have = request.method() == http::verb::get && !names_other_host(request) && has_token(request);
+  return may_have ? find_file(path_of(view(request.target()))) : std::nullopt;
+}
+
+std::optional<std::string> Site::find_file(std::string_view path) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = files_.find(path);
+  return found == files_.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::optional<Response> Site::refuse_upgrade(const Request& request) const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <boost/beast/http.hpp>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -17,6 +18,8 @@ namespace dermis::stream {
 
 using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 using Response = boost::beast::http::response<boost::beast::http::string_body>;
+/// What goes before a file.
+using FileHead = boost::beast::http::response<boost::beast::http::empty_body>;
 
 [[nodiscard]] inline std::string_view view(boost::beast::string_view text) {
   return {text.data(), text.size()};
@@ -25,6 +28,9 @@ using Response = boost::beast::http::response<boost::beast::http::string_body>;
 /// One line of text that says why not.
 [[nodiscard]] Response make_refusal(const Request& request, boost::beast::http::status status, const std::string& line);
 
+/// `name`: by which a browser saves it.
+[[nodiscard]] FileHead make_file_head(const Request& request, const std::string& name, std::uint64_t bytes);
+
 /// What is given over HTTP, and to whom. Thread-safe.
 class Site {
  public:
@@ -32,7 +38,10 @@ class Site {
   Site(const ServerOptions& options, std::vector<Asset> assets) : options_(options), assets_(std::move(assets)) {}
 
   void set_document(std::string path, std::string content_type, std::string content);
+  void set_file(std::string path, std::string file);
   [[nodiscard]] Response answer(const Request& request) const;
+  /// The file that is asked for, by who may have it. Nothing: answer() does.
+  [[nodiscard]] std::optional<std::string> file(const Request& request) const;
   /// Nothing: who asks may have the stream.
   [[nodiscard]] std::optional<Response> refuse_upgrade(const Request& request) const;
 
@@ -46,11 +55,13 @@ class Site {
   [[nodiscard]] bool has_token(const Request& request) const;
   [[nodiscard]] Response answer_with(const Request& request, const Asset& asset) const;
   [[nodiscard]] std::shared_ptr<const Document> find_document(std::string_view path) const;
+  [[nodiscard]] std::optional<std::string> find_file(std::string_view path) const;
 
   const ServerOptions& options_;
   const std::vector<Asset> assets_;
-  mutable std::mutex mutex_;  // Of documents_.
+  mutable std::mutex mutex_;  // Of what follows.
   std::map<std::string, std::shared_ptr<const Document>, std::less<>> documents_;
+  std::map<std::string, std::string, std::less<>> files_;
 };
 
 }  // namespace dermis::stream

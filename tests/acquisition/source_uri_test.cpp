@@ -79,6 +79,9 @@ TEST(SourceUri, takes_a_simulation_apart) {
   EXPECT_FALSE(parsed("sim:idle").rate_hz);
   EXPECT_EQ(parsed("sim:touches?memory=rubber").memory, "rubber");
   EXPECT_EQ(parsed("sim:touches").memory, "");
+  EXPECT_EQ(parsed("sim:touches?gain=0.9&gain_spread=0.1").gain, 0.9);
+  EXPECT_EQ(parsed("sim:touches?gain=0.9&gain_spread=0.1").gain_spread, 0.1);
+  EXPECT_EQ(parsed("sim:touches").gain, 1.0);
 }
 
 TEST(SourceUri, names_what_is_wrong_and_the_mend) {
@@ -102,11 +105,34 @@ TEST(SourceUri, names_what_is_wrong_and_the_mend) {
   expect_words(message(std::string("serial:///dev/a\0b", 17)), {"byte of 0"});
   expect_words(message("sim:idle?rate=0"), {"rate", "above 0"});
   expect_words(message("sim:idle?rate=nan"), {"rate"});
+  expect_words(message("sim:idle?gain=0"), {"gain", "0.1 to 10"});
   expect_words(message("serial:///dev/x?reconnect_s=-1"), {"reconnect_s"});
   expect_words(message("usb://1"), {"usb://1", "serial:", "tcp-listen:"});
   expect_words(message("pty:"), {"begins with none of"});
   expect_words(message("stdin:here"), {"nothing but parameters"});
   expect_words(message(std::string(5000, 'a')), {"4096"});
+}
+
+TEST(SourceUri, takes_which_way_round_the_lines_are_sent) {
+  const SourceUri uri = parsed("serial:///dev/x?transpose=1&flip_rows=1&flip_cols=0&skip_columns=2&row_order=0,2,1");
+  EXPECT_TRUE(uri.order.transpose);
+  EXPECT_TRUE(uri.order.flip_rows);
+  EXPECT_FALSE(uri.order.flip_cols);
+  EXPECT_EQ(uri.order.skip_columns, 2U);
+  EXPECT_EQ(uri.order.row_order, (std::vector<std::size_t>{0, 2, 1}));
+  EXPECT_TRUE(parsed("tcp://host:1").order.is_plain());
+  EXPECT_EQ(parsed("file:a.bin?col_order=1,0").order.col_order, (std::vector<std::size_t>{1, 0}));
+}
+
+TEST(SourceUri, names_an_order_of_lines_that_cannot_be) {
+  expect_words(message("serial:///dev/x?transpose=yes"), {"transpose", "0 or 1", "yes"});
+  expect_words(message("serial:///dev/x?flip=1"), {"flip"});
+  expect_words(message("serial:///dev/x?skip_columns=1024"), {"skip_columns", "0 to 1023"});
+  expect_words(message("serial:///dev/x?row_order=1,2"), {"row_order", "each line from 0 to 1 once"});
+  for (const char* list : {"", ",", "0,", "a", "0;1", "-1", "1024", "0,,1"}) {
+    expect_words(message("serial:///dev/x?col_order=" + std::string(list)), {"col_order", "such as 0,2,1"});
+  }
+  expect_words(message("sim:idle?transpose=1"), {"transpose", "no parameter of sim"});
 }
 
 TEST(SourceUri, tells_uris_from_paths) {

@@ -79,7 +79,9 @@ class MissingFiles(SmallArray):
         absent = self.work / "absent"
         model, forces = self.work / "m", self.work / "f.csv"
         cases = [self.calibrate_arguments(model, array=absent), self.calibrate_arguments(model, frames=absent),
-                 self.calibrate_arguments(model, loads=absent), ("doctor", "--model", self.model, "--in", absent), self.run_arguments(forces, model=absent),
+                 self.calibrate_arguments(model, loads=absent), ("doctor", "--model", self.model, "--in", absent),
+                 ("check", "--model", self.model, "--in", absent, "--weight", 5),
+                 ("recalibrate", "--model", self.model, "--frames", absent, "--loads", absent), self.run_arguments(forces, model=absent),
                  self.run_arguments(forces, **{"in": absent}), self.evaluate_arguments(model=absent),
                  self.evaluate_arguments(frames=absent), self.evaluate_arguments(loads=absent),
                  ("simulate", "--array", absent, "--scene", "idle", "--out", self.work / "o"),

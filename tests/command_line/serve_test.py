@@ -156,7 +156,8 @@ class Serve(SmallArray):
     def test_what_cannot_be_served(self):
         serve = ["serve", "--port", "0"]
         frames = self.contacts / "frames.csv"
-        self.refuse(serve, ["--from", "--model", "--suit"])
+        self.refuse([*serve, "--model", self.model], ["--from", "--model"])
+        self.refuse([*serve, "--host", "0.0.0.0", "--token", "a-long-token"], ["host", "URI"])
         self.refuse([*serve, "--from", frames], ["--model"])
         self.refuse([*serve, "--from", LIVE, "--model", self.work / "none.safetensors"], ["none.safetensors"])
         self.refuse([*serve, "--from", frames, "--model", self.model], ["frames.csv", "dermis convert"])

@@ -241,6 +241,42 @@ TEST(ArrayToml, refuses_parts_out_of_range) {
             "array.toml:12: readout.row_segment_ohm: must be one number or a list of 2 numbers");
 }
 
+constexpr const char* kTurned = R"([array]
+rows = 2
+cols = 3
+skip_columns = 1
+transpose = true
+flip_rows = true
+flip_cols = true
+row_order = [1, 0]
+col_order = [2, 0, 1]
+[readout]
+circuit = "none"
+adc_bits = 8
+)";
+
+TEST(ArrayToml, reads_and_writes_which_way_round_the_lines_are_sent) {
+  const Result<ArrayDescription> array = array_from_toml(kTurned, "array.toml");
+  ASSERT_TRUE(array) << array.error().message;
+  EXPECT_EQ(array->order, (LineOrder{1, true, true, true, {1, 0}, {2, 0, 1}}));
+  EXPECT_EQ(array_from_toml(array_to_toml(*array), "again")->order, array->order);
+  EXPECT_TRUE(array_from_toml(kComplete, "array.toml")->order.is_plain());
+}
+
+TEST(ArrayToml, refuses_an_order_of_lines_that_cannot_be) {
+  const auto turned_with = [](const std::string& from, const std::string& to) {
+    std::string text = kTurned;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  EXPECT_EQ(error_of(turned_with("[1, 0]", "[1, 1]")),
+            "array.toml:8: array.row_order: must name each line from 0 to 1 once");
+  EXPECT_EQ(error_of(turned_with("[1, 0]", "[1, 0, 2]")), "array.toml:8: array.row_order: has 3 lines, the array 2");
+  EXPECT_EQ(error_of(turned_with("[2, 0, 1]", "[2, 0, -1]")),
+            "array.toml:9: array.col_order: must be a list of whole numbers of 0 or more");
+  EXPECT_EQ(error_of(turned_with("skip_columns = 1", "skip_columns = 1024")),
+            "array.toml:4: array.skip_columns: must be 0 to 1023");
+}
+
 TEST(ArrayToml, leaves_resistors_aside_where_the_circuit_is_unknown) {
   const Result<ArrayDescription> array = array_from_toml(with("\"divider\"", "\"none\""), "array.toml");
   ASSERT_TRUE(array) << array.error().message;

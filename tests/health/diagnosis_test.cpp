@@ -15,6 +15,8 @@ Diagnosis healthy() {
   diagnosis.seconds = 8.0;
   diagnosis.noise_counts = 1.04;
   diagnosis.offset_drift = -0.007;
+  diagnosis.offset_spread = 0.012;
+  diagnosis.ageing.gain_spread = 0.014;
   diagnosis.temperature = {24.0, 26.5};
   diagnosis.worst_misfit_sigma = 0.05;
   return diagnosis;
@@ -28,7 +30,8 @@ TEST(Diagnosis, a_healthy_array_is_called_healthy) {
             "frames       401, 0 rejected, 8.0 s, 50.0 frames/s\n"
             "noise        1.04 counts, calibrated 1.00 counts\n"
             "saturated    0.00 % of all readings\n"
-            "unloaded     -0.7 % against the calibration\n"
+            "unloaded     -0.7 % against the calibration, 1.2 % from taxel to taxel\n"
+            "gains        1.4 % from taxel to taxel against the calibration\n"
             "temperature  24.0 to 26.5 C, calibrated 5.0 to 45.0 C\n"
             "circuit      0 frames unsolved, worst misfit 0.05 standard deviations\n"
             "\n"
@@ -41,6 +44,7 @@ TEST(Diagnosis, what_is_not_known_is_called_unknown) {
   EXPECT_NE(text.find("frames       0, 0 rejected, 0.0 s\n"), std::string::npos) << text;
   EXPECT_NE(text.find("noise        unknown (touched all the time), calibrated 1.00 counts\n"), std::string::npos);
   EXPECT_NE(text.find("unloaded     unknown\n"), std::string::npos);
+  EXPECT_NE(text.find("gains        unknown (too few touches of several taxels)\n"), std::string::npos);
   EXPECT_NE(text.find("temperature  unknown, calibrated 5.0 to 45.0 C\n"), std::string::npos);
 }
 

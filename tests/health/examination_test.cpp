@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -58,7 +59,7 @@ class Examined {
 
   void add(const RawFrame& raw) {
     pipeline_.process(raw, force_);
-    examination_.add(raw, pipeline_);
+    examination_.add(raw, force_, pipeline_);
   }
   [[nodiscard]] Diagnosis diagnosis() const { return examination_.diagnosis(pipeline_); }
 
@@ -79,6 +80,37 @@ bool says(const Diagnosis& diagnosis, const std::string& words) {
     if (finding.find(words) != std::string::npos) return true;
   }
   return false;
+}
+
+/// Touches of a sheet whose taxels read their gains times the force, broad ones in all places.
+Diagnosis examine_touches(double gain_spread) {
+  Measurement measurement;
+  Random random(kSeed);
+  std::vector<double> gains;
+  for (int k = 0; k < 64; ++k) gains.push_back(std::exp(gain_spread * random.normal()));
+  Examined examined(measurement.model);
+  for (std::size_t touch = 0; touch < 50; ++touch) {
+    const double row = random.uniform(0.0, 7.0);
+    const double col = random.uniform(0.0, 7.0);
+    for (std::size_t k = 0; k < 64; ++k) {
+      const double square =
+          std::pow(static_cast<double>(k / 8) - row, 2) + std::pow(static_cast<double>(k % 8) - col, 2);
+      measurement.newtons[k] = 10.0 * std::exp(-square / 4.0) * gains[k];
+    }
+    for (std::size_t k = 0; k < 5; ++k) examined.add(measurement.frame(10 * touch + k));
+    measurement.newtons.assign(64, 0.0);
+    for (std::size_t k = 5; k < 10; ++k) examined.add(measurement.frame(10 * touch + k));
+  }
+  return examined.diagnosis();
+}
+
+TEST(Examination, gains_that_have_changed_are_found_by_touches) {
+  const Diagnosis aged = examine_touches(0.1);
+  EXPECT_TRUE(says(aged, "recalibrate: gains have changed by about "));
+  EXPECT_NEAR(*aged.ageing.gain_spread, 0.1, 0.03);
+  const Diagnosis fresh = examine_touches(0.0);
+  EXPECT_TRUE(fresh.is_healthy()) << fresh.findings.front();
+  EXPECT_LT(*fresh.ageing.gain_spread, 0.02);
 }
 
 TEST(Examination, an_array_as_it_was_calibrated_is_healthy) {

@@ -108,6 +108,24 @@ TEST(Playback, begins_paused_with_the_first_frames_and_shows_where_it_is_put) {
   EXPECT_EQ(playback->control({.play = false, .seek = Nanos::max()}).now, playback->end());
 }
 
+TEST(Playback, shows_the_last_frame_again_to_who_has_not_seen_it) {
+  const TemporaryFolder folder;
+  record(folder.file("rec.mcap"), 10);
+  const auto playback = opened(folder.file("rec.mcap"));
+  const auto chest = playback->source(0);
+  const auto back = playback->source(1);
+  playback->show_again();
+  for (const auto* source : {&chest, &back}) EXPECT_EQ(next_number(**source), 0U) << "once, at the beginning";
+  playback->control({.play = false, .seek = kStart + 5 * kInterval});
+  for (int time = 0; time < 3; ++time) {
+    EXPECT_EQ(next_number(*chest), 5U) << time;
+    EXPECT_EQ(next_number(*back), 5U) << time;
+    playback->show_again();
+  }
+  EXPECT_EQ(playback->status().now, kStart + 5 * kInterval);
+  EXPECT_EQ(playback->status().state, PlaybackStatus::State::paused);
+}
+
 TEST(Playback, stop_ends_sources_that_wait) {
   const TemporaryFolder folder;
   record(folder.file("rec.mcap"), 10);

@@ -2,9 +2,13 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/serve/array_setup.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
+#include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -39,8 +43,8 @@ TEST_F(ArraySetupTest, writes_the_array_that_a_client_describes) {
   const auto setup = ArraySetup::create("sim:idle?rate=100&rows=3&cols=4", any_port(), {});
   ASSERT_TRUE(setup) << setup.error().message;
   const std::atomic<bool> stop = false;
-  std::string path;
-  std::thread work([&] { path = (*setup)->run(stop); });
+  DescribedArray described;
+  std::thread work([&] { described = (*setup)->run(stop); });
 
   StreamClient client((*setup)->port());
   const auto answer = [&](const std::string& request) { return client.call("/array/describe", request); };
@@ -57,8 +61,9 @@ TEST_F(ArraySetupTest, writes_the_array_that_a_client_describes) {
             std::string::npos);
   work.join();
 
-  EXPECT_EQ(path, "mat.toml");
-  const Result<ArrayDescription> array = files::read_array(path);
+  EXPECT_EQ(described.from, "sim:idle?rate=100&rows=3&cols=4");
+  EXPECT_EQ(described.model, "mat.toml");
+  const Result<ArrayDescription> array = files::read_array(described.model);
   ASSERT_TRUE(array) << array.error().message;
   EXPECT_EQ(array->name, "mat");
   EXPECT_EQ((FrameShape{array->rows, array->cols}), (FrameShape{3, 4}));
@@ -71,7 +76,7 @@ TEST_F(ArraySetupTest, ends_with_nothing_where_it_is_stopped) {
   const auto setup = ArraySetup::create("sim:idle?rate=100&rows=3&cols=4", any_port(), {});
   ASSERT_TRUE(setup) << setup.error().message;
   const std::atomic<bool> stop = true;
-  EXPECT_EQ((*setup)->run(stop), "");
+  EXPECT_EQ((*setup)->run(stop).model, "");
 }
 
 TEST_F(ArraySetupTest, is_not_for_a_source_that_cannot_be) {
@@ -84,6 +89,103 @@ TEST_F(ArraySetupTest, serves_bytes_of_which_no_frame_can_be_made) {
   for (int line = 0; line < 20; ++line) file << "1,2,3,4,5,6\n";
   file.close();
   EXPECT_TRUE(ArraySetup::create("file:bytes", any_port(), {}));
+}
+
+/// Asks until the answer has these words; the test is ended by its time limit.
+std::string ask_until(StreamClient& client, const std::string& service, const std::string& words) {
+  for (;;) {
+    std::string answer = client.call(service, "{}");
+    if (answer.find(words) != std::string::npos) return answer;
+  }
+}
+
+TEST_F(ArraySetupTest, tells_where_the_array_is_touched) {
+  const auto setup = ArraySetup::create("sim:idle?rate=100&rows=3&cols=4", any_port(), {});
+  ASSERT_TRUE(setup) << setup.error().message;
+  StreamClient client((*setup)->port());
+  EXPECT_EQ(client.call("/array/touch", "{}"), "nothing is watched");
+  EXPECT_EQ(client.call("/array/watch", R"({"rows":3,"cols":4})"), "{}");
+  EXPECT_EQ(ask_until(client, "/array/touch", R"("ready":true)"), R"({"ready":true,"touched":null,"problem":""})");
+  EXPECT_EQ(client.call("/array/watch", R"({"rows":4,"cols":4})"), "{}");
+  ask_until(client, "/array/touch", "rows and cols are not those of the frames");
+}
+
+TEST_F(ArraySetupTest, opens_only_serial_ports_that_it_has_listed) {
+  const auto setup = ArraySetup::create("", any_port(), {});
+  ASSERT_TRUE(setup) << setup.error().message;
+  StreamClient client((*setup)->port());
+  EXPECT_NE(client.call("/ports/list", "{}").find("\"ports\":["), std::string::npos);
+  std::ofstream("bytes") << "1,2,3\n";
+  for (const char* path : {"/etc/passwd", "bytes", "/dev/ttyACM99999", "", "/dev/null?baud=1"}) {
+    EXPECT_EQ(client.call("/ports/open", R"({"path":")" + std::string(path) + "\"}"),
+              "path: is none of the serial ports of this machine");
+  }
+  EXPECT_EQ(client.call("/array/describe", R"({"name":"mat","rows":3,"cols":4,"pitch_um":8000,"adc_bits":10})"),
+            "choose a serial port first");
+}
+
+TEST_F(ArraySetupTest, offers_no_ports_where_the_device_was_named_or_others_reach_the_server) {
+  const auto setup = ArraySetup::create("sim:idle?rate=100", any_port(), {});
+  ASSERT_TRUE(setup) << setup.error().message;
+  SessionOptions open = any_port();
+  open.server.host = "0.0.0.0";
+  open.server.token = "a-long-token";
+  const auto refused = ArraySetup::create("", open, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message.substr(0, 5), "host:");
+}
+
+/// A pseudo-terminal with the name of a serial port, and a board behind it that prints frames of 2x3.
+class Board {
+ public:
+  Board() : terminal_(::posix_openpt(O_RDWR | O_NOCTTY)) {
+    ::fcntl(terminal_, F_SETFL, O_NONBLOCK);  // what nobody reads is lost
+    ::grantpt(terminal_);
+    ::unlockpt(terminal_);
+    std::error_code error;
+    std::filesystem::create_symlink(::ptsname(terminal_), name_, error);
+    is_there_ = !error;
+    printing_ = std::thread([this] {
+      const std::string frame = "11,12,13\r\n21,22,23\r\n\r\n";
+      while (!stop_) {
+        static_cast<void>(!::write(terminal_, frame.data(), frame.size()));
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+    });
+  }
+  ~Board() {
+    stop_ = true;
+    printing_.join();
+    std::error_code ignored;
+    std::filesystem::remove(name_, ignored);
+    ::close(terminal_);
+  }
+  [[nodiscard]] bool is_there() const { return is_there_; }
+  [[nodiscard]] const std::string& name() const { return name_; }
+
+ private:
+  const std::string name_ = "/dev/ttyACM_of_test_" + std::to_string(::getpid());
+  const int terminal_;
+  std::atomic<bool> stop_ = false;
+  bool is_there_ = false;
+  std::thread printing_;
+};
+
+TEST_F(ArraySetupTest, listens_to_the_port_that_a_client_chooses) {
+  const Board board;
+  if (!board.is_there()) GTEST_SKIP() << "only root can name a port in /dev";
+  const auto setup = ArraySetup::create("", any_port(), {});
+  ASSERT_TRUE(setup) << setup.error().message;
+  StreamClient client((*setup)->port());
+  EXPECT_NE(client.call("/ports/list", "{}").find(board.name()), std::string::npos);
+  EXPECT_EQ(client.call("/ports/open", R"({"path":")" + board.name() + R"(","baud":115200})"),
+            R"({"from":"serial://)" + board.name() + R"(?baud=115200"})");
+  const std::atomic<bool> stop = false;
+  DescribedArray described;
+  std::thread work([&] { described = (*setup)->run(stop); });
+  client.call("/array/describe", R"({"name":"board","rows":2,"cols":3,"pitch_um":8000,"adc_bits":10})");
+  work.join();
+  EXPECT_EQ(described.from, "serial://" + board.name() + "?baud=115200");
 }
 
 }  // namespace

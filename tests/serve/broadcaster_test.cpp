@@ -61,7 +61,8 @@ class Broadcasting : public testing::Test {
     server_ = *std::move(created);
     broadcaster_.emplace(suit_, *server_);
     end_ = server_->add_channel("/end", "none", "");
-    server_->start({[] { return std::vector<stream::Parameter>{}; }, [](const stream::Parameter&) { return Done{}; }});
+    server_->start({[] { return std::vector<stream::Parameter>{}; },
+                    [](const stream::Parameter&, const std::string&) { return Done{}; }});
   }
 
   void listen_to(std::vector<std::string> topics) {
@@ -115,6 +116,12 @@ TEST_F(Broadcasting, a_recording_that_was_sought_back_goes_on_at_once) {
   listen_to({"/chest/force"});
   for (const std::int64_t time : {10'000, 10'001, 500, 501}) broadcaster_->publish(Frame(time * kMillisecond).result());
   EXPECT_EQ(heard()["/chest/force"], (std::vector<std::int64_t>{10'000, 500}));
+}
+
+TEST_F(Broadcasting, a_frame_that_comes_again_is_streamed_again) {
+  listen_to({"/chest/force"});
+  for (const std::int64_t time : {10'000, 10'001, 10'001}) broadcaster_->publish(Frame(time * kMillisecond).result());
+  EXPECT_EQ(heard()["/chest/force"], (std::vector<std::int64_t>{10'000, 10'001}));
 }
 
 TEST_F(Broadcasting, the_beginning_and_the_end_of_a_contact_are_never_left_out) {

@@ -36,6 +36,20 @@ TEST(JsonRequest, a_text_is_short_and_fits_into_a_csv_file) {
   }
 }
 
+TEST(JsonRequest, a_name_for_a_file_leads_to_no_other_folder) {
+  EXPECT_EQ(JsonRequest::parse(R"({"name": "walk-2_b"})")->file_name("name").value(), "walk-2_b");
+  for (const char* const name : {"", "../x", "a/b", "a.mcap", ".", "a b", "\u00e4"}) {
+    const auto request = JsonRequest::parse(std::string(R"({"name": ")") + name + "\"}");
+    EXPECT_EQ(request->file_name("name").error().message, "name: must be letters, digits, '_' and '-'") << name;
+  }
+}
+
+TEST(JsonRequest, a_switch_is_true_or_false) {
+  EXPECT_TRUE(JsonRequest::parse(R"({"on": true})")->flag("on").value());
+  EXPECT_FALSE(JsonRequest::parse("{}")->flag("on").value());
+  EXPECT_EQ(JsonRequest::parse(R"({"on": 1})")->flag("on").error().message, "on: must be true or false");
+}
+
 TEST(JsonRequest, a_number_is_whole_and_not_below_0) {
   EXPECT_EQ(JsonRequest::parse(R"({"id": 7})")->number("id", "one").value(), 7U);
   for (const char* const text : {R"({"id": -1})", R"({"id": 0.5})", R"({"id": "7"})"}) {

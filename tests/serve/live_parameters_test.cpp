@@ -74,7 +74,8 @@ TEST_F(Parameters, begin_with_the_defaults) {
                                                           {"/recording/file", std::string()},
                                                           {"/right/tare", false},
                                                           {"/stream/rate_hz", 60.0},
-                                                          {"/tare", false}};
+                                                          {"/tare", false},
+                                                          {"/tare/log", std::string()}};
   EXPECT_EQ(all(), expected);
 }
 
@@ -127,6 +128,14 @@ TEST_F(Parameters, the_tare_of_the_suit_is_that_of_all_its_arrays) {
   EXPECT_EQ(all().at("/tare"), ParameterValue(true));
   EXPECT_EQ(set("/tare", false), "");
   EXPECT_EQ(all().at("/left/tare"), ParameterValue(false));
+}
+
+TEST_F(Parameters, say_who_has_tared) {
+  EXPECT_NE(parameters_->log_tare({"/left/tare", true}, "1.2.3.4:5").find("left was tared by 1.2.3.4:5"),
+            std::string::npos);
+  parameters_->log_tare({"/tare", false}, "1.2.3.4:6");
+  const auto text = std::get<std::string>(all().at("/tare/log"));
+  EXPECT_NE(text.find("the suit got back the zero of its calibration by 1.2.3.4:6\n"), std::string::npos) << text;
 }
 
 TEST_F(Parameters, an_array_with_another_model_is_not_tared) {

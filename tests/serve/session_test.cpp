@@ -19,6 +19,7 @@
 #include "dermis/recordings/suit_recording.hpp"
 #include "messages/read_by_definition.hpp"
 #include "serve/named_touches.hpp"
+#include "serve/session_at_work.hpp"
 #include "serve/small_suit.hpp"
 #include "serve/stream_client.hpp"
 #include "support/stalled_disk.hpp"
@@ -32,61 +33,12 @@ using support::TemporaryFolder;
 
 constexpr std::uint64_t kSeed = 3;
 
-SessionOptions options_with(const std::string& record = {}) {
-  SessionOptions options;
-  options.server.port = 0;
-  options.record = record;
-  return options;
-}
-
-/// A session at work.
-class Work {
- public:
-  explicit Work(std::unique_ptr<Session> session) : session_(std::move(session)) {
-    thread_ = std::thread([this] { outcome_ = session_->run(stop_); });
-  }
-  Work(const Work&) = delete;
-  Work& operator=(const Work&) = delete;
-  ~Work() { static_cast<void>(end()); }
-
-  std::uint16_t port() const { return session_->port(); }
-  Status end() {
-    stop_ = true;
-    if (thread_.joinable()) thread_.join();
-    return outcome_;
-  }
-
- private:
-  std::unique_ptr<Session> session_;
-  std::atomic<bool> stop_ = false;
-  Status outcome_ = Done{};
-  std::thread thread_;
-};
-
-std::unique_ptr<Session> session_of(ServedSuit suit, const SessionOptions& options) {
-  Result<std::unique_ptr<Session>> session = Session::create(std::move(suit), options);
-  EXPECT_TRUE(session) << session.error().message;
-  return *std::move(session);
-}
-
 json value_of(const std::string& parameters, const std::string& name) {
   for (const json& parameter : json::parse(parameters)) {
     if (parameter["name"] == name) return parameter["value"];
   }
   ADD_FAILURE() << "no " << name << " in " << parameters;
   return {};
-}
-
-/// Frames of each array in a complete recording.
-std::vector<std::size_t> recorded_frames(const std::string& path) {
-  const auto reader = recordings::SuitRecordingReader::open(path);
-  EXPECT_TRUE(reader) << reader.error().message;
-  EXPECT_TRUE((*reader)->complete());
-  std::vector<std::size_t> frames((*reader)->arrays().size());
-  std::size_t array = 0;
-  RawFrame frame;
-  for (auto more = (*reader)->next(array, frame); more && *more; more = (*reader)->next(array, frame)) ++frames[array];
-  return frames;
 }
 
 /// An array under a hand that does what the guide says, as fast as it is read.
@@ -259,6 +211,28 @@ TEST(Session, plays_a_recording_on_its_own_clock) {
   client.subscribe({"/chest/force", "/statistics"});
   for (const char* const topic : {"/chest/force", "/statistics"}) {
     EXPECT_LE(client.next_message(topic).time, std::chrono::seconds(3)) << topic;
+  }
+  EXPECT_TRUE(work.end());
+}
+
+TEST(Session, shows_a_playback_that_has_ended_to_who_comes_then) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("rec.mcap");
+  {
+    const auto writer = recordings::SuitRecordingWriter::create(path, {{.name = "chest", .shape = {kRows, kCols}}});
+    calibration::HandledArray handled(support::hand_made_model(kRows, kCols).array, {}, kSeed);
+    ASSERT_TRUE((*writer)->write(0, handled.frame(std::vector<double>(kRows * kCols))));
+    ASSERT_TRUE((*writer)->commit());
+  }
+  const std::atomic<bool> never = false;
+  ServedSuit suit = small_suit({"chest"}, never);
+  suit.playback = live::Playback::open(path).value();
+  suit.arrays[0].source = suit.playback->source(0);
+  Work work(session_of(std::move(suit), options_with()));
+  for (int viewer = 0; viewer < 3; ++viewer) {
+    StreamClient client(work.port());
+    client.subscribe({"/chest/force"});
+    EXPECT_EQ(client.next_message("/chest/force").bytes.empty(), false) << viewer;
   }
   EXPECT_TRUE(work.end());
 }

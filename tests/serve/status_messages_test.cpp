@@ -82,6 +82,23 @@ TEST(StatusMessages, dead_taxels_are_named_and_no_warning) {
   EXPECT_EQ(diagnosis.values, (Values{{"dead since calibration", "r0c1 r1c0"}}));
 }
 
+TEST(StatusMessages, gains_that_have_changed_are_a_warning_with_the_evidence) {
+  health::AgeingEvidence ageing;
+  ageing.comparisons = 214;
+  ageing.gain_spread = 0.02;
+  ageing.spread_sigma = 0.01;
+  const pipeline::Model model = support::hand_made_model(3, 4);
+  EXPECT_EQ(diagnosis_message("chest", model, {}, ageing).level, Level::ok);
+  EXPECT_EQ(diagnosis_message("chest", model, {}, ageing).message, "healthy");
+  ageing.gain_spread = 0.09;
+  const messages::Diagnosis diagnosis = diagnosis_message("chest", model, {}, ageing);
+  EXPECT_EQ(diagnosis.level, Level::warning);
+  EXPECT_EQ(diagnosis.message, "recalibrate: gains have changed by about 9 %");
+  EXPECT_EQ(diagnosis.values, (Values{{"gains",
+                                       "recalibrate: gains have changed by about 9 % from taxel to taxel (+- 1 %, 214 "
+                                       "comparisons)"}}));
+}
+
 TEST(StatusMessages, faults_of_lines_are_a_warning_each_with_its_place) {
   live::ArrayStatistics statistics;
   statistics.faults.push_back({.kind = compensation::LineFaultKind::silent_row, .place = 1});

@@ -59,7 +59,7 @@ class Watching : public testing::Test {
                        [this](const std::string& line) { lines_.push_back(line); });
     end_ = server_->add_channel("/end", "none", "");
     const auto none = [] { return std::vector<stream::Parameter>{}; };
-    server_->start({none, [](const stream::Parameter&) { return Done{}; }});
+    server_->start({none, [](const stream::Parameter&, const std::string&) { return Done{}; }});
     client_ = std::make_unique<StreamClient>(server_->port());
     client_->subscribe({"/threat", "/end"});
   }

@@ -357,6 +357,31 @@ TEST(Rubber, shares_that_fall_off_the_edge_are_lost) {
   EXPECT_NEAR(sum, 9.6, 1e-9);
 }
 
+TEST(Rubber, an_aged_taxel_feels_its_gain_times_the_force) {
+  RubberOptions options;
+  const ConductiveRubber fresh = make_rubber(options, 4, 4);
+  options.gain = 1.1;
+  const ConductiveRubber aged = make_rubber(options, 4, 4);
+  for (std::size_t taxel = 0; taxel < 16; ++taxel) {
+    EXPECT_NEAR(fresh.force_from_conductance(taxel, aged.conductance_from_force(taxel, 5.0, 20.0), 20.0), 5.5, 1e-9);
+    EXPECT_EQ(aged.conductance_from_force(taxel, 0.0, 20.0), fresh.conductance_from_force(taxel, 0.0, 20.0));
+  }
+}
+
+TEST(Rubber, gains_of_aged_taxels_scatter_as_asked) {
+  RubberOptions options;
+  const ConductiveRubber fresh = make_rubber(options, 64, 64);
+  options.gain_spread = 0.1;
+  const ConductiveRubber aged = make_rubber(options, 64, 64);
+  std::vector<double> log_gain;
+  for (std::size_t taxel = 0; taxel < aged.taxel_count(); ++taxel) {
+    const double siemens = aged.conductance_from_force(taxel, 5.0, 20.0);
+    log_gain.push_back(std::log(fresh.force_from_conductance(taxel, siemens, 20.0) / 5.0));
+  }
+  EXPECT_NEAR(moments(log_gain).mean, 0.0, 0.1 * 5.0 / 64.0);
+  EXPECT_NEAR(moments(log_gain).sd, 0.1, 0.1 * 5.0 / 64.0 / 1.414);
+}
+
 TEST(Rubber, grades_rank_by_carbon_content) {
   EXPECT_EQ(rubber_grade(10)->resistance_at_10n_ohm, RubberOptions{}.resistance_at_10n_ohm);
   EXPECT_NEAR(rubber_grade(5)->resistance_at_10n_ohm, 900.0 * 12.25, 1e-9);
@@ -373,6 +398,9 @@ TEST(Rubber, options_out_of_range_are_named) {
   options = {};
   options.creep = -0.1;
   EXPECT_EQ(options.validate().error().message.find("rubber.creep:"), 0U);
+  options = {};
+  options.gain = 0.0;
+  EXPECT_EQ(options.validate().error().message.find("rubber.gain:"), 0U);
   options = {};
   options.contact_ohm = 900.0;
   EXPECT_EQ(ConductiveRubber::create(options, 2, 2, 1).error().message.find("rubber.contact_ohm:"), 0U);

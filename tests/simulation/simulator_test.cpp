@@ -209,6 +209,13 @@ TEST(SimulationOptionsFile, sets_the_memory_of_rubber) {
   EXPECT_EQ(options->rubber.memory->touch_gain, RubberMemoryOptions{}.touch_gain);
 }
 
+TEST(SimulationOptionsFile, ages_the_rubber) {
+  const auto options = read_text("[rubber]\ngain = 0.9\ngain_spread = 0.1\n");
+  ASSERT_TRUE(options) << options.error().message;
+  EXPECT_EQ(options->rubber.gain, 0.9);
+  EXPECT_EQ(options->rubber.gain_spread, 0.1);
+}
+
 TEST(SimulationOptionsFile, names_what_is_wrong) {
   EXPECT_NE(read_text("[rubber]\nhysterisis = 0.1\n").error().message.find("hysteresis"), std::string::npos);
   EXPECT_NE(read_text("[rubber]\ncreep = 3\n").error().message.find("rubber.creep"), std::string::npos);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numeric>
 
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/files/array_toml.hpp"
@@ -178,6 +179,18 @@ TEST(OpenSource, touches_begin_again_on_rested_rubber) {
   }
 }
 
+TEST(OpenSource, an_aged_sheet_reads_more_where_it_is_pressed) {
+  const ArrayDescription array = small_array();
+  const auto fresh = support::read_all(*opened("sim:multitouch?frames=20", {.array = &array}));
+  const auto aged = support::read_all(*opened("sim:multitouch?frames=20&gain=1.5", {.array = &array}));
+  const auto sum = [](const std::vector<RawFrame>& frames) {
+    double counts = 0.0;
+    for (const RawFrame& frame : frames) counts += std::accumulate(frame.counts.begin(), frame.counts.end(), 0.0);
+    return counts;
+  };
+  EXPECT_GT(sum(*aged), 1.1 * sum(*fresh));
+}
+
 TEST(OpenSource, every_scene_takes_a_memory) {
   const ArrayDescription array = small_array();
   for (const char* scene : {"sim:multitouch?frames=20", "sim:touches?frames=600"}) {
@@ -235,6 +248,117 @@ TEST(OpenSource, the_hand_of_a_rehearsal_listens_to_the_guide) {
   RawFrame frame;
   EXPECT_TRUE(has_next(*source, frame));
   EXPECT_TRUE(has_next(*opened("sim:rehearsal?rate=1000", {.array = &array}), frame)) << "without a guide, too";
+}
+
+/// 4x5 taxels with a number each, as a device would send them.
+std::vector<RawFrame> numbered_taxels() {
+  std::vector<RawFrame> frames = some_frames(2);
+  for (RawFrame& frame : frames) {
+    for (std::size_t i = 0; i < frame.counts.size(); ++i) frame.counts[i] = static_cast<float>(i);
+  }
+  return frames;
+}
+
+/// 4x4 taxels: those of the device but the first column, columns as rows and the last of them first.
+ArrayDescription turned_array() {
+  ArrayDescription array;
+  array.rows = 4;
+  array.cols = 4;
+  array.readout.circuit = Circuit::none;
+  array.order.skip_columns = 1;
+  array.order.transpose = true;
+  array.order.flip_rows = true;
+  return array;
+}
+
+const std::vector<float> kTurnedCounts = {4, 9, 14, 19, 3, 8, 13, 18, 2, 7, 12, 17, 1, 6, 11, 16};
+
+TEST(OpenSource, turns_the_frames_of_a_device_as_its_array_says) {
+  const TemporaryFolder folder;
+  write_device_bytes(folder.file("device.bin"), numbered_taxels());
+  const ArrayDescription array = turned_array();
+  const auto source = opened("file:" + folder.file("device.bin") + "?protocol=dermis", {.array = &array});
+  ASSERT_TRUE(source);
+  EXPECT_EQ(source->shape(), (FrameShape{4, 4}));
+  EXPECT_TRUE(source->is_live());
+  RawFrame frame;
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(has_next(*source, frame));
+    EXPECT_EQ(frame.counts, kTurnedCounts);
+  }
+  EXPECT_EQ(source->statistics().frames, 2U);
+}
+
+TEST(OpenSource, turns_the_frames_of_a_device_as_its_uri_says) {
+  const TemporaryFolder folder;
+  write_device_bytes(folder.file("device.bin"), numbered_taxels());
+  const std::string uri = "file:" + folder.file("device.bin") + "?protocol=dermis&skip_columns=1&transpose=1";
+  RawFrame frame;
+  ASSERT_TRUE(has_next(*opened(uri + "&flip_rows=1"), frame));
+  EXPECT_EQ(frame.counts, kTurnedCounts);
+  ArrayDescription array = turned_array();
+  array.order = {.flip_rows = true};
+  ASSERT_TRUE(has_next(*opened(uri, {.array = &array}), frame)) << "first the URI, then the array";
+  EXPECT_EQ(frame.counts, kTurnedCounts);
+}
+
+TEST(OpenSource, a_recording_of_a_turned_array_is_not_turned_again) {
+  const TemporaryFolder folder;
+  write_device_bytes(folder.file("device.bin"), numbered_taxels());
+  const ArrayDescription array = turned_array();
+  const auto frames =
+      support::read_all(*opened("file:" + folder.file("device.bin") + "?protocol=dermis", {.array = &array}));
+  ASSERT_TRUE(frames);
+  for (const char* name : {"rec.mcap", "rec.csv", "rec.h5"}) {
+    const auto sink = recordings::create_frames(folder.file(name), {4, 4}, {"turned", files::array_to_toml(array), ""});
+    ASSERT_TRUE(sink) << sink.error().message;
+    ASSERT_TRUE(support::write_all(**sink, *frames));
+    RawFrame frame;
+    ASSERT_TRUE(has_next(*opened(folder.file(name), {.array = &array}), frame));
+    EXPECT_EQ(frame.counts, kTurnedCounts) << name;
+  }
+}
+
+TEST(OpenSource, a_recording_from_before_its_array_was_turned_is_refused) {
+  const TemporaryFolder folder;
+  ArrayDescription array = turned_array();
+  array.rows = kShape.rows;
+  array.cols = kShape.cols;
+  array.order = {};
+  const auto sink =
+      recordings::create_frames(folder.file("rec.mcap"), kShape, {"mat", files::array_to_toml(array), ""});
+  ASSERT_TRUE(sink) << sink.error().message;
+  ASSERT_TRUE(support::write_all(**sink, numbered_taxels()));
+  EXPECT_TRUE(opened(folder.file("rec.mcap"), {.array = &array}));
+  array.order.flip_rows = true;
+  EXPECT_NE(refusal(folder.file("rec.mcap"), {.array = &array}).find("rec.mcap?flip_rows=1"), std::string::npos);
+}
+
+TEST(OpenSource, a_file_that_was_written_the_wrong_way_round_is_turned_by_its_uri) {
+  const TemporaryFolder folder;
+  const ArrayDescription array = turned_array();
+  for (const char* name : {"rec.mcap", "rec.csv"}) {
+    write_file(folder.file(name), numbered_taxels());
+    const auto source =
+        opened("file:" + folder.file(name) + "?skip_columns=1&transpose=1&flip_rows=1", {.array = &array});
+    ASSERT_TRUE(source);
+    EXPECT_FALSE(source->is_live());
+    RawFrame frame;
+    ASSERT_TRUE(has_next(*source, frame));
+    EXPECT_EQ(frame.counts, kTurnedCounts) << name;
+    ASSERT_TRUE(has_next(*source, frame));
+    EXPECT_EQ(frame.time, std::chrono::milliseconds(1)) << "the times of the file";
+  }
+}
+
+TEST(OpenSource, names_an_order_of_lines_that_does_not_fit_the_frames) {
+  const TemporaryFolder folder;
+  write_device_bytes(folder.file("device.bin"), numbered_taxels());
+  const std::string uri = "file:" + folder.file("device.bin") + "?protocol=dermis&row_order=1,0";
+  RawFrame frame;
+  const Result<bool> more = opened(uri)->next(frame);
+  ASSERT_FALSE(more);
+  EXPECT_EQ(more.error().message, "'" + uri + "': row_order: has 2 lines, the array 4");
 }
 
 TEST(OpenSource, a_rate_gives_times_to_a_file_that_has_none) {

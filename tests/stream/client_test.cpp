@@ -46,7 +46,8 @@ TEST(OutgoingQueue, holds_one_message_however_large) {
 struct StreamClient : testing::Test {
   std::vector<Parameter> parameters{{"/a", 1.0}, {"/b", true}};
   Offer offer{{[this] { return parameters; },
-               [this](const Parameter& set) -> Status {
+               [this](const Parameter& set, const std::string& client) -> Status {
+                 EXPECT_EQ(client, "somebody");
                  if (set.name != "/a") return bad_input("'" + set.name + "' cannot be set");
                  parameters[0] = set;
                  return Done{};
@@ -58,7 +59,11 @@ struct StreamClient : testing::Test {
                 }}},
               {}};
   std::map<ChannelId, int> subscribers;
-  Client client{offer, true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; },
+  Client client{offer,
+                "somebody",
+                true,
+                1U << 20U,
+                [this](ChannelId channel, int change) { subscribers[channel] += change; },
                 [this](const Question& question) { question()(client); }};
 
   void say(const std::string& text) {
@@ -95,7 +100,8 @@ TEST_F(StreamClient, subscribes_to_a_channel_once) {
 
 TEST_F(StreamClient, leaves_no_subscriber_behind) {
   {
-    Client other(offer, true, 1U << 20U, [this](ChannelId channel, int change) { subscribers[channel] += change; }, {});
+    Client other(offer, "another", true, 1U << 20U,
+                 [this](ChannelId channel, int change) { subscribers[channel] += change; }, {});
     const std::string text = R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2}]})";
     EXPECT_TRUE(other.receive({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}, true));
     EXPECT_EQ(subscribers[2], 1);

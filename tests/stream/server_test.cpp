@@ -9,11 +9,14 @@
 #include <boost/asio.hpp>
 #include <boost/beast.hpp>
 #include <chrono>
+#include <filesystem>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <utility>  // Asio 1.74 forgets it
+
+#include "support/temporary_folder.hpp"
 
 namespace dermis::stream {
 namespace {
@@ -76,7 +79,7 @@ struct StreamServer : testing::Test {
                         const std::lock_guard lock(mutex);
                         return std::vector<Parameter>{{"/threshold", value}};
                       },
-                      [this](const Parameter& set) -> Status {
+                      [this](const Parameter& set, const std::string& /*client*/) -> Status {
                         const std::lock_guard lock(mutex);
                         value = set.value;
                         return Done{};
@@ -166,6 +169,34 @@ struct StreamServer : testing::Test {
     ASSERT_TRUE(eventually([&] { return server->has_subscribers(channel); }));
   }
 };
+
+TEST_F(StreamServer, gives_a_file_to_be_saved_as_it_is_on_the_disk) {
+  const support::TemporaryFolder folder;
+  const std::string content(700'000, 'm');
+  support::write_bytes(folder.file("walk.mcap"), content);
+  serve();
+  EXPECT_EQ(get("/recordings/walk.mcap").result_int(), 404U) << "nobody said so yet";
+  server->set_file("/recordings/walk.mcap", folder.file("walk.mcap"));
+  const auto answer = get("/recordings/walk.mcap");
+  EXPECT_EQ(answer.result_int(), 200U);
+  EXPECT_EQ(answer.body(), content);
+  EXPECT_EQ(answer[http::field::content_disposition], "attachment; filename=\"walk.mcap\"");
+  EXPECT_EQ(get("/recordings/walk.mcap", {"evil.example", {}, {}}).result_int(), 403U);
+  EXPECT_EQ(get("/recordings/../walk.mcap").result_int(), 404U);
+  std::filesystem::remove(folder.file("walk.mcap"));
+  EXPECT_EQ(get("/recordings/walk.mcap").result_int(), 404U);
+}
+
+TEST_F(StreamServer, gives_a_file_to_nobody_without_the_token) {
+  const support::TemporaryFolder folder;
+  support::write_bytes(folder.file("walk.mcap"), "frames");
+  options.token = "a-long-token";
+  serve();
+  server->set_file("/walk.mcap", folder.file("walk.mcap"));
+  EXPECT_EQ(get("/walk.mcap").result_int(), 401U);
+  EXPECT_EQ(get("/walk.mcap?token=a-wrong-token").result_int(), 401U);
+  EXPECT_EQ(get("/walk.mcap?token=a-long-token").body(), "frames");
+}
 
 TEST_F(StreamServer, gives_its_files_and_documents) {
   serve();

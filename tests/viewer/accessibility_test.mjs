@@ -81,7 +81,7 @@ for (const colorScheme of ["light", "dark"]) {
           const lines = await findings(page);
           if (lines.length > 0) found[state] = lines;
         };
-        for (const dialog of ["show-help", "show-thresholds"]) {
+        for (const dialog of ["show-help", "show-thresholds", "show-take"]) {
           await page.click(`[data-role=${dialog}]`);
           await look(dialog);
           await page.keyboard.press("Escape");
@@ -103,6 +103,16 @@ for (const colorScheme of ["light", "dark"]) {
         await page.locator("[data-role=uncalibrated]").waitFor();
         assert.deepEqual(await findings(page), []);
       });
+      const nothing = await bench.serve("--port", "0");
+      try {
+        const page = await openPage(browser, nothing.url);
+        await page.emulateMedia({ colorScheme });
+        await page.locator("[data-role=port-setup]").waitFor();
+        assert.deepEqual(await findings(page), []);
+        await page.close();
+      } finally {
+        await nothing.stop();
+      }
       const device = await readings();
       const server = await bench.serve("--port", "0", "--from", `tcp://127.0.0.1:${device.address().port}`);
       try {

@@ -77,6 +77,7 @@ try {
   await page.emulateMedia({ colorScheme: "light" });
   await becomes(page, "live");
   await page.locator("[data-contact]").first().waitFor();
+  await page.getByRole("checkbox", { name: "Contacts" }).uncheck();
   await setScale(page, "raw", ghost.counts);
   await setScale(page, "force", ghost.newtons);
   await page.waitForTimeout(1000);

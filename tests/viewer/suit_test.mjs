@@ -6,27 +6,17 @@
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage, WAIT_MS } from "./harness.mjs";
+import { it } from "node:test";
+import { assertUnhurt, becomes, bench, browser, openPage, useBench, WAIT_MS } from "./harness.mjs";
 
 const require = createRequire(new URL("../npm/package.json", import.meta.url));
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
 const { WebSocket } = require("ws");
 
-let bench;
-let browser;
-
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  browser = await openBrowser();
+useBench(() => {
   writeFileSync(bench.path("hand.stl"), binaryStl());
   writeFileSync(bench.path("head.glb"), glb());
   writeFileSync(bench.path("broken.glb"), "no mesh");
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
 });
 
 /** A triangle of 10 cm. */

@@ -4,11 +4,12 @@ import { DisplayStatistics } from "./display_statistics";
 import { element, setHidden, setText } from "./dom";
 import { LiveData } from "./live/live_data";
 import type { HealthStatus } from "./messages/statistics";
+import { makeArraySetup } from "./setup/array_setup";
 import { Signal } from "./signal";
 import { Stream } from "./stream/stream";
 import { Suit } from "./suit";
+import { TakeDialog } from "./take/take_dialog";
 import { Theme } from "./theme";
-import { makeArraySetup } from "./ui/array_setup";
 import { Bar } from "./ui/bar";
 import { makeHelp } from "./ui/help";
 import { makeThreatBanner } from "./ui/threat_banner";
@@ -34,6 +35,7 @@ export class App implements ViewContext {
   readonly #transport = new Transport(this.stream);
   readonly #help = makeHelp();
   readonly #thresholds = makeThresholds(this.stream);
+  readonly #take = new TakeDialog(this);
   readonly #room = element("main");
   readonly #notice = element("p", { class: "notice", role: "status", "data-role": "notice", hidden: true });
   #shown: View | undefined;
@@ -46,6 +48,7 @@ export class App implements ViewContext {
       toggleRecording: () => this.#toggle("/recording"),
       togglePause: () => this.togglePause(),
       tare: () => this.#toggle("/tare"),
+      showTake: () => this.#take.show(),
       showThresholds: () => this.#thresholds.showModal(),
       showHelp: () => this.#help.showModal(),
     });
@@ -62,7 +65,7 @@ export class App implements ViewContext {
   }
 
   begin(): void {
-    document.body.append(this.#bar.element, makeTokenForm(this.stream), makeArraySetup(this.stream, this.suit), this.#notice, makeThreatBanner(this.live.threats, this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds);
+    document.body.append(this.#bar.element, makeTokenForm(this.stream), ...makeArraySetup(this.stream, this.suit), this.#notice, makeThreatBanner(this.live.threats, this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds, this.#take.element);
     window.addEventListener("hashchange", () => this.#route());
     window.addEventListener("keydown", (event) => this.#key(event));
     this.suit.selected.follow((array) => array !== undefined && this.#shown !== undefined && this.open(this.#shown.name));
@@ -144,6 +147,7 @@ export class App implements ViewContext {
     else if (event.key === "]") this.#step(1);
     else if (event.key === "t") this.#toggle("/tare");
     else if (event.key === "r") this.#toggle("/recording");
+    else if (event.key === "s") this.#take.show();
     else if (event.key === "d") this.theme.toggle();
     else if (event.key === "?") this.#help.showModal();
     else if (event.key === "k") this.#transport.toggle();

@@ -15,7 +15,7 @@
 namespace dermis::acquisition {
 
 struct DeviceOptions {
-  std::optional<FrameShape> shape{};  ///< Required shape of the frames; rows and cols of the URI.
+  std::optional<FrameShape> shape{};  ///< Required shape of the frames, turned as the URI says.
   /// If set, next() delivers what was received, then returns false within 100 ms.
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string&)> notice{};  ///< Receives messages for the user, one line each.

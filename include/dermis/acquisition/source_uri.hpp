@@ -10,6 +10,7 @@
 
 #include "dermis/acquisition/protocol.hpp"
 #include "dermis/core/frames.hpp"
+#include "dermis/core/line_order.hpp"
 #include "dermis/core/result.hpp"
 
 namespace dermis::acquisition {
@@ -36,6 +37,7 @@ struct SourceUri {
   std::string host;            ///< tcp, tcp-listen, udp: name or address, IPv6 without brackets.
   std::uint16_t port = 0;      ///< 0 (any that is free) only for tcp-listen and udp.
   ProtocolOptions protocol{};  ///< protocol, rows, cols, nodes_per_packet, delimited, bit_shift; not of a simulation.
+  LineOrder order{};           ///< Of the lines, by the names of its members; not of a simulation.
   unsigned baud = 0;           ///< serial: 50 ... 20,000,000; not given: the usual one of the protocol.
   Nanos reconnect{};           ///< serial, tcp: how long an unplugged device may stay away; reconnect_s, 0 ... 1e6.
   std::optional<FrameShape> array_shape{};  ///< simulation: rows and cols.
@@ -46,6 +48,8 @@ struct SourceUri {
   std::string array{};                  ///< simulation: path of an array.toml.
   std::optional<std::size_t> frames{};  ///< simulation: length of the scenes multitouch, contacts, idle and touches.
   std::string memory{};                 ///< simulation: what the material remembers, by its name; empty: as usual.
+  double gain = 1.0;                    ///< simulation: of an aged sheet, 0.1 ... 10.
+  double gain_spread = 0.0;             ///< simulation: sd of its logarithm over the taxels, 0 ... 1.
 };
 
 /// True if `text` begins like a URI of a transport, valid or not; false: the path of a file.

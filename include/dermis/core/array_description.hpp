@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/core/line_order.hpp"
 #include "dermis/core/result.hpp"
 
 namespace dermis {
@@ -93,6 +94,7 @@ struct ArrayDescription {
   /// readings are ignored and they have no force. Not all taxels may be absent.
   std::vector<std::size_t> absent;
   Readout readout;
+  LineOrder order;  ///< Which way round the device sends `rows` and `cols`. Frames in files are turned already.
 
   [[nodiscard]] std::size_t taxel_count() const noexcept { return rows * cols; }
   [[nodiscard]] std::size_t index(std::size_t row, std::size_t col) const noexcept { return row * cols + col; }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/health/ageing_monitor.hpp"
 #include "dermis/health/fault_words.hpp"
 #include "dermis/pipeline/model.hpp"
 
@@ -29,6 +30,8 @@ struct Diagnosis {
   double saturated_share = 0.0;                   ///< Of all readings, 0 ... 1.
   std::string missing_readings;                   ///< Of which taxels in how many frames; empty: of none.
   std::optional<double> offset_drift;             ///< Of the unloaded conductance, relative; empty: not known.
+  std::optional<double> offset_spread;            ///< Of this drift over the taxels, standard deviation.
+  AgeingEvidence ageing;                          ///< Of the gains.
   std::optional<TemperatureRange> temperature;    ///< Empty: no frame carried one.
   double worst_misfit_sigma = 0.0;                ///< Of a solved reading [standard deviations].
   std::vector<std::string> blind_lines;           ///< Read too little unloaded for a break to be seen: "row 3".

@@ -12,7 +12,8 @@
 namespace dermis::health {
 
 /// Examines an array by the frames of one stream, however it is touched. It reports line faults, noise and drift of the
-/// unloaded taxels, saturation, temperature and misfit of the circuit. Keeps 8 bytes a frame. Not thread-safe.
+/// unloaded taxels, saturation, temperature, misfit of the circuit and gains that have changed. Keeps 8 bytes a frame.
+/// Not thread-safe.
 class Examination {
  public:
   /// `model` must outlive the examination.
@@ -22,7 +23,8 @@ class Examination {
   ~Examination();
 
   /// A frame that `pipeline`, made of the same model, has just processed.
-  void add(const RawFrame& raw, const pipeline::Pipeline& pipeline);
+  /// What it made of it is `force`.
+  void add(const RawFrame& raw, const ForceFrame& force, const pipeline::Pipeline& pipeline);
 
   /// Of all frames so far; `pipeline`: the one that processed them.
   [[nodiscard]] Diagnosis diagnosis(const pipeline::Pipeline& pipeline) const;

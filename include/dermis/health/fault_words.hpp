@@ -11,6 +11,7 @@
 
 #include "dermis/compensation/line_faults.hpp"
 #include "dermis/core/array_description.hpp"
+#include "dermis/health/ageing_monitor.hpp"
 #include "dermis/pipeline/model.hpp"
 
 namespace dermis::health {
@@ -27,13 +28,15 @@ struct FaultHistory {
 
 /// Short state of a working array at this moment.
 struct Condition {
-  std::string message;  ///< "healthy", "dead taxels" (since calibration) or "2 faults".
+  /// "healthy", "dead taxels" (since calibration), "recalibrate: gains have changed by about 9 %" or "2 faults".
+  std::string message;
   /// Each fault by its place_name() with what describe() says of it, then the names of the taxels that are dead since
-  /// calibration.
+  /// calibration and what is known of "gains".
   std::vector<std::pair<std::string, std::string>> details;
 };
 
 /// `faults`: those that stand.
-[[nodiscard]] Condition condition_of(const pipeline::Model& model, std::span<const compensation::LineFault> faults);
+[[nodiscard]] Condition condition_of(const pipeline::Model& model, std::span<const compensation::LineFault> faults,
+                                     const AgeingEvidence& ageing = {});
 
 }  // namespace dermis::health

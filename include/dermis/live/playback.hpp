@@ -38,6 +38,9 @@ class Playback {
   PlaybackStatus control(const PlaybackCommand& command);
   [[nodiscard]] PlaybackStatus status() const;
 
+  /// Every source gives its last frame once more, for somebody who has not seen it.
+  void show_again();
+
   /// All sources end, now and for ever.
   void stop();
 

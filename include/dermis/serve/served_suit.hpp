@@ -53,6 +53,9 @@ struct ServedSuit {
 /// One flat array, named as its model says. Fails where the model's array is not valid.
 [[nodiscard]] Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, pipeline::Model model);
 
+/// The same suit, whose frames come from a recording of it. Fails where the recording cannot be read or does not fit.
+[[nodiscard]] Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& recording);
+
 /// What is to be opened: one source with its model, or a suit.
 struct SuitPlace {
   std::string from{};     ///< URI or recording; of a suit: a recording of it, or empty for its own sources.

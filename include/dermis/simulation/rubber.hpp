@@ -40,6 +40,9 @@ struct RubberOptions {
   double creep = 0.0;       ///< Share of the force that acts late, 0 ... 0.5. Assumed 0.05-0.10.
   /// The memory of real rubber in the place of `hysteresis` and `creep`, which must then be 0.
   std::optional<RubberMemoryOptions> memory;
+  /// An aged sheet feels a load so many times as strongly as when it was new, 0.1 ... 10.
+  double gain = 1.0;
+  double gain_spread = 0.0;  ///< Sd of the logarithm of this gain over the taxels, 0 ... 1.
   double pink_noise = 1e-9;  ///< K of the PSD K/f of the relative conductance noise, 0 ... 1e-4. Assumed 1e-9-1e-8.
   /// Share of a taxel's load that its 4 neighbours carry, a quarter each, 0 ... 0.5. A quarter that falls off the edge
   /// of the array is carried by the frame around it and lost.
@@ -62,7 +65,8 @@ struct RubberOptions {
 
 /// The state of all taxels of one array. With T in C, F in N and per-taxel a, b, alpha:
 ///   G = (1 + n) [1/unloaded_ohm + 1/(contact_ohm + a F_eff^-b)] exp(-alpha (T - 20) - curvature (T - 20)^2)   [S]
-///   contact_ohm + a 10^-b = resistance_at_10n_ohm exp(resistance_spread N(0,1))
+///   contact_ohm + a0 10^-b = resistance_at_10n_ohm exp(resistance_spread N(0,1))
+///   a = a0 g^-b,  g = gain exp(gain_spread N(0,1))
 ///   F_eff = [F (1 - creep) + creep mean(s_1, s_2, s_3)] (1 - hysteresis/2 m)
 /// s: Kelvin-Voigt elements of 0.1, 3 and 100 s that follow F. m: a stop (elastic-plastic) operator on ln(1 + F/1 N)
 /// with reach 0.5, from 0 on a new piece to +1 after loading (reads low) and -1 after unloading (reads high). n: 1/f
@@ -104,6 +108,7 @@ class ConductiveRubber {
 
   ConductiveRubber(const RubberOptions& options, std::size_t rows, std::size_t cols, std::uint64_t noise_seed);
   [[nodiscard]] Status draw_taxels();
+  void age();
   void share_load(std::span<const double> force_n);
   void follow_loop();
   void creep_towards_load(double seconds);

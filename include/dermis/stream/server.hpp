@@ -40,6 +40,8 @@ struct ServerOptions {
   std::size_t client_queue_bytes = 2U << 20U;
   std::function<void(const std::string&)> notice{};  ///< One line for the log; called on the server's thread.
 
+  /// Only this machine can connect.
+  [[nodiscard]] bool is_local() const;
   /// Names the first field that is out of its range, as "host: ...".
   [[nodiscard]] Status validate() const;
 };
@@ -59,8 +61,9 @@ struct Parameter {
 struct Handlers {
   /// All parameters as they are now.
   std::function<std::vector<Parameter>()> parameters{};
-  /// Sets one; the line of an error goes to the client that asked and to the log.
-  std::function<Status(const Parameter&)> set_parameter{};
+  /// Sets one for the client at an address, such as "127.0.0.1:53412"; the line of an error goes to the client and to
+  /// the log.
+  std::function<Status(const Parameter&, const std::string& client)> set_parameter{};
 };
 
 /// A service that clients call with JSON and that answers with JSON.
@@ -111,7 +114,14 @@ class Server {
   /// What "/name.json" is from now on. Unlike the assets it is given to those with the token only.
   void set_document(std::string path, std::string content_type, std::string content);
 
+  /// "/recordings/a.mcap" is that file from now on, to be saved by a browser, with the token only. It is read when it
+  /// is asked for; links are not followed.
+  void set_file(std::string path, std::string file);
+
   [[nodiscard]] bool has_subscribers(ChannelId channel) const noexcept;
+
+  /// How often a client has subscribed to a channel so far.
+  [[nodiscard]] std::uint64_t subscriptions() const noexcept;
 
   /// Queues a message for all subscribers of the channel and returns at once; copies the bytes, once for all clients.
   void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message);

@@ -26,6 +26,8 @@ interface Topic {
   readonly subscriptionId: number;
   readonly handlers: Set<MessageHandler>;
   channelId: number | undefined;
+  /** The newest message, while somebody follows the topic. */
+  latest: DataView | undefined;
 }
 
 const LIVE_BEFORE_BACKOFF_RESETS_MS = 2000;
@@ -46,6 +48,8 @@ export class Stream {
   messages = 0;
   bytes = 0;
   reconnects = -1;
+  /** Log time of the newest message [s]; undefined: none has come yet. */
+  latestTimeS: number | undefined;
 
   readonly #base: URL;
   readonly #onSuit: (suit: SuitDescription) => void;
@@ -92,6 +96,11 @@ export class Stream {
     return () => {
       if (topic.handlers.delete(handler) && topic.handlers.size === 0) this.#end(topic);
     };
+  }
+
+  /** The newest message of a topic that somebody follows. */
+  latest(name: string): DataView | undefined {
+    return this.#topics.get(name)?.latest;
   }
 
   /** Answers what the service answers; fails with the server's message. */
@@ -217,6 +226,8 @@ export class Stream {
         if (topic === undefined) return;
         const payload = new DataView(data, protocol.MESSAGE_DATA_BYTES);
         const logTimeS = protocol.readNanos(message, 5);
+        topic.latest = payload;
+        this.latestTimeS = logTimeS;
         for (const handler of topic.handlers) handler(payload, logTimeS);
         return;
       }
@@ -278,7 +289,7 @@ export class Stream {
     let topic = this.#topics.get(name);
     if (topic === undefined) {
       const subscriptionId = this.#subscriptions.length;
-      topic = { name, subscriptionId, handlers: new Set(), channelId: this.#channels.get(name) };
+      topic = { name, subscriptionId, handlers: new Set(), channelId: this.#channels.get(name), latest: undefined };
       this.#topics.set(name, topic);
       this.#subscriptions.push(topic);
     }
@@ -306,7 +317,9 @@ export class Stream {
     if (channelId !== undefined) this.#send({ op: "subscribe", subscriptions: [{ id: subscriptionId, channelId }] });
   }
 
-  #end({ subscriptionId, channelId }: Topic): void {
+  #end(topic: Topic): void {
+    const { subscriptionId, channelId } = topic;
+    topic.latest = undefined;
     if (channelId !== undefined) this.#send({ op: "unsubscribe", subscriptionIds: [subscriptionId] });
   }
 

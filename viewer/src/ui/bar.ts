@@ -8,6 +8,7 @@ export interface BarActions {
   toggleRecording(): void;
   togglePause(): void;
   tare(): void;
+  showTake(): void;
   showThresholds(): void;
   showHelp(): void;
 }
@@ -35,6 +36,7 @@ export class Bar {
       makeRecord(context, actions),
       makePause(context, actions),
       makeTare(context, actions),
+      element("button", { class: "button", "data-role": "show-take", title: "Recordings, the last minute, pictures (S)", onclick: () => actions.showTake() }, "Save"),
       element("button", { class: "button", "data-role": "show-thresholds", onclick: () => actions.showThresholds() }, "Thresholds"),
       element("button", { class: "button icon", "data-role": "theme", "aria-label": "Light or dark", title: "Light or dark (D)", onclick: () => context.theme.toggle() }, "\u25d0"),
       element("button", { class: "button icon", "data-role": "show-help", "aria-label": "Keys", title: "Keys (?)", onclick: () => actions.showHelp() }, "?"),

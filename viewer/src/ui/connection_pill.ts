@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setData, setText } from "../dom";
 import type { LiveData } from "../live/live_data";
+import { PlaybackStatus } from "../stream/protocol";
 import type { Stream } from "../stream/stream";
 
 const PERIOD_MS = 200;
@@ -45,6 +46,8 @@ export class ConnectionPill {
       case "connecting":
         return this.#set("warn", "Connecting");
       case "live":
+        if (this.#stream.playback.value?.status === PlaybackStatus.paused) return this.#set("good", "Paused");
+        if (this.#stream.playback.value?.status === PlaybackStatus.ended) return this.#set("good", "At its end");
         if (nowMs - this.#newsMs > QUIET_MS) return this.#set("warn", "Live, no frames");
         return this.#set("good", "Live");
       case "retrying": {

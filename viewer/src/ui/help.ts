@@ -8,6 +8,7 @@ const KEYS: readonly (readonly [string, string])[] = [
   ["Space", "stop the picture, go on"],
   ["T", "tare: what the array shows now is zero"],
   ["R", "begin or end a recording"],
+  ["S", "recordings, the last minute, pictures"],
   ["I", "interpolate between taxels"],
   ["C", "show contacts"],
   ["M", "time: mark this moment"],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element } from "../dom";
+import { element, setText } from "../dom";
 import type { Stream } from "../stream/stream";
 
 interface Field {
@@ -50,6 +50,11 @@ export function makeThresholds(stream: Stream): HTMLDialogElement {
     track.disabled = typeof parameters.get(TRACK) !== "boolean";
     track.checked = parameters.get(TRACK) === true;
   });
+  const zeros = element("p", { class: "dim lines", "data-role": "tare-log" });
+  stream.parameters.follow((parameters) => {
+    const log = parameters.get("/tare/log");
+    setText(zeros, typeof log === "string" && log !== "" ? `Zeros that were taken:\n${log}` : "Nobody has tared.");
+  });
   const rows = FIELDS.map(({ label, unit }, index) => element("label", { class: "parameter" }, element("span", {}, label), inputs[index]!, element("span", { class: "dim" }, unit)));
   return element(
     "dialog",
@@ -57,6 +62,7 @@ export function makeThresholds(stream: Stream): HTMLDialogElement {
     element("h2", {}, "Thresholds"),
     ...rows,
     element("label", { class: "check" }, track, "Follow the zero of idle taxels as it drifts"),
+    zeros,
     element("form", { method: "dialog" }, element("button", { class: "button" }, "Close")),
   );
 }

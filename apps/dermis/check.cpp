@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+#include "dermis/health/weight_check.hpp"
+#include "dermis/operation/operation.hpp"
+#include "source_options.hpp"
+#include "stop_flag.hpp"
+
+namespace dermis::app {
+namespace {
+
+using health::WeightFinding;
+using operation::Operation;
+
+constexpr int kExitAged = 3;
+
+struct CheckOptions {
+  std::string model;
+  std::string in;
+  std::optional<double> weight_n;
+};
+
+/// The zero follows idle taxels, as it does in use.
+Result<WeightFinding> weigh(Operation& operation, double weight_n) {
+  operation.pipeline.drift().set_options({.track = true});
+  health::WeightCheck check(operation.model, weight_n);
+  RawFrame raw;
+  ForceFrame force;
+  while (!stop_flag().load()) {
+    const Result<bool> more = operation.frames->next(raw);
+    if (!more) return more.error();
+    if (!*more) break;
+    operation.pipeline.process(raw, force);
+    check.add(force);
+  }
+  return check.finding();
+}
+
+Result<int> check(const CheckOptions& options) {
+  if (!(*options.weight_n > 0.0 && *options.weight_n <= 1e6))
+    return bad_input("--weight: must be above 0 and at most 1e6 N");
+  const Result<std::unique_ptr<Operation>> operation =
+      operation::open_operation(options.model, options.in, source_options());
+  if (!operation) return operation.error();
+  const Result<WeightFinding> finding = weigh(**operation, *options.weight_n);
+  if (!finding) return finding.error();
+  if (finding->presses.empty()) return failed(options.in + ": " + health::describe(*finding));
+  fmt::print("{}", health::describe(*finding));
+  return finding->has_aged() ? kExitAged : 0;
+}
+
+}  // namespace
+
+void add_check(Command& command) {
+  auto options = std::make_shared<CheckOptions>();
+  command.option("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
+      .required();
+  command.option("--in", options->in, "Raw counts while the object is put on: frames.csv, a recording or a device")
+      .required();
+  command.option("--weight", options->weight_n, "What the object presses with [N]; 100 g are 0.981 N").required();
+  command.action_with_exit_status([options] { return check(*options); });
+}
+
+}  // namespace dermis::app

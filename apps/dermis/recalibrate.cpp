@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include <fmt/core.h>
+
+#include <memory>
+#include <string>
+
+#include "commands.hpp"
+#include "dermis/calibration/recalibration.hpp"
+#include "dermis/files/loads_csv.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "interruption.hpp"
+#include "source_options.hpp"
+#include "writable.hpp"
+
+namespace dermis::app {
+namespace {
+
+using calibration::Recalibration;
+
+struct RecalibrateOptions {
+  std::string model;
+  std::string frames;
+  std::string loads;
+  std::string out;
+};
+
+/// The old model stays beside the new one that takes its name.
+Status write(const RecalibrateOptions& options, const pipeline::Model& old, const pipeline::Model& fresh) {
+  if (!options.out.empty()) return pipeline::write_model(options.out, fresh);
+  if (Status kept = pipeline::write_model(options.model + ".before", old); !kept) return kept;
+  return pipeline::write_model(options.model, fresh);
+}
+
+Status recalibrate(const RecalibrateOptions& options) {
+  if (options.model.ends_with(".toml")) {
+    return bad_input(options.model + ": describes an array, and is no model; 'dermis calibrate' makes one");
+  }
+  if (Status writable = check_writable(options.out.empty() ? options.model : options.out); !writable) return writable;
+  const Result<pipeline::Model> model = pipeline::read_model(options.model);
+  if (!model) return model.error();
+  const Result<std::vector<RawFrame>> frames = sources::read_frames(options.frames, source_options(&model->array));
+  if (!frames) return frames.error();
+  const Result<std::vector<Load>> loads = files::read_loads(options.loads, model->array, frames->size());
+  if (!loads) return loads.error();
+  const Result<Recalibration> recalibration = calibration::recalibrate(*model, *frames, *loads);
+  if (!recalibration) return bad_input(options.loads + ": " + recalibration.error().message);
+  if (Status written = write(options, *model, recalibration->model); !written) return written;
+  fmt::print("{}\n", calibration::describe(*recalibration));
+  if (options.out.empty()) fmt::print("the model as it was: {}.before\n", options.model);
+  return Done{};
+}
+
+}  // namespace
+
+void add_recalibrate(Command& command) {
+  auto options = std::make_shared<RecalibrateOptions>();
+  command.option("--model", options->model, "Model file of 'dermis calibrate'").required();
+  command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
+      .required();
+  command.option("--loads", options->loads, "loads.csv: known weights, of which one is enough").required();
+  command.option("--out", options->out,
+                 "Model file to write; without it, MODEL, and the old one stays as MODEL.before");
+  command.action([options] {
+    end_when_interrupted();
+    return recalibrate(*options);
+  });
+}
+
+}  // namespace dermis::app

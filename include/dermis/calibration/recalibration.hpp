@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::calibration {
+
+/// A press of known force, against what a model read of it.
+struct KnownPress {
+  std::vector<std::size_t> taxels;  ///< That carry it.
+  std::vector<double> shares;       ///< Of the force that was read, of each of them; together 1.
+  double log_ratio = 0.0;           ///< ln(known / read), mean over its labelled frames.
+  double sigma = 0.0;               ///< Standard deviation of it as the model says, > 0.
+};
+
+/// How gains have changed: logarithms of factors on the forces.
+struct GainChange {
+  double sheet = 0.0;          ///< Of all taxels,
+  double sheet_sigma = 0.0;    ///< and its standard deviation.
+  double spread = 0.0;         ///< Standard deviation over the taxels besides; 0: not told apart.
+  std::vector<double> taxels;  ///< Of each taxel, that of the sheet included [taxels].
+};
+
+/// What presses say of the gains. Each taxel has changed by x + y: x is common to the sheet, 0 +- 0.1 before any press;
+/// y is its own, 0 +- spread. The most likely values are those of a linear model (Gauss and Markov; kriging): little
+/// evidence moves a gain little, and a taxel that nothing pressed gets x. The spread is the likeliest one, and 0 with
+/// fewer than 5 presses or pressed taxels. Deterministic, thread-safe.
+[[nodiscard]] GainChange change_of(std::span<const KnownPress> presses, std::size_t taxels);
+
+/// A model with gains of today.
+struct Recalibration {
+  pipeline::Model model;  ///< With other gains; its provenance says why.
+  GainChange change;
+  std::size_t presses = 0;
+  std::size_t taxels = 0;    ///< That were pressed.
+  std::size_t left_out = 0;  ///< Presses without a force, or beyond the calibrated loads.
+};
+
+/// Presses of known force -> new gains of `model`, by which its look-up tables and its heaviest loads are scaled, too.
+/// The parameters of its networks stay as they are, and so do its baselines. Labelled frames in a row with loads
+/// on one region are one press, until its reading falls below a third of what it was. Errors: a load beyond the frames,
+/// or a pressure without an area of the taxels; no load above zero has a force; more than kMostPresses.
+[[nodiscard]] Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const RawFrame> frames,
+                                                std::span<const Load> loads);
+
+/// More are worth a calibration.
+inline constexpr std::size_t kMostPresses = 1000;
+
+/// "the sheet reads 9.1 % too much (+- 2.0 %): from one press"; a sentence more of the spread, if that is known.
+[[nodiscard]] std::string describe(const Recalibration& recalibration);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/core/contacts.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/fusion/contact.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::health {
+
+/// What an array reads while an object lies still on it, all contacts together.
+struct WeighedPress {
+  double newtons = 0.0;        ///< > 0
+  double sigma_newtons = 0.0;  ///< As the model says, > 0.
+};
+
+/// What an object of known weight says of a calibration.
+struct WeightFinding {
+  double weight_n = 0.0;
+  std::vector<WeighedPress> presses;  ///< Of the object.
+  std::size_t others = 0;    ///< Presses that read less than half or more than twice the weight: of something else.
+  std::size_t unsteady = 0;  ///< Presses that were too short or not steady.
+  double ratio = 1.0;        ///< What the array reads over what the object weighs; geometric mean of the presses.
+  double sigma = 0.0;        ///< Standard deviation of its logarithm, that from touch to touch included.
+
+  /// A larger change of the gain counts: three standard deviations, and 3 % at least.
+  [[nodiscard]] double limit() const noexcept;
+  [[nodiscard]] bool has_aged() const noexcept;
+};
+
+/// Lines of text: what was weighed, then "well: reads 1.2 % low, within 4 %" or "recalibrate: gains have changed by
+/// about 9 % (+- 3 %): it reads too much". Without a press one line without an end: what is missing.
+[[nodiscard]] std::string describe(const WeightFinding& finding);
+
+/// Weighs a known object that is put on an array, once or several times. Of each press the steadiest second counts,
+/// from one second after its onset on, that reads between half and twice the weight. Not thread-safe.
+class WeightCheck {
+ public:
+  /// `weight_n` > 0.
+  WeightCheck(const pipeline::Model& model, double weight_n);
+
+  /// The next frame of the array. Allocates nothing while a press lasts.
+  void add(const ForceFrame& force);
+
+  /// Of all frames so far; a press that still lasts counts.
+  [[nodiscard]] WeightFinding finding() const;
+
+ private:
+  /// A second of a press, or more where frames are rare.
+  struct Piece {
+    Nanos begin{};
+    std::size_t frames = 0;
+    double sum_n = 0.0;
+    double sum_square = 0.0;
+    double sum_sigma_n = 0.0;
+  };
+  struct Press {
+    Nanos onset{};
+    std::optional<Piece> piece;
+    std::optional<WeighedPress> steadiest;  ///< Of the pieces that may be the weight.
+    double deviation = 0.0;                 ///< Of `steadiest`, relative.
+    bool is_other = false;  ///< Something lay still that reads less than half or more than twice the weight.
+  };
+
+  void hold(Nanos time);
+  void close_piece(Press& press) const;
+  static void count(const Press& press, WeightFinding& finding);
+
+  fusion::ContactTracker tracker_;
+  ContactReport report_;
+  std::optional<Press> press_;  ///< That lasts.
+  WeightFinding finding_;       ///< Of the presses that are over.
+};
+
+}  // namespace dermis::health

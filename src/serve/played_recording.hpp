@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "dermis/core/result.hpp"
+#include "dermis/serve/session.hpp"
+
+namespace dermis::serve {
+
+/// A recording that is played on a port of its own, beside the session that goes on: its clients, its limits and who
+/// listens to them notice nothing. One at a time. Not thread-safe.
+class PlayedRecording {
+ public:
+  /// The suit that takes its frames from a recording.
+  using PlayedSuit = std::function<Result<ServedSuit>(const std::string& recording)>;
+
+  /// `options`: of the session that goes on.
+  PlayedRecording(SessionOptions options, PlayedSuit suit);
+  PlayedRecording(const PlayedRecording&) = delete;
+  PlayedRecording& operator=(const PlayedRecording&) = delete;
+  ~PlayedRecording();
+
+  /// Ends the one before. Returns the port of the new one. Fails where the recording does not fit the suit.
+  [[nodiscard]] Result<std::uint16_t> play(const std::string& recording);
+
+ private:
+  void end();
+
+  SessionOptions options_;
+  const PlayedSuit suit_;
+  std::unique_ptr<Session> session_;  // null: none is played
+  std::atomic<bool> stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace dermis::serve

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "dermis/core/frame_source.hpp"
+#include "dermis/sources/open_source.hpp"
+
+namespace dermis::serve {
+
+/// Reads a source, from its making to its end, for where the array is touched. Thread-safe.
+class TouchWatch {
+ public:
+  struct Seen {
+    bool is_ready = false;               ///< The readings at rest are known.
+    std::optional<std::size_t> taxel{};  ///< That is touched, row-major.
+    std::string problem{};               ///< Why the source gives no frames (any more).
+  };
+
+  /// `shape`: of the frames. Of the options, `array` and `stop` are not used.
+  TouchWatch(sources::SourceName name, FrameShape shape, sources::SourceOptions options);
+  TouchWatch(const TouchWatch&) = delete;
+  TouchWatch& operator=(const TouchWatch&) = delete;
+  ~TouchWatch();
+
+  [[nodiscard]] FrameShape shape() const noexcept { return shape_; }
+  [[nodiscard]] Seen seen() const;
+
+ private:
+  [[nodiscard]] Status watch(sources::SourceOptions options);
+  void keep(Seen seen);
+
+  const sources::SourceName name_;
+  const FrameShape shape_;
+  mutable std::mutex mutex_;
+  Seen seen_;
+  std::atomic<bool> stop_ = false;
+  std::thread thread_;
+};
+
+}  // namespace dermis::serve

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/calibration/recalibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/core/random.hpp"
+#include "dermis/pipeline/pipeline.hpp"
+#include "dermis/simulation/readout_circuit.hpp"
+#include "support/hand_made_model.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+constexpr std::size_t kLines = 4;
+constexpr std::size_t kTaxels = kLines * kLines;
+
+KnownPress press_of(std::size_t taxel, double log_ratio, double sigma) {
+  return {{taxel}, {1.0}, log_ratio, sigma};
+}
+
+TEST(GainChange, one_weight_moves_the_whole_sheet_as_far_as_it_is_sure) {
+  const std::vector<KnownPress> sure{press_of(3, -0.095, 0.005)};
+  const GainChange change = change_of(sure, kTaxels);
+  EXPECT_NEAR(change.sheet, -0.095, 0.001);
+  EXPECT_NEAR(change.sheet_sigma, 0.005, 1e-4);
+  EXPECT_EQ(change.spread, 0.0);
+  for (const double taxel : change.taxels) EXPECT_EQ(taxel, change.sheet);
+  const std::vector<KnownPress> unsure{press_of(3, -0.095, 0.1)};
+  EXPECT_NEAR(change_of(unsure, kTaxels).sheet, -0.095 / 2.0, 1e-9);  // as likely as what was known before
+}
+
+TEST(GainChange, some_weights_tell_taxels_apart_and_leave_the_others_with_the_sheet) {
+  std::vector<KnownPress> presses;
+  for (std::size_t taxel = 0; taxel < 8; ++taxel) presses.push_back(press_of(taxel, taxel % 2 == 0 ? 0.2 : 0.0, 0.01));
+  const GainChange change = change_of(presses, kTaxels);
+  EXPECT_NEAR(change.sheet, 0.1, 0.02);
+  EXPECT_NEAR(change.spread, 0.1, 0.03);
+  for (std::size_t taxel = 0; taxel < 8; ++taxel) EXPECT_NEAR(change.taxels[taxel], taxel % 2 == 0 ? 0.2 : 0.0, 0.01);
+  for (std::size_t taxel = 8; taxel < kTaxels; ++taxel) EXPECT_EQ(change.taxels[taxel], change.sheet);
+}
+
+TEST(GainChange, differences_within_the_scatter_of_presses_leave_the_taxels_alike) {
+  std::vector<KnownPress> presses;
+  for (std::size_t taxel = 0; taxel < 8; ++taxel) {
+    presses.push_back(press_of(taxel, taxel % 2 == 0 ? 0.13 : 0.07, 0.06));
+  }
+  const GainChange change = change_of(presses, kTaxels);
+  EXPECT_EQ(change.spread, 0.0);
+  for (const double taxel : change.taxels) EXPECT_EQ(taxel, change.sheet);
+}
+
+struct Errors {
+  double before = 0.0;
+  double after = 0.0;
+};
+
+/// Mean square errors of the gains of many sheets, with presses on so many taxels.
+Errors errors_of(std::size_t presses, double common, double spread, double sigma, Random& random) {
+  constexpr int kSheets = 400;
+  Errors errors;
+  for (int sheet = 0; sheet < kSheets; ++sheet) {
+    const double change = common * random.normal();
+    std::vector<double> gains(kTaxels);
+    for (double& gain : gains) gain = change + spread * random.normal();
+    std::vector<KnownPress> known;
+    for (std::size_t k = 0; k < presses; ++k) known.push_back(press_of(k, gains[k] + sigma * random.normal(), sigma));
+    const GainChange found = change_of(known, kTaxels);
+    for (std::size_t k = 0; k < kTaxels; ++k) {
+      errors.before += gains[k] * gains[k];
+      errors.after += std::pow(gains[k] - found.taxels[k], 2);
+    }
+  }
+  return errors;
+}
+
+TEST(GainChange, few_weights_make_aged_sheets_better_and_not_worse) {
+  constexpr std::uint64_t kSeed = 5;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  Random random(kSeed);
+  for (const double spread : {0.0, 0.05, 0.1}) {
+    for (const double sigma : {0.01, 0.06}) {
+      double last = std::numeric_limits<double>::infinity();
+      for (const std::size_t presses : {1, 3, 5, 10, 16}) {
+        const Errors errors = errors_of(presses, 0.1, spread, sigma, random);
+        EXPECT_LT(errors.after, errors.before) << spread << " " << sigma << " " << presses;
+        EXPECT_LT(errors.after / errors.before, 1.1 * last) << spread << " " << sigma << " " << presses;
+        last = errors.after / errors.before;
+      }
+    }
+  }
+}
+
+/// A sheet of 4 x 4 taxels that reads its gains times the forces, at 10 frames a second.
+struct Recording {
+  pipeline::Model model = support::hand_made_model(kLines, kLines);
+  std::vector<double> gains = std::vector<double>(kTaxels, 1.0);
+  std::vector<RawFrame> frames;
+  std::vector<Load> loads;
+
+  Recording() { hold({}, 0.0, 20); }
+
+  /// `newtons` on each of the taxels for some frames, which have labels where there is one.
+  void hold(const std::vector<std::size_t>& taxels, double newtons, std::size_t count, std::optional<Load> label = {}) {
+    std::vector<double> siemens(kTaxels);
+    std::vector<double> force(kTaxels);
+    for (const std::size_t taxel : taxels) force[taxel] = newtons;
+    for (std::size_t k = 0; k < kTaxels; ++k) {
+      siemens[k] = support::siemens_under(model, k, gains[k] * force[k], 25.0);
+    }
+    RawFrame raw;
+    raw.temperature_celsius = 25.0;
+    raw.supply_v = 5.0;
+    raw.counts.resize(kTaxels);
+    std::vector<double> ratio(kTaxels);
+    simulation::ReadoutCircuit::create(model.array)->ratios(siemens, ratio);
+    for (std::size_t k = 0; k < kTaxels; ++k) {
+      raw.counts[k] = static_cast<std::uint32_t>(std::lround(ratio[k] * model.array.readout.full_scale_counts()));
+    }
+    for (; count > 0; --count) {
+      raw.time = frames.size() * std::chrono::milliseconds(100);
+      if (label) {
+        label->frame = frames.size();
+        loads.push_back(*label);
+      }
+      frames.push_back(raw);
+    }
+  }
+
+  void weigh(std::size_t taxel, double newtons) {
+    const TaxelRegion where{taxel / kLines, taxel % kLines, taxel / kLines, taxel % kLines};
+    hold({taxel}, newtons, 10, Load{0, LoadKind::force, where, newtons});
+    hold({}, 0.0, 5);
+  }
+
+  [[nodiscard]] std::vector<float> read(const pipeline::Model& by, std::size_t frame) const {
+    pipeline::Pipeline pipeline = pipeline::Pipeline::create(by).value();
+    ForceFrame force;
+    pipeline.process(frames[frame], force);
+    return force.newtons;
+  }
+};
+
+TEST(Recalibration, a_known_weight_on_one_taxel_mends_all_taxels) {
+  Recording recording;
+  recording.gains.assign(kTaxels, 1.1);
+  recording.weigh(5, 5.0);
+  recording.hold({10}, 8.0, 1);
+  const std::size_t last = recording.frames.size() - 1;
+  EXPECT_NEAR(recording.read(recording.model, last)[10], 8.8, 0.02);
+  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->presses, 1U);
+  EXPECT_NEAR(recording.read(made->model, last)[10], 8.0, 0.03);
+  EXPECT_NE(describe(*made).find("the sheet read 10.0 % too much"), std::string::npos) << describe(*made);
+  EXPECT_EQ(made->model.networks.parameters, recording.model.networks.parameters);
+}
+
+TEST(Recalibration, tables_and_heaviest_loads_are_scaled_with_their_taxels) {
+  Recording recording;
+  fusion::ForceNetworks& networks = recording.model.networks;
+  networks.heaviest_newtons.assign(kTaxels, 20.0F);
+  networks.tables = {{10}, 2, {1e-4F, 5e-3F}, {1.0F, 40.0F}, {0.0F}};
+  recording.gains.assign(kTaxels, 1.1);
+  recording.weigh(5, 5.0);
+  recording.hold({10}, 8.0, 1);
+  const std::size_t last = recording.frames.size() - 1;
+  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_NEAR(made->model.networks.heaviest_newtons[0], 20.0 / 1.1, 0.05);
+  EXPECT_NEAR(recording.read(made->model, last)[10] / recording.read(recording.model, last)[10], 1.0 / 1.1, 0.003);
+  EXPECT_TRUE(made->model.networks.is_consistent());
+}
+
+TEST(Recalibration, comes_on_top_of_the_one_before) {
+  Recording recording;
+  recording.gains.assign(kTaxels, 1.1);
+  recording.weigh(5, 5.0);
+  const pipeline::Model once = recalibrate(recording.model, recording.frames, recording.loads)->model;
+  const Result<Recalibration> twice = recalibrate(once, recording.frames, recording.loads);
+  ASSERT_TRUE(twice);
+  EXPECT_NEAR(twice->change.sheet, 0.0, 0.001);
+  EXPECT_NEAR(twice->model.networks.gain[0], 1.0 / 1.1, 0.002);
+}
+
+TEST(Recalibration, weights_on_several_taxels_mend_each) {
+  Recording recording;
+  for (std::size_t k = 0; k < kTaxels; ++k) recording.gains[k] = k % 2 == 0 ? 1.1 : 0.9;
+  for (std::size_t k = 0; k < 8; ++k) recording.weigh(k, 5.0);
+  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(made->taxels, 8U);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(made->model.networks.gain[k] * recording.gains[k], 1.0, 0.01);
+}
+
+TEST(Recalibration, a_press_with_several_labels_is_one_and_two_presses_in_a_place_are_two) {
+  Recording recording;
+  recording.weigh(5, 5.0);
+  recording.weigh(5, 5.0);
+  EXPECT_EQ(recalibrate(recording.model, recording.frames, recording.loads)->presses, 2U);
+}
+
+TEST(Recalibration, a_weight_on_several_taxels_is_held_against_their_sum) {
+  Recording recording;
+  recording.gains.assign(kTaxels, 0.9);
+  recording.hold({0, 1, 4, 5}, 2.0, 10, Load{0, LoadKind::force, {0, 0, 1, 1}, 8.0});
+  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_NEAR(made->change.sheet, -std::log(0.9), 0.002);
+}
+
+TEST(Recalibration, needs_a_load_that_has_a_force) {
+  Recording recording;
+  EXPECT_FALSE(recalibrate(recording.model, recording.frames, recording.loads));
+  recording.hold({}, 0.0, 5, Load{0, LoadKind::force, {0, 0, 0, 0}, 5.0});
+  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  ASSERT_FALSE(made);
+  EXPECT_NE(made.error().message.find("a known weight is needed"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dermis::calibration

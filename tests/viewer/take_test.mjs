@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+// Usage: node take_test.mjs path/to/dermis
+// What a user takes along from the page, and what pages tell that come later or look on.
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { after, before, it } from "node:test";
+import { assertUnhurt, becomes, Bench, openBrowser, openPage, readCsv, WAIT_MS } from "./harness.mjs";
+
+const LIVE = ["--port", "0", "--from", "sim:contacts?rate=100&frames=300"];
+
+let bench;
+let browser;
+
+before(async () => {
+  bench = new Bench(process.argv[2]);
+  browser = await openBrowser();
+});
+
+after(async () => {
+  await browser?.close();
+  bench?.close();
+});
+
+const part = (page, role) => page.locator(`[data-role=${role}]`);
+const words = (page, role, text) => page.locator(`[data-role=${role}]`, { hasText: text }).waitFor();
+
+/** A page of `dermis serve` with these arguments, while `look` looks at it. */
+async function served(command, look) {
+  const server = await bench.serve(...command, ...bench.model);
+  try {
+    const page = await openPage(browser, server.url);
+    await becomes(page, "live");
+    await look(page, server);
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+  }
+}
+
+/** The bytes that the browser saves when a button is pressed, and their name. */
+async function saved(page, role) {
+  const [download] = await Promise.all([page.waitForEvent("download"), part(page, role).click()]);
+  return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
+}
+
+it("records under a name, shows the size as it grows, plays the recording and saves it", async () => {
+  await served(LIVE, async (page) => {
+    await page.keyboard.press("s");
+    await page.locator("#recording-name").fill("walk");
+    await part(page, "begin-recording").click();
+    const row = page.locator("[data-recording='walk.mcap']");
+    await row.getByText("is being recorded").waitFor();
+    const size = row.locator("[data-field=size]");
+    const first = await size.textContent();
+    await page.waitForFunction((before) => document.querySelector("[data-recording='walk.mcap'] [data-field=size]").textContent !== before, first, { timeout: WAIT_MS });
+    await part(page, "begin-recording").click();
+    await row.getByText("Play it").waitFor();
+    await part(page, "begin-recording").click();
+    await words(page, "take-words", "walk.mcap is there already");
+
+    const [download] = await Promise.all([page.waitForEvent("download"), row.locator("[data-act=download]").click()]);
+    assert.equal(download.suggestedFilename(), "walk.mcap");
+    assert.deepEqual(readFileSync(await download.path()), readFileSync(bench.path("walk.mcap")));
+
+    const [player] = await Promise.all([page.context().waitForEvent("page"), row.getByText("Play it").click()]);
+    player.setDefaultTimeout(WAIT_MS);
+    await becomes(player, "live");
+    await part(player, "transport").waitFor();
+    await words(player, "highest-taxel", /N\s+r\d+c\d+/);
+    await player.close();
+    assert.ok(await part(page, "transport").isHidden(), "the page itself stays live");
+  });
+});
+
+it("saves the last minute of all arrays as a recording and of one as a table", async () => {
+  await served(LIVE, async (page) => {
+    await words(page, "highest-taxel", /N\s+r\d+c\d+/);
+    await part(page, "show-take").click();
+    await part(page, "minute-length").selectOption("60");
+    const recording = await saved(page, "save-mcap");
+    assert.match(recording.name, /^cut-\d{8}-\d{6}-\d{3}\.mcap$/);
+    assert.deepEqual(recording.bytes, readFileSync(bench.path(recording.name)));
+    execFileSync(bench.binary, ["info", bench.path(recording.name)], { stdio: ["ignore", "ignore", "pipe"] });
+    const table = await saved(page, "save-csv");
+    assert.match(table.name, /^small-.*\.csv$/);
+    const rows = readCsv(bench.path(table.name));
+    assert.ok(rows.length > 1);
+    assert.deepEqual(Object.keys(rows[0]).filter((column) => column.startsWith("r")).length, 20);
+    await words(page, "take-words", `${rows.length} frames`);
+  });
+});
+
+it("saves a picture and a film that a browser can read", async () => {
+  await served(LIVE, async (page) => {
+    await part(page, "show-take").click();
+    for (const [role, type, magic] of [
+      ["save-png", "image/png", "\x89PNG"],
+      ["save-gif", "image/gif", "GIF89a"],
+    ]) {
+      const { name, bytes } = await saved(page, role);
+      assert.match(name, /^small-\d{8}-\d{6}\.(png|gif)$/);
+      assert.equal(bytes.toString("latin1", 0, magic.length), magic);
+      const [width, height] = await page.evaluate(async ([data, mime]) => {
+        const image = new Image();
+        image.src = `data:${mime};base64,${data}`;
+        await image.decode();
+        return [image.naturalWidth, image.naturalHeight];
+      }, [bytes.toString("base64"), type]);
+      assert.ok(width > 200 && height > 200, `${width} x ${height}`);
+    }
+  });
+});
+
+it("opens a playback that is paused on its frame, and says so", async () => {
+  await served(["--port", "0", "--from", bench.path("recording.mcap")], async (page, server) => {
+    await words(page, "highest-taxel", /N\s+r\d+c\d+/);
+    await part(page, "play").click();
+    await words(page, "connection", "Paused");
+    const highest = await part(page, "highest-taxel").textContent();
+    for (let time = 0; time < 2; ++time) {
+      const other = await openPage(browser, server.url);
+      await words(other, "connection", "Paused");
+      await words(other, "highest-taxel", highest);
+      assertUnhurt(other);
+      await other.close();
+    }
+    await part(page, "show-take").click();
+    assert.ok((await saved(page, "save-png")).bytes.length > 1000, "a picture of the frame that stands still");
+  });
+});
+
+it("tells everybody who has tared", async () => {
+  await served(LIVE, async (page, server) => {
+    const other = await openPage(browser, server.url);
+    await becomes(other, "live");
+    await page.keyboard.press("t");
+    await words(other, "notice", /small was tared by 127\.0\.0\.1:\d+/);
+    await part(other, "show-thresholds").click();
+    await words(other, "tare-log", /UTC: small was tared by 127\.0\.0\.1:\d+/);
+    assertUnhurt(other);
+    await other.close();
+  });
+});

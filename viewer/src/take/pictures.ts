@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+import { element } from "../dom";
+import { emptyGrid, readCounts, readGrid, type GridFrame } from "../messages/grids";
+import type { Stream } from "../stream/stream";
+import type { ArrayDescription } from "../suit";
+import { drawPicture, filmPalette, highest, PaletteFinder, pictureSize, roundEnd } from "./frame_picture";
+import { encodeGif } from "./gif";
+
+const FRAME_MS = 100;
+const PATIENCE_MS = 5000;
+
+/** A finished picture. */
+export interface Picture {
+  blob: Blob;
+  /** Of its last frame. */
+  stampS: number;
+}
+
+interface Source {
+  topic: string;
+  unit: string;
+  /** The end of the scale is at least this: noise alone looks like nothing. */
+  leastEnd: number;
+  read: (message: DataView, frame: GridFrame) => void;
+}
+
+function sourceOf({ name, calibrated }: ArrayDescription): Source {
+  return calibrated ? { topic: `/${name}/force`, unit: "N", leastEnd: 1, read: readGrid } : { topic: `/${name}/raw`, unit: "counts", leastEnd: 100, read: readCounts };
+}
+
+/** Frames of an array as they come, every tenth of a second. What stands still is there once. */
+async function collect(stream: Stream, { topic, read }: Source, seconds: number): Promise<GridFrame[]> {
+  const frames: GridFrame[] = [];
+  let newest: DataView | undefined;
+  const end = stream.subscribe(topic, (message) => (newest = message));
+  newest ??= stream.latest(topic);
+  const beganMs = performance.now();
+  try {
+    for (;;) {
+      if (newest !== undefined) {
+        const frame = emptyGrid();
+        read(newest, frame);
+        frames.push(frame);
+      }
+      const passedMs = performance.now() - beganMs;
+      if (frames.length > 0 && passedMs >= 1000 * seconds) return frames;
+      if (frames.length === 0 && passedMs > PATIENCE_MS) throw new Error("No frame came.");
+      await new Promise((resolve) => window.setTimeout(resolve, FRAME_MS));
+    }
+  } finally {
+    end();
+  }
+}
+
+function canvasFor(frame: GridFrame): [HTMLCanvasElement, CanvasRenderingContext2D] {
+  const [width, height] = pictureSize(frame);
+  const canvas = element("canvas", { width, height });
+  const context = canvas.getContext("2d", { willReadFrequently: true });
+  if (context === null) throw new Error("This browser draws no pictures.");
+  return [canvas, context];
+}
+
+/** The newest frame as PNG. */
+export async function takePicture(stream: Stream, array: ArrayDescription): Promise<Picture> {
+  const source = sourceOf(array);
+  const frame = (await collect(stream, source, 0)).at(-1)!;
+  const [canvas, context] = canvasFor(frame);
+  drawPicture(context, { array: array.name, unit: source.unit, end: roundEnd(Math.max(source.leastEnd, highest(frame))), frame });
+  const blob = await new Promise<Blob | null>((resolve) => canvas.toBlob(resolve, "image/png"));
+  if (blob === null) throw new Error("The picture is too large for this browser.");
+  return { blob, stampS: frame.stampS };
+}
+
+/** The frames of the next seconds as a moving picture, with one scale for all. */
+export async function takeFilm(stream: Stream, array: ArrayDescription, seconds: number): Promise<Picture> {
+  const source = sourceOf(array);
+  const frames = await collect(stream, source, seconds);
+  const [canvas, context] = canvasFor(frames[0]!);
+  const palette = filmPalette();
+  const finder = new PaletteFinder(palette);
+  const end = roundEnd(Math.max(source.leastEnd, ...frames.map(highest)));
+  const drawn = frames.map((frame) => {
+    drawPicture(context, { array: array.name, unit: source.unit, end, frame });
+    return finder.indices(context.getImageData(0, 0, canvas.width, canvas.height).data);
+  });
+  const file = encodeGif({ width: canvas.width, height: canvas.height, palette, frames: drawn, delayCs: FRAME_MS / 10 });
+  return { blob: new Blob([file], { type: "image/gif" }), stampS: frames.at(-1)!.stampS };
+}
