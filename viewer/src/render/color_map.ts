@@ -58,7 +58,7 @@ function slope(value: number): string {
   return value.toFixed(6);
 }
 
-/** GLSL: vec3 color_map(float share), and the uniform from_light. */
+/** GLSL: vec3 color_map(float share) with the uniform from_light, and float opposite(vec3 color): the tone that is seen on it. */
 export function shaderSource(): string {
   const vectors = COEFFICIENTS.map((row) => `vec3(${row.map((value) => value.toFixed(4)).join(", ")})`);
   const horner = vectors.reduceRight((inner, vector) => (inner === "" ? vector : `${vector} + x * (${inner})`), "");
@@ -69,5 +69,9 @@ vec3 color_map(float share) {
   float x = inside < ${TOE_SHARE} ? inside * ${slope(TOE_COLORS / TOE_SHARE)} : ${TOE_COLORS} + (inside - ${TOE_SHARE}) * ${slope((1 - TOE_COLORS) / (1 - TOE_SHARE))};
   if (from_light) x = 1.0 - x;
   return clamp(${horner}, 0.0, 1.0);
+}
+
+float opposite(vec3 color) {
+  return dot(color, vec3(0.3, 0.6, 0.1)) > 0.5 ? 0.0 : 1.0;
 }`;
 }

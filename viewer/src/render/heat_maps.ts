@@ -47,10 +47,6 @@ float between_taxels(vec2 place) {
   return weights > 0.0 ? sum / weights : 0.0;
 }
 
-float opposite(vec3 shade) {
-  return dot(shade, vec3(0.3, 0.6, 0.1)) > 0.5 ? 0.0 : 1.0;
-}
-
 void main() {
   vec2 pixel = gl_FragCoord.xy - area.xy;
   pixel.y = area.w - pixel.y;

@@ -11,11 +11,13 @@ import { limitedZones } from "../array/zones";
 import { BodyModel, type FetchFile } from "./body_model";
 import { ContactArrows, LONGEST_SHARE, MOST_ARROWS } from "./contact_arrows";
 import { mannequinOf } from "./mannequin";
-import { TaxelCloud } from "./taxel_cloud";
+import { nearestNeighbour, TaxelCloud } from "./taxel_cloud";
 
 const TURN_STEP = 0.12;
 const ZOOM_STEP = 1.15;
 const FIT_ATTEMPTS = 6;
+/** Of a taxel, as the camera sees it: right and up. */
+const CORNERS = [[-1, -1], [-1, 1], [1, -1], [1, 1]] as const;
 /** Of the height and width of the picture. */
 const FIT_SHARE = 0.8;
 /** Clicks this near to a taxel mean its array, as a share of the suit's size. */
@@ -210,14 +212,19 @@ export class SuitScene {
       this.#camera.position.copy(target).addScaledVector(direction, distance);
       this.#controls.update();
       this.#camera.updateMatrixWorld();
+      this.#camera.matrixWorld.extractBasis(this.#right, this.#up, this.#projected);
       extent.makeEmpty();
-      for (const { positions } of this.#suit?.arrays ?? []) {
-        for (const position of positions) extent.expandByPoint(point.fromArray(position).project(this.#camera));
+      for (const { positions, cols } of this.#suit?.arrays ?? []) {
+        const reach = 0.5 * nearestNeighbour(positions, cols);
+        for (const position of positions) {
+          for (const [right, up] of CORNERS) {
+            extent.expandByPoint(point.fromArray(position).addScaledVector(this.#right, right * reach).addScaledVector(this.#up, up * reach).project(this.#camera));
+          }
+        }
       }
       if (extent.isEmpty()) return;
       extent.getCenter(point);
       const height = distance * Math.tan(three.MathUtils.degToRad(0.5 * this.#camera.fov));
-      this.#camera.matrixWorld.extractBasis(this.#right, this.#up, this.#projected);
       target.addScaledVector(this.#right, point.x * height * this.#camera.aspect).addScaledVector(this.#up, point.y * height);
       extent.getSize(point);
       distance *= Math.max(0.3, (0.5 * Math.max(point.x, point.y)) / FIT_SHARE);

@@ -53,12 +53,14 @@ ${shaderSource()}
 void main() {
   bool crossed = min(abs(inside.x - inside.y), abs(inside.x + inside.y)) < 0.3;
   vec3 taxel = fault > 2.5 ? (crossed ? stripe_color : fault_color) : color_map(force / scale_end);
+  if (fault < 2.5 && force > scale_end && length(inside) < 0.24) taxel = vec3(opposite(taxel));
   bool on_rim = max(abs(inside.x), abs(inside.y)) > 0.88;
   vec3 rim = marked > 0.5 ? chosen_color : rim_color;
   color = vec4((on_rim ? mix(taxel, rim, 0.6) : taxel) * shade, 1.0);
 }`;
 
-function nearestNeighbour(positions: readonly [number, number, number][], cols: number): number {
+/** Metres to the next taxel. */
+export function nearestNeighbour(positions: readonly [number, number, number][], cols: number): number {
   const [first, second, below] = [positions[0]!, positions[1], positions[cols]];
   const distance = (to: readonly number[] | undefined): number =>
     to === undefined ? Infinity : Math.hypot(to[0]! - first[0], to[1]! - first[1], to[2]! - first[2]);
