@@ -38,9 +38,10 @@ async function pointAt(page) {
   await page.locator("[data-role=cursor][data-taxel=r1c2]").waitFor();
 }
 
-/** In the page: whether a white pixel is on the maps, as dots beyond the scale have in the light theme. */
-function hasDots(isWanted) {
-  const canvas = document.querySelector("[data-role=maps] canvas");
+/** In the page: whether a pixel is wholly white (255) or black (0) on a canvas, as dots beyond the scale are in the light and
+ *  the dark theme. */
+function hasDots([place, tone, isWanted]) {
+  const canvas = document.querySelector(place);
   const copy = document.createElement("canvas");
   [copy.width, copy.height] = [canvas.width, canvas.height];
   return new Promise((resolve) =>
@@ -48,13 +49,13 @@ function hasDots(isWanted) {
       const pen = copy.getContext("2d");
       pen.drawImage(canvas, 0, 0);
       const { data } = pen.getImageData(0, 0, copy.width, copy.height);
-      let [drawn, white] = [0, 0];
+      let [drawn, dots] = [0, 0];
       for (let at = 0; at < data.length; at += 4) {
         if (data[at + 3] === 0) continue;
         drawn += 1;
-        if (data[at] === 255 && data[at + 1] === 255 && data[at + 2] === 255) white += 1;
+        if (data[at] === tone && data[at + 1] === tone && data[at + 2] === tone) dots += 1;
       }
-      resolve(drawn > 0 && white > 0 === isWanted);
+      resolve(drawn > 0 && dots > 0 === isWanted);
     }),
   );
 }
@@ -76,9 +77,17 @@ it("marks values beyond the scale", async () => {
     await part(page, "scale-raw").selectOption("0 \u2013 4095 counts");
     await part(page, "scale-conductance").selectOption("0 \u2013 20 mS");
     await part(page, "scale-force").selectOption("0 \u2013 0.05 N");
-    await eventually(page, hasDots, true);
+    await eventually(page, hasDots, ["[data-role=maps] canvas", 255, true]);
     await part(page, "scale-force").selectOption("0 \u2013 100 N");
-    await eventually(page, hasDots, false);
+    await eventually(page, hasDots, ["[data-role=maps] canvas", 255, false]);
+
+    await page.emulateMedia({ colorScheme: "dark" });
+    await page.locator("[data-tab=suit]").click();
+    const scale = page.locator("[data-view=suit] select");
+    await scale.selectOption("0.5");
+    await eventually(page, hasDots, ["[data-role=suit] canvas", 0, true]);
+    await scale.selectOption("100");
+    await eventually(page, hasDots, ["[data-role=suit] canvas", 0, false]);
   });
 });
 
