@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cctype>
 #include <functional>
+#include <future>
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/recognition/classes_file.hpp"
@@ -228,17 +230,29 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
   return Done{};
 }
 
+/// All at once: a device may take its time to answer, and a scene to be simulated. Of several errors the first array's.
+Status open_together(const SuitDescription& described, const sources::SourceOptions& options, ServedSuit& suit) {
+  using Opened = Result<std::unique_ptr<FrameSource>>;
+  const auto how = suit.arrays.size() == 1 ? std::launch::deferred : std::launch::async;
+  std::vector<std::future<Opened>> opening;
+  for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
+    opening.push_back(std::async(how, open_live, described.arrays[k].from, std::cref(suit.arrays[k]), options));
+  }
+  Status all = Done{};
+  for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
+    Opened source = opening[k].get();
+    if (source) suit.arrays[k].source = *std::move(source);
+    if (!source && all) all = source.error();
+  }
+  return all;
+}
+
 Status open_sources(const SuitPlace& place, const SuitDescription& described, const sources::SourceOptions& options,
                     ServedSuit& suit) {
   const Result<SourceName> from = SourceName::parse(place.from);
   if (!from) return from.error();
   if (from->kind == SourceKind::recording) return open_playback(place.from, suit);
-  for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
-    Result<std::unique_ptr<FrameSource>> source = open_live(described.arrays[k].from, suit.arrays[k], options);
-    if (!source) return source.error();
-    suit.arrays[k].source = *std::move(source);
-  }
-  return Done{};
+  return open_together(described, options, suit);
 }
 
 }  // namespace

@@ -94,6 +94,16 @@ TEST(ServedSuit, opens_all_arrays_of_a_suit_where_they_sit) {
   EXPECT_EQ(suit->arrays[0].model, suit->arrays[1].model) << "a file that two arrays name is read once";
 }
 
+TEST(ServedSuit, names_the_first_of_several_sources_that_cannot_be_opened) {
+  const ModelFolder folder;
+  write_bytes(folder.file("suit.toml"),
+              "[[array]]\nname = \"sound\"\nfrom = \"sim:contacts?rate=50\"\nmodel = \"model.safetensors\"\n"
+              "[[array]]\nname = \"first\"\nfrom = \"sim:contacts\"\nmodel = \"model.safetensors\"\n"
+              "[[array]]\nname = \"second\"\nfrom = \"frames.csv\"\nmodel = \"model.safetensors\"\n");
+  EXPECT_EQ(refusal({.suit = folder.file("suit.toml")}),
+            "'sim:contacts': say how many frames a second it sends, such as sim:contacts?rate=100");
+}
+
 TEST(ServedSuit, puts_arrays_on_the_links_of_a_body) {
   const ModelFolder folder;
   write_bytes(folder.file("robot.urdf"),

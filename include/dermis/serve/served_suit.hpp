@@ -65,8 +65,9 @@ struct SuitPlace {
   std::string threats{};  ///< threats.toml; empty: none.
 };
 
-/// Opens all that the place names. Of the options, `array` and `guide` are not used. Fails where a file or a source
-/// cannot be opened, and where they do not fit each other.
+/// Opens all that the place names, the sources of a suit at once: `notice` may be called by several threads together.
+/// Of the options, `array` and `guide` are not used. Fails where a file or a source cannot be opened, and where they do
+/// not fit each other.
 [[nodiscard]] Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions options = {});
 
 }  // namespace dermis::serve

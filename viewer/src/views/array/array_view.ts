@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setData, setHidden, setText } from "../../dom";
 import { fixed, statusWord } from "../../format";
+import { regionName } from "../../live/region_force";
 import { Signal } from "../../signal";
 import { type Area, HeatMaps } from "../../render/heat_maps";
 import type { ArrayDescription } from "../../suit";
@@ -281,7 +282,7 @@ class ArrayView implements View {
     const shown = live.arrays[suit.indexOf(array.name)];
     if (shown === undefined) return;
     this.#contacts.show(shown);
-    this.#summary.show(array, shown, array.calibrated ? force! : raw!);
+    this.#summary.show(array, shown, array.calibrated ? force! : raw!, this.#choices.share.value !== "highest");
     this.#summary.showRegion(live.region.region.value?.array === array.name ? live.region : undefined);
   }
 
@@ -308,7 +309,8 @@ class ArrayView implements View {
     const newtons = fixed(force.values[cursor] ?? NaN, 2);
     const counts = fixed(this.#feeds.frames[RAW]!.values[cursor] ?? NaN, 0);
     const reading = this.#array.calibrated ? `${newtons} newtons, ${statusWord(force.statuses[cursor] ?? 0)}` : `${counts} counts`;
-    setText(this.#spoken, `${taxelName(cursor, this.#array)}: ${reading}`);
+    const region = this.#pointer.preview;
+    setText(this.#spoken, `${taxelName(cursor, this.#array)}: ${reading}${region === undefined ? "" : `, region ${regionName(region)}`}`);
   }
 }
 

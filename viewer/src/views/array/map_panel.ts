@@ -80,7 +80,7 @@ export class MapPanel {
     const isStepped = this.end.value === STEPS;
     const wanted: (readonly [number, string])[] = [
       [STEPS, isStepped ? `steps: 0 \u2013 ${endLabel(this.quantity, end)}` : "in steps, by itself"],
-      [FIT, "fit to what is there now"],
+      [FIT, "fit now"],
       ...ends.map((value) => [value, `0 \u2013 ${endLabel(this.quantity, value)}`] as const),
     ];
     const { options } = this.#select;
@@ -100,7 +100,7 @@ export class MapPanel {
     if (this.end.value !== STEPS) return false;
     const before = this.#stepped.value;
     if (!this.#stepped.see(highestOf(frame), frame.stampS, this.quantity.ends(this.#array))) return false;
-    if (before > 0) this.#say(`was 0 \u2013 ${endLabel(this.quantity, before)}`);
+    if (before > 0) this.#sayBefore(before);
     return true;
   }
 
@@ -113,9 +113,11 @@ export class MapPanel {
     this.describe(array);
   }
 
-  #say(words: string): void {
+  /** The unit, too, where it is another now. */
+  #sayBefore(before: number): void {
+    const isOtherUnit = shownUnit(this.quantity, before) !== shownUnit(this.quantity, this.#stepped.value);
     window.clearTimeout(this.#sayTimer);
-    setText(this.#said, words);
+    setText(this.#said, `was ${isOtherUnit ? endLabel(this.quantity, before) : this.quantity.label(before, before)}`);
     this.#sayTimer = window.setTimeout(() => setText(this.#said, ""), SAY_MS);
   }
 }

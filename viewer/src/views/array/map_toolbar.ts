@@ -33,10 +33,13 @@ export interface MapActions {
   readonly hasRegion: Signal<boolean>;
 }
 
-function check(label: string, signal: Signal<boolean>, role: string): HTMLElement {
+/** Not there for an array without a model. */
+const NEEDS_FORCE = "needs-force";
+
+function check(label: string, signal: Signal<boolean>, role: string, group = ""): HTMLElement {
   const box = element("input", { type: "checkbox", "data-role": role, onchange: () => (signal.value = box.checked) });
   signal.follow((value) => (box.checked = value));
-  return element("label", { class: "check" }, box, label);
+  return element("label", { class: `check ${group}` }, box, label);
 }
 
 function makeMapChoice({ narrowMap }: MapChoices): HTMLElement {
@@ -62,7 +65,7 @@ function makeShare({ share }: MapChoices, actions: MapActions): HTMLElement {
 
 function makeRegion({ drawing }: MapChoices, { hasRegion, clearRegion }: MapActions): HTMLElement {
   const button = element("button", {
-    class: "button compact",
+    class: `button compact ${NEEDS_FORCE}`,
     "data-role": "draw-region",
     title: "The force on a part of the map, here and over time: draw from corner to corner, or set both with Enter",
     onclick: () => (hasRegion.value ? clearRegion() : (drawing.value = !drawing.value)),
@@ -88,10 +91,10 @@ export function makeMapToolbar(choices: MapChoices, actions: MapActions): HTMLEl
     { class: "toolbar" },
     makeMapChoice(choices),
     makeShare(choices, actions),
-    check("Pressure in kPa", choices.pressure, "show-pressure"),
+    check("Pressure in kPa", choices.pressure, "show-pressure", NEEDS_FORCE),
     check("Interpolate", choices.interpolated, "interpolate"),
-    check("Contacts", choices.contacts, "show-contacts"),
-    check("Centre of pressure", choices.centre, "show-centre"),
+    check("Contacts", choices.contacts, "show-contacts", NEEDS_FORCE),
+    check("Centre of pressure", choices.centre, "show-centre", NEEDS_FORCE),
     makeRegion(choices, actions),
     makeMarks(),
   );

@@ -37,15 +37,15 @@ export class Summary {
     );
   }
 
-  /** `shown`: the forces, or the counts of an array without a model. */
-  show(array: ArrayDescription, { contacts, centre }: ArrayLive, shown: GridFrame): void {
+  /** `shown`: the forces, or the counts of an array without a model; their sum is shown where they are of one moment. */
+  show(array: ArrayDescription, { contacts, centre }: ArrayLive, shown: GridFrame, areOfOneMoment: boolean): void {
     const { highest, sum, faulty, worst } = survey(shown);
     if (!array.calibrated) return this.#showCounts(array, shown, highest);
     setText(this.#total, fixed(contacts.totalForceN, 2));
     setText(this.#sigma, `\u00b1 ${fixed(contacts.sigmaTotalN, 2)}`);
     setText(this.#values[0]!, String(touching(contacts.contacts, contacts.count)));
     setText(this.#values[1]!, highest < 0 ? fixed(NaN, 0) : `${fixed(shown.values[highest]!, 2)} N  ${taxelName(highest, array)}`);
-    setText(this.#values[2]!, `${fixed(sum, 2)} N`);
+    setText(this.#values[2]!, areOfOneMoment ? `${fixed(sum, 2)} N` : fixed(NaN, 0));
     setText(this.#values[3]!, faulty === 0 ? "none" : `${faulty}, ${statusWord(worst)}`);
     const last = centre.length - 1;
     setText(this.#values[4]!, last < 0 ? fixed(NaN, 0) : `${fixed(1e3 * centre.x(last), 1)}, ${fixed(1e3 * centre.y(last), 1)} mm`);
