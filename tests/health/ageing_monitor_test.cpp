@@ -118,6 +118,10 @@ TEST(AgeingMonitor, a_model_that_promises_little_has_not_aged) {
   pipeline::Model model = support::hand_made_model(4, 4);
   std::fill(model.networks.relative_sigma.begin(), model.networks.relative_sigma.end(), 0.2F);
   EXPECT_NEAR(AgeingMonitor(model).evidence().calibrated_spread, 0.2, 1e-6);
+  for (std::size_t k = 0; k < model.networks.parameters.size(); ++k) {  // each taxel weighed for itself
+    model.networks.parameters[k] += 1e-3F * static_cast<float>(k);
+  }
+  EXPECT_NEAR(AgeingMonitor(model).evidence().calibrated_spread, 0.1, 1e-6);
   AgeingEvidence evidence;
   evidence.gain_spread = 0.15;
   evidence.spread_sigma = 0.01;
