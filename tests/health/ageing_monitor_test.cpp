@@ -82,7 +82,7 @@ TEST(AgeingMonitor, gains_that_differ_by_a_tenth_are_found_within_fifty_touches)
     for (int k = 0; k < 50; ++k) sheet.touch_anywhere(bell(sheet.uniform(0.7, 2.5)));
     const AgeingEvidence evidence = sheet.evidence();
     EXPECT_TRUE(evidence.has_aged()) << describe(evidence);
-    EXPECT_NEAR(*evidence.gain_spread, 0.1, 4.0 * evidence.spread_sigma);
+    EXPECT_NEAR(*evidence.gain_spread, 0.1, 0.03);
     EXPECT_TRUE(describe(evidence).starts_with("recalibrate: gains have changed by about ")) << describe(evidence);
   }
 }
