@@ -26,9 +26,25 @@ constexpr double kVariances = 4.0;  // of ln g, in that of d
 // with each of four others.
 constexpr double kSharing = 1.0 + 4.0 * 0.25 + 4.0 * 0.0625;
 
-/// Median over the taxels of the root mean square of relative_sigma over the forces in the middle of its knots.
+/// Most taxels are on one network: nobody has weighed them one by one.
+bool are_shared(const fusion::ForceNetworks& networks) {
+  const std::size_t taxels = networks.taxel_count();
+  std::size_t shared = 0;
+  for (std::size_t taxel = 1; taxel < taxels; ++taxel) {
+    bool is_alike = true;
+    for (std::size_t first = 0; first < networks.parameters.size(); first += taxels) {
+      is_alike = is_alike && networks.parameters[first + taxel] == networks.parameters[first + taxel - 1];
+    }
+    if (is_alike) ++shared;
+  }
+  return 2 * (shared - std::min(shared, networks.tables.taxels.size())) > taxels;
+}
+
+/// Median over the taxels of the root mean square of relative_sigma over the forces in the middle of its knots. Half of
+/// it or more is other at every touch, where each taxel has been weighed.
 double calibrated_spread(const fusion::ForceNetworks& networks) {
   const std::size_t taxels = networks.taxel_count();
+  const double lasting = are_shared(networks) ? 1.0 : 0.5;
   std::vector<double> spreads;
   for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
     if (networks.dead[taxel] != 0) continue;
@@ -36,7 +52,7 @@ double calibrated_spread(const fusion::ForceNetworks& networks) {
     for (std::size_t k = 1; k + 1 < fusion::kSigmaKnots; ++k) {
       sum += std::pow(static_cast<double>(networks.relative_sigma[k * taxels + taxel]), 2);
     }
-    spreads.push_back(std::sqrt(sum / static_cast<double>(fusion::kSigmaKnots - 2)));
+    spreads.push_back(lasting * std::sqrt(sum / static_cast<double>(fusion::kSigmaKnots - 2)));
   }
   return spreads.empty() ? 0.0 : upper_median(std::move(spreads));
 }

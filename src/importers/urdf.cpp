@@ -163,7 +163,7 @@ void UrdfReader::start(std::string_view element, const Attributes& attributes) {
   if (path_.size() == 2 && part == "link") return start_link(attributes);
   if (path_.size() == 2 && part == "joint") return start_joint(attributes);
   if (path_.size() == 2 && part == "material") return take_material(attributes);
-  if (part == "material" && element == "color") return take_color(attributes);
+  if (path_.size() == 3 && part == "material" && element == "color") return take_color(attributes);
   if (part == "joint" && path_.size() == 3) return take_joint_part(element, attributes);
   if (part != "link" || path_.size() < 3 || path_[2] != "visual") return;
   if (path_.size() == 3) return start_visual();

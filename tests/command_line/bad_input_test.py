@@ -99,6 +99,29 @@ class MissingFiles(SmallArray):
         self.refuse(self.run_arguments(self.work / "f.csv", **{"in": self.root}), [self.root])
 
 
+class BodyOfASuit(SmallArray):
+    ROBOT = '<robot name="r"><link name="trunk"/></robot>'
+
+    def refuse_suit(self, suit, places, link=""):
+        suit = self.written("suit.toml", f'[suit]\n{suit}\n[[array]]\nname = "chest"\nfrom = "sim:idle?rate=50"\n'
+                                         f'model = "{self.model}"\n{link}\n')
+        self.refuse(["serve", "--suit", suit, "--port", 0], places)
+
+    def test_a_body_that_cannot_be_read(self):
+        self.written("broken.urdf", "<robot>\n<link>\n")
+        self.written("hinge.urdf", self.ROBOT.replace("/></robot>", '/>\n<joint name="j" type="hinge"/></robot>'))
+        self.refuse_suit('body = "absent.urdf"', [self.work / "absent.urdf"])
+        self.refuse_suit('body = "robot.dae"', ["robot.dae", ".urdf, .stl or .glb"])
+        self.refuse_suit('body = "broken.urdf"', ["broken.urdf:2", "<link> needs name"])
+        self.refuse_suit('body = "hinge.urdf"', ["hinge.urdf:2", "hinge", "no type of a joint"])
+        self.refuse_suit('body = "robot.stl"\nbody_scale = 0', ["body_scale", "more than 0"])
+
+    def test_a_link_that_is_not_there(self):
+        self.written("robot.urdf", self.ROBOT)
+        self.refuse_suit('body = "robot.urdf"', ["chest", "'r' has no 'arm'"], 'link = "arm"')
+        self.refuse_suit("", ["chest", "link: needs the body"], 'link = "arm"')
+
+
 class ArrayFile(SmallArray):
     def refuse_array(self, text, places):
         array = self.written("array.toml", text)

@@ -85,6 +85,10 @@ class Workflow(SmallArray):
         self.assertIn("<html", page)
         self.assertIn("small", page)
         self.assertNotIn("<script", page)
+        self.assertIn("Simulated frames (sim:multitouch?seed=2).", page)
+        other = self.written("frames.csv", (self.contacts / "frames.csv").read_text().replace("\n0,", "\n0.0,", 1))
+        self.succeed(*self.evaluate_arguments(frames=other), "--report", report)
+        self.assertIn("Measured frames, as far as their file tells.", (report / "index.html").read_text())
         self.assertTrue(list(report.glob("*.svg")))
 
     def test_calibration_report_as_json(self):

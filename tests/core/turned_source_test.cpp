@@ -24,7 +24,11 @@ class NumberedFrames final : public FrameSource {
     return true;
   }
   [[nodiscard]] std::optional<FrameShape> shape() const override { return shape_; }
-  [[nodiscard]] SourceStatistics statistics() const override { return {.frames = 7}; }
+  [[nodiscard]] SourceStatistics statistics() const override {
+    SourceStatistics statistics;
+    statistics.frames = 7;
+    return statistics;
+  }
   [[nodiscard]] bool is_live() const override { return true; }
   [[nodiscard]] std::string place() const override { return "here"; }
 

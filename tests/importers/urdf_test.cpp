@@ -118,6 +118,16 @@ TEST(Urdf, says_in_one_line_what_is_wrong_and_where) {
   }
 }
 
+TEST(Urdf, skips_elements_in_places_where_they_mean_nothing) {
+  const std::string color = "<color rgba=\"1 0 0 1\"/>";
+  const Result<Body> body =
+      body_from_urdf(robot("<material name=\"m\"><x>" + color +
+                           "</x></material><color/><visual><geometry/></visual><link name=\"a\"/>"),
+                     "r.urdf");
+  ASSERT_TRUE(body.has_value()) << body.error().message;
+  EXPECT_TRUE(body->links[0].visuals.empty());
+}
+
 TEST(Urdf, is_bounded) {
   std::string links;
   for (int k = 0; k < 513; ++k) links += "<link name=\"l" + std::to_string(k) + "\"/>";

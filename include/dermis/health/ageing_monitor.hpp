@@ -20,7 +20,7 @@ struct AgeingEvidence {
   std::size_t blocks = 0;             ///< Of four taxels, compared under touches from different sides, as equals.
   std::optional<double> gain_spread;  ///< Sd over the taxels of the logarithm of their gains since the calibration;
   double spread_sigma = 0.0;          ///< its standard deviation; empty: too few blocks.
-  double calibrated_spread = 0.0;     ///< So uncertain are the forces of a taxel by the calibration, relative.
+  double calibrated_spread = 0.0;     ///< So much gains may differ by the calibration itself.
 
   /// The gains scatter by more than 5 % and by more than the calibration said, beyond three standard deviations.
   [[nodiscard]] bool has_aged() const noexcept;
