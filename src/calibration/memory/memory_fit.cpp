@@ -111,7 +111,7 @@ class MemoryProblem {
     }
   }
 
-  static constexpr double kFloorShare = 1.0;      // of a typical load: lighter ones count less
+  static constexpr double kFloorShare = 0.3;      // of a typical load: lighter ones count less
   static constexpr double kExpectedError = 0.05;  // relative
 
   [[nodiscard]] double weight(std::size_t k) const { return 1.0 / (loads_[k].newtons + floor_newtons_); }
