@@ -87,7 +87,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
       timed(report, "networks", [&] { return train_force_networks(database, tell_networks); });
   if (!training) return with_remarks(training.error(), database.remarks);
   std::optional<LearnedMemory> memory;
-  if (is_continuous(frames))
+  if (is_continuous(frames) || loads_follow_each_other(database, frames))
     memory = timed(report, "memory", [&] { return learn_memory(database, frames, *training); });
   if (memory) {
     calibration.model.memory = memory->law;

@@ -72,9 +72,13 @@ void parameters(const PerceptronShape& shape, std::span<const double> free, std:
 
 void chain_gradient(const PerceptronShape& shape, std::span<const double> parameters,
                     std::span<double> gradient) noexcept {
-  for (std::size_t k = 0; k < gradient.size(); ++k) {
-    if (is_positive(shape, k)) gradient[k] *= parameters[k];
+  if (shape.rising_inputs == 0) return;
+  const auto chain = [&](std::size_t parameter) { gradient[parameter] *= parameters[parameter]; };
+  for (std::size_t unit = 0; unit < shape.hidden; ++unit) {
+    for (std::size_t input = 0; input < shape.rising_inputs; ++input) chain(shape.weight(unit, input));
+    chain(shape.output_weight(unit));
   }
+  for (std::size_t input = 0; input < shape.rising_inputs; ++input) chain(shape.direct_weight(input));
 }
 
 }  // namespace monotone

@@ -5,14 +5,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "calibration/simulated.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/evaluation.hpp"
+#include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
@@ -60,6 +63,57 @@ TEST(MemoryTraining, two_weights_teach_what_the_material_remembers) {
   }
 }
 
+/// One frame a second: presses from rest, then touches of which each frame is a new one.
+Recording presses_and_touches(const ArrayDescription& array, const simulation::SimulationOptions& physics) {
+  Recording all = record(array, "calibration", 1, physics);
+  const Recording touched = record(array, "multitouch", 3, physics, 400);
+  const std::size_t before = all.frames.size();
+  const Nanos begin = all.frames.back().time + std::chrono::minutes(1);
+  for (RawFrame frame : touched.frames) {
+    frame.time += begin;
+    all.frames.push_back(frame);
+  }
+  for (Load load : touched.loads) {
+    load.frame += before;
+    all.loads.push_back(load);
+  }
+  return all;
+}
+
+TEST(MemoryTraining, one_frame_a_second_tells_of_memory_where_loads_follow_each_other) {
+  const ArrayDescription array = reference_array(4, 4);
+  simulation::SimulationOptions physics;
+  physics.rubber.hysteresis = 0.10;
+  physics.rubber.creep = 0.05;
+  const Recording recording = presses_and_touches(array, physics);
+  const auto database = build_sample_database(array, recording.frames, recording.loads);
+  ASSERT_TRUE(database);
+  const auto plain = calibrate(*database);
+  const auto calibration = calibrate(*database, recording.frames);
+  ASSERT_TRUE(plain && calibration);
+  ASSERT_TRUE(calibration->model.memory);
+  const std::array<float, 3>& gap = calibration->model.memory->gap;
+  EXPECT_NEAR(std::accumulate(gap.begin(), gap.end(), 0.0F), 0.10F, 0.04F);
+  EXPECT_NE(calibration->report.memory.find("frames are 1 s apart"), std::string::npos) << calibration->report.memory;
+  const Recording test = record(array, "multitouch", 2, physics, 400);
+  const auto without = evaluate(plain->model, test.frames, test.loads);
+  const auto with = evaluate(calibration->model, test.frames, test.loads);
+  ASSERT_TRUE(without && with);
+  EXPECT_LT(*with->estimators.front().relative_error.p95, 0.6 * *without->estimators.front().relative_error.p95);
+}
+
+TEST(MemoryTraining, single_presses_do_not_follow_each_other) {
+  const ArrayDescription array = reference_array(3, 3);
+  const Recording presses = record(array, "calibration", 1);
+  const Recording with_touches = presses_and_touches(array, {});
+  EXPECT_FALSE(loads_follow_each_other({}, {}));
+  for (const auto& [recording, follow] : {std::pair(&presses, false), std::pair(&with_touches, true)}) {
+    const auto database = build_sample_database(array, recording->frames, recording->loads);
+    ASSERT_TRUE(database);
+    EXPECT_EQ(loads_follow_each_other(*database, recording->frames), follow);
+  }
+}
+
 /// Recordings of one taxel each, put together as if the next began a few seconds after the last.
 Recording put_together(const ArrayDescription& array, simulation::SimulationOptions physics) {
   physics.scene = {.rate_hz = 20.0, .taxels = 1};
@@ -90,11 +144,13 @@ TEST(MemoryTraining, pauses_that_nobody_waited_do_not_mislead) {
   for (const float share : calibration->model.memory->creep) EXPECT_NEAR(share, 0.08F, 0.03F);
 }
 
-/// Whether tracking changes forces of at least a newton, and what it makes of taxels that a load has left.
+/// Whether tracking changes forces of at least a newton or loses their contact, and what it makes of taxels that a load
+/// has left.
 struct Tracked {
   double worst_change = 0.0;  // relative
   double worst_ghost = 0.0;   // [N]
   double least = 0.0;         // [N]
+  std::size_t lost = 0;       // loads of at least a newton without a contact
 };
 
 Tracked tracked(const pipeline::Model& model, const Recording& recording) {
@@ -110,16 +166,20 @@ Tracked tracked(const pipeline::Model& model, const Recording& recording) {
     }
   }
   Tracked result;
+  fusion::ContactTracker tracker(model.array);
+  ContactReport report;
   ForceFrame force;
   ForceFrame plain;
   for (std::size_t frame = 0; frame < recording.frames.size(); ++frame) {
     with->process(recording.frames[frame], force);
     without->process(recording.frames[frame], plain);
+    tracker.process(force, report);
     for (const float newtons : force.newtons) result.least = std::min(result.least, static_cast<double>(newtons));
     for (const auto& [taxel, newtons] : truth[frame]) {
       const auto given = static_cast<double>(force.newtons[taxel]);
       if (newtons == 0.0) result.worst_ghost = std::max(result.worst_ghost, given);
       if (newtons < 1.0) continue;
+      if (report.contacts.empty()) ++result.lost;
       const double change = given / static_cast<double>(plain.newtons[taxel]) - 1.0;
       result.worst_change = std::max(result.worst_change, std::abs(change));
     }
@@ -139,6 +199,7 @@ TEST(MemoryTraining, the_dip_after_a_release_is_no_drift) {
     ASSERT_TRUE(calibration->model.memory);
     const Tracked result = tracked(calibration->model, two_weights(array, physics, 2));
     EXPECT_GE(result.least, 0.0);
+    EXPECT_EQ(result.lost, 0U);
     EXPECT_LT(result.worst_change, 0.05);
     EXPECT_LT(result.worst_ghost, 0.3);
   }

@@ -18,8 +18,8 @@ constexpr std::size_t kFramesPerTask = 1024;
 constexpr std::size_t kMostLoads = 20'000;  // to fit seven numbers to
 constexpr double kStep = 2e-3;              // of a derivative by differences
 constexpr double kMostError = 1.0;          // relative; counts as this
-constexpr int kMaxIterations = 25;
-constexpr double kRelativeReduction = 1e-3;
+constexpr int kMaxIterations = 60;
+constexpr double kRelativeReduction = 1e-5;
 constexpr double kPriorWeight = 0.05;   // of the prior against all loads
 constexpr double kUnlikeShare = 0.05;   // of a creep element or a stop, from the mean of them
 constexpr double kExpectedShare = 0.5;  // of all of them
@@ -111,7 +111,7 @@ class MemoryProblem {
     }
   }
 
-  static constexpr double kFloorShare = 0.1;      // of a typical load: lighter ones count less
+  static constexpr double kFloorShare = 0.3;      // of a typical load: lighter ones count less
   static constexpr double kExpectedError = 0.05;  // relative
 
   [[nodiscard]] double weight(std::size_t k) const { return 1.0 / (loads_[k].newtons + floor_newtons_); }

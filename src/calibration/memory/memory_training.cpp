@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/even_choice.hpp"
 #include "calibration/memory/load_history.hpp"
 #include "calibration/memory/memory_fit.hpp"
 #include "dermis/calibration/force_training.hpp"
@@ -21,18 +22,22 @@ namespace dermis::calibration {
 namespace {
 
 constexpr std::size_t kLeastLoads = 50;
-constexpr Nanos kMostInterval = std::chrono::milliseconds(100);  // between frames
+constexpr Nanos kMostInterval = std::chrono::milliseconds(100);  // between frames of a continuous recording
+constexpr Nanos kMostStep = std::chrono::milliseconds(1500);     // between loads that follow each other
 constexpr double kWorthwhile = 0.95;                             // of the error without a law
 constexpr double kMostError = 1.0;                               // relative; counts as this
-constexpr int kRounds = 2;                                       // of law and networks in turn
+constexpr int kRounds = 6;                                       // of law and networks in turn, at most
+constexpr float kSameShare = 2e-3F;                              // of a law that no longer changes
 constexpr int kRoundsOfFold = 1;
+constexpr std::size_t kMostSharesToTry = 50'000;  // of taxels in the loads that they share
 constexpr std::size_t kFolds = 2;
 constexpr std::size_t kPiecesOfFold = 4;  // of the recording, in time order
 constexpr double kShortHoldSeconds = 5.0;
 constexpr double kSameLoad = 1.03;
 constexpr double kLighter = 0.9;
-constexpr Nanos kOneTouch = std::chrono::seconds(1);  // between labels of one touch
-constexpr Nanos kPause = std::chrono::seconds(1);     // between frames: others may be missing
+constexpr Nanos kOneTouch = std::chrono::seconds(1);    // between labels of one touch
+constexpr Nanos kLeastPause = std::chrono::seconds(1);  // between frames: others may be missing
+constexpr int kIntervalsOfPause = 2;
 constexpr fusion::MemoryLaw kStart{{0.04F, 0.04F, 0.04F, 0.04F}, {0.02F, 0.02F, 0.02F}};
 
 /// The same samples with what the material felt under their loads: as much more or less than the load as a law that was
@@ -66,27 +71,65 @@ double mean_error(const std::vector<KnownLoad>& loads, const std::vector<FreedLo
   return loads.empty() ? 0.0 : sum / static_cast<double>(loads.size());
 }
 
-/// Networks and a law that fit each other.
+SampleDatabase without(const SampleDatabase& database, const std::vector<bool>& is_left_out) {
+  SampleDatabase kept;
+  kept.array = database.array;
+  kept.siemens_per_count = database.siemens_per_count;
+  for (std::size_t k = 0; k < database.samples.size(); ++k) {
+    if (!is_left_out[k]) kept.samples.push_back(database.samples[k]);
+  }
+  return kept;
+}
+
+/// Frames of one hold say nearly the same. So where many taxels share their loads, which makes the training slow, some
+/// of them do to try a law: evenly chosen.
+Result<ForceTraining> train_on_some(const SampleDatabase& database) {
+  std::vector<std::size_t> shared;  // samples
+  std::size_t shares = 0;
+  for (std::size_t k = 0; k < database.samples.size(); ++k) {
+    if (database.samples[k].totals.empty()) continue;
+    shared.push_back(k);
+    for (const TotalForce& total : database.samples[k].totals) shares += total.taxels.size();
+  }
+  if (shares <= kMostSharesToTry) return train_force_networks(database);
+  std::vector<bool> is_left_out(database.samples.size());
+  for (const std::size_t k : shared) is_left_out[k] = true;
+  for (const std::size_t k : even_choice(shared.size(), shared.size() * kMostSharesToTry / shares + 1)) {
+    is_left_out[shared[k]] = false;
+  }
+  return train_force_networks(without(database, is_left_out));
+}
+
+bool are_same(const fusion::MemoryLaw& a, const fusion::MemoryLaw& b) {
+  const auto is_near = [](float x, float y) { return std::abs(x - y) < kSameShare; };
+  return std::equal(a.creep.begin(), a.creep.end(), b.creep.begin(), is_near) &&
+         std::equal(a.gap.begin(), a.gap.end(), b.gap.begin(), is_near);
+}
+
+/// A law, and what the material felt by it.
 struct Fitted {
   fusion::MemoryLaw law;
   SampleDatabase felt;
-  ForceTraining training;
 };
 
-/// From networks that know of no law. Empty where networks cannot be trained, or where not even the loads that it is
-/// fitted to gain by a law.
+/// From networks that know of no law, in rounds of law and networks in turn. Empty where networks cannot be trained, or
+/// where not even the loads that it is fitted to gain by a law.
 std::optional<Fitted> fit(const SampleDatabase& database, const LoadHistory& history,
                           const fusion::ForceNetworks& plain, const fusion::MemoryLaw& start, int rounds) {
   const std::vector<KnownLoad> loads = known_loads(database, history);
-  Fitted fitted{start, {}, {}};
+  Fitted fitted{start, {}};
+  fusion::ForceNetworks networks = plain;
   for (int round = 0; round < rounds; ++round) {
-    const FeltHistory felt = felt_history(history, round == 0 ? plain : fitted.training.networks);
-    fitted.law = fit_memory(felt, loads, fitted.law);
+    if (round > 0) {
+      Result<ForceTraining> training = train_on_some(fitted.felt);
+      if (!training) return std::nullopt;
+      networks = std::move(training->networks);
+    }
+    const FeltHistory felt = felt_history(history, networks);
+    const fusion::MemoryLaw last = std::exchange(fitted.law, fit_memory(felt, loads, fitted.law));
     if (memory_misfit(felt, loads, fitted.law) > kWorthwhile * memory_misfit(felt, loads, {})) return std::nullopt;
     fitted.felt = felt_database(database, loads, freed_loads(felt, loads, fitted.law));
-    Result<ForceTraining> training = train_force_networks(fitted.felt);
-    if (!training) return std::nullopt;
-    fitted.training = std::move(*training);
+    if (round > 0 && are_same(last, fitted.law)) break;
   }
   return fitted;
 }
@@ -101,18 +144,6 @@ std::vector<KnownLoad> loads_of_fold(const std::vector<KnownLoad>& loads, std::s
   return of_fold;
 }
 
-SampleDatabase without(const SampleDatabase& database, const std::vector<KnownLoad>& loads) {
-  std::vector<bool> is_left_out(database.samples.size());
-  for (const KnownLoad& load : loads) is_left_out[load.sample] = true;
-  SampleDatabase kept;
-  kept.array = database.array;
-  kept.siemens_per_count = database.siemens_per_count;
-  for (std::size_t k = 0; k < database.samples.size(); ++k) {
-    if (!is_left_out[k]) kept.samples.push_back(database.samples[k]);
-  }
-  return kept;
-}
-
 struct HeldOutErrors {
   double without = 0.0;
   double with = 0.0;
@@ -125,25 +156,36 @@ std::optional<HeldOutErrors> held_out_errors(const SampleDatabase& database, con
   HeldOutErrors errors;
   for (std::size_t fold = 0; fold < kFolds; ++fold) {
     const std::vector<KnownLoad> held_out = loads_of_fold(loads, fold);
-    const SampleDatabase kept = without(database, held_out);
-    const Result<ForceTraining> plain = train_force_networks(kept);
+    std::vector<bool> is_left_out(database.samples.size());
+    for (const KnownLoad& load : held_out) is_left_out[load.sample] = true;
+    const SampleDatabase kept = without(database, is_left_out);
+    const Result<ForceTraining> plain = train_on_some(kept);
     if (!plain) return std::nullopt;
     const std::optional<Fitted> fitted = fit(kept, history, plain->networks, start, kRoundsOfFold);
     if (!fitted) return std::nullopt;
+    const Result<ForceTraining> training = train_on_some(fitted->felt);
+    if (!training) return std::nullopt;
     const FeltHistory of_plain = felt_history(history, plain->networks);
-    const FeltHistory felt = felt_history(history, fitted->training.networks);
+    const FeltHistory felt = felt_history(history, training->networks);
     errors.without += mean_error(held_out, freed_loads(of_plain, held_out, {})) / kFolds;
     errors.with += mean_error(held_out, freed_loads(felt, held_out, fitted->law)) / kFolds;
   }
   return errors;
 }
 
+Nanos usual_interval(const std::vector<Nanos>& times) {
+  std::vector<Nanos> intervals;
+  for (std::size_t k = 1; k < times.size(); ++k) intervals.push_back(times[k] - times[k - 1]);
+  return intervals.empty() ? Nanos{} : upper_median(std::move(intervals));
+}
+
 /// Each piece after a pause is told as a recording of its own, which begins earlier than the last one ended.
 std::vector<Nanos> times_of_pieces(const std::vector<Nanos>& times) {
+  const Nanos pause = std::max(kLeastPause, kIntervalsOfPause * usual_interval(times));
   std::vector<Nanos> of_pieces;
   Nanos begin = times.front();
   for (std::size_t k = 0; k < times.size(); ++k) {
-    if (k > 0 && times[k] - times[k - 1] > kPause) begin = times[k];
+    if (k > 0 && times[k] - times[k - 1] > pause) begin = times[k];
     of_pieces.push_back(times[k] - begin);
   }
   return of_pieces;
@@ -183,6 +225,14 @@ void observe_loads(const std::vector<KnownLoad>& loads, const LoadHistory& histo
   }
 }
 
+/// Some taxel is known to carry a load in both.
+bool is_pressed_in_both(const Sample& before, const Sample& sample) {
+  for (std::size_t taxel = 0; taxel < sample.known_newtons.size(); ++taxel) {
+    if (before.known_newtons[taxel] > 0.0F && sample.known_newtons[taxel] > 0.0F) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string describe(const LearnedMemory& memory) {
@@ -206,14 +256,29 @@ std::string describe(const LearnedMemory& memory) {
     text += fmt::format("; no load lies still for more than {:.2g} s: what comes after is not known",
                         memory.longest_hold_seconds);
   }
+  if (memory.interval_seconds > std::chrono::duration<double>(kMostInterval).count()) {
+    text += fmt::format("; frames are {:.2g} s apart: what comes sooner is not known", memory.interval_seconds);
+  }
   if (!memory.has_unloading) text += "; no load gets lighter without going: unloading is not known";
   return text;
 }
 
+bool loads_follow_each_other(const SampleDatabase& database, std::span<const RawFrame> frames) {
+  if (frames.empty()) return false;
+  std::size_t following = 0;
+  for (std::size_t k = 1; k < database.samples.size(); ++k) {
+    const Sample& sample = database.samples[k];
+    const Sample& before = database.samples[k - 1];
+    const Nanos step = frames[sample.frame].time - frames[before.frame].time;
+    if (step <= kMostStep && is_pressed_in_both(before, sample)) ++following;
+  }
+  return following >= kLeastLoads;
+}
+
 bool is_continuous(std::span<const RawFrame> frames) {
-  std::vector<Nanos> intervals;
-  for (std::size_t k = 1; k < frames.size(); ++k) intervals.push_back(frames[k].time - frames[k - 1].time);
-  return !intervals.empty() && upper_median(std::move(intervals)) <= kMostInterval;
+  std::vector<Nanos> times;
+  for (const RawFrame& frame : frames) times.push_back(frame.time);
+  return times.size() > 1 && usual_interval(times) <= kMostInterval;
 }
 
 std::optional<LearnedMemory> learn_memory(const SampleDatabase& database, std::span<const RawFrame> frames,
@@ -224,6 +289,7 @@ std::optional<LearnedMemory> learn_memory(const SampleDatabase& database, std::s
   if (loads.size() < kLeastLoads) return std::nullopt;
   LearnedMemory memory;
   observe_loads(loads, *history, memory);
+  memory.interval_seconds = std::chrono::duration<double>(usual_interval(history->time)).count();
   fusion::MemoryLaw start = kStart;
   if (!memory.has_unloading) start.gap = {};  // a loop of which one side was not seen would be a guess
   history->time = likelier_times(*history, loads, plain.networks, start);
@@ -231,9 +297,11 @@ std::optional<LearnedMemory> learn_memory(const SampleDatabase& database, std::s
   if (!fitted) return std::nullopt;
   const std::optional<HeldOutErrors> errors = held_out_errors(database, *history, start);
   if (!errors || errors->with > kWorthwhile * errors->without) return std::nullopt;
+  Result<ForceTraining> training = train_force_networks(fitted->felt);
+  if (!training) return std::nullopt;
   memory.law = fitted->law;
   memory.felt = std::move(fitted->felt);
-  memory.training = std::move(fitted->training);
+  memory.training = std::move(*training);
   memory.error_without = errors->without;
   memory.error_with = errors->with;
   return memory;

@@ -21,6 +21,7 @@ struct LearnedMemory {
   double error_without = 0.0;         ///< Mean relative errors on loads that the fits did not see, without the law
   double error_with = 0.0;            ///< and with it.
   double longest_hold_seconds = 0.0;  ///< So long the longest load lay still.
+  double interval_seconds = 0.0;      ///< Between frames, the usual one.
   bool has_unloading = false;         ///< Loads got lighter without going.
 };
 
@@ -30,6 +31,10 @@ struct LearnedMemory {
 
 /// The frames are so close in time that most loads are seen as they come, lie and go.
 [[nodiscard]] bool is_continuous(std::span<const RawFrame> frames);
+
+/// Labels name loads on the same taxels at least every 1.5 s: slower frames tell of memory, too. `frames`: the
+/// recording of `database`, or empty.
+[[nodiscard]] bool loads_follow_each_other(const SampleDatabase& database, std::span<const RawFrame> frames);
 
 /// Learns the law of MaterialMemory from a continuous recording with labels: networks give what the material feels in
 /// every frame, labelled or not; the law is what frees these forces best from their past where the load is known; and
