@@ -99,13 +99,13 @@ TEST(GainChange, few_weights_make_aged_sheets_better_and_not_worse) {
 }
 
 /// A sheet of 4 x 4 taxels that reads its gains times the forces, at 10 frames a second.
-struct Recording {
+struct PlayedPresses {
   pipeline::Model model = support::hand_made_model(kLines, kLines);
   std::vector<double> gains = std::vector<double>(kTaxels, 1.0);
   std::vector<RawFrame> frames;
   std::vector<Load> loads;
 
-  Recording() { hold({}, 0.0, 20); }
+  PlayedPresses() { hold({}, 0.0, 20); }
 
   /// `newtons` on each of the taxels for some frames, which have labels where there is one.
   void hold(const std::vector<std::size_t>& taxels, double newtons, std::size_t count, std::optional<Load> label = {}) {
@@ -122,7 +122,7 @@ struct Recording {
     std::vector<double> ratio(kTaxels);
     simulation::ReadoutCircuit::create(model.array)->ratios(siemens, ratio);
     for (std::size_t k = 0; k < kTaxels; ++k) {
-      raw.counts[k] = static_cast<std::uint32_t>(std::lround(ratio[k] * model.array.readout.full_scale_counts()));
+      raw.counts[k] = static_cast<float>(std::lround(ratio[k] * model.array.readout.full_scale_counts()));
     }
     for (; count > 0; --count) {
       raw.time = frames.size() * std::chrono::milliseconds(100);
@@ -149,78 +149,78 @@ struct Recording {
 };
 
 TEST(Recalibration, a_known_weight_on_one_taxel_mends_all_taxels) {
-  Recording recording;
-  recording.gains.assign(kTaxels, 1.1);
-  recording.weigh(5, 5.0);
-  recording.hold({10}, 8.0, 1);
-  const std::size_t last = recording.frames.size() - 1;
-  EXPECT_NEAR(recording.read(recording.model, last)[10], 8.8, 0.02);
-  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  PlayedPresses played;
+  played.gains.assign(kTaxels, 1.1);
+  played.weigh(5, 5.0);
+  played.hold({10}, 8.0, 1);
+  const std::size_t last = played.frames.size() - 1;
+  EXPECT_NEAR(played.read(played.model, last)[10], 8.8, 0.02);
+  const Result<Recalibration> made = recalibrate(played.model, played.frames, played.loads);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made->presses, 1U);
-  EXPECT_NEAR(recording.read(made->model, last)[10], 8.0, 0.03);
+  EXPECT_NEAR(played.read(made->model, last)[10], 8.0, 0.03);
   EXPECT_NE(describe(*made).find("the sheet read 10.0 % too much"), std::string::npos) << describe(*made);
-  EXPECT_EQ(made->model.networks.parameters, recording.model.networks.parameters);
+  EXPECT_EQ(made->model.networks.parameters, played.model.networks.parameters);
 }
 
 TEST(Recalibration, tables_and_heaviest_loads_are_scaled_with_their_taxels) {
-  Recording recording;
-  fusion::ForceNetworks& networks = recording.model.networks;
+  PlayedPresses played;
+  fusion::ForceNetworks& networks = played.model.networks;
   networks.heaviest_newtons.assign(kTaxels, 20.0F);
   networks.tables = {{10}, 2, {1e-4F, 5e-3F}, {1.0F, 40.0F}, {0.0F}};
-  recording.gains.assign(kTaxels, 1.1);
-  recording.weigh(5, 5.0);
-  recording.hold({10}, 8.0, 1);
-  const std::size_t last = recording.frames.size() - 1;
-  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  played.gains.assign(kTaxels, 1.1);
+  played.weigh(5, 5.0);
+  played.hold({10}, 8.0, 1);
+  const std::size_t last = played.frames.size() - 1;
+  const Result<Recalibration> made = recalibrate(played.model, played.frames, played.loads);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_NEAR(made->model.networks.heaviest_newtons[0], 20.0 / 1.1, 0.05);
-  EXPECT_NEAR(recording.read(made->model, last)[10] / recording.read(recording.model, last)[10], 1.0 / 1.1, 0.003);
+  EXPECT_NEAR(played.read(made->model, last)[10] / played.read(played.model, last)[10], 1.0 / 1.1, 0.003);
   EXPECT_TRUE(made->model.networks.is_consistent());
 }
 
 TEST(Recalibration, comes_on_top_of_the_one_before) {
-  Recording recording;
-  recording.gains.assign(kTaxels, 1.1);
-  recording.weigh(5, 5.0);
-  const pipeline::Model once = recalibrate(recording.model, recording.frames, recording.loads)->model;
-  const Result<Recalibration> twice = recalibrate(once, recording.frames, recording.loads);
+  PlayedPresses played;
+  played.gains.assign(kTaxels, 1.1);
+  played.weigh(5, 5.0);
+  const pipeline::Model once = recalibrate(played.model, played.frames, played.loads)->model;
+  const Result<Recalibration> twice = recalibrate(once, played.frames, played.loads);
   ASSERT_TRUE(twice);
   EXPECT_NEAR(twice->change.sheet, 0.0, 0.001);
   EXPECT_NEAR(twice->model.networks.gain[0], 1.0 / 1.1, 0.002);
 }
 
 TEST(Recalibration, weights_on_several_taxels_mend_each) {
-  Recording recording;
-  for (std::size_t k = 0; k < kTaxels; ++k) recording.gains[k] = k % 2 == 0 ? 1.1 : 0.9;
-  for (std::size_t k = 0; k < 8; ++k) recording.weigh(k, 5.0);
-  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  PlayedPresses played;
+  for (std::size_t k = 0; k < kTaxels; ++k) played.gains[k] = k % 2 == 0 ? 1.1 : 0.9;
+  for (std::size_t k = 0; k < 8; ++k) played.weigh(k, 5.0);
+  const Result<Recalibration> made = recalibrate(played.model, played.frames, played.loads);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_EQ(made->taxels, 8U);
-  for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(made->model.networks.gain[k] * recording.gains[k], 1.0, 0.01);
+  for (std::size_t k = 0; k < 8; ++k) EXPECT_NEAR(made->model.networks.gain[k] * played.gains[k], 1.0, 0.01);
 }
 
 TEST(Recalibration, a_press_with_several_labels_is_one_and_two_presses_in_a_place_are_two) {
-  Recording recording;
-  recording.weigh(5, 5.0);
-  recording.weigh(5, 5.0);
-  EXPECT_EQ(recalibrate(recording.model, recording.frames, recording.loads)->presses, 2U);
+  PlayedPresses played;
+  played.weigh(5, 5.0);
+  played.weigh(5, 5.0);
+  EXPECT_EQ(recalibrate(played.model, played.frames, played.loads)->presses, 2U);
 }
 
 TEST(Recalibration, a_weight_on_several_taxels_is_held_against_their_sum) {
-  Recording recording;
-  recording.gains.assign(kTaxels, 0.9);
-  recording.hold({0, 1, 4, 5}, 2.0, 10, Load{0, LoadKind::force, {0, 0, 1, 1}, 8.0});
-  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  PlayedPresses played;
+  played.gains.assign(kTaxels, 0.9);
+  played.hold({0, 1, 4, 5}, 2.0, 10, Load{0, LoadKind::force, {0, 0, 1, 1}, 8.0});
+  const Result<Recalibration> made = recalibrate(played.model, played.frames, played.loads);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_NEAR(made->change.sheet, -std::log(0.9), 0.002);
 }
 
 TEST(Recalibration, needs_a_load_that_has_a_force) {
-  Recording recording;
-  EXPECT_FALSE(recalibrate(recording.model, recording.frames, recording.loads));
-  recording.hold({}, 0.0, 5, Load{0, LoadKind::force, {0, 0, 0, 0}, 5.0});
-  const Result<Recalibration> made = recalibrate(recording.model, recording.frames, recording.loads);
+  PlayedPresses played;
+  EXPECT_FALSE(recalibrate(played.model, played.frames, played.loads));
+  played.hold({}, 0.0, 5, Load{0, LoadKind::force, {0, 0, 0, 0}, 5.0});
+  const Result<Recalibration> made = recalibrate(played.model, played.frames, played.loads);
   ASSERT_FALSE(made);
   EXPECT_NE(made.error().message.find("a known weight is needed"), std::string::npos);
 }
