@@ -137,6 +137,7 @@ AgeingEvidence AgeingMonitor::evidence() const {
   double weights = 0.0;
   double square_weights = 0.0;
   double products = 0.0;
+  double square_products = 0.0;
   double squares = 0.0;  // of the differences of the two means: they are of different touches
   for (const Block& block : blocks_) {
     if (block.weight[0] == 0.0F || block.weight[1] == 0.0F) continue;
@@ -147,6 +148,7 @@ AgeingEvidence AgeingMonitor::evidence() const {
     weights += weight;
     square_weights += weight * weight;
     products += weight * one * other;
+    square_products += weight * one * other * one * other;
     squares += weight * (one - other) * (one - other);
   }
   AgeingEvidence evidence;
@@ -158,7 +160,10 @@ AgeingEvidence AgeingMonitor::evidence() const {
   if (evidence.blocks < kLeastBlocks) return evidence;
   const double variance = std::max(products / weights, 0.0);
   const double scatter = squares / weights;  // twice the variance of a mean
-  const double sigma = std::sqrt(kSharing * (variance * scatter + 0.25 * scatter * scatter) / blocks);
+  // A few squares between two touches may stand out: how the products differ counts, too.
+  const double of_products = std::max(square_products / weights - variance * variance, 0.0);
+  const double of_touches = variance * scatter + 0.25 * scatter * scatter;
+  const double sigma = std::sqrt(kSharing * std::max(of_products, of_touches) / blocks);
   const double spread = std::sqrt(variance / kVariances);
   evidence.gain_spread = spread;
   evidence.spread_sigma = sigma / (2.0 * kVariances * std::max(spread, std::sqrt(sigma / kVariances)));
