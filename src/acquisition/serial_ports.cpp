@@ -42,7 +42,7 @@ std::string product_of(const fs::path& sys, const std::string& name) {
   std::error_code error;
   fs::path folder = fs::canonical(sys / "class" / "tty" / name / "device", error);
   for (int parent = 0; !error && parent < kMostParents; ++parent) {
-    if (const std::string product = line_of(folder / "product"); !product.empty()) return product;
+    if (std::string product = line_of(folder / "product"); !product.empty()) return product;
     folder = folder.parent_path();
   }
   return {};
