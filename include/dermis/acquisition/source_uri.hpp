@@ -29,7 +29,7 @@ enum class Transport {
 };
 
 /// A parsed URI. A missing parameter has its default. A parameter that does not suit the transport is an error of the
-/// parser.
+/// parser. Many members: each is a parameter of a URI.
 struct SourceUri {
   std::string text;  ///< As it was given.
   Transport transport = Transport::file;

@@ -19,7 +19,7 @@ struct TemperatureRange {
   double hottest_celsius = 0.0;
 };
 
-/// What the frames of an array say about its health.
+/// What the frames of an array say about its health. Many members: reports show each of them.
 struct Diagnosis {
   std::size_t frames = 0;
   std::size_t frames_rejected = 0;

@@ -19,7 +19,7 @@ namespace dermis::simulation {
 inline constexpr double kPaperDiscAreaM2 = 38.48e-6;
 
 /// A piece of conductive rubber under one array. The defaults are the reference array of the project (the 10 % grade).
-/// docs/simulation.md has the source of each value, and what is assumed.
+/// docs/simulation.md has the source of each value, and what is assumed. Many members: each is a key of physics.toml.
 struct RubberOptions {
   std::uint64_t seed = 1;  ///< Identifies the piece: the same seed gives the same taxel scatter in every scene.
 
