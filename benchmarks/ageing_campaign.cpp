@@ -124,8 +124,9 @@ class SheetAtWork {
     std::vector<double> foot(lines * lines);
     double sum = 0.0;
     for (std::size_t k = 0; k < foot.size(); ++k) {
+      const std::size_t row = k / lines;
       const double dx = static_cast<double>(k % lines) - x;
-      const double dy = static_cast<double>(k / lines) - y;
+      const double dy = static_cast<double>(row) - y;
       foot[k] = std::exp(-(dx * dx + dy * dy) / (2.0 * kFootPitches * kFootPitches));
       if (foot[k] < 0.01) foot[k] = 0.0;
       sum += foot[k];

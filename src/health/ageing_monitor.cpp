@@ -143,8 +143,8 @@ AgeingEvidence AgeingMonitor::evidence() const {
     if (block.weight[0] == 0.0F || block.weight[1] == 0.0F) continue;
     const double weight =
         1.0 / (1.0 / static_cast<double>(block.weight[0]) + 1.0 / static_cast<double>(block.weight[1]));
-    const double one = static_cast<double>(block.mean[0]);
-    const double other = static_cast<double>(block.mean[1]);
+    const auto one = static_cast<double>(block.mean[0]);
+    const auto other = static_cast<double>(block.mean[1]);
     weights += weight;
     square_weights += weight * weight;
     products += weight * one * other;

@@ -108,14 +108,20 @@ void WeightCheck::add(const ForceFrame& force) {
 }
 
 void WeightCheck::hold(Nanos time) {
-  if (!press_) press_.emplace().onset = time;
+  if (!press_) {
+    press_ = Press{};
+    press_->onset = time;
+  }
   if (time - press_->onset < kOnset) return;
   std::optional<Piece>& piece = press_->piece;
   if (piece && time - piece->begin >= kPiece && piece->frames >= kLeastFrames) {
     close_piece(*press_);
     piece.reset();
   }
-  if (!piece) piece.emplace().begin = time;
+  if (!piece) {
+    piece = Piece{};
+    piece->begin = time;
+  }
   ++piece->frames;
   piece->sum_n += report_.total_force_n;
   piece->sum_square += report_.total_force_n * report_.total_force_n;

@@ -241,8 +241,11 @@ Status open_together(const SuitDescription& described, const sources::SourceOpti
   Status all = Done{};
   for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
     Opened source = opening[k].get();
-    if (source) suit.arrays[k].source = *std::move(source);
-    if (!source && all) all = source.error();
+    if (!source) {
+      if (all) all = source.error();
+      continue;
+    }
+    suit.arrays[k].source = *std::move(source);
   }
   return all;
 }

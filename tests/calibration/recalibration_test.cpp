@@ -88,7 +88,7 @@ TEST(GainChange, few_weights_make_aged_sheets_better_and_not_worse) {
   for (const double spread : {0.0, 0.05, 0.1}) {
     for (const double sigma : {0.01, 0.06}) {
       double last = std::numeric_limits<double>::infinity();
-      for (const std::size_t presses : {1, 3, 5, 10, 16}) {
+      for (const std::size_t presses : {1U, 3U, 5U, 10U, 16U}) {
         const Errors errors = errors_of(presses, 0.1, spread, sigma, random);
         EXPECT_LT(errors.after, errors.before) << spread << " " << sigma << " " << presses;
         EXPECT_LT(errors.after / errors.before, 1.1 * last) << spread << " " << sigma << " " << presses;

@@ -42,7 +42,8 @@ class Sheet {
   void touch(double row, double col, const Profile& profile) {
     std::vector<double> newtons(kTaxels);
     for (std::size_t k = 0; k < kTaxels; ++k) {
-      const double y = static_cast<double>(k / kLines) - row;
+      const std::size_t line = k / kLines;
+      const double y = static_cast<double>(line) - row;
       const double x = static_cast<double>(k % kLines) - col;
       newtons[k] = 10.0 * profile(x, y) * gains_[k] * std::exp(kTouchSigma * random_.normal());
     }

@@ -62,7 +62,7 @@ TEST(LastMinute, gives_a_selection) {
 
 TEST(LastMinute, holds_no_more_than_its_memory) {
   LastMinute minute(2);
-  constexpr std::size_t kTaxels = 128 * 128;
+  constexpr std::size_t kTaxels = std::size_t{128} * 128;
   for (std::int64_t number = 0; number < 400; ++number) minute.keep(0, frame(number, kTaxels));
   const std::size_t bytes = all_of(minute).size() * kTaxels * sizeof(std::uint16_t);
   EXPECT_LE(bytes, LastMinute::kMostBytes / 2);

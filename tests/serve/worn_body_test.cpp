@@ -100,7 +100,7 @@ TEST(WornBody, clients_are_told_its_links_and_where_they_are) {
   const nlohmann::json json = nlohmann::json::parse(suit_json(suit, models));
   EXPECT_EQ(json["arrays"][1]["link"], "forearm");
   EXPECT_EQ(json["arrays"][1]["pose"]["rotation"], (std::vector<double>{0.0, 0.0, 0.0, 1.0}));
-  const nlohmann::json body = json["body"];
+  const nlohmann::json& body = json["body"];
   EXPECT_EQ(body["name"], "arm");
   EXPECT_EQ(body["joints"], std::vector<std::string>{"elbow"});
   EXPECT_EQ(body["links"][1]["pose"]["position"], (std::vector<double>{1.0, 0.0, 0.0}));
@@ -169,7 +169,8 @@ TEST(ReadBody, refuses_other_files_and_what_is_too_large) {
   EXPECT_NE(refusal("robot.dae").find("a body is a .urdf, .stl or .glb"), std::string::npos);
   EXPECT_NE(refusal("none.glb").find("is not there"), std::string::npos);
   EXPECT_NE(refusal("none.urdf").find("none.urdf"), std::string::npos);
-  write_bytes(folder.file("large.stl"), std::string(20'000'001, 'x'));
+  write_bytes(folder.file("large.stl"), "");
+  std::filesystem::resize_file(folder.file("large.stl"), 20'000'001);
   EXPECT_NE(refusal("large.stl").find("more than 20 MB"), std::string::npos);
 }
 

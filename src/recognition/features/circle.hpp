@@ -11,20 +11,20 @@
 namespace dermis::recognition {
 
 /// Angles that part a circle evenly, and the Fourier components of what has a value at each.
-template <std::size_t kAngles>
+template <std::size_t Angles>
 class Circle {
  public:
   Circle() {
-    for (std::size_t i = 0; i < kAngles; ++i) {
-      const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(kAngles);
+    for (std::size_t i = 0; i < Angles; ++i) {
+      const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(Angles);
       cosine_[i] = std::cos(angle);
       sine_[i] = std::sin(angle);
     }
   }
 
   /// Of the i-th angle; it may go round more than once.
-  [[nodiscard]] double cosine(std::size_t i) const noexcept { return cosine_[i % kAngles]; }
-  [[nodiscard]] double sine(std::size_t i) const noexcept { return sine_[i % kAngles]; }
+  [[nodiscard]] double cosine(std::size_t i) const noexcept { return cosine_[i % Angles]; }
+  [[nodiscard]] double sine(std::size_t i) const noexcept { return sine_[i % Angles]; }
 
   /// The squared size of a component of `values`, of which those that are missing at the end are 0.
   [[nodiscard]] double power(std::span<const double> values, std::size_t harmonic) const noexcept {
@@ -38,8 +38,8 @@ class Circle {
   }
 
  private:
-  std::array<double, kAngles> cosine_{};
-  std::array<double, kAngles> sine_{};
+  std::array<double, Angles> cosine_{};
+  std::array<double, Angles> sine_{};
 };
 
 }  // namespace dermis::recognition
