@@ -10,9 +10,9 @@
 
 namespace dermis::importers {
 
-/// The bodies that URDF describes: links, joints, and what is seen of them. Collisions, masses and everything that other
-/// tools read is skipped; planar and floating joints stand still. At most 4 MiB, 512 links, 512 joints and 4096 visuals.
-/// `name` stands for the path in messages: "robot.urdf:7: ...".
+/// The bodies that URDF describes: links, joints, and what is seen of them. Collisions, masses and everything that
+/// other tools read is skipped; planar and floating joints stand still. At most 4 MiB, 512 links, 512 joints and 4096
+/// visuals. `name` stands for the path in messages: "robot.urdf:7: ...".
 [[nodiscard]] Result<Body> body_from_urdf(std::string_view text, const std::string& name);
 
 /// The same from a file.
