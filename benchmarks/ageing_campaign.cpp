@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
+#include "calibrated_model.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/fusion/contact.hpp"
 #include "dermis/health/ageing_monitor.hpp"
@@ -30,7 +30,6 @@
 #include "dermis/simulation/reference_array.hpp"
 #include "dermis/simulation/rubber.hpp"
 #include "dermis/simulation/scene.hpp"
-#include "dermis/simulation/simulator.hpp"
 
 namespace dermis {
 namespace {
@@ -44,13 +43,6 @@ constexpr double kSwingCelsius = 10.0;
 constexpr double kDriftAnHour = 0.02;  // of the unloaded conductance of a taxel, standard deviation
 constexpr double kSecondsOfHour = 3600.0;
 constexpr double kSupplyV = 5.0;
-
-template <typename T>
-T need(Result<T> result) {
-  if (result) return *std::move(result);
-  fmt::print(stderr, "{}\n", result.error().message);
-  std::exit(1);
-}
 
 simulation::RubberOptions sheet(std::uint64_t seed, bool remembers) {
   simulation::RubberOptions rubber;
@@ -66,14 +58,7 @@ pipeline::Model calibrated(const ArrayDescription& array, const simulation::Rubb
   if (rubber.memory) options.scene = {kRateHz, array.taxel_count()};
   const char* const scene = rubber.memory ? "two_weights" : "calibration";
   const auto simulator = need(simulation::Simulator::create(array, options, scene, rubber.seed + 1));
-  std::vector<RawFrame> frames;
-  std::vector<Load> loads;
-  RawFrame frame;
-  while (need(simulator->next(frame))) {
-    frames.push_back(frame);
-    loads.insert(loads.end(), simulator->loads().begin(), simulator->loads().end());
-  }
-  return need(calibration::calibrate(array, frames, loads)).model;
+  return calibrated_model(array, *simulator);
 }
 
 /// A sheet at work, and those who watch its age.

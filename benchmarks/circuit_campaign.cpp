@@ -30,6 +30,7 @@
 #include "dermis/simulation/readout_circuit.hpp"
 #include "dermis/simulation/rubber.hpp"
 #include "dermis/simulation/simulator.hpp"
+#include "need.hpp"
 
 namespace dermis {
 namespace {
@@ -39,13 +40,6 @@ constexpr double kMostRatio = 1.15;   // of a median error to that with the true
 constexpr int kFramesOfMean = 50;     // half a second
 constexpr int kUnloadedFrames = 100;  // single ones, as the guide keeps them
 constexpr std::size_t kTestFrames = 200;
-
-template <typename T>
-T need(Result<T> result) {
-  if (result) return *std::move(result);
-  fmt::print(stderr, "{}\n", result.error().message);
-  std::exit(1);
-}
 
 struct Kind {
   const char* name;

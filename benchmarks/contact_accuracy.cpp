@@ -14,10 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/calibration/calibrate.hpp"
+#include "calibrated_model.hpp"
 #include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/pipeline.hpp"
-#include "dermis/simulation/simulator.hpp"
 #include "support/pressure_patches.hpp"
 #include "support/reference_array.hpp"
 
@@ -26,15 +25,6 @@ namespace {
 
 using support::PressurePatch;
 using support::Profile;
-
-template <typename T>
-T need(Result<T> result) {
-  if (!result) {
-    fmt::print(stderr, "{}\n", result.error().message);
-    std::exit(1);
-  }
-  return *std::move(result);
-}
 
 double percentile(std::vector<double> values, double share) {
   if (values.empty()) return 0.0;
@@ -45,14 +35,7 @@ double percentile(std::vector<double> values, double share) {
 
 pipeline::Model calibrate(const ArrayDescription& array) {
   const auto simulator = need(simulation::Simulator::create(array, {}, "calibration", 1));
-  std::vector<RawFrame> frames;
-  std::vector<Load> loads;
-  RawFrame frame;
-  while (need(simulator->next(frame))) {
-    frames.push_back(frame);
-    loads.insert(loads.end(), simulator->loads().begin(), simulator->loads().end());
-  }
-  return need(calibration::calibrate(array, frames, loads)).model;
+  return calibrated_model(array, *simulator);
 }
 
 /// The simulated array under loads of our own.

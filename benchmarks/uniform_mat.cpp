@@ -24,6 +24,7 @@
 #include "dermis/simulation/adc.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 #include "dermis/simulation/rubber.hpp"
+#include "need.hpp"
 
 namespace dermis {
 namespace {
@@ -40,13 +41,6 @@ constexpr double kNewtonsOfKpa = kPascalsOfKpa * kTaxelAreaM2;
 constexpr double kSupplyV = 5.0;
 constexpr double kLoadOhm = 100e3;
 constexpr double kSecondsOfLoad = 10.0;
-
-template <typename T>
-T need(Result<T> result) {
-  if (result) return *std::move(result);
-  fmt::print(stderr, "{}\n", result.error().message);
-  std::exit(1);
-}
 
 ArrayDescription mat() {
   ArrayDescription array;

@@ -4,14 +4,14 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "check_error.hpp"
 #include "dermis/acquisition/source_uri.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   for (const auto& uri : {dermis::acquisition::parse_source_uri(text), dermis::acquisition::parse_target_uri(text)}) {
     if (!uri) {
-      const bool is_one_line = uri.error().message.find('\n') == std::string::npos;
-      if (uri.error().kind != dermis::ErrorKind::bad_input || !is_one_line) std::abort();
+      dermis::fuzz::check_line(uri.error());
       continue;
     }
     if (!dermis::acquisition::is_source_uri(text) || uri->path.find('\0') != std::string::npos) std::abort();

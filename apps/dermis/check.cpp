@@ -9,8 +9,8 @@
 #include "commands.hpp"
 #include "dermis/health/weight_check.hpp"
 #include "dermis/operation/operation.hpp"
+#include "process_all.hpp"
 #include "source_options.hpp"
-#include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
@@ -30,15 +30,9 @@ struct CheckOptions {
 Result<WeightFinding> weigh(Operation& operation, double weight_n) {
   operation.pipeline.drift().set_options({.track = true});
   health::WeightCheck check(operation.model, weight_n);
-  RawFrame raw;
-  ForceFrame force;
-  while (!stop_flag().load()) {
-    const Result<bool> more = operation.frames->next(raw);
-    if (!more) return more.error();
-    if (!*more) break;
-    operation.pipeline.process(raw, force);
-    check.add(force);
-  }
+  const Status done =
+      process_all(operation, [&](const RawFrame& /*raw*/, const ForceFrame& force) { check.add(force); });
+  if (!done) return done.error();
   return check.finding();
 }
 

@@ -10,8 +10,8 @@
 #include "commands.hpp"
 #include "dermis/health/examination.hpp"
 #include "dermis/operation/operation.hpp"
+#include "process_all.hpp"
 #include "source_options.hpp"
-#include "stop_flag.hpp"
 
 namespace dermis::app {
 namespace {
@@ -69,15 +69,10 @@ void print_json(const Diagnosis& diagnosis, const ArrayDescription& array) {
 
 Result<Diagnosis> examine(Operation& operation) {
   health::Examination examination(operation.model);
-  RawFrame raw;
-  ForceFrame force;
-  while (!stop_flag().load()) {
-    const Result<bool> more = operation.frames->next(raw);
-    if (!more) return more.error();
-    if (!*more) break;
-    operation.pipeline.process(raw, force);
+  const Status done = process_all(operation, [&](const RawFrame& raw, const ForceFrame& force) {
     examination.add(raw, force, operation.pipeline);
-  }
+  });
+  if (!done) return done.error();
   return examination.diagnosis(operation.pipeline);
 }
 

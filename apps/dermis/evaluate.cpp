@@ -7,15 +7,13 @@
 
 #include "commands.hpp"
 #include "dermis/calibration/evaluation.hpp"
-#include "dermis/files/loads_csv.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
-#include "dermis/pipeline/model.hpp"
 #include "dermis/report/evaluation_report.hpp"
 #include "evaluate_classes.hpp"
 #include "example_options.hpp"
 #include "interruption.hpp"
+#include "labelled_recording.hpp"
 #include "report_origin.hpp"
-#include "source_options.hpp"
 
 namespace dermis::app {
 namespace {
@@ -79,23 +77,20 @@ Status check_needed(const EvaluateOptions& options) {
 
 Status evaluate_forces(const EvaluateOptions& options) {
   if (Status checked = check_needed(options); !checked) return checked;
-  const Result<pipeline::Model> model = pipeline::read_model(options.model);
-  if (!model) return model.error();
-  const Result<std::vector<RawFrame>> frames = sources::read_frames(options.frames, source_options(&model->array));
-  if (!frames) return frames.error();
-  const Result<std::vector<Load>> loads = files::read_loads(options.loads, model->array, frames->size());
-  if (!loads) return loads.error();
+  const Result<LabelledRecording> recording = LabelledRecording::read(options.model, options.frames, options.loads);
+  if (!recording) return recording.error();
+  const auto& [model, frames, loads] = *recording;
   std::optional<paper::PaperBank> bank;
   if (!options.bank.empty()) {
     Result<paper::PaperBank> read = paper::read_paper_bank(options.bank);
     if (!read) return read.error();
     bank = std::move(*read);
   }
-  const Result<Evaluation> evaluation = calibration::evaluate(*model, *frames, *loads, bank ? &*bank : nullptr);
+  const Result<Evaluation> evaluation = calibration::evaluate(model, frames, loads, bank ? &*bank : nullptr);
   if (!evaluation) return evaluation.error();
   if (!options.report.empty()) {
-    const report::Origin origin = report_origin({options.frames, options.loads, options.model}, *frames);
-    Status written = report::write_evaluation_report(options.report, *evaluation, *model, origin);
+    const report::Origin origin = report_origin({options.frames, options.loads, options.model}, frames);
+    Status written = report::write_evaluation_report(options.report, *evaluation, model, origin);
     if (!written) return written;
   }
   options.json ? fmt::print("{}\n", calibration::to_json(*evaluation)) : print_text(*evaluation);

@@ -7,10 +7,9 @@
 
 #include "commands.hpp"
 #include "dermis/calibration/recalibration.hpp"
-#include "dermis/files/loads_csv.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "interruption.hpp"
-#include "source_options.hpp"
+#include "labelled_recording.hpp"
 #include "writable.hpp"
 
 namespace dermis::app {
@@ -37,15 +36,12 @@ Status recalibrate(const RecalibrateOptions& options) {
     return bad_input(options.model + ": describes an array, and is no model; 'dermis calibrate' makes one");
   }
   if (Status writable = check_writable(options.out.empty() ? options.model : options.out); !writable) return writable;
-  const Result<pipeline::Model> model = pipeline::read_model(options.model);
-  if (!model) return model.error();
-  const Result<std::vector<RawFrame>> frames = sources::read_frames(options.frames, source_options(&model->array));
-  if (!frames) return frames.error();
-  const Result<std::vector<Load>> loads = files::read_loads(options.loads, model->array, frames->size());
-  if (!loads) return loads.error();
-  const Result<Recalibration> recalibration = calibration::recalibrate(*model, *frames, *loads);
+  const Result<LabelledRecording> recording = LabelledRecording::read(options.model, options.frames, options.loads);
+  if (!recording) return recording.error();
+  const auto& [model, frames, loads] = *recording;
+  const Result<Recalibration> recalibration = calibration::recalibrate(model, frames, loads);
   if (!recalibration) return bad_input(options.loads + ": " + recalibration.error().message);
-  if (Status written = write(options, *model, recalibration->model); !written) return written;
+  if (Status written = write(options, model, recalibration->model); !written) return written;
   fmt::print("{}\n", calibration::describe(*recalibration));
   if (options.out.empty()) fmt::print("the model as it was: {}.before\n", options.model);
   return Done{};

@@ -7,7 +7,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { createServer } from "node:net";
 import { describe, it } from "node:test";
-import { arrayToml, assertUnhurt, becomes, bench, browser, openPage, useBench, VIEWS } from "./harness.mjs";
+import { arrayToml, bench, browser, openPage, shown, useBench, VIEWS } from "./harness.mjs";
 
 const AXE = readFileSync(createRequire(new URL("../npm/package.json", import.meta.url)).resolve("axe-core/axe.min.js"), "utf8");
 const MOST_TABS = 200;
@@ -24,20 +24,7 @@ async function findings(page) {
   });
 }
 
-/** Serves, and shows in these colours. */
-async function shown(command, colorScheme, test) {
-  const server = await bench.serve("--port", "0", ...command);
-  try {
-    const page = await openPage(browser, server.url);
-    await page.emulateMedia({ colorScheme });
-    await becomes(page, "live");
-    await test(page);
-    assertUnhurt(page);
-    await page.close();
-  } finally {
-    await server.stop();
-  }
-}
+const showArray = (command, colorScheme, test) => shown(command, "array", test, colorScheme);
 
 async function open(page, view) {
   await page.locator(`[data-tab=${view}]`).click();
@@ -60,7 +47,7 @@ const live = () => ["--from", "sim:contacts?rate=100", ...bench.model];
 for (const colorScheme of ["light", "dark"]) {
   describe(`axe-core, ${colorScheme}`, () => {
     it("finds nothing serious on any view", async () => {
-      await shown(live(), colorScheme, async (page) => {
+      await showArray(live(), colorScheme, async (page) => {
         await page.locator("[data-contact]").first().waitFor();
         const found = {};
         for (const view of VIEWS) {
@@ -75,7 +62,7 @@ for (const colorScheme of ["light", "dark"]) {
     });
 
     it("finds nothing serious in the dialogs, with pressed buttons, and while a calibration is guided", async () => {
-      await shown(["--from", "sim:rehearsal?rate=100", ...bench.model], colorScheme, async (page) => {
+      await showArray(["--from", "sim:rehearsal?rate=100", ...bench.model], colorScheme, async (page) => {
         const found = {};
         const look = async (state) => {
           const lines = await findings(page);
@@ -99,7 +86,7 @@ for (const colorScheme of ["light", "dark"]) {
 
     it("finds nothing serious where an array is not calibrated, or not described", async () => {
       writeFileSync(bench.path("plain.toml"), arrayToml("plain", 4, 5));
-      await shown(["--from", "sim:contacts?rate=100", "--model", bench.path("plain.toml")], colorScheme, async (page) => {
+      await showArray(["--from", "sim:contacts?rate=100", "--model", bench.path("plain.toml")], colorScheme, async (page) => {
         await page.locator("[data-role=uncalibrated]").waitFor();
         assert.deepEqual(await findings(page), []);
       });
@@ -154,7 +141,7 @@ function focused() {
 
 describe("the keyboard", () => {
   it("reaches every control of every view, and shows where it is", async () => {
-    await shown(live(), "light", async (page) => {
+    await showArray(live(), "light", async (page) => {
       for (const view of VIEWS) {
         await open(page, view);
         if (view === "suit") await page.locator(".array-label").first().waitFor();
@@ -174,7 +161,7 @@ describe("the keyboard", () => {
   });
 
   it("opens views, and draws a region from corner to corner", async () => {
-    await shown(live(), "dark", async (page) => {
+    await showArray(live(), "dark", async (page) => {
       await page.locator("[data-tab=time]").focus();
       await page.keyboard.press("Enter");
       await page.locator("[data-view=time]").waitFor();

@@ -3,15 +3,11 @@
 // Usage: node browser_test.mjs path/to/dermis
 import assert from "node:assert/strict";
 import { describe, it } from "node:test";
-import { assertUnhurt, becomes, bench, browser, freePort, openPage, shown, useBench, WAIT_MS } from "./harness.mjs";
+import { assertUnhurt, becomes, bench, browser, eventually, freePort, openPage, shown, useBench } from "./harness.mjs";
 
 useBench();
 
 const loop = () => ["--from", "sim:contacts?rate=200", ...bench.model];
-
-async function eventually(page, check, argument) {
-  await page.waitForFunction(check, argument, { polling: 50, timeout: WAIT_MS });
-}
 
 /** In the page: whether the maps hold more than two colours. WebGL keeps a drawing only until it is shown, so an
  * animation frame in which nothing was drawn sees an empty canvas: ask again. */

@@ -166,11 +166,17 @@ export function useBench(prepare = () => {}) {
   });
 }
 
-/** Serves and shows for the time of a test. */
-export async function shown(command, view, test) {
+/** Becomes true in the page. */
+export async function eventually(page, check, argument) {
+  await page.waitForFunction(check, argument, { polling: 20, timeout: WAIT_MS });
+}
+
+/** Serves and shows for the time of a test, in the colours of the browser or in these. */
+export async function shown(command, view, test, colorScheme = null) {
   const server = await bench.serve("--port", "0", ...command);
   try {
     const page = await openPage(browser, `${server.url}#/${view}`);
+    await page.emulateMedia({ colorScheme });
     await becomes(page, "live");
     await test(page, server);
     assertUnhurt(page);

@@ -4,29 +4,13 @@
 // What shows a light touch, and what was before: scales, held values, pressures, regions, events.
 import assert from "node:assert/strict";
 import { it } from "node:test";
-import { assertUnhurt, becomes, bench, browser, openPage, useBench, WAIT_MS } from "./harness.mjs";
+import { bench, eventually, shown, useBench } from "./harness.mjs";
 
 const AREA_M2 = 38.48e-6; // as in the harness's array.toml
 
 useBench();
 
-async function shown(test) {
-  const server = await bench.serve("--port", "0", "--from", "sim:contacts?rate=200", ...bench.model);
-  try {
-    const page = await openPage(browser, server.url);
-    await page.emulateMedia({ colorScheme: "light" });
-    await becomes(page, "live");
-    await test(page);
-    assertUnhurt(page);
-    await page.close();
-  } finally {
-    await server.stop();
-  }
-}
-
-async function eventually(page, check, argument) {
-  await page.waitForFunction(check, argument, { polling: 50, timeout: WAIT_MS });
-}
+const showMaps = (test) => shown(["--from", "sim:contacts?rate=200", ...bench.model], "array", test, "light");
 
 const part = (page, role) => page.locator(`[data-role=${role}]`);
 const numberIn = (text) => Number(text.replace("\u2212", "-").replace(/[^-\d.]/g, ""));
@@ -61,7 +45,7 @@ function hasDots([place, tone, isWanted]) {
 }
 
 it("steps a scale by itself where that is chosen, and says so", async () => {
-  await shown(async (page) => {
+  await showMaps(async (page) => {
     const scale = part(page, "scale-force");
     await scale.selectOption("fit now");
     assert.match(await scale.locator("option:checked").textContent(), /^0 \u2013 [\d.]+ N$/);
@@ -72,7 +56,7 @@ it("steps a scale by itself where that is chosen, and says so", async () => {
 });
 
 it("marks values beyond the scale", async () => {
-  await shown(async (page) => {
+  await showMaps(async (page) => {
     await part(page, "show-contacts").uncheck();
     await part(page, "scale-raw").selectOption("0 \u2013 4095 counts");
     await part(page, "scale-conductance").selectOption("0 \u2013 20 mS");
@@ -92,7 +76,7 @@ it("marks values beyond the scale", async () => {
 });
 
 it("shows the pressure of a taxel: its force over its area", async () => {
-  await shown(async (page) => {
+  await showMaps(async (page) => {
     await pointAt(page);
     await eventually(page, () => parseFloat(document.querySelector("[data-role=cursor] [data-field=newtons]").textContent) > 0.05);
     await part(page, "pause").click();
@@ -105,7 +89,7 @@ it("shows the pressure of a taxel: its force over its area", async () => {
 });
 
 it("holds the highest value of a taxel until it is reset", async () => {
-  await shown(async (page) => {
+  await showMaps(async (page) => {
     await pointAt(page);
     await part(page, "share").selectOption("highest since reset");
     const newtons = () => page.locator("[data-role=cursor] [data-field=newtons]").textContent().then(numberIn);
@@ -125,7 +109,7 @@ it("holds the highest value of a taxel until it is reset", async () => {
 });
 
 it("plots the force on a region that was drawn, and events", async () => {
-  await shown(async (page) => {
+  await showMaps(async (page) => {
     await part(page, "show-centre").check();
     await eventually(page, () => / mm$/.test(document.querySelector("[data-role=centre]").textContent));
     const plot = await page.locator("[aria-label='Force map'] .map-plot").boundingBox();

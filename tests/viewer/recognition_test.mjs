@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { it } from "node:test";
-import { bench, shown, useBench, WAIT_MS } from "./harness.mjs";
+import { bench, eventually, shown, useBench } from "./harness.mjs";
 
 const [ROWS, COLS] = [4, 5];
 const LIMITS = `[[zone]]
@@ -53,10 +53,6 @@ useBench(() => {
 const showContacts = (view, test, ...options) => shown(["--from", "sim:contacts?rate=200", ...bench.model, ...options], view, test);
 
 const served = () => ["--classes", bench.path("classes.safetensors"), "--threats", bench.path("threats.toml")];
-
-async function eventually(page, check, argument) {
-  await page.waitForFunction(check, argument, { polling: 20, timeout: WAIT_MS });
-}
 
 it("shows a bar for each class, the answer, and unknown with its reason", async () => {
   await showContacts("recognition", async (page) => {

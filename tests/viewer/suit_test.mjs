@@ -7,7 +7,7 @@ import assert from "node:assert/strict";
 import { writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { it } from "node:test";
-import { assertUnhurt, becomes, bench, browser, openPage, useBench, WAIT_MS } from "./harness.mjs";
+import { becomes, bench, eventually, shown, useBench, WAIT_MS } from "./harness.mjs";
 
 const require = createRequire(new URL("../npm/package.json", import.meta.url));
 const { FoxgloveClient } = require("@foxglove/ws-protocol");
@@ -77,19 +77,11 @@ ${links ? `link = "${link}"\n` : ""}base_from_array = {translation_mm = [${links
   writeFileSync(bench.path("suit.toml"), `[suit]\n${suit}\n${array("chest", 1, "trunk", 0)}${array("arm", 2, "forearm", 200)}`);
 }
 
-async function shown(test) {
-  const server = await bench.serve("--port", "0", "--suit", "suit.toml");
-  try {
-    const page = await openPage(browser, `${server.url}#/suit`);
-    await becomes(page, "live");
-    await page.waitForFunction(() => document.querySelectorAll(".array-label:not([hidden])").length === 2, undefined, { timeout: WAIT_MS });
+const showSuit = (test) =>
+  shown(["--suit", "suit.toml"], "suit", async (page, server) => {
+    await eventually(page, () => document.querySelectorAll(".array-label:not([hidden])").length === 2);
     await test(page, server);
-    assertUnhurt(page);
-    await page.close();
-  } finally {
-    await server.stop();
-  }
-}
+  });
 
 /** In the page: labels that lie over one another or out of the picture, a line each. */
 function faultsOfLabels() {
@@ -137,7 +129,7 @@ const leftOf = (page, name) => page.locator(`.array-label[data-array=${name}]`).
 it("shows a body, and its labels are apart", async () => {
   writeSuit('body = "arm.urdf"', true);
   writeFileSync(bench.path("arm.urdf"), urdf("head.glb"));
-  await shown(async (page) => {
+  await showSuit(async (page) => {
     const files = [];
     page.on("response", (response) => /\/body\//.test(response.url()) && files.push(response.status()));
     await page.reload();
@@ -157,7 +149,7 @@ it("shows a body, and its labels are apart", async () => {
 it("moves a link and its array as a client of the stream says", async () => {
   writeSuit('body = "arm.urdf"', true);
   writeFileSync(bench.path("arm.urdf"), urdf("head.glb"));
-  await shown(async (page, server) => {
+  await showSuit(async (page, server) => {
     const [arm, chest] = [await leftOf(page, "arm"), await leftOf(page, "chest")];
     assert.deepEqual(await call(server, "/body/joints", { name: ["slide"], position: [0.1] }), {});
     await page.waitForFunction(
@@ -173,12 +165,12 @@ it("moves a link and its array as a client of the stream says", async () => {
 it("says which mesh of a body cannot be shown", async () => {
   writeSuit('body = "arm.urdf"', true);
   writeFileSync(bench.path("arm.urdf"), urdf("broken.glb"));
-  await shown(async (page) => {
+  await showSuit(async (page) => {
     await page.locator("[data-role=notice]", { hasText: "broken.glb" }).waitFor();
   });
 });
 
 it("shows a mannequin where nothing is known of the body", async () => {
   writeSuit("", false);
-  await shown(labelsAreApart);
+  await showSuit(labelsAreApart);
 });

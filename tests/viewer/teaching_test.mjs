@@ -5,7 +5,7 @@
 import assert from "node:assert/strict";
 import { readdirSync, writeFileSync } from "node:fs";
 import { it } from "node:test";
-import { assertUnhurt, becomes, bench, browser, openPage, readCsv, useBench, WAIT_MS } from "./harness.mjs";
+import { assertUnhurt, becomes, bench, browser, eventually, openPage, readCsv, useBench, WAIT_MS } from "./harness.mjs";
 
 const [ROWS, COLS] = [8, 8];
 const HZ = 50;
@@ -68,10 +68,6 @@ function recordTouches() {
 useBench(recordTouches);
 
 const part = (page, role) => page.locator(`[data-role=${role}]`);
-
-async function eventually(page, check, argument) {
-  await page.waitForFunction(check, argument, { polling: 20, timeout: WAIT_MS });
-}
 
 async function play(page, isToPlay) {
   const isPlaying = (await part(page, "play").textContent()) === "Pause";

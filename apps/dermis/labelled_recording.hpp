@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/pipeline/model.hpp"
+
+namespace dermis::app {
+
+/// A model, and frames of its array under known loads.
+struct LabelledRecording {
+  pipeline::Model model;
+  std::vector<RawFrame> frames;
+  std::vector<Load> loads;
+
+  /// The three files.
+  [[nodiscard]] static Result<LabelledRecording> read(const std::string& model, const std::string& frames,
+                                                      const std::string& loads);
+};
+
+}  // namespace dermis::app
