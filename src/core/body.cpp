@@ -51,6 +51,7 @@ Status check_names(const Body& body) {
 
 Status make_axes_unit(std::vector<BodyJoint>& joints) {
   for (BodyJoint& joint : joints) {
+    if (joint.kind == BodyJoint::Kind::fixed) continue;
     const double length = std::sqrt(dot(joint.axis, joint.axis));
     if (!(length > kShortestAxis)) return bad_input("joint '" + joint.name + "': its axis has no direction");
     joint.axis = 1.0 / length * joint.axis;
@@ -126,6 +127,10 @@ std::vector<Pose> link_poses(const Body& body, std::span<const double> positions
   return poses;
 }
 
+std::vector<Pose> rest_poses(const Body& body) {
+  return link_poses(body, std::vector<double>(body.joints.size(), 0.0));
+}
+
 Pose chained(const Pose& a_from_b, const Pose& b_from_c) noexcept {
   return {moved(a_from_b, b_from_c.translation), product(a_from_b.rotation, b_from_c.rotation)};
 }
@@ -145,7 +150,16 @@ Vector3 turned(const Pose& move, const Vector3& direction) noexcept {
 }
 
 Quaternion rotation_of(double roll, double pitch, double yaw) noexcept {
-  return product(about({0.0, 0.0, 1.0}, yaw), product(about({0.0, 1.0, 0.0}, pitch), about({1.0, 0.0, 0.0}, roll)));
+  const double cr = std::cos(0.5 * roll);
+  const double sr = std::sin(0.5 * roll);
+  const double cp = std::cos(0.5 * pitch);
+  const double sp = std::sin(0.5 * pitch);
+  const double cy = std::cos(0.5 * yaw);
+  const double sy = std::sin(0.5 * yaw);
+  return {.x = sr * cp * cy - cr * sp * sy,
+          .y = cr * sp * cy + sr * cp * sy,
+          .z = cr * cp * sy - sr * sp * cy,
+          .w = cr * cp * cy + sr * sp * sy};
 }
 
 }  // namespace dermis

@@ -5,12 +5,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <optional>
 #include <utility>
 
+#include "dermis/core/body.hpp"
 #include "dermis/core/millimetres.hpp"
 #include "dermis/files/config_table.hpp"
 
@@ -31,21 +31,6 @@ std::string path_beside(const std::string& suit_file, const std::string& path) {
   return path.empty() ? path : (std::filesystem::path(suit_file).parent_path() / path).string();
 }
 
-/// About the fixed axes x, then y, then z.
-Quaternion rotation_from(const std::vector<double>& roll_pitch_yaw_deg) {
-  const auto half = [&](std::size_t k) { return 0.5 * roll_pitch_yaw_deg[k] / kDegreesPerRadian; };
-  const double cr = std::cos(half(0));
-  const double sr = std::sin(half(0));
-  const double cp = std::cos(half(1));
-  const double sp = std::sin(half(1));
-  const double cy = std::cos(half(2));
-  const double sy = std::sin(half(2));
-  return {.x = sr * cp * cy - cr * sp * sy,
-          .y = cr * sp * cy + sr * cp * sy,
-          .z = cr * cp * sy - sr * sp * cy,
-          .w = cr * cp * cy + sr * sp * sy};
-}
-
 Vector3 metres_from(const std::vector<double>& mm) {
   return {mm[0] / kMillimetresPerMetre, mm[1] / kMillimetresPerMetre, mm[2] / kMillimetresPerMetre};
 }
@@ -55,7 +40,8 @@ void read_pose(ConfigFile& file, const std::string& key, Pose& pose) {
   std::vector<double> rotation_deg(3, 0.0);
   file.numbers(key + ".translation_mm", 3, translation_mm);
   file.numbers(key + ".rotation_deg", 3, rotation_deg);
-  pose = {metres_from(translation_mm), rotation_from(rotation_deg)};
+  const auto radians = [&](std::size_t k) { return rotation_deg[k] / kDegreesPerRadian; };
+  pose = {metres_from(translation_mm), rotation_of(radians(0), radians(1), radians(2))};
 }
 
 /// Empty where the array is not wound round a cylinder.

@@ -36,6 +36,7 @@ using Rgba = std::array<double, 4>;
 /// A joint whose links are still names.
 struct NamedJoint {
   BodyJoint joint;
+  bool has_limits = true;
   std::string parent;
   std::string child;
 };
@@ -193,7 +194,7 @@ void UrdfReader::start_joint(const Attributes& attributes) {
   const bool is_known =
       joint.kind != BodyJoint::Kind::fixed || type == "fixed" || type == "floating" || type == "planar";
   if (!is_known) fail("joint '" + joint.name + "': '" + type + "' is no type of a joint");
-  joints_.push_back({std::move(joint), {}, {}});
+  joints_.push_back({std::move(joint), type != "continuous", {}, {}});
 }
 
 void UrdfReader::start_visual() {
@@ -275,6 +276,7 @@ void UrdfReader::take_limit(const Attributes& attributes) {
   std::array<double, 1> highest{};
   numbers(attributes, "lower", lowest);
   numbers(attributes, "upper", highest);
+  if (!joints_.back().has_limits) return;
   joints_.back().joint.lowest = lowest[0];
   joints_.back().joint.highest = highest[0];
 }

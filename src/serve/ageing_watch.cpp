@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "serve/ageing_watch.hpp"
 
+#include <utility>
+
 namespace dermis::serve {
 
 AgeingWatch::AgeingWatch(const ServedSuit& suit) {
@@ -22,8 +24,9 @@ health::AgeingEvidence AgeingWatch::evidence(std::size_t array) const {
 
 void AgeingWatch::begin_anew(std::size_t array, const pipeline::Model& model) {
   Watched& watched = arrays_[array];
+  health::AgeingMonitor fresh(model);
   const std::lock_guard lock(watched.mutex);
-  watched.monitor = health::AgeingMonitor(model);
+  watched.monitor = std::move(fresh);
 }
 
 }  // namespace dermis::serve

@@ -17,15 +17,16 @@ bool is_older(Nanos time, Nanos than, Nanos by) {
   return static_cast<double>(than.count()) - static_cast<double>(time.count()) > static_cast<double>(by.count());
 }
 
-void fill(RawFrame& frame, std::vector<std::uint16_t>& whole, const RawFrame& from) {
+void fill(RawFrame& frame, std::vector<std::uint16_t>& whole, const RawFrame& from, bool is_whole) {
   frame.time = from.time;
   frame.temperature_celsius = from.temperature_celsius;
   frame.supply_v = from.supply_v;
   frame.acquisition = from.acquisition;
   frame.counts.clear();
   whole.clear();
-  if (files::fit_u16(from.counts)) {
-    for (const float count : from.counts) whole.push_back(static_cast<std::uint16_t>(count));
+  if (is_whole) {
+    whole.resize(from.counts.size());
+    std::ranges::transform(from.counts, whole.begin(), [](float count) { return static_cast<std::uint16_t>(count); });
   } else {
     frame.counts = from.counts;
   }
@@ -44,17 +45,18 @@ std::size_t LastMinute::most_frames(std::size_t taxels) const noexcept {
 void LastMinute::keep(std::size_t array, const RawFrame& frame) {
   Track& track = tracks_[array];
   std::deque<Kept>& kept = track.kept;
+  const bool is_whole = files::fit_u16(frame.counts);
   const std::lock_guard lock(track.mutex);
   if (!kept.empty() && frame.time == kept.back().frame.time) return;  // shown again
   if (!kept.empty() && frame.time < kept.back().frame.time) kept.clear();
-  const std::size_t most = most_frames(files::fit_u16(frame.counts) ? frame.counts.size() : 2 * frame.counts.size());
+  const std::size_t most = most_frames(is_whole ? frame.counts.size() : 2 * frame.counts.size());
   const auto is_too_old = [&] { return !kept.empty() && is_older(kept.front().frame.time, frame.time, kLongest); };
   Kept next;
   while (is_too_old() || kept.size() >= most) {
     next = std::move(kept.front());  // its room is used again
     kept.pop_front();
   }
-  fill(next.frame, next.whole, frame);
+  fill(next.frame, next.whole, frame, is_whole);
   kept.push_back(std::move(next));
 }
 

@@ -9,7 +9,7 @@ namespace dermis::serve {
 PlayedRecording::PlayedRecording(SessionOptions options, PlayedSuit suit)
     : options_(std::move(options)), suit_(std::move(suit)) {
   options_.server.port = 0;
-  options_.record.clear();
+  options_.recordings = std::exchange(options_.record, {});
   options_.dds.reset();
 }
 

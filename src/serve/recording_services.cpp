@@ -41,7 +41,7 @@ std::string file_name(const std::string& path) {
 RecordingServices::RecordingServices(const ServedSuit& suit, const SessionOptions& options, SuitRecorder::Arrays arrays,
                                      SuitRecorder& recorder, stream::Server& server,
                                      std::optional<PlayedRecording::PlayedSuit> played)
-    : folder_(options.record),
+    : folder_(options.recordings.empty() ? options.record : options.recordings),
       arrays_(std::move(arrays)),
       recorder_(recorder),
       server_(server),

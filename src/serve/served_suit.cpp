@@ -136,16 +136,15 @@ struct RestPlace {
   Pose suit_from_array;
 };
 
-Result<RestPlace> place_of(const SuitArray& array, const BodyParts* parts) {
+/// `rest`: of the links of the body.
+Result<RestPlace> place_of(const SuitArray& array, const BodyParts* parts, const std::vector<Pose>& rest) {
   if (parts == nullptr) return RestPlace{{}, array.base_from_array};
   const std::optional<std::size_t> link = array.link.empty() ? std::size_t{0} : parts->body.link(array.link);
   if (!link) {
     return bad_input(
         fmt::format("array '{}': link: the body '{}' has no '{}'", array.name, parts->body.name, array.link));
   }
-  const std::vector<double> rest(parts->body.joints.size(), 0.0);
-  return RestPlace{{*link, array.base_from_array},
-                   chained(link_poses(parts->body, rest)[*link], array.base_from_array)};
+  return RestPlace{{*link, array.base_from_array}, chained(rest[*link], array.base_from_array)};
 }
 
 Result<ServedArray> open_array(const SuitArray& described, const Pose& suit_from_array, const Notice& notice,
@@ -168,15 +167,18 @@ Status open_arrays(const SuitDescription& described, const Notice& notice, std::
                    ServedSuit& suit) {
   Models models;
   std::vector<WornBody::Carried> carried;
+  const std::vector<Pose> rest = parts ? rest_poses(parts->body) : std::vector<Pose>();
   for (const SuitArray& one : described.arrays) {
-    const Result<RestPlace> place = place_of(one, parts ? &*parts : nullptr);
+    const Result<RestPlace> place = place_of(one, parts ? &*parts : nullptr, rest);
     if (!place) return place.error();
     Result<ServedArray> array = open_array(one, place->suit_from_array, notice, models);
     if (!array) return array.error();
     suit.arrays.push_back(*std::move(array));
     carried.push_back(place->carried);
   }
-  if (parts) suit.body = std::make_shared<WornBody>(*std::move(parts), std::move(carried));
+  if (parts) {
+    suit.body = std::make_shared<WornBody>(std::make_shared<BodyParts>(*std::move(parts)), std::move(carried));
+  }
   return Done{};
 }
 
@@ -284,7 +286,7 @@ Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& record
   }
   played.classes = suit.classes;
   played.threats = suit.threats;
-  played.body = suit.body;
+  if (suit.body) played.body = suit.body->at_rest();
   if (Status opened = open_playback(recording, played); !opened) return opened.error();
   return played;
 }

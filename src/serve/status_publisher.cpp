@@ -30,7 +30,8 @@ void StatusPublisher::publish(std::int64_t tick) {
   if (tick % 15 == 2) publish_statistics();
   if (tick % 30 == 5) publish_health();
   const std::uint64_t moved = work_.suit.body ? work_.suit.body->version() : 0;
-  if (tick % 30 == 20 || std::exchange(body_version_, moved) != moved) publish_transforms();
+  const bool has_moved = std::exchange(body_version_, moved) != moved;
+  if (tick % 30 == 20 || has_moved) publish_transforms();
 }
 
 Nanos StatusPublisher::now() const {

@@ -61,10 +61,10 @@ nlohmann::ordered_json json_of(const BodyVisual& visual, const std::vector<BodyF
 nlohmann::ordered_json json_of(const WornBody& worn) {
   const Body& body = worn.body();
   nlohmann::ordered_json json = {{"name", body.name}, {"links", nlohmann::ordered_json::array()}};
-  const std::vector<Pose> rest = link_poses(body, std::vector<double>(body.joints.size(), 0.0));
   for (std::size_t k = 0; k < body.links.size(); ++k) {
     nlohmann::ordered_json& link = json["links"].emplace_back();
-    link = {{"name", body.links[k].name}, {"pose", json_of(rest[k])}, {"visuals", nlohmann::ordered_json::array()}};
+    link = {
+        {"name", body.links[k].name}, {"pose", json_of(worn.rest()[k])}, {"visuals", nlohmann::ordered_json::array()}};
     for (const BodyVisual& visual : body.links[k].visuals) link["visuals"].push_back(json_of(visual, worn.files()));
   }
   json["joints"] = nlohmann::ordered_json::array();

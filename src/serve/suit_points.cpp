@@ -43,8 +43,10 @@ void SuitPoints::encode(Nanos time, std::vector<std::uint8_t>& message) {
   for (std::size_t array = 0; array < arrays_.size(); ++array) {
     Part& part = arrays_[array];
     const std::size_t first = all_.size();
-    const std::lock_guard lock(part.mutex);
-    all_.insert(all_.end(), part.points.begin(), part.points.end());
+    {
+      const std::lock_guard lock(part.mutex);
+      all_.insert(all_.end(), part.points.begin(), part.points.end());
+    }
     if (body_ != nullptr) move(array, first);
   }
   messages::encode_points(all_, time, kSuitFrame, message);

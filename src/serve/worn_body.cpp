@@ -15,50 +15,48 @@ using nlohmann::json;
 
 constexpr std::size_t kMostRequestBytes = std::size_t{64} << 10U;
 
-std::vector<Pose> rest_of(const Body& body) {
-  return link_poses(body, std::vector<double>(body.joints.size(), 0.0));
-}
-
 std::size_t joint_named(const Body& body, const std::string& name) {
   std::size_t index = 0;
   while (index < body.joints.size() && body.joints[index].name != name) ++index;
   return index;
 }
 
-/// Writes the positions that the request tells.
-Status take(std::string_view request, const Body& body, std::vector<double>& positions) {
+using Positions = std::vector<std::pair<std::size_t, double>>;  // of joints
+
+Result<Positions> positions_of(std::string_view request, const Body& body) {
   const json parsed = request.size() <= kMostRequestBytes ? json::parse(request, nullptr, false) : json();
   const json names = parsed.is_object() ? parsed.value("name", json()) : json();
   const json values = parsed.is_object() ? parsed.value("position", json()) : json();
   if (!names.is_array() || !values.is_array() || names.size() != values.size()) {
     return bad_input(R"(must be {"name": [...], "position": [...]}, two lists of one length)");
   }
+  Positions positions;
   for (std::size_t k = 0; k < names.size(); ++k) {
     const std::string name = names[k].is_string() ? names[k].get<std::string>() : std::string();
     const std::size_t joint = joint_named(body, name);
     if (joint == body.joints.size()) return bad_input(fmt::format("name[{}]: the body has no such joint", k));
     const double position = values[k].is_number() ? values[k].get<double>() : std::nan("");
     if (!std::isfinite(position)) return bad_input(fmt::format("position[{}]: must be a number", k));
-    positions[joint] = position;
+    positions.emplace_back(joint, position);
   }
-  return Done{};
+  return positions;
 }
 
 }  // namespace
 
-WornBody::WornBody(BodyParts parts, std::vector<Carried> arrays)
+WornBody::WornBody(std::shared_ptr<const BodyParts> parts, std::vector<Carried> arrays)
     : parts_(std::move(parts)),
       arrays_(std::move(arrays)),
-      rest_(rest_of(parts_.body)),
-      positions_(parts_.body.joints.size(), 0.0),
+      rest_(rest_poses(body())),
+      positions_(body().joints.size(), 0.0),
       links_(rest_),
       moves_(arrays_.size()) {}
 
 Status WornBody::set_joints(std::string_view request) {
+  const Result<Positions> positions = positions_of(request, body());
+  if (!positions) return positions.error();
   const std::lock_guard lock(mutex_);
-  std::vector<double> positions = positions_;
-  if (Status taken = take(request, body(), positions); !taken) return taken;
-  positions_ = std::move(positions);
+  for (const auto& [joint, position] : *positions) positions_[joint] = position;
   links_ = link_poses(body(), positions_);
   for (std::size_t k = 0; k < arrays_.size(); ++k) {
     const std::size_t link = arrays_[k].link;
@@ -66,11 +64,6 @@ Status WornBody::set_joints(std::string_view request) {
   }
   ++version_;
   return Done{};
-}
-
-std::vector<double> WornBody::positions() const {
-  const std::lock_guard lock(mutex_);
-  return positions_;
 }
 
 std::vector<Pose> WornBody::suit_from_links() const {
@@ -83,11 +76,8 @@ Pose WornBody::suit_from_array(std::size_t array) const {
   return chained(links_[arrays_[array].link], arrays_[array].link_from_array);
 }
 
-Pose WornBody::rest_pose(std::size_t array) const {
-  return chained(rest_[arrays_[array].link], arrays_[array].link_from_array);
-}
-
 Pose WornBody::move_of(std::size_t array) const {
+  if (version_ == 0) return {};
   const std::lock_guard lock(mutex_);
   return moves_[array];
 }

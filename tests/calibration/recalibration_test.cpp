@@ -163,6 +163,18 @@ TEST(Recalibration, a_known_weight_on_one_taxel_mends_all_taxels) {
   EXPECT_EQ(made->model.networks.parameters, played.model.networks.parameters);
 }
 
+TEST(Recalibration, a_pressure_presses_no_absent_taxel) {
+  PlayedPresses played;
+  played.model.array.taxel_area_m2 = 1e-4;
+  played.model.array.absent = {6};
+  const TaxelRegion pair{1, 1, 1, 2};
+  played.hold({5}, 5.0, 10, Load{0, LoadKind::pressure, pair, 5e4});
+  played.hold({}, 0.0, 5);
+  const Result<Recalibration> made = recalibrate(played.model, played.frames, played.loads);
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_NEAR(made->change.sheet, 0.0, 0.01);
+}
+
 TEST(Recalibration, tables_and_heaviest_loads_are_scaled_with_their_taxels) {
   PlayedPresses played;
   fusion::ForceNetworks& networks = played.model.networks;

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 #include <string>
 #include <variant>
@@ -116,6 +117,20 @@ TEST(Urdf, says_in_one_line_what_is_wrong_and_where) {
     EXPECT_TRUE(body.error().message.starts_with("r.urdf:")) << body.error().message;
     EXPECT_EQ(body.error().message.find('\n'), std::string::npos);
   }
+}
+
+TEST(Urdf, asks_for_no_axis_of_a_fixed_joint_and_takes_no_limits_of_a_continuous_one) {
+  const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>";
+  const std::string fixed =
+      "<joint name=\"i\" type=\"fixed\"><parent link=\"a\"/><child link=\"b\"/>"
+      "<axis xyz=\"0 0 0\"/></joint>";
+  const std::string wheel =
+      "<joint name=\"j\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/>"
+      "<axis xyz=\"0 0 1\"/><limit lower=\"0\" upper=\"0\"/></joint>";
+  const Result<Body> body = body_from_urdf(robot(links + fixed + wheel), "r.urdf");
+  ASSERT_TRUE(body.has_value()) << body.error().message;
+  const std::vector<Pose> poses = link_poses(*body, std::vector<double>{0.0, 1.0});
+  EXPECT_NEAR(poses[2].rotation.z, std::sin(0.5), 1e-12);
 }
 
 TEST(Urdf, skips_elements_in_places_where_they_mean_nothing) {

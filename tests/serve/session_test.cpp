@@ -117,8 +117,8 @@ TEST(Session, moves_the_body_as_its_clients_say) {
   ServedSuit suit = small_suit({"sleeve"}, never);
   Body body{"arm", {{"trunk"}, {"forearm"}}, {}};
   body.joints.push_back({"slide", BodyJoint::Kind::sliding, 0, 1, {}, {1.0, 0.0, 0.0}});
-  suit.body =
-      std::make_shared<WornBody>(BodyParts{*make_body(std::move(body)), {}}, std::vector<WornBody::Carried>{{1, {}}});
+  suit.body = std::make_shared<WornBody>(std::make_shared<BodyParts>(BodyParts{*make_body(std::move(body)), {}}),
+                                         std::vector<WornBody::Carried>{{1, {}}});
   Work work(session_of(std::move(suit), options_with()));
   StreamClient client(work.port());
   client.subscribe({"/tf"});

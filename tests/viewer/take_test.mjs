@@ -5,40 +5,17 @@
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
 import { readFileSync } from "node:fs";
-import { after, before, it } from "node:test";
-import { assertUnhurt, becomes, Bench, openBrowser, openPage, readCsv, WAIT_MS } from "./harness.mjs";
+import { it } from "node:test";
+import { assertUnhurt, becomes, bench, browser, openPage, readCsv, shown, useBench, WAIT_MS } from "./harness.mjs";
 
-const LIVE = ["--port", "0", "--from", "sim:contacts?rate=100&frames=300"];
+const LIVE = ["--from", "sim:contacts?rate=100&frames=300"];
 
-let bench;
-let browser;
-
-before(async () => {
-  bench = new Bench(process.argv[2]);
-  browser = await openBrowser();
-});
-
-after(async () => {
-  await browser?.close();
-  bench?.close();
-});
+useBench();
 
 const part = (page, role) => page.locator(`[data-role=${role}]`);
 const words = (page, role, text) => page.locator(`[data-role=${role}]`, { hasText: text }).waitFor();
 
-/** A page of `dermis serve` with these arguments, while `look` looks at it. */
-async function served(command, look) {
-  const server = await bench.serve(...command, ...bench.model);
-  try {
-    const page = await openPage(browser, server.url);
-    await becomes(page, "live");
-    await look(page, server);
-    assertUnhurt(page);
-    await page.close();
-  } finally {
-    await server.stop();
-  }
-}
+const served = (command, look) => shown([...command, ...bench.model], "array", look);
 
 /** The bytes that the browser saves when a button is pressed, and their name. */
 async function saved(page, role) {
@@ -115,7 +92,7 @@ it("saves a picture and a film that a browser can read", async () => {
 });
 
 it("opens a playback that is paused on its frame, and says so", async () => {
-  await served(["--port", "0", "--from", bench.path("recording.mcap")], async (page, server) => {
+  await served(["--from", bench.path("recording.mcap")], async (page, server) => {
     await words(page, "highest-taxel", /N\s+r\d+c\d+/);
     await part(page, "play").click();
     await words(page, "connection", "Paused");

@@ -74,13 +74,17 @@ struct Body {
   [[nodiscard]] std::optional<std::size_t> link(std::string_view name) const;
 };
 
-/// Orders links and joints as Body holds them, and makes axes of unit length. Errors: no or several first links, a link
-/// with two parents, a loop, a name that is there twice, an axis or a size of zero, as "joint 'elbow': ...".
+/// Orders links and joints as Body holds them, and makes axes of moving joints of unit length. Errors: no or several
+/// first links, a link with two parents, a loop, a name that is there twice, an axis or a size of zero, as "joint
+/// 'elbow': ...".
 [[nodiscard]] Result<Body> make_body(Body unordered);
 
 /// The pose of each link in the suit's frame. `positions`: of each joint [rad] or [m]; within its limits it moves, and
 /// beyond them it stands at the limit.
 [[nodiscard]] std::vector<Pose> link_poses(const Body& body, std::span<const double> positions);
+
+/// The same with all joints at 0.
+[[nodiscard]] std::vector<Pose> rest_poses(const Body& body);
 
 /// a_from_c of a_from_b and b_from_c.
 [[nodiscard]] Pose chained(const Pose& a_from_b, const Pose& b_from_c) noexcept;

@@ -22,6 +22,7 @@ struct SessionOptions {
   std::vector<stream::Asset> page{};  ///< What browsers are shown; empty: there is the stream alone.
   /// A recording to begin with, .mcap; those that clients begin take their names from it. Empty: none.
   std::string record{};
+  std::string recordings{};                    ///< A recording in whose folder clients record; empty: that of `record`.
   std::optional<dds::PublisherOptions> dds{};  ///< Topics for nodes of ROS 2 (docs/ros.md); empty: none.
 };
 

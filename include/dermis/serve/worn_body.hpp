@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <string_view>
@@ -45,10 +46,13 @@ class WornBody {
   };
 
   /// `arrays`: in the order of the suit. All joints are at 0.
-  WornBody(BodyParts parts, std::vector<Carried> arrays);
+  WornBody(std::shared_ptr<const BodyParts> parts, std::vector<Carried> arrays);
 
-  [[nodiscard]] const Body& body() const noexcept { return parts_.body; }
-  [[nodiscard]] const std::vector<BodyFile>& files() const noexcept { return parts_.files; }
+  /// Another of the same parts, which has not moved.
+  [[nodiscard]] std::shared_ptr<WornBody> at_rest() const { return std::make_shared<WornBody>(parts_, arrays_); }
+
+  [[nodiscard]] const Body& body() const noexcept { return parts_->body; }
+  [[nodiscard]] const std::vector<BodyFile>& files() const noexcept { return parts_->files; }
   [[nodiscard]] const std::string& link_of(std::size_t array) const { return body().links[arrays_[array].link].name; }
 
   /// Of a JSON object of the names and positions of sensor_msgs/JointState: {"name": ["elbow"], "position": [1.2]}
@@ -58,15 +62,14 @@ class WornBody {
   /// Rises with each set_joints().
   [[nodiscard]] std::uint64_t version() const noexcept { return version_; }
 
-  [[nodiscard]] std::vector<double> positions() const;          ///< Of all joints.
-  [[nodiscard]] std::vector<Pose> suit_from_links() const;      ///< Of all links, now.
-  [[nodiscard]] Pose suit_from_array(std::size_t array) const;  ///< Now.
-  [[nodiscard]] Pose rest_pose(std::size_t array) const;        ///< The same with all joints at 0.
+  [[nodiscard]] std::vector<Pose> suit_from_links() const;                        ///< Of all links, now.
+  [[nodiscard]] Pose suit_from_array(std::size_t array) const;                    ///< Now.
+  [[nodiscard]] const std::vector<Pose>& rest() const noexcept { return rest_; }  ///< Of all links, all joints at 0.
   /// From where an array is at rest to where it is now.
   [[nodiscard]] Pose move_of(std::size_t array) const;
 
  private:
-  const BodyParts parts_;
+  const std::shared_ptr<const BodyParts> parts_;
   const std::vector<Carried> arrays_;
   const std::vector<Pose> rest_;  // of links
   std::atomic<std::uint64_t> version_ = 0;

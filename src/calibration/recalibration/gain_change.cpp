@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <set>
 
+#include "calibration/recalibration/known_presses.hpp"
 #include "dermis/calibration/recalibration.hpp"
 
 namespace dermis::calibration {
@@ -72,9 +73,7 @@ class Presses {
 };
 
 bool can_tell_spread(std::span<const KnownPress> presses) {
-  std::set<std::size_t> pressed;
-  for (const KnownPress& press : presses) pressed.insert(press.taxels.begin(), press.taxels.end());
-  return std::min(presses.size(), pressed.size()) >= kLeastToTellSpread;
+  return std::min(presses.size(), pressed_taxels(presses)) >= kLeastToTellSpread;
 }
 
 double likeliest_spread(Presses& presses) {

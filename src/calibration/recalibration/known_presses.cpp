@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "calibration/labels/labels.hpp"
@@ -36,11 +37,23 @@ Reading read(const ForceFrame& force, std::span<const std::size_t> taxels) {
   return reading;
 }
 
+/// On the taxels that are there: a pressure does not press the others.
+double known_newtons(const Load& load, const ArrayDescription& array, std::size_t taxels) {
+  if (load.kind == LoadKind::force) return load.value;
+  return total_newtons(load, array) * static_cast<double>(taxels) / static_cast<double>(load.where.taxel_count());
+}
+
 bool is_pressed(const Load& load) {
   return load.value > 0.0;
 }
 
 }  // namespace
+
+std::size_t pressed_taxels(std::span<const KnownPress> presses) {
+  std::set<std::size_t> pressed;
+  for (const KnownPress& press : presses) pressed.insert(press.taxels.begin(), press.taxels.end());
+  return pressed.size();
+}
 
 void KnownPresses::add(const ForceFrame& force, std::span<const Load> loads) {
   if (has(force.status, FrameStatus::rejected)) return;
@@ -53,7 +66,7 @@ void KnownPresses::add(const ForceFrame& force, std::span<const Load> loads) {
     if (!(reading.total_n > 0.0) || !std::isfinite(relative)) continue;
     ++touch.frames;
     touch.last_n = reading.total_n;
-    touch.log_sum += std::log(total_newtons(load, array_) / reading.total_n);
+    touch.log_sum += std::log(known_newtons(load, array_, touch.taxels.size()) / reading.total_n);
     touch.sigma_sum += std::max(relative, kLeastSigma);
     for (std::size_t k = 0; k < touch.taxels.size(); ++k) {
       touch.share_sum[k] += reading.newtons[k] / reading.total_n;
@@ -84,9 +97,7 @@ KnownPresses::Touch& KnownPresses::touch_of(const Load& load) {
   Touch touch;
   touch.where = load.where;
   touch.taxels = taxel_indices(load.where, array_.cols);
-  std::erase_if(touch.taxels, [&](std::size_t taxel) {
-    return std::find(array_.absent.begin(), array_.absent.end(), taxel) != array_.absent.end();
-  });
+  std::erase_if(touch.taxels, [&](std::size_t taxel) { return array_.is_absent(taxel); });
   touch.share_sum.assign(touch.taxels.size(), 0.0);
   return touches_.emplace_back(std::move(touch));
 }

@@ -13,6 +13,9 @@
 
 namespace dermis::calibration {
 
+/// How many taxels they press.
+[[nodiscard]] std::size_t pressed_taxels(std::span<const KnownPress> presses);
+
 /// Gathers the presses of a recording, frame by frame.
 class KnownPresses {
  public:

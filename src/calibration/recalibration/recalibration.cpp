@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "calibration/labels/labels.hpp"
@@ -63,9 +62,7 @@ Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const 
   recalibration.change = change_of(presses, model.networks.taxel_count());
   recalibration.presses = presses.size();
   recalibration.left_out = gathered->left_out();
-  std::set<std::size_t> pressed;
-  for (const KnownPress& press : presses) pressed.insert(press.taxels.begin(), press.taxels.end());
-  recalibration.taxels = pressed.size();
+  recalibration.taxels = pressed_taxels(presses);
   scale(recalibration.change.taxels, recalibration.model.networks);
   recalibration.model.provenance["recalibration"] = describe(recalibration);
   return recalibration;
