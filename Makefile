@@ -18,6 +18,7 @@ live: build
 
 # build/release/python, for PYTHONPATH; "pip install ." makes a wheel of it.
 python: setup
+	scripts/setup python
 	cmake --preset release
 	cmake --build --preset release --target dermis_python
 
