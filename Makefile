@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # CI runs these targets (.ci/run). Each installs what it needs.
 
-.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench docs package package-test site clean
+.PHONY: build setup demo live python test lint numerics sanitize fuzz check-all bench docs bare package package-test site clean
 
 build: setup
 	cmake --preset release
@@ -70,14 +70,21 @@ package: setup
 	scripts/setup package
 	scripts/package
 
+# The README's commands where nothing is installed: make demo whole, the others until they would compile.
+bare:
+	scripts/setup bare
+	scripts/bare_machine 'make demo' --configure 'make live' 'make python' 'make test' 'make bench' 'make package' 'make site' \
+	  'scripts/setup build && scripts/setup python && python3 -m venv venv && venv/bin/pip install .'
+
 # As root: it makes a bare Debian in build/package/debian.
 package-test: package
 	/usr/bin/python3 tests/command_line/reference_test.py build/release/bin/dermis
 	scripts/package_test
 
-site: build
+site: setup
 	scripts/setup test
 	scripts/setup site
+	$(MAKE) build
 	scripts/site
 
 clean:
