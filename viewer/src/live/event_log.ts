@@ -17,14 +17,11 @@ const MOST_EVENTS = 1000;
 /** What happened, the oldest first. */
 export class EventLog {
   readonly events: TimedEvent[] = [];
-  /** Rises with each change. */
-  version = 0;
   #marks = 0;
 
   add(kind: EventKind, atS: number, words: string, array = ""): void {
     this.events.push({ kind, atS, words, array });
     if (this.events.length > MOST_EVENTS) this.events.shift();
-    this.version += 1;
   }
 
   /** The user's own. */
@@ -37,6 +34,5 @@ export class EventLog {
   rewind(toS: number): void {
     const kept = this.events.filter(({ kind, atS }) => kind === "mark" || atS < toS);
     this.events.splice(0, this.events.length, ...kept);
-    this.version += 1;
   }
 }

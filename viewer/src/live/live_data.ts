@@ -42,8 +42,8 @@ export class ArrayLive {
 /** Messages that wait for the end of a pause: a minute of a suit. */
 const MOST_HELD = 20000;
 
-/** What is followed from the beginning, as every view needs it: contacts, threats, statistics, health. Contacts stand
- *  still while the picture is paused, with all that is drawn of them; threats do not. */
+/** What is followed from the beginning, as every view needs it: contacts, threats, statistics, health. Contacts and
+ *  the region stand still while the picture is paused, with all that is drawn of them; threats do not. */
 export class LiveData {
   arrays: ArrayLive[] = [];
   readonly statistics = new Signal<Statistics | undefined>(undefined);
@@ -56,13 +56,15 @@ export class LiveData {
   version = 0;
   #names: string[] = [];
   #tare: unknown;
-  readonly #held: DataView[] = [];
+  readonly #held: (() => void)[] = [];
 
   constructor(stream: Stream, suit: Suit, paused: Signal<boolean>) {
-    this.region = new RegionForce(stream);
+    const subscribe = (topic: string, handler: (message: DataView) => void): (() => void) =>
+      stream.subscribe(topic, (message) => (paused.value ? this.#hold(() => handler(message)) : handler(message)));
+    this.region = new RegionForce(subscribe);
     suit.description.follow(({ arrays }) => this.#restart(arrays.map(({ name }) => name)));
-    stream.subscribe("/contacts", (message) => (paused.value ? this.#hold(message) : this.#receive(message)));
-    paused.follow((isPaused) => !isPaused && this.#held.splice(0).forEach((message) => this.#receive(message)));
+    subscribe("/contacts", (message) => this.#receive(message));
+    paused.follow((isPaused) => !isPaused && this.#held.splice(0).forEach((receive) => receive()));
     stream.subscribe("/threat", (message) => this.threats.add(readThreat(message)));
     this.threats.log.follow(([newest]) => newest !== undefined && this.#logThreat(newest));
     stream.serverInfo.follow(() => this.threats.restart());
@@ -77,8 +79,8 @@ export class LiveData {
     this.arrays = names.map(() => new ArrayLive());
   }
 
-  #hold(message: DataView): void {
-    this.#held.push(message);
+  #hold(receive: () => void): void {
+    this.#held.push(receive);
     if (this.#held.length > 2 * MOST_HELD) this.#held.splice(0, MOST_HELD);
   }
 
@@ -95,16 +97,19 @@ export class LiveData {
   }
 
   #receive(message: DataView): void {
-    const array = this.arrays[readContactsArray(message, this.#names)];
+    const index = readContactsArray(message, this.#names);
+    const array = this.arrays[index];
     if (array === undefined) return;
     const { contacts } = array;
+    const beforeS = contacts.stampS;
     readContacts(message, contacts);
     array.total.add(contacts.stampS, contacts.totalForceN);
-    if (contacts.stampS < this.latestS - 1) this.events.rewind(contacts.stampS);
-    for (const id of array.slots.add(contacts)) this.events.add("contact", contacts.stampS, `contact ${id}`, this.#names[this.arrays.indexOf(array)]);
+    const isRewound = contacts.stampS < Math.min(beforeS, this.latestS) - 1; // an array may lag behind the others
+    if (isRewound) this.events.rewind(contacts.stampS);
+    for (const id of array.slots.add(contacts)) this.events.add("contact", contacts.stampS, `contact ${id}`, this.#names[index]);
     array.addCentre();
     array.version += 1;
     this.version += 1;
-    if (contacts.stampS > this.latestS || contacts.stampS < this.latestS - 1) this.latestS = contacts.stampS;
+    if (contacts.stampS > this.latestS || isRewound) this.latestS = contacts.stampS;
   }
 }

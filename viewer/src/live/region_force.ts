@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { emptyGrid, readGrid, TaxelStatus } from "../messages/grids";
 import { Signal } from "../signal";
-import type { Stream } from "../stream/stream";
 import type { ArrayDescription } from "../suit";
 import { ForceHistory } from "./force_history";
 
@@ -32,16 +31,19 @@ export class RegionForce {
   readonly #frame = emptyGrid();
   #end = (): void => undefined;
 
-  constructor(stream: Stream) {
+  /** `subscribe`: to a topic that stands still in a pause; returns what ends it. */
+  constructor(subscribe: (topic: string, handler: (message: DataView) => void) => () => void) {
     this.region.follow((region) => {
       this.#end();
       this.history = new ForceHistory();
       this.newtons = NaN;
-      this.#end = region === undefined ? () => undefined : stream.subscribe(`/${region.array}/force`, (message) => this.#receive(message, region));
+      this.#end = region === undefined ? () => undefined : subscribe(`/${region.array}/force`, (message) => this.#receive(message, region));
     });
   }
 
-  #receive(message: DataView, { rows, cols }: Region): void {
+  #receive(message: DataView, region: Region): void {
+    if (region !== this.region.value) return; // held since before it was drawn anew
+    const { rows, cols } = region;
     const frame = this.#frame;
     readGrid(message, frame);
     let sum = 0;

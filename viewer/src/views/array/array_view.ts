@@ -123,7 +123,7 @@ class ArrayView implements View {
     });
     for (const signal of [contacts, centre]) signal.follow(() => (this.#overlayDue = true));
     for (const signal of [pressure, narrowMap]) signal.follow(() => (this.#layoutDue = true));
-    share.follow((value) => (this.#feeds.share = value));
+    share.follow((value) => this.#feeds.hold(value));
     const hasRegion = new Signal(false);
     region.follow((drawn) => {
       hasRegion.value = drawn !== undefined;

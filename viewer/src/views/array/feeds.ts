@@ -50,11 +50,7 @@ export class Feeds {
     this.reset();
   }
 
-  get share(): TimeShare {
-    return this.#share;
-  }
-
-  set share(share: TimeShare) {
+  hold(share: TimeShare): void {
     this.#share = share;
     this.reset();
   }

@@ -67,10 +67,7 @@ export class MapPanel {
     if (array.name !== this.#array?.name) this.#stepped.restart();
     this.#array = array;
     const end = this.endFor(array);
-    const ends = this.quantity.ends(array);
-    if (!ends.includes(end)) ends.push(end);
-    ends.sort((a, b) => a - b);
-    this.#offer(ends, end);
+    this.#offer(this.quantity.ends(array), end);
     setText(this.#unit, shownUnit(this.quantity, end));
     this.#ticks.forEach((label, tick) => setText(label, this.quantity.label((end * tick) / TICKS, end)));
   }

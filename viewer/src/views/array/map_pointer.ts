@@ -33,6 +33,7 @@ export class MapPointer {
     room.addEventListener("pointerleave", () => this.#move(-1));
     room.addEventListener("pointerdown", (event) => this.#press(room, event));
     room.addEventListener("pointerup", () => this.#release());
+    room.addEventListener("pointercancel", () => (this.#corner = -1));
     room.addEventListener("click", (event) => this.#click(event));
     room.addEventListener("keydown", (event) => event.target === room && this.#steer(event));
     drawing.follow((isDrawing) => {
@@ -46,6 +47,7 @@ export class MapPointer {
     if (array?.name !== this.#array?.name) {
       this.pins = [];
       this.cursor = -1;
+      this.#corner = -1;
     }
     this.#array = array;
   }

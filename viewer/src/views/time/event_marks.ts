@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import type uPlot from "uplot";
-import type { EventKind, TimedEvent } from "../../live/event_log";
+import { EVENT_KINDS, type EventKind, type TimedEvent } from "../../live/event_log";
 import { cssColor } from "../../theme";
 
 /** What the toolbar calls each kind, and the CSS variable of its colour. */
@@ -21,6 +21,7 @@ export function drawEvents(plot: uPlot, events: readonly TimedEvent[], nowS: num
   const ratio = plot.width > 0 ? plot.ctx.canvas.width / plot.width : 1;
   const { left, top, width, height } = plot.bbox;
   const firstS = plot.scales["x"]?.min ?? 0;
+  const colors = Object.fromEntries(EVENT_KINDS.map((kind) => [kind, cssColor(EVENT_LOOKS[kind].color)]));
   pen.save();
   pen.scale(ratio, ratio);
   pen.font = FONT;
@@ -33,7 +34,7 @@ export function drawEvents(plot: uPlot, events: readonly TimedEvent[], nowS: num
     const ageS = atS - nowS;
     if (ageS < firstS || ageS > 0) continue;
     const x = (left + width * (1 - ageS / firstS)) / ratio;
-    pen.strokeStyle = cssColor(EVENT_LOOKS[kind].color);
+    pen.strokeStyle = colors[kind]!;
     pen.setLineDash(kind === "contact" ? [2, 3] : []);
     pen.beginPath();
     pen.moveTo(x, top / ratio);
