@@ -140,19 +140,26 @@ TEST(Session, takes_parameters_from_its_clients) {
   EXPECT_EQ(value_of(all, "/right/tare"), false);
 }
 
+/// Waits until a frame of each array is recorded: it is sent first, but recorded before the next is sent.
+void hear_a_recorded_frame(std::uint16_t port) {
+  StreamClient client(port);
+  for (const char* const topic : {"/left/force", "/right/force"}) {
+    client.subscribe({topic});
+    for (int k = 0; k < 2; ++k) static_cast<void>(client.next_message(topic));
+  }
+}
+
 TEST(Session, records_from_its_beginning_and_again_when_a_client_asks) {
   const TemporaryFolder folder;
   const std::atomic<bool> never = false;
   Work work(session_of(small_suit({"left", "right"}, never), options_with(folder.file("rec.mcap"))));
   StreamClient client(work.port());
-  client.subscribe({"/left/force", "/right/force"});
-  for (const char* const topic : {"/left/force", "/right/force"}) static_cast<void>(client.next_message(topic));
+  hear_a_recorded_frame(work.port());
   client.set_parameter("/recording", "false");
   client.set_parameter("/recording", "true");
   const std::string second = value_of(client.parameters(), "/recording/file");
   EXPECT_NE(second, folder.file("rec.mcap"));
-  client.subscribe({"/statistics"});
-  for (int k = 0; k < 2; ++k) static_cast<void>(client.next_message("/statistics"));
+  hear_a_recorded_frame(work.port());
   ASSERT_TRUE(work.end());
   for (const std::string& path : {folder.file("rec.mcap"), second}) {
     const std::vector<std::size_t> frames = recorded_frames(path);
