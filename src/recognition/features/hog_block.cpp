@@ -23,9 +23,7 @@ std::vector<CellShares> cell_shares(std::size_t lines, std::size_t cells) {
 }  // namespace
 
 HogBlock::HogBlock(const Lattice& lattice, std::size_t row_cells, std::size_t col_cells)
-    : row_cells_(row_cells),
-      col_cells_(col_cells),
-      row_shares_(cell_shares(lattice.rows, row_cells)),
+    : row_shares_(cell_shares(lattice.rows, row_cells)),
       col_shares_(cell_shares(lattice.cols, col_cells)),
       of_row_(col_cells * kOrientations) {}
 

@@ -35,8 +35,6 @@ class HogBlock {
  private:
   static constexpr std::size_t kOrientations = 8;
 
-  std::size_t row_cells_;
-  std::size_t col_cells_;
   std::vector<CellShares> row_shares_;  ///< Of each row.
   std::vector<CellShares> col_shares_;  ///< Of each column.
   std::vector<double> of_row_;          ///< [column cells, orientations]
