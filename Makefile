@@ -61,8 +61,7 @@ bench: setup
 	cmake --build --preset release
 	scripts/bench
 
-docs:
-	scripts/setup test
+docs: setup
 	/usr/bin/python3 scripts/check_docs.py
 	/usr/bin/python3 scripts/sentences.py >/dev/null
 
