@@ -12,6 +12,8 @@ in nanoseconds. The stub __init__.pyi says of every argument and result what it 
 """
 import enum as _enum
 
+import numpy as _numpy  # noqa: F401  _dermis needs it: where it is missing, this line says so
+
 
 class Error(Exception):
     """One line that names the place and the mend."""

@@ -77,6 +77,8 @@ ArrayDescription array_of(const py::object& object) {
 }
 
 PYBIND11_MODULE(_dermis, module) {
+  // pybind11 looks numpy up for the first array: two threads would wait there for each other, for ever.
+  py::dtype::of<float>();
   module.attr("__version__") = DERMIS_VERSION;
   bind_array(module);
   bind_frames(module);

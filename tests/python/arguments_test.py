@@ -3,6 +3,8 @@
 """Whatever Python hands over, the answer is a result or an exception that says what was expected."""
 import concurrent.futures
 import random
+import subprocess
+import sys
 
 import numpy as np
 
@@ -10,6 +12,20 @@ import dermis
 import workspace
 
 CALLS = 3000
+FIRST_ARRAYS = """
+import sys, threading
+import dermis
+
+def make():
+    together.wait()
+    dermis.Recording([[[1.0]]], rate_hz=1.0)
+
+sys.setswitchinterval(1e-6)
+together = threading.Barrier(4)
+threads = [threading.Thread(target=make) for _ in range(4)]
+for thread in threads: thread.start()
+for thread in threads: thread.join()
+"""
 EXPECTED = (TypeError, ValueError, IndexError, OverflowError, RuntimeError, dermis.Error)
 
 
@@ -76,6 +92,9 @@ class Arguments(workspace.CalibratedArray):
         for refused, wrong in (part.result() for part in parts):
             self.assertEqual(wrong, [], f"seed {seed}")
             self.assertGreater(refused, CALLS // 8)
+
+    def test_the_first_arrays_may_come_from_several_threads(self):
+        subprocess.run([sys.executable, "-c", FIRST_ARRAYS], check=True, timeout=100)
 
 
 if __name__ == "__main__":
