@@ -42,7 +42,8 @@ TRACES = {
 BARE = set("""apt-get bash case cat cd cmp command cp date declare dirname do done dpkg-query echo env esac exec exit
 export fi find flock for git grep id if install ldd local ls make mkdir mktemp nproc printf return rm sed set sh sudo tail
 then touch trap while xargs""".split())
-MODULES_OF_OTHERS = {"dermis", "launch"}  # our own package, and what ROS 2 brings to a launch file
+# Our own package, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
+MODULES_OF_OTHERS = {"dermis", "launch", "rosbags", "safetensors"}
 
 FOLDERS = ("scripts", ".ci", "tests", "packaging", "examples", "viewer")
 # Projects of others, what is built, and this table.

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""A package that a group of scripts/setup lacks is named, and one that nothing uses. Usage: check_packages_test.py ROOT"""
+"""A package that a group of scripts/setup lacks is named, and one that nothing uses.
+
+Usage: check_packages_test.py ROOT"""
 import re
 import sys
 import unittest
