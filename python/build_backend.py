@@ -19,10 +19,26 @@ def version():
     return re.search(r"project\(dermis VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text()).group(1)
 
 
+def info():
+    return f"dermis-{version()}.dist-info"
+
+
+def metadata():
+    return (f"Metadata-Version: 2.1\nName: dermis\nVersion: {version()}\n"
+            "Summary: Calibrated force from resistive tactile arrays\n"
+            "License: Apache-2.0\nRequires-Python: >=3.9\nRequires-Dist: numpy\n")
+
+
+def configure(*options):
+    try:
+        subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", *options], check=True)
+    except (FileNotFoundError, subprocess.CalledProcessError):
+        sys.exit("dermis cannot be built: cmake, a compiler or a library is missing; scripts/setup build installs them")
+
+
 def build_package():
-    options = ["-DCMAKE_BUILD_TYPE=Release", "-DDERMIS_UNITY_BUILD=ON", "-DDERMIS_BUILD_PYTHON=ON", "-DDERMIS_BUILD_TESTS=OFF",
-               f"-DPython3_EXECUTABLE={sys.executable}"]
-    subprocess.run(["cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", *options], check=True)
+    configure("-DCMAKE_BUILD_TYPE=Release", "-DDERMIS_UNITY_BUILD=ON", "-DDERMIS_BUILD_PYTHON=ON",
+              "-DDERMIS_BUILD_TESTS=OFF", f"-DPython3_EXECUTABLE={sys.executable}")
     subprocess.run(["cmake", "--build", BUILD, "--target", "dermis_python"], check=True)
     return BUILD / "python" / "dermis"
 
@@ -32,18 +48,23 @@ def record_line(name, content):
     return f"{name},sha256={digest},{len(content)}\n"
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """By this pip asks for numpy before it builds for minutes."""
+    folder = Path(metadata_directory) / info()
+    folder.mkdir()
+    (folder / "METADATA").write_text(metadata())
+    return info()
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     package = build_package()
     tag = f"cp{sys.version_info.major}{sys.version_info.minor}"
     tag = f"{tag}-{tag}-{sysconfig.get_platform().replace('-', '_').replace('.', '_')}"
-    info = f"dermis-{version()}.dist-info"
     files = {f"dermis/{file.name}": file.read_bytes() for file in sorted(package.iterdir()) if file.is_file()}
-    files[f"{info}/METADATA"] = (
-        f"Metadata-Version: 2.1\nName: dermis\nVersion: {version()}\nSummary: Calibrated force from resistive tactile arrays\n"
-        "License: Apache-2.0\nRequires-Python: >=3.9\nRequires-Dist: numpy\n").encode()
-    files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: dermis\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
-    record = "".join(record_line(name, content) for name, content in files.items()) + f"{info}/RECORD,,\n"
-    files[f"{info}/RECORD"] = record.encode()
+    files[f"{info()}/METADATA"] = metadata().encode()
+    files[f"{info()}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: dermis\nRoot-Is-Purelib: false\nTag: {tag}\n".encode()
+    record = "".join(record_line(name, content) for name, content in files.items()) + f"{info()}/RECORD,,\n"
+    files[f"{info()}/RECORD"] = record.encode()
     name = f"dermis-{version()}-{tag}.whl"
     with zipfile.ZipFile(os.path.join(wheel_directory, name), "w", zipfile.ZIP_DEFLATED) as wheel:
         for place, content in files.items():
