@@ -70,7 +70,7 @@ package: setup
 	scripts/package
 
 # The README's commands where nothing is installed: make demo whole, the others until they would compile.
-bare:
+bare: setup
 	scripts/setup bare
 	scripts/bare_machine 'make demo' --configure 'make live' 'make python' 'make test' 'make bench' 'make package' 'make site' \
 	  'scripts/setup build && scripts/setup python && python3 -m venv venv && venv/bin/pip install .'

@@ -36,12 +36,12 @@ TRACES = {
     "cmake --preset lint": "cyclonedds-dev cyclonedds-tools", "#include <clang/": "libclang-16-dev llvm-16-dev",
     '"mypy.stubtest"': "mypy", '"-m", "venv"': "python3-venv", "dh $@ --with python3": "dh-python",
     '"name": "material"': "mkdocs-material", "--target dermis_python": "python3-numpy",
-    "build/release/tests/": "libgtest-dev libbenchmark-dev",
+    "#!/usr/bin/python3": "python3", '"--zstd"': "zstd", "build/release/tests/": "libgtest-dev libbenchmark-dev",
 }
 # What a bare Debian has, with make, git and sudo, and what bash is made of.
-BARE = set("""apt-get bash case cat cd cmp command cp date declare dirname do done dpkg-query echo env esac exec exit
-export fi find flock for git grep id if install ldd local ls make mkdir mktemp nproc printf return rm sed set sh sudo tail
-then touch trap while xargs""".split())
+BARE = set("""apt-config apt-get bash case cat cd cmp command cp date declare dirname do done dpkg-query echo env esac
+exec exit export fi find flock for git grep id if install ldd local ls make mkdir mktemp mount nproc printf return rm
+sed set sh sudo tail tar then touch trap umount while xargs""".split())
 # Our own package, what ROS 2 brings to a launch file, and what tests/requirements.txt names.
 MODULES_OF_OTHERS = {"dermis", "launch", "rosbags", "safetensors"}
 
@@ -49,13 +49,15 @@ FOLDERS = ("scripts", ".ci", "tests", "packaging", "examples", "viewer")
 # Projects of others, what is built, and this table.
 LEFT_OUT = ("tests/install", "tests/npm", "ros", "build", "viewer/node_modules", "tests/architecture/check_packages")
 COMMENT = re.compile(r"(?:^\s*|\s{2})(?:#|//) .*$", re.MULTILINE)
+LONG_TEXT = re.compile(r'(^\s*)?""".*?"""', re.MULTILINE | re.DOTALL)  # a docstring begins its line
 IMPORT = re.compile(r'^\s*(?:import|from) (\w+)\b(?! from ")', re.MULTILINE)
 IMPORT_OF_NODE = re.compile(r'^import .* from "[./\w]*?(\w+\.mjs)";', re.MULTILINE)
 FIND = re.compile(r"\b(find_(?:package|program|path|library)|pkg_check_modules)\(([^)]*)\)")
 STARTED = re.compile(r'(?:subprocess\.\w+|spawn|execFileSync)\(\[?\s*"([\w.+-]+)"')
 TRIED = re.compile(r'shutil\.which\("([\w.+-]+)"\)')
 QUOTED = re.compile(r'"(?:/usr/bin/)?([\w.+-]+)[" ]')
-NO_COMMANDS = re.compile(r'\w+\+?=\([^)]*\)|(?<=[=\s])"(?:[^"$\n]|\$(?!\())*"|<<END$.*?^END$',  # arrays, texts
+# Arrays and texts.
+NO_COMMANDS = re.compile(r"""\w+\+?=\([^)]*\)|(?<=[=\s])"(?:[^"$\n]|\$(?!\())*"|'[^'\n]*'|<<END$.*?^END$""",
                          re.MULTILINE | re.DOTALL)
 FUNCTION = re.compile(r"^([\w-]+)\(\)", re.MULTILINE)
 COMMAND = re.compile(r"(?:^\s*|\$\(|[|&;{]\s+|\b(?:if|then|do|else|while|exec)\s+)(?:!\s+)?(?:\w+=[^\s(]*\s+)*"
@@ -71,7 +73,7 @@ def groups_of(setup):
 def targets_of(makefile):
     """target -> its recipe, after those of what it depends on"""
     rows = re.findall(r"^([\w-]+):(.*)\n((?:\t.*\n)*)", makefile, re.MULTILINE)
-    rules = {name: (needs.split(), recipe) for name, needs, recipe in rows}
+    rules = {name: (needs.split() + re.findall(r"\$\(MAKE\) (\w+)", recipe), recipe) for name, needs, recipe in rows}
 
     def recipes(name):
         needs, recipe = rules[name]
@@ -91,7 +93,8 @@ def texts_of(root):
     for path in [*paths, *root.rglob("CMakeLists.txt"), *root.rglob("*.cmake")]:
         name = str(path.relative_to(root))
         if path.is_file() and not name.startswith(LEFT_OUT):
-            text = COMMENT.sub("", path.read_text(errors="replace"))
+            text = LONG_TEXT.sub(lambda found: found[0] if found[1] is None else "", path.read_text(errors="replace"))
+            text = COMMENT.sub("", text)
             if path.suffix in (".py", ".mjs", ".cpp") or text.startswith("#!") or is_of_cmake(name):
                 texts[name] = text
     return texts
@@ -166,15 +169,17 @@ def steps(makefile, texts):
     for target, recipe in targets_of(makefile).items():
         files = {name: texts[name] for name in reached(recipe, texts)}
         by_hand = {name: text for name, text in by_hand.items() if name not in files}
-        yield f"make {target}", re.findall(r"scripts/setup (\w+)", recipe), {"Makefile": recipe, **files}
+        installed = re.findall(r"^\tscripts/setup (\w+)$", recipe, re.MULTILINE)
+        yield f"make {target}", installed, {"Makefile": recipe, **files}
     yield "who runs it by hand", [], by_hand
 
 
 def violations(setup, makefile, texts):
     groups = groups_of(setup)
     everything = {package for packages in groups.values() for package in packages}
-    own_modules = {Path(name).stem for name in texts if name.endswith(".py")} | {"devices"}
-    lacking, idle = defaultdict(list), {(group, package) for group, packages in groups.items() for package in packages}
+    own_modules = {name.removesuffix("/__init__.py").split("/")[-1].removesuffix(".py") for name in texts}
+    idle = {(group, package) for group, packages in groups.items() for package in packages}
+    lacking = defaultdict(list)
     for who, installed, files in steps(makefile, texts):
         group_of = {package: group for group in reversed(installed) for package in groups.get(group, [])}
         for name, text in files.items():
