@@ -34,7 +34,7 @@ TRACES = {
     "LANGUAGES CXX": "build-essential", "Interpreter Development.Module": "python3-dev", "npm ci": "ca-certificates",
     "cmake --preset": "ninja-build", "cmake --preset asan": "clang-16 libclang-rt-16-dev",
     "cmake --preset lint": "cyclonedds-dev cyclonedds-tools", "#include <clang/": "libclang-16-dev llvm-16-dev",
-    '"mypy.stubtest"': "mypy", '"-m", "venv"': "python3-venv", "dh $@ --with python3": "dh-python",
+    '"mypy.stubtest"': "mypy", '"-m", "venv"': "python3-venv", "python3 -m venv": "python3-venv", "dh $@ --with python3": "dh-python",
     '"name": "material"': "mkdocs-material", "--target dermis_python": "python3-numpy",
     "#!/usr/bin/python3": "python3", '"--zstd"': "zstd", "build/release/tests/": "libgtest-dev libbenchmark-dev",
 }
@@ -169,7 +169,7 @@ def steps(makefile, texts):
     for target, recipe in targets_of(makefile).items():
         files = {name: texts[name] for name in reached(recipe, texts)}
         by_hand = {name: text for name, text in by_hand.items() if name not in files}
-        installed = re.findall(r"^\tscripts/setup (\w+)$", recipe, re.MULTILINE)
+        installed = re.findall(r"scripts/setup (\w+)", recipe)
         yield f"make {target}", installed, {"Makefile": recipe, **files}
     yield "who runs it by hand", [], by_hand
 
