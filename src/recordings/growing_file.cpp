@@ -47,7 +47,7 @@ Status GrowingFile::append(std::span<const std::uint8_t> bytes) {
 
 Status GrowingFile::try_room_for(std::span<const std::uint8_t> bytes) {
   const std::uint64_t size = size_;
-  const Status tried = append(bytes);
+  Status tried = append(bytes);
   size_ = size;
   cut_back();
   return tried;
