@@ -4,10 +4,18 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
 namespace dermis::recordings {
+namespace {
+
+bool is_want_of_room(int error_number) {
+  return error_number == ENOSPC || error_number == EDQUOT || error_number == EFBIG;
+}
+
+}  // namespace
 
 Result<GrowingFile> GrowingFile::create(const std::string& path) {
   Result<files::OutputPlace> place = files::open_output(path);
@@ -22,22 +30,41 @@ GrowingFile::GrowingFile(GrowingFile&& other) noexcept
     : target_(std::move(other.target_)),
       unfinished_(std::move(other.unfinished_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
-      size_(other.size_) {}
+      size_(other.size_),
+      is_full_(other.is_full_) {}
 
 GrowingFile::~GrowingFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 Status GrowingFile::append(std::span<const std::uint8_t> bytes) {
-  if (const int error_number = files::write_all(descriptor_, std::as_bytes(bytes)); error_number != 0) {
-    cut_back();
-    return files::cannot_write(target_, error_number);
-  }
+  const int error_number = files::write_all(descriptor_, std::as_bytes(bytes));
+  is_full_ = is_want_of_room(error_number);
+  if (error_number != 0) return files::cannot_write(target_, error_number);
   size_ += bytes.size();
   return Done{};
 }
 
-/// To the last whole record. A pipe cannot be: its reader sees a cut file.
+Status GrowingFile::try_room_for(std::span<const std::uint8_t> bytes) {
+  const std::uint64_t size = size_;
+  Status tried = append(bytes);
+  size_ = size;
+  cut_back();
+  return tried;
+}
+
+std::uint64_t GrowingFile::room() const {
+  return static_cast<std::uint64_t>(std::max<off_t>(::lseek(descriptor_, 0, SEEK_END), 0));
+}
+
+Status GrowingFile::end_at(std::uint64_t place, std::span<const std::uint8_t> bytes) {
+  const int error_number = files::write_all(descriptor_, std::as_bytes(bytes), place);
+  size_ = error_number == 0 ? place + bytes.size() : place;
+  cut_back();
+  if (error_number != 0) return files::cannot_write(target_, error_number);
+  return Done{};
+}
+
 void GrowingFile::cut_back() const {
   const auto end = static_cast<off_t>(size_);
   if (::ftruncate(descriptor_, end) == 0) static_cast<void>(::lseek(descriptor_, end, SEEK_SET));

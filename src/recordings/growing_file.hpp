@@ -21,8 +21,18 @@ class GrowingFile {
   /// Removes a file that has not appeared.
   ~GrowingFile();
 
-  /// Appends all of the bytes, or none and says why.
+  /// Appends the bytes. What it has written of them when it fails stays until cut_back() or end_at().
   [[nodiscard]] Status append(std::span<const std::uint8_t> bytes);
+  /// The last append() failed for want of room.
+  [[nodiscard]] bool is_full() const noexcept { return is_full_; }
+  /// Whether append() would work.
+  [[nodiscard]] Status try_room_for(std::span<const std::uint8_t> bytes);
+  /// To what append() has written whole. A pipe cannot be: its reader sees a cut file.
+  void cut_back() const;
+  /// How many bytes the file has on the disk, with those that cut_back() would remove.
+  [[nodiscard]] std::uint64_t room() const;
+  /// The file ends with these bytes, from `place` on. Within room() they need no more of the disk.
+  [[nodiscard]] Status end_at(std::uint64_t place, std::span<const std::uint8_t> bytes);
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
   /// Puts the file in its place; nothing where it is there already. A file that it replaces is gone only when the bytes
@@ -38,12 +48,12 @@ class GrowingFile {
 
  private:
   explicit GrowingFile(files::OutputPlace place);
-  void cut_back() const;
 
   std::string target_;
   files::UnfinishedFile unfinished_;  ///< None where the file is in its place.
   int descriptor_;
   std::uint64_t size_ = 0;
+  bool is_full_ = false;
 };
 
 }  // namespace dermis::recordings

@@ -30,6 +30,7 @@ struct PlacedRecord {
 struct Batch {
   Bytes records;                     ///< Whole ones, before the chunk.
   std::vector<PlacedRecord> placed;  ///< Of them, those that have an index.
+  Bytes declarations;                ///< Of them, schemas and channels, for the summary.
   Bytes chunk;                       ///< The records in it.
   std::uint64_t first_time = 0;
   std::uint64_t last_time = 0;
@@ -47,25 +48,9 @@ struct Batch {
   void clear() {
     records.clear();
     placed.clear();
+    declarations.clear();
     chunk.clear();
     for (Bytes& index : indexes) index.clear();
-  }
-};
-
-/// Records of the summary that tell of what is in the file. What is of bytes that could not be written is cut off.
-struct IndexRecords {
-  Bytes bytes;
-  std::uint32_t count = 0;
-  std::size_t written_bytes = 0;
-  std::uint32_t written_count = 0;
-
-  void keep() {
-    written_bytes = bytes.size();
-    written_count = count;
-  }
-  void cut() {
-    bytes.resize(written_bytes);
-    count = written_count;
   }
 };
 

@@ -4,28 +4,33 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
-#include "recordings/mcap_batch.hpp"
 #include "recordings/mcap_bytes.hpp"
 
 namespace dermis::recordings {
 
-/// What the end of a file tells of the records in it.
+/// What the end of a file tells of the batches in it.
 struct McapSummary {
-  IndexRecords chunk_indexes;
-  IndexRecords attachment_indexes;
-  IndexRecords metadata_indexes;
-  std::vector<std::uint64_t> channel_messages;  ///< Of each channel from 1 on.
-  std::uint64_t first_time = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t last_time = 0;
+  /// The sizes up to the end of a batch.
+  struct Written {
+    std::uint64_t file_bytes = 0;
+    std::size_t record_bytes = 0;
+    std::uint32_t data_crc = 0;
+  };
 
-  /// The batch is in the file.
-  void keep(const Batch& batch);
-  /// Takes the indexes of a batch back that is not.
-  void cut();
-  void append_statistics(std::size_t schemas, std::size_t channels, Bytes& bytes) const;
+  Bytes records;  ///< Schemas, channels and indexes in the order of the file, also of a batch that is being written.
+  std::vector<Written> batches;
+
+  /// The batch is in the file, with these bytes.
+  void keep_batch(ByteView bytes);
+  /// The batch is not in the file.
+  void drop_batch();
+  /// Takes the last batches back until the file has its end within `room` bytes; the first one stays.
+  void cut_batches(std::uint64_t room);
+  [[nodiscard]] Written written() const;
+  /// Data end, summary, summary offsets and footer.
+  [[nodiscard]] Bytes end_of_file() const;
 };
 
 }  // namespace dermis::recordings

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -45,7 +44,6 @@ struct McapWriter::State {
   McapCompression compression;
   Compressor compressor;
   std::optional<Error> first_error;
-  std::uint32_t data_crc = 0;
   Bytes pending;  ///< Whole records that are not yet in the file.
   McapSummary summary;
 
@@ -59,7 +57,8 @@ struct McapWriter::State {
   [[nodiscard]] std::uint64_t append_chunk(const Batch& batch);
   void end_chunk(const Batch& batch);
   void append_message_indexes(const Batch& batch, Bytes& places);
-  [[nodiscard]] Bytes end_of_file() const;
+  void note(const Status& status);
+  void append_end();
   [[nodiscard]] Status status() const;
 };
 
@@ -77,7 +76,7 @@ std::uint16_t McapWriter::State::schema_id(const McapChannel& channel) {
   const auto id = static_cast<std::uint16_t>(found - schemas.begin() + 1);
   if (found == schemas.end()) {
     schemas.push_back(channel);
-    append_schema(open.records, id, channel);
+    for (Bytes* const bytes : {&open.records, &open.declarations}) append_schema(*bytes, id, channel);
   }
   return id;
 }
@@ -125,7 +124,7 @@ void McapWriter::State::end_chunk(const Batch& batch) {
   const std::uint64_t chunk_place = place();
   const std::uint64_t compressed_bytes = append_chunk(batch);
   const std::uint64_t chunk_end = place();
-  Bytes& index = summary.chunk_indexes.bytes;
+  Bytes& index = summary.records;
   const Record record(index, Opcode::chunk_index);
   append_number(index, batch.first_time);
   append_number(index, batch.last_time);
@@ -136,7 +135,6 @@ void McapWriter::State::end_chunk(const Batch& batch) {
   append_text(index, to_string(compression));
   append_number(index, compressed_bytes);
   append_number(index, std::uint64_t{batch.chunk.size()});
-  ++summary.chunk_indexes.count;
 }
 
 void McapWriter::State::append_message_indexes(const Batch& batch, Bytes& places) {
@@ -156,13 +154,10 @@ void McapWriter::State::append_message_indexes(const Batch& batch, Bytes& places
 
 void McapWriter::State::append_placed_indexes(const Batch& batch) {
   for (const PlacedRecord& placed : batch.placed) {
-    const bool is_attachment = placed.opcode == Opcode::attachment_index;
-    IndexRecords& indexes = is_attachment ? summary.attachment_indexes : summary.metadata_indexes;
-    const Record record(indexes.bytes, placed.opcode);
-    append_number(indexes.bytes, place() + placed.offset);
-    append_number(indexes.bytes, std::uint64_t{placed.bytes});
-    append_bytes(indexes.bytes, placed.rest);
-    ++indexes.count;
+    const Record record(summary.records, placed.opcode);
+    append_number(summary.records, place() + placed.offset);
+    append_number(summary.records, std::uint64_t{placed.bytes});
+    append_bytes(summary.records, placed.rest);
   }
 }
 
@@ -171,61 +166,31 @@ void McapWriter::State::write(const Batch& batch) {
   if (first_error) return;
   append_placed_indexes(batch);
   append_bytes(pending, batch.records);
+  append_bytes(summary.records, batch.declarations);
   if (!batch.chunk.empty()) end_chunk(batch);
-  if (const Status written = file.append(pending); !written) first_error = written.error();
+  note(file.append(pending));
   if (first_error) {
-    summary.cut();
+    file.cut_back();
+    summary.drop_batch();
   } else {
-    data_crc = crc32(data_crc, pending);
-    summary.keep(batch);
+    summary.keep_batch(pending);
   }
   pending.clear();
 }
 
-/// Data end, summary, summary offsets and footer.
-Bytes McapWriter::State::end_of_file() const {
-  Bytes bytes;
-  {
-    const Record data_end(bytes, Opcode::data_end);
-    append_number(bytes, data_crc);
-  }
-  const std::size_t summary_begin = bytes.size();
-  Bytes offsets;
-  const auto append_group = [&](Opcode opcode, const auto& append_records) {
-    const std::size_t begin = bytes.size();
-    append_records();
-    if (bytes.size() == begin) return;
-    const Record offset(offsets, Opcode::summary_offset);
-    append_number(offsets, static_cast<std::uint8_t>(opcode));
-    append_number(offsets, file.size() + begin);
-    append_number(offsets, std::uint64_t{bytes.size() - begin});
-  };
-  append_group(Opcode::schema, [&] {
-    for (std::size_t i = 0; i < schemas.size(); ++i)
-      append_schema(bytes, static_cast<std::uint16_t>(i + 1), schemas[i]);
-  });
-  append_group(Opcode::channel, [&] {
-    for (std::size_t i = 0; i < channels.size(); ++i) {
-      append_channel(bytes, static_cast<std::uint16_t>(i + 1), channels[i]);
-    }
-  });
-  append_group(Opcode::statistics, [&] { summary.append_statistics(schemas.size(), channels.size(), bytes); });
-  append_group(Opcode::chunk_index, [&] { append_bytes(bytes, summary.chunk_indexes.bytes); });
-  append_group(Opcode::attachment_index, [&] { append_bytes(bytes, summary.attachment_indexes.bytes); });
-  append_group(Opcode::metadata_index, [&] { append_bytes(bytes, summary.metadata_indexes.bytes); });
-  const std::uint64_t offsets_place = file.size() + bytes.size();
-  append_bytes(bytes, offsets);
-  {
-    const Record footer(bytes, Opcode::footer);
-    append_number(bytes, file.size() + summary_begin);
-    append_number(bytes, offsets_place);
-    // The checksum counts the length of the footer, which is not yet there.
-    const std::uint64_t footer_length = kFooterBytes;
-    std::memcpy(bytes.data() + bytes.size() - 24, &footer_length, sizeof(footer_length));
-    append_number(bytes, crc32(0, ByteView(bytes).subspan(summary_begin)));
-  }
-  append_characters(bytes, kMcapMagic);
-  return bytes;
+void McapWriter::State::note(const Status& status) {
+  if (!status && !first_error) first_error = status.error();
+}
+
+/// Where the disk is full, the end of a file that others see takes the room of its last chunks.
+void McapWriter::State::append_end() {
+  const Status ended = file.append(summary.end_of_file());
+  if (ended) return;
+  note(ended);
+  const bool may_make_room = file.is_full() && file.has_appeared() && !summary.batches.empty();
+  if (!may_make_room) return file.cut_back();
+  summary.cut_batches(file.room());
+  note(file.end_at(summary.written().file_bytes, summary.end_of_file()));
 }
 
 Status McapWriter::State::status() const {
@@ -252,7 +217,8 @@ std::uint16_t McapWriter::add_channel(const McapChannel& channel) {
   added.schema_id = state_->schema_id(channel);
   state_->channels.push_back(std::move(added));
   const auto id = static_cast<std::uint16_t>(state_->channels.size());
-  append_channel(state_->open.records, id, state_->channels.back());
+  Batch& open = state_->open;
+  for (Bytes* const bytes : {&open.records, &open.declarations}) append_channel(*bytes, id, state_->channels.back());
   return id;
 }
 
@@ -330,10 +296,11 @@ Status McapWriter::write_sealed() {
   return state_->status();
 }
 
+/// A file appears only where its end has room: a disk that is full from the beginning replaces nothing.
 Status McapWriter::appear() {
-  if (!state_->first_error) {
-    if (const Status appeared = state_->file.appear(); !appeared) state_->first_error = appeared.error();
-  }
+  const bool is_first = !state_->first_error && !state_->file.has_appeared();
+  if (is_first) state_->note(state_->file.try_room_for(state_->summary.end_of_file()));
+  if (!state_->first_error) state_->note(state_->file.appear());
   return state_->status();
 }
 
@@ -343,12 +310,12 @@ Status McapWriter::synchronise() {
 
 Status McapWriter::finish() {
   static_cast<void>(close_chunk());
-  const Status ended = state_->file.append(state_->end_of_file());
+  state_->append_end();
   const bool nothing_to_keep = state_->first_error && !state_->file.has_appeared();
   if (nothing_to_keep) return state_->status();
-  for (const Status& step : {ended, state_->file.synchronise(), state_->file.appear(), state_->file.close()}) {
-    if (!step && !state_->first_error) state_->first_error = step.error();
-  }
+  state_->note(state_->file.synchronise());
+  state_->note(state_->file.appear());
+  state_->note(state_->file.close());
   return state_->status();
 }
 

@@ -269,7 +269,7 @@ TEST(Firmware, sends_what_the_library_sends) {
 }
 
 TEST(Firmware, the_example_sends_frames) {
-  const std::string program = support::firmware_example();
+  const std::string program = "'" + support::firmware_example().string() + "'";
   std::FILE* output = popen(program.c_str(), "r");  // NOLINT(cert-env33-c): the path is of the build
   ASSERT_NE(output, nullptr);
   Bytes bytes(100000);

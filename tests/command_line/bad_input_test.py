@@ -471,16 +471,15 @@ class Outputs(SmallArray):
     def test_a_folder_that_cannot_be_written(self):
         folder = self.work / "locked"
         folder.mkdir(mode=0o555)
-        as_nobody = {}
-        if os.geteuid() == 0:  # root may write everywhere
-            self.work.chmod(0o755)
-            self.root.chmod(0o755)
-            as_nobody = {"user": 65534, "group": 65534}
-        self.refuse(self.run_arguments(folder / "f.csv"), [folder], status=1, **as_nobody)
+        is_root = os.geteuid() == 0  # who may write everywhere
+        user = support.as_nobody(self) if is_root else {}
+        self.work.chmod(0o755)
+        self.root.chmod(0o755)
+        self.refuse(self.run_arguments(folder / "f.csv"), [folder], status=1, **user)
         self.refuse(["simulate", "--array", self.array, "--scene", "paper", "--out", folder / "o"], [folder], status=1,
-                    **as_nobody)
-        self.refuse([*self.evaluate_arguments(), "--report", folder / "o"], [folder], status=1, **as_nobody)
-        self.refuse(["paper", "--report", folder / "o"], [folder], status=1, **as_nobody)  # before the work
+                    **user)
+        self.refuse([*self.evaluate_arguments(), "--report", folder / "o"], [folder], status=1, **user)
+        self.refuse(["paper", "--report", folder / "o"], [folder], status=1, **user)  # before the work
 
 
 if __name__ == "__main__":

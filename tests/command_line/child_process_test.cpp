@@ -64,7 +64,8 @@ TEST(ChildProcess, may_end_what_must_be_ended_when_it_is_stopped) {
   const std::string begun = folder.file("begun");
   const std::string ended = folder.file("ended");
   auto child = started(
-      {"sh", "-c", "trap 'touch " + ended + "; exit 0' TERM; touch " + begun + "; while true; do sleep 0.01; done"});
+      {"sh", "-c",
+       "trap 'touch \"" + ended + "\"; exit 0' TERM; touch \"" + begun + "\"; while true; do sleep 0.01; done"});
   ASSERT_TRUE(child);
   wait_for_file(begun);
   EXPECT_FALSE(child->exit_status());

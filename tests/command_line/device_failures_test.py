@@ -8,7 +8,6 @@ import random
 import signal
 import socket
 import struct
-import subprocess
 import tempfile
 import time
 import unittest
@@ -21,8 +20,6 @@ from devices.emulators import DEVICES, Piece
 from devices.lines import Serial, TcpServer, free_port
 from devices.recordings import read_frames
 from support import dermis, files_limited_to
-
-NOBODY = 65534
 
 
 def device_named(name):
@@ -220,28 +217,23 @@ class Failures(unittest.TestCase):
             self.refuse(f"udp://127.0.0.1:{port}?protocol=dermis", [port, "in use"])
 
     def test_no_permission(self):
-        if os.geteuid() != 0:
-            self.skipTest("only root can make a device that others may not open")
-        if not os.access(support.BINARY, os.X_OK) or as_nobody([support.BINARY, "--version"]).returncode != 0:
-            self.skipTest("nobody may not run the binary")
+        user = support.as_nobody(self)
         self.work.chmod(0o777)
         with contextlib.closing(Serial(2_000_000)) as line:
             os.chmod(line.path, 0o600)
-            result = as_nobody([support.BINARY, "record", "--from", line.uri(FLEXITAC.parameters(False)), "--out",
-                                self.out])
+            result = dermis("record", "--from", line.uri(FLEXITAC.parameters(False)), "--out", self.out, **user)
             self.assertIn(result.returncode, (1, 2), result.stderr)
             self.error_of(result.stderr, [line.path, "dialout"])
 
     def test_busy_device(self):
-        """Two recordings of one device would each get half of the bytes."""
-        if os.geteuid() != 0 or as_nobody([support.BINARY, "--version"]).returncode != 0:
-            self.skipTest("root opens what is busy")
+        """Two recordings of one device would each get half of the bytes. Root opens what is busy."""
+        user = support.as_nobody(self)
         self.work.chmod(0o777)
         with contextlib.closing(Serial(2_000_000)) as line:
             os.chmod(line.path, 0o666)
             self.start(line, FLEXITAC)
-            result = as_nobody([support.BINARY, "record", "--from", line.uri(FLEXITAC.parameters(False)), "--out",
-                                self.work / "second.mcap"])
+            result = dermis("record", "--from", line.uri(FLEXITAC.parameters(False)), "--out",
+                            self.work / "second.mcap", **user)
             self.assertIn(result.returncode, (1, 2), result.stderr)
             self.error_of(result.stderr, [line.path])
 
@@ -272,11 +264,6 @@ class Failures(unittest.TestCase):
                     self.assertIn(result.returncode, (1, 2), result.stderr)
                     self.error_of(result.stderr, [name])
                     self.assertFalse((self.work / "o.csv").exists())
-
-
-def as_nobody(command):
-    return subprocess.run([*map(str, command)], capture_output=True, text=True, timeout=60, user=NOBODY, group=NOBODY,
-                          extra_groups=[])
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Runs the binary named on the command line on a small simulated array."""
+import os
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -14,6 +16,7 @@ from pathlib import Path
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 BINARY = None
+NOBODY = 65534
 PROGRESS = re.compile(r"(.+, )?\w+: \d+ %(, \d+ s left)?")  # "chest, networks: 25 %, 3 s left"
 
 ARRAY = """[array]
@@ -41,6 +44,22 @@ def dermis(*arguments, prefix=(), **options):
 def files_limited_to(size):
     """Options of dermis() under which no file can grow beyond `size` bytes."""
     return {"preexec_fn": lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))}
+
+
+def as_nobody(test):
+    """Options of dermis() with which a user without rights runs a copy of the binary: the folders above the binary may
+    be closed to others. Skips the test where that cannot be."""
+    if os.geteuid() != 0:
+        test.skipTest("only root can become somebody else")
+    folder = tempfile.TemporaryDirectory()
+    test.addCleanup(folder.cleanup)
+    os.chmod(folder.name, 0o755)
+    options = {"executable": shutil.copy(BINARY, folder.name), "user": NOBODY, "group": NOBODY, "extra_groups": []}
+    try:
+        dermis("--version", **options).check_returncode()
+    except (OSError, subprocess.CalledProcessError) as error:
+        test.skipTest(f"nobody may not run a copy of the binary: {error}")
+    return options
 
 
 def error_lines(result):

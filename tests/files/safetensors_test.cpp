@@ -72,7 +72,7 @@ TEST(Safetensors, agrees_with_an_independent_reader) {
   const support::TemporaryFolder folder;
   ASSERT_TRUE(write_safetensors(folder.file("m"), example()));
   const std::filesystem::path script = support::project_folder() / "tests/files/read_safetensors.py";
-  const std::string command = "/usr/bin/python3 " + script.string() + " " + folder.file("m");
+  const std::string command = "/usr/bin/python3 '" + script.string() + "' '" + folder.file("m") + "'";
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> output(::popen(command.c_str(), "r"), &::pclose);
   ASSERT_NE(output, nullptr);
   std::string text(4096, '\0');

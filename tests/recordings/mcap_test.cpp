@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <sstream>
 
 #include "dermis/core/random.hpp"
+#include "support/full_disk.hpp"
 #include "support/mutations.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -232,6 +235,54 @@ TEST(Mcap, the_file_appears_when_it_is_told_to) {
   }
   EXPECT_TRUE(support::read_bytes(path).starts_with(kMagic));
   EXPECT_EQ(folder.file_count(), 1U);
+}
+
+/// A message a chunk, in a file that others see from the first chunk on. Its second channel is declared late.
+Status write_growing_file(const std::string& path, std::uint32_t messages) {
+  const auto writer = McapWriter::create(path, McapCompression::none);
+  if (!writer) return writer.error();
+  std::uint16_t channel = (*writer)->add_channel({"/first", "cdr", "pkg/msg/A", "ros2msg", "uint8 a\n"});
+  const std::vector<std::uint8_t> data(50, 1);
+  for (std::uint32_t i = 0; i < messages; ++i) {
+    if (i == messages / 2) channel = (*writer)->add_channel({"/second", "cdr", "pkg/msg/B", "ros2msg", "uint8 b\n"});
+    (*writer)->add_message({channel, i, 1000U + i, 1000U + i, data});
+    if ((*writer)->close_chunk()) static_cast<void>((*writer)->appear());
+  }
+  (*writer)->add_metadata({"totals", {{"messages", std::to_string(messages)}}});
+  return (*writer)->finish();
+}
+
+TEST(Mcap, a_full_disk_of_any_size_leaves_a_complete_file_or_none) {
+  constexpr std::uint32_t kMessages = 12;
+  const support::TemporaryFolder folder;
+  const std::string path = folder.file("rec.mcap");
+  ASSERT_TRUE(write_growing_file(path, kMessages));
+  const std::size_t whole = support::read_bytes(path).size();
+  std::size_t most_messages = 0;
+  for (std::size_t size = 0; size < whole; size += 11) {
+    SCOPED_TRACE(size);
+    std::filesystem::remove(path);
+    {
+      const support::SmallDisk disk(size);
+      ASSERT_FALSE(write_growing_file(path, kMessages));
+    }
+    ASSERT_EQ(folder.file_count(), std::filesystem::exists(path) ? 1U : 0U);
+    if (!std::filesystem::exists(path)) {
+      ASSERT_EQ(most_messages, 0U) << "less room had been enough";
+      continue;
+    }
+    const auto reader = McapReader::open(path);
+    ASSERT_TRUE(reader) << reader.error().message;
+    ASSERT_TRUE((*reader)->statistics());
+    const Content content = content_of(support::read_bytes(path));
+    ASSERT_FALSE(content.error) << content.error->message;
+    ASSERT_TRUE(content.complete);
+    ASSERT_GT(content.messages.size(), 0U);
+    ASSERT_EQ((*reader)->statistics()->messages, content.messages.size());
+    for (std::size_t i = 0; i < content.messages.size(); ++i) ASSERT_EQ(content.messages[i].sequence, i);
+    most_messages = std::max(most_messages, content.messages.size());
+  }
+  EXPECT_EQ(most_messages, kMessages) << "where only the end of the end lacks room, the totals make it";
 }
 
 TEST(Mcap, a_folder_that_is_not_there_is_named) {

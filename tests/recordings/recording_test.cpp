@@ -3,10 +3,8 @@
 #include "dermis/recordings/recording.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstring>
 #include <limits>
 #include <sstream>
@@ -15,6 +13,7 @@
 #include "dermis/core/random.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/disk_calls.hpp"
+#include "support/full_disk.hpp"
 #include "support/mutations.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -259,32 +258,14 @@ TEST(Recording, replaces_an_earlier_one_only_when_its_own_bytes_are_on_the_disk)
   }
 }
 
-/// A disk on which no file can become larger, for this process.
-class SmallDisk {
- public:
-  explicit SmallDisk(rlim_t size) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit limit = before_;
-    limit.rlim_cur = size;
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  ~SmallDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
-
 TEST(Recording, a_full_disk_leaves_what_was_written) {
   constexpr FrameShape kLarge{64, 160};
   const support::TemporaryFolder folder;
   const std::string path = folder.file("rec.mcap");
   const std::vector<RawFrame> frames = random_frames(50, 7, kLarge);
-  for (const rlim_t size : {rlim_t{1} << 22U, rlim_t{3'500'000}}) {
+  for (const std::size_t size : {std::size_t{1} << 22U, std::size_t{3'500'000}}) {
     {
-      const SmallDisk disk(size);
+      const support::SmallDisk disk(size);
       const auto writer = RecordingWriter::create(path, kLarge);
       ASSERT_TRUE(writer);
       Status written = Done{};
@@ -309,7 +290,7 @@ TEST(Recording, a_disk_that_is_full_from_the_beginning_leaves_the_old_file) {
   const std::string path = folder.file("rec.mcap");
   support::write_bytes(path, "an old recording");
   {
-    const SmallDisk disk(100);
+    const support::SmallDisk disk(100);
     const auto writer = RecordingWriter::create(path, kShape);
     ASSERT_TRUE(writer);
     static_cast<void>((*writer)->write(random_frames(1, 8)[0]));

@@ -13,6 +13,24 @@
 
 namespace dermis::support {
 
+/// A disk on which no file can become larger, for this process.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t size) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = size;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  ~SmallDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
 /// What `write` (a Status) gives in a process of its own whose files cannot grow beyond `size` bytes: 0 where it works,
 /// 1 where its error is that of a full disk, and otherwise more. The process ends by exit(), as programs do.
 template <typename Write>

@@ -167,8 +167,8 @@ export function useBench(prepare = () => {}) {
 }
 
 /** Becomes true in the page. */
-export async function eventually(page, check, argument) {
-  await page.waitForFunction(check, argument, { polling: 20, timeout: WAIT_MS });
+export async function eventually(page, check, argument, limitMs = WAIT_MS) {
+  await page.waitForFunction(check, argument, { polling: 20, timeout: limitMs });
 }
 
 /** Serves and shows for the time of a test, in the colours of the browser or in these. */

@@ -60,9 +60,9 @@ struct McapMetadata {
 
 /// Writes an MCAP file of the profile "ros2". The file is beside its final place until appear() or finish(). What
 /// close_chunk() wrote can be read even if the process dies afterwards. After the first write error the file is cut
-/// back to the last whole record, and later data are dropped. finish() then adds the index if it has room. Memory: two
-/// chunks and those that wait, and about 150 bytes for each chunk written (and 10 for each topic in it). Not
-/// thread-safe.
+/// back to the last whole record, and later data are dropped. finish() then adds the index. Where the disk is full, the
+/// last chunks make room for it. Memory: two chunks and those that wait, and about 180 bytes for each chunk written
+/// (and 10 for each topic in it). Not thread-safe.
 class McapWriter {
  public:
   [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path, McapCompression compression);
@@ -85,7 +85,7 @@ class McapWriter {
   void seal_chunk();
   /// Writes the first waiting chunk. One other thread at a time may call it while this one adds and seals.
   [[nodiscard]] Status write_sealed();
-  /// Puts the file in its place, where it continues to grow.
+  /// Puts the file in its place, where it continues to grow. Fails where the disk has no room for an index.
   [[nodiscard]] Status appear();
   /// Waits until the data of close_chunk() are on the disk. Another thread may call it while this one writes.
   [[nodiscard]] Status synchronise();

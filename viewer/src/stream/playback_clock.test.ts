@@ -16,6 +16,18 @@ describe("the playback clock", () => {
     expect(clock.isPlaying).toBe(true);
   });
 
+  it("is where it was asked to be, until it is told", () => {
+    const clock = new PlaybackClock(100, 160);
+    clock.tell(playing, 1000);
+    clock.ask(false, 2, clock.positionS(2000), 2000);
+    expect(clock.isPlaying).toBe(false);
+    expect(clock.positionS(9000)).toBe(4);
+    clock.ask(true, 4, 30, 9000);
+    expect(clock.positionS(10000)).toBe(34);
+    clock.tell(playing, 10000);
+    expect(clock.positionS(10000)).toBe(2);
+  });
+
   it("stands where it is paused, and ends with the recording", () => {
     const clock = new PlaybackClock(100, 160);
     clock.tell({ ...playing, status: PlaybackStatus.paused }, 1000);

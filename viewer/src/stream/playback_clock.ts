@@ -20,6 +20,11 @@ export class PlaybackClock {
     this.#toldMs = nowMs;
   }
 
+  /** Holds until the server tells a state: who pauses and seeks before that has asked for both. */
+  ask(play: boolean, speed: number, positionS: number, nowMs: number): void {
+    this.tell({ status: play ? PlaybackStatus.playing : PlaybackStatus.paused, nowS: this.startS + positionS, speed, didSeek: false }, nowMs);
+  }
+
   get isPlaying(): boolean {
     return this.#state.status === PlaybackStatus.playing;
   }

@@ -116,8 +116,11 @@ export class Stream {
     this.#send({ op: "setParameters", parameters: [{ name, value }], id: "set" });
   }
 
-  control(play: boolean, speed: number, seekS?: number): void {
-    if (this.connection.value.kind === "live") this.#socket?.send(protocol.playbackControl(play, speed, seekS));
+  /** Returns whether the server was asked. */
+  control(play: boolean, speed: number, seekS?: number): boolean {
+    if (this.connection.value.kind !== "live" || this.#socket === undefined) return false;
+    this.#socket.send(protocol.playbackControl(play, speed, seekS));
+    return true;
   }
 
   has(capability: string): boolean {

@@ -102,7 +102,8 @@ export class Transport {
   }
 
   #send(play: boolean, positionS?: number): void {
-    const seek = positionS === undefined ? undefined : this.#clock!.startS + positionS;
-    this.#stream.control(play, Number(this.#speed.value), seek);
+    const [playback, speed, nowMs] = [this.#clock!, Number(this.#speed.value), performance.now()];
+    const seek = positionS === undefined ? undefined : playback.startS + positionS;
+    if (this.#stream.control(play, speed, seek)) playback.ask(play, speed, positionS ?? playback.positionS(nowMs), nowMs);
   }
 }
