@@ -130,10 +130,12 @@ async function watchAnswers(page) {
   }, [NEW_S, TOUCH_S]);
 }
 
-/** Plays the new touches from one of them on, until all have an answer or the recording has ended. */
+/** Plays the new touches from one of them on, until all have an answer or the recording has ended. What was shown of
+ *  these before does not count. */
 async function playNewTouches(page, first, speed) {
   const beginS = NEW_S + first * TOUCH_S - 1;
   await pause(page);
+  await page.evaluate((from) => Object.keys(window.answers).forEach((touch) => Number(touch) >= from && delete window.answers[touch]), first);
   await seek(page, beginS);
   await play(page, speed);
   const isDone = (count) => Object.keys(window.answers).length >= count || document.querySelector("[data-role=play]").textContent === "Again";
