@@ -179,7 +179,11 @@ TEST(TcpStream, looks_its_peer_up_once) {
   const std::string name = listener->name();
   const auto client = source("tcp://localhost" + name.substr(name.rfind(':')));
   names_looked_up = 0;
-  for (int attempt = 0; attempt < 2; ++attempt) EXPECT_TRUE(*client->open(kLong));
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    const auto opened = client->open(kLong);
+    ASSERT_TRUE(opened) << opened.error().message;
+    EXPECT_TRUE(*opened);
+  }
   EXPECT_EQ(names_looked_up, 1);
 }
 
