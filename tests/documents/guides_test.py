@@ -4,6 +4,7 @@
 
 Usage: guides_test.py DERMIS"""
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -51,7 +52,7 @@ class Guides(unittest.TestCase):
         cls.home = Path(folder.name)
         (cls.home / "examples").symlink_to(ROOT / "examples")
         (cls.home / "bin").mkdir()
-        (cls.home / "bin/dermis").write_text(DERMIS.replace("BINARY", BINARY))
+        (cls.home / "bin/dermis").write_text(DERMIS.replace("BINARY", shlex.quote(BINARY)))
         (cls.home / "bin/dermis").chmod(0o755)
         cls.work = cls.home / "first"
 
