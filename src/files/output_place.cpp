@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -34,8 +33,9 @@ std::string resolve(const std::string& path) {
   return error ? path : real.string();
 }
 
+/// The next one. Not thread-safe.
 std::string temporary_name(const std::string& target) {
-  static std::atomic<unsigned> counter{0};
+  static unsigned counter = 0;
   return target + "." + std::to_string(::getpid()) + "." + std::to_string(counter++) + ".tmp";
 }
 
@@ -52,10 +52,21 @@ UnfinishedFiles& unfinished_files() {
 
 }  // namespace
 
-UnfinishedFile::UnfinishedFile(std::string path) : path_(std::move(path)) {
+std::pair<UnfinishedFile, int> UnfinishedFile::create_beside(const std::string& target) {
   UnfinishedFiles& files = unfinished_files();
   const std::lock_guard lock(files.mutex);
-  files.paths.insert(path_);
+  UnfinishedFile file;
+  int descriptor = -1;
+  do {
+    file.path_ = temporary_name(target);
+    descriptor = ::open(file.path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  } while (descriptor < 0 && errno == EEXIST);
+  if (descriptor < 0) {
+    file.path_.clear();
+  } else {
+    files.paths.insert(file.path_);
+  }
+  return {std::move(file), descriptor};
 }
 
 UnfinishedFile& UnfinishedFile::operator=(UnfinishedFile&& other) noexcept {
@@ -97,14 +108,9 @@ Result<OutputPlace> open_output(const std::string& path) {
     return OutputPlace{path, UnfinishedFile(), descriptor};
   }
   const std::string target = resolve(path);
-  std::string temporary;
-  int descriptor = -1;
-  do {
-    temporary = temporary_name(target);
-    descriptor = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  } while (descriptor < 0 && errno == EEXIST);
+  auto [unfinished, descriptor] = UnfinishedFile::create_beside(target);
   if (descriptor < 0) return cannot_write(path, errno);
-  return OutputPlace{target, UnfinishedFile(std::move(temporary)), descriptor};
+  return OutputPlace{target, std::move(unfinished), descriptor};
 }
 
 int write_all(int descriptor, std::span<const std::byte> bytes, std::optional<std::uint64_t> offset) {

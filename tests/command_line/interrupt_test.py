@@ -59,8 +59,9 @@ class Interrupted(SmallArray):
                 pass
 
         (self.work / "out").mkdir()
-        self.interrupt(has_begun_to_write, "simulate", "--array", self.array, "--scene", "multitouch", "--frames", 200000,
-                       "--out", self.work / "out")
+        large = self.written("large.toml", support.ARRAY.replace("rows = 4", "rows = 16").replace("cols = 5", "cols = 16"))
+        self.interrupt(has_begun_to_write, "simulate", "--array", large, "--scene", "multitouch", "--frames", 200000, "--out",
+                       self.work / "out")
 
 
 if __name__ == "__main__":

@@ -17,10 +17,13 @@ namespace dermis::files {
 class UnfinishedFile {
  public:
   UnfinishedFile() = default;  ///< None: the target is written directly.
-  explicit UnfinishedFile(std::string path);
   UnfinishedFile(UnfinishedFile&& other) noexcept : path_(std::exchange(other.path_, {})) {}
   UnfinishedFile& operator=(UnfinishedFile&& other) noexcept;
   ~UnfinishedFile();
+
+  /// A new one, open for reading and writing under the descriptor; -1 and errno if the system refuses it. There is no
+  /// moment at which remove_unfinished_files() would miss it. Thread-safe.
+  [[nodiscard]] static std::pair<UnfinishedFile, int> create_beside(const std::string& target);
 
   /// Whether there is one that has not become the target.
   [[nodiscard]] bool exists() const noexcept { return !path_.empty(); }
