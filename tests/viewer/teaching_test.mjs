@@ -131,9 +131,9 @@ async function watchAnswers(page) {
 }
 
 /** Plays the new touches from one of them on, until all have an answer or the recording has ended. What was shown of
- *  these before does not count. */
+ *  these before does not count. It begins after the end of the touch before: a half of that would have an answer of its own. */
 async function playNewTouches(page, first, speed) {
-  const beginS = NEW_S + first * TOUCH_S - 1;
+  const beginS = NEW_S + first * TOUCH_S - 0.4;
   await pause(page);
   await page.evaluate((from) => Object.keys(window.answers).forEach((touch) => Number(touch) >= from && delete window.answers[touch]), first);
   await seek(page, beginS);
