@@ -3,9 +3,12 @@
 #include "dermis/files/output_place.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "support/temporary_folder.hpp"
 
@@ -62,6 +65,67 @@ TEST(OutputPlaceDeathTest, unfinished_files_are_removed_before_the_process_ends)
     ::_exit(begun && folder.file_count() == 0 ? 0 : 1);
   };
   EXPECT_EXIT(end_at_once(), testing::ExitedWithCode(0), "");
+}
+
+/// The number of a process that has ended.
+pid_t ended_process() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+std::string temporary_of(const std::string& target, pid_t process) {
+  return target + "." + std::to_string(process) + ".0.tmp";
+}
+
+TEST(OutputPlace, removes_what_killed_processes_have_left_of_the_same_target) {
+  const support::TemporaryFolder folder;
+  const std::string target = folder.file("model");
+  const std::string left_over = temporary_of(target, ended_process());
+  const std::string of_my_number = temporary_of(target, ::getpid());
+  for (const std::string& path : {left_over, of_my_number}) support::write_bytes(path, "half");
+  const Result<OutputPlace> place = open_output(target);
+  ASSERT_TRUE(place);
+  ::close(place->descriptor);
+  EXPECT_FALSE(std::filesystem::exists(left_over));
+  EXPECT_EQ(folder.file_count(), 1U) << "the one that was opened";
+}
+
+TEST(OutputPlace, leaves_what_living_processes_write_and_what_has_another_name) {
+  const support::TemporaryFolder folder;
+  const std::string target = folder.file("model");
+  const std::string process = std::to_string(ended_process());
+  const std::vector<std::string> kept{temporary_of(target, ::getppid()),
+                                      temporary_of(target, 1),
+                                      temporary_of(folder.file("m"), ended_process()),
+                                      target + "." + process + ".tmp",
+                                      target + "." + process + ".0",
+                                      target + "." + process + ".0.tmp.tmp",
+                                      target + "." + process + ".x.tmp",
+                                      target + ".-" + process + ".0.tmp",
+                                      target + ".0" + process + ".0.tmp",
+                                      target + ".99999999999999999999.0.tmp",
+                                      target + ".0.0.tmp",
+                                      target + "x." + process + ".0.tmp"};
+  for (const std::string& path : kept) support::write_bytes(path, "mine");
+  std::filesystem::create_directory(target + "." + process + ".1.tmp");
+  const Result<OutputPlace> place = open_output(target);
+  ASSERT_TRUE(place);
+  ::close(place->descriptor);
+  for (const std::string& path : kept) EXPECT_TRUE(std::filesystem::exists(path)) << path;
+  EXPECT_TRUE(std::filesystem::exists(target + "." + process + ".1.tmp"));
+}
+
+TEST(OutputPlace, leaves_what_it_has_begun_itself) {
+  const support::TemporaryFolder folder;
+  const Result<OutputPlace> first = open_output(folder.file("model"));
+  const Result<OutputPlace> second = open_output(folder.file("model"));
+  ASSERT_TRUE(first && second);
+  for (const auto* place : {&*first, &*second}) {
+    ::close(place->descriptor);
+    EXPECT_TRUE(std::filesystem::exists(place->unfinished.path()));
+  }
 }
 
 TEST(OutputPlace, what_is_no_regular_file_is_written_directly) {

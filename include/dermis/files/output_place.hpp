@@ -49,7 +49,8 @@ struct OutputPlace {
   int descriptor = -1;
 };
 
-/// Opens a new file beside `path`, or `path` itself if it exists and is no regular file (/dev/stdout, a pipe).
+/// Opens a new file beside `path`, or `path` itself if it exists and is no regular file (/dev/stdout, a pipe). The new
+/// file is called PATH.PROCESS.NUMBER.tmp. Such files of processes that were killed are removed.
 [[nodiscard]] Result<OutputPlace> open_output(const std::string& path);
 
 /// Writes all of the bytes, at `offset` if one is given, else at the position of the descriptor. Returns 0, or the
