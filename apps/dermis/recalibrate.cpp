@@ -2,11 +2,13 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <fmt/core.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 
 #include "commands.hpp"
 #include "dermis/calibration/recalibration.hpp"
+#include "dermis/files/kept_copy.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "interruption.hpp"
 #include "labelled_recording.hpp"
@@ -24,11 +26,18 @@ struct RecalibrateOptions {
   std::string out;
 };
 
-/// The old model stays beside the new one that takes its name.
-Status write(const RecalibrateOptions& options, const pipeline::Model& old, const pipeline::Model& fresh) {
-  if (!options.out.empty()) return pipeline::write_model(options.out, fresh);
-  if (Status kept = pipeline::write_model(options.model + ".before", old); !kept) return kept;
-  return pipeline::write_model(options.model, fresh);
+/// The old model stays beside the new one that takes its name. Its path; empty: the new one has another.
+Result<std::string> write(const RecalibrateOptions& options, const pipeline::Model& fresh) {
+  std::string kept;
+  if (options.out.empty()) {
+    Result<std::string> copy = files::keep_copy(options.model, std::chrono::system_clock::now());
+    if (!copy) return copy.error();
+    kept = *std::move(copy);
+  }
+  if (Status written = pipeline::write_model(options.out.empty() ? options.model : options.out, fresh); !written) {
+    return written.error();
+  }
+  return kept;
 }
 
 Status recalibrate(const RecalibrateOptions& options) {
@@ -41,9 +50,10 @@ Status recalibrate(const RecalibrateOptions& options) {
   const auto& [model, frames, loads] = *recording;
   const Result<Recalibration> recalibration = calibration::recalibrate(model, frames, loads);
   if (!recalibration) return bad_input(options.loads + ": " + recalibration.error().message);
-  if (Status written = write(options, model, recalibration->model); !written) return written;
+  const Result<std::string> kept = write(options, recalibration->model);
+  if (!kept) return kept.error();
   fmt::print("{}\n", calibration::describe(*recalibration));
-  if (options.out.empty()) fmt::print("the model as it was: {}.before\n", options.model);
+  if (!kept->empty()) fmt::print("the model as it was: {}\n", *kept);
   return Done{};
 }
 
@@ -56,7 +66,7 @@ void add_recalibrate(Command& command) {
       .required();
   command.option("--loads", options->loads, "loads.csv: known weights, of which one is enough").required();
   command.option("--out", options->out,
-                 "Model file to write; without it, MODEL, and the old one stays as MODEL.before");
+                 "Model file to write; without it, MODEL, and the old one stays as MODEL-before-<UTC time>");
   command.action([options] {
     end_when_interrupted();
     return recalibrate(*options);

@@ -2,15 +2,9 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "serve/saved_files.hpp"
 
-#include <fmt/chrono.h>
-
 #include "dermis/files/frames_csv.hpp"
 
 namespace dermis::serve {
-
-std::string time_stamp(std::chrono::system_clock::time_point time) {
-  return fmt::format("{:%Y%m%d-%H%M%S}", fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
-}
 
 Status write_frames(const std::string& path, FrameShape shape, std::size_t count,
                     const std::function<void(std::size_t number, RawFrame& frame)>& fill) {

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -11,9 +10,6 @@
 #include "dermis/core/result.hpp"
 
 namespace dermis::serve {
-
-/// "20261122-101500", in UTC: a part of file names.
-[[nodiscard]] std::string time_stamp(std::chrono::system_clock::time_point time);
 
 /// Writes frames.csv; `fill` makes each of the `count` frames.
 [[nodiscard]] Status write_frames(const std::string& path, FrameShape shape, std::size_t count,

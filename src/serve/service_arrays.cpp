@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "serve/saved_files.hpp"
+#include "dermis/files/kept_copy.hpp"
 
 namespace dermis::serve {
 std::string ServiceArray::folder() const {
@@ -17,7 +17,7 @@ std::string ServiceArray::folder() const {
 std::string ServiceArray::new_name(std::string_view content) const {
   std::string new_name = name + "-";
   if (!content.empty()) new_name.append(content).append("-");
-  return new_name + time_stamp(std::chrono::system_clock::now());
+  return new_name + files::time_stamp(std::chrono::system_clock::now());
 }
 
 std::string ServiceArray::path_of(const std::string& name) const {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "serve/saved_files.hpp"
+#include "dermis/files/kept_copy.hpp"
 
 namespace dermis::serve {
 
@@ -15,7 +15,7 @@ std::string recording_name(const std::string& wanted, bool is_first, std::chrono
   if (is_first && !wanted.empty()) return wanted;
   const std::filesystem::path pattern(wanted.empty() ? "dermis.mcap" : wanted);
   const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch());
-  const std::string name = fmt::format("{}-{}-{:03}{}", pattern.stem().string(), time_stamp(now),
+  const std::string name = fmt::format("{}-{}-{:03}{}", pattern.stem().string(), files::time_stamp(now),
                                        since_epoch.count() % 1000, pattern.extension().string());
   return (pattern.parent_path() / name).string();
 }

@@ -34,10 +34,16 @@ class Ageing(SmallArray):
         options = ("recalibrate", "--model", model, "--frames", aged / "frames.csv", "--loads", aged / "loads.csv")
         text = self.succeed(*options)
         self.assertRegex(text, r"the sheet read (9|10)\.\d % too much")
-        kept = self.work / "model.safetensors.before"
+        [kept] = self.work.glob("model-before-*.safetensors")
+        self.assertRegex(kept.name, r"^model-before-\d{8}-\d{6}\.safetensors$")
+        self.assertIn(f"the model as it was: {kept}\n", text)
         self.assertEqual(kept.read_bytes(), self.model.read_bytes())
         after = dermis("check", "--model", model, "--in", aged / "frames.csv", "--weight", 15)
         self.assertEqual(after.returncode, 0, after.stdout + after.stderr)
+        mended = model.read_bytes()
+        self.succeed(*options)
+        earlier = {path.read_bytes() for path in self.work.glob("model-before-*.safetensors")}
+        self.assertEqual(earlier, {self.model.read_bytes(), mended})
 
     def test_a_new_model_may_have_another_place(self):
         aged = self.weights(0.9, "aged")
