@@ -22,7 +22,9 @@
 
 #include "dermis/core/nearest_name.hpp"
 #include "dermis/core/version.hpp"
+#include "dermis/files/safetensors.hpp"
 #include "reference.hpp"
+#include "status_line.hpp"
 
 namespace dermis::app {
 namespace {
@@ -94,6 +96,15 @@ std::string names_of(std::span<const CommandEntry> commands) {
     names += (&command == &commands.back() ? " or " : ", ") + std::string(command.name);
   }
   return names;
+}
+
+/// Says which of the command's files, of those that dermis writes, were written before such files had checksums.
+void tell_missing_checksums(const CLI::App& command) {
+  for (const char* const name : {"--model", "--classes", "--bank"}) {
+    const CLI::Option* const option = command.get_option_no_throw(name);
+    if (option == nullptr || option->count() == 0) continue;
+    if (const auto note = files::checksum_note(option->as<std::string>())) say(*note);
+  }
 }
 
 /// For those who make packages, so --help does not name it.
@@ -177,7 +188,10 @@ void Command::action(std::function<Status()> action) {
 }
 
 void Command::action_with_exit_status(Action action) {
-  app_.callback([&chosen = chosen_, action = std::move(action)] { chosen = action; });
+  app_.callback([&chosen = chosen_, &command = app_, action = std::move(action)] {
+    tell_missing_checksums(command);
+    chosen = action;
+  });
 }
 
 Result<Action> parse_command_line(int argc, char** argv, std::span<const CommandEntry> commands) {

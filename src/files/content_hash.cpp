@@ -4,28 +4,35 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
 #include <vector>
 
 #include "dermis/files/input.hpp"
 
 namespace dermis::files {
 
+void ContentHash::add(std::string_view bytes) noexcept {
+  for (const char byte : bytes) {
+    hash_ ^= static_cast<unsigned char>(byte);
+    hash_ *= 0x100000001B3ULL;
+  }
+}
+
+std::string ContentHash::text() const {
+  return fmt::format("fnv1a64:{:016x}", hash_);
+}
+
 Result<std::string> content_hash(const std::string& path) {
   constexpr std::size_t kPieceBytes = std::size_t{1} << 20U;
   const Result<std::unique_ptr<std::istream>> in = open_input(path);
   if (!in) return in.error();
-  std::uint64_t hash = 0xCBF29CE484222325ULL;
+  ContentHash hash;
   std::vector<char> piece(kPieceBytes);
   while (!(*in)->eof()) {
     (*in)->read(piece.data(), static_cast<std::streamsize>(piece.size()));
     if ((*in)->bad()) return read_failure(path);
-    for (std::streamsize i = 0; i < (*in)->gcount(); ++i) {
-      hash ^= static_cast<unsigned char>(piece[static_cast<std::size_t>(i)]);
-      hash *= 0x100000001B3ULL;
-    }
+    hash.add({piece.data(), static_cast<std::size_t>((*in)->gcount())});
   }
-  return fmt::format("fnv1a64:{:016x}", hash);
+  return hash.text();
 }
 
 }  // namespace dermis::files

@@ -7,6 +7,7 @@
 #include <bit>
 #include <cassert>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -15,6 +16,7 @@
 #include <utility>
 
 #include "dermis/files/atomic_file.hpp"
+#include "dermis/files/content_hash.hpp"
 #include "dermis/files/file_kind.hpp"
 #include "dermis/files/input.hpp"
 #include "dermis/files/text.hpp"
@@ -33,6 +35,8 @@ constexpr std::size_t kAlignment = 8;
 constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30U;
 constexpr std::size_t kMaxHeaderBytes = std::size_t{1} << 22U;
 constexpr const char* kMetadata = "__metadata__";
+constexpr const char* kChecksum = "checksum";  // a key of the metadata
+constexpr const char* kMendDamage = "; restore it from a copy, or make it again";
 constexpr std::array<const char*, std::variant_size_v<Values>> kTypeNames{"F32", "F64", "U8", "I64"};  // as in Values
 
 const char* type_name(const Values& values) {
@@ -261,9 +265,9 @@ std::vector<std::pair<std::string, const Tensor*>> in_file_order(const Safetenso
   return order;
 }
 
-std::string header_of(const SafetensorsFile& file) {
+std::string header_of(const SafetensorsFile& file, const std::map<std::string, std::string>& metadata) {
   json header = json::object();
-  if (!file.metadata.empty()) header[kMetadata] = file.metadata;
+  if (!metadata.empty()) header[kMetadata] = metadata;
   std::size_t offset = 0;
   for (const auto& [name, tensor] : in_file_order(file)) {
     assert(name != kMetadata);
@@ -275,6 +279,25 @@ std::string header_of(const SafetensorsFile& file) {
   std::string text = header.dump(-1, ' ', false, json::error_handler_t::replace);
   text.resize((text.size() + kAlignment - 1) / kAlignment * kAlignment, ' ');
   return text;
+}
+
+/// Of the file as it is written without a checksum: whoever writes the same content otherwise keeps it.
+std::string checksum_of(const SafetensorsFile& file) {
+  ContentHash hash;
+  hash.add(header_of(file, file.metadata));
+  for (const auto& [name, tensor] : in_file_order(file)) hash.add(bytes_of(tensor->values));
+  return hash.text();
+}
+
+/// Takes the checksum out of the metadata, which it is no part of.
+Status take_checksum(SafetensorsFile& file) {
+  const auto told = file.metadata.extract(kChecksum);
+  if (told.empty()) return Done{};
+  if (told.mapped() != checksum_of(file)) {
+    return bad_input(std::string("is damaged: its checksum differs") + kMendDamage);
+  }
+  file.has_checksum = true;
+  return Done{};
 }
 
 }  // namespace
@@ -307,11 +330,31 @@ Result<SafetensorsFile> safetensors_from_bytes(std::string_view bytes, const std
   if (const auto other = wrong_kind(bytes, kSafetensorsKind)) return bad_input(name + ": " + *other);
   Result<SafetensorsFile> file = parse_bytes(bytes);
   if (!file) return bad_input(name + ": " + file.error().message);
+  if (const Status whole = take_checksum(*file); !whole) return bad_input(name + ": " + whole.error().message);
   return file;
 }
 
+Status check_format(const SafetensorsFile& file, const FileFormat& format) {
+  const auto told = file.metadata.find("format");
+  if (told == file.metadata.end()) return bad_input(format.otherwise);
+  if (told->second == format.without_checksum) return Done{};
+  if (told->second != format.name) return bad_input(format.otherwise);
+  if (!file.has_checksum) return bad_input(std::string("is damaged: it has lost its checksum") + kMendDamage);
+  return Done{};
+}
+
+std::optional<std::string> checksum_note(const std::string& path) {
+  std::error_code error;
+  if (path.ends_with(".toml") || !std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  const Result<SafetensorsFile> file = read_safetensors(path);
+  if (!file || file->has_checksum) return std::nullopt;
+  return path + ": is of an older dermis and has no checksum, so damage to it would not show";
+}
+
 Status write_safetensors(const std::string& path, const SafetensorsFile& file) {
-  const std::string header = header_of(file);
+  std::map<std::string, std::string> metadata = file.metadata;
+  metadata[kChecksum] = checksum_of(file);
+  const std::string header = header_of(file, metadata);
   if (header.size() > kMaxHeaderBytes)
     return failed("cannot write " + in_quotes(path) + ": its header would be too long");
   Result<AtomicFile> out = AtomicFile::create(path);

@@ -23,7 +23,8 @@ using files::TensorReader;
 using fusion::ForceNetworks;
 using fusion::LookUpTables;
 
-constexpr const char* kFormat = "dermis model 2";
+constexpr files::FileFormat kFormat{"dermis model 3", "dermis model 2",
+                                    "is not a dermis model; write one with 'dermis calibrate'"};
 constexpr const char* kFormatWithoutSigma = "dermis model 1";
 constexpr const char* kProvenancePrefix = "provenance.";
 constexpr std::size_t kMaxBaselines = 16;
@@ -214,7 +215,7 @@ Result<Model> read_direct_model(const std::string& path) {
 Status write_model(const std::string& path, const Model& model) {
   if (!is_consistent(model)) return failed("cannot write '" + path + "': the model holds values out of range");
   SafetensorsFile file;
-  file.metadata["format"] = kFormat;
+  file.metadata["format"] = kFormat.name;
   file.metadata["array"] = files::array_to_toml(model.array);
   for (const auto& [key, text] : model.provenance) file.metadata[kProvenancePrefix + key] = text;
   put_networks(file, model.networks);
@@ -235,8 +236,8 @@ Result<Model> read_model(const std::string& path) {
     return bad_input(path + ": is of an older dermis that did not know how sure its forces are; write it again with " +
                      "'dermis calibrate'");
   }
-  if (metadata(*file, "format") != kFormat) {
-    return bad_input(path + ": is not a dermis model; write one with 'dermis calibrate'");
+  if (const Status right = files::check_format(*file, kFormat); !right) {
+    return bad_input(path + ": " + right.error().message);
   }
   Model model;
   Result<ArrayDescription> array = files::array_from_toml(metadata(*file, "array"), path + ": array");

@@ -10,9 +10,11 @@
 #include <future>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
+#include "dermis/files/safetensors.hpp"
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/sources/open_source.hpp"
@@ -104,6 +106,16 @@ Status read_classes_of_suit(const std::string& path, const Notice& notice, Serve
   if (!classes) return classes.error();
   suit.classes = *std::move(classes);
   return Done{};
+}
+
+/// Of the files that suit.toml names; a command tells those that its user named.
+void tell_missing_checksums(const SuitDescription& suit, const Notice& notice) {
+  if (!notice) return;
+  std::set<std::string> paths{suit.classes};
+  for (const SuitArray& array : suit.arrays) paths.insert({array.model, array.classes});
+  for (const std::string& path : paths) {
+    if (const auto note = files::checksum_note(path)) notice(*note);
+  }
 }
 
 /// Zones of arrays that are not there may be misspelt.
@@ -305,6 +317,7 @@ Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions opti
   if (Status opened = open_arrays(*described, options.notice, std::move(parts), suit); !opened) return opened.error();
   if (Status read = read_classes_of_suit(described->classes, options.notice, suit); !read) return read.error();
   if (Status read = read_threats(place.threats, options.notice, suit); !read) return read.error();
+  if (!place.suit.empty()) tell_missing_checksums(*described, options.notice);
   options.guide = suit.guide;
   if (Status opened = open_sources(place, *described, options, suit); !opened) return opened.error();
   return suit;

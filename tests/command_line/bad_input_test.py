@@ -3,9 +3,10 @@
 """Every bad input: status 2 (1 where the input was right and the work failed), one line that names the place, and no
 output file."""
 import os
+import re
 
 import support
-from support import ARRAY, SmallArray, files_limited_to
+from support import ARRAY, SmallArray, dermis, files_limited_to
 
 
 class Usage(SmallArray):
@@ -431,10 +432,33 @@ class ModelFile(SmallArray):
         self.refuse(self.run_arguments(self.work / "f.csv", model=self.array), [self.array])
         self.refuse(self.run_arguments(self.work / "f.csv", model=self.contacts / "frames.csv"), ["frames.csv"])
 
+    def test_tensors_that_were_exchanged_or_flipped(self):
+        whole = self.model.read_bytes()
+        changed = self.work / "model"
+        for place in range(len(whole) - 1, len(whole) // 2, -997):
+            with self.subTest(place):
+                changed.write_bytes(whole[:place] + bytes([whole[place] ^ 4]) + whole[place + 1:])
+                self.refuse(self.run_arguments(self.work / "f.csv", model=changed), [changed, "its checksum differs"])
+
+    def test_a_model_without_a_checksum_is_used_and_a_line_says_so(self):
+        whole = self.model.read_bytes()
+        checksum = re.search(rb'"checksum":"fnv1a64:[0-9a-f]{16}",', whole).group()
+        lost = self.work / "lost"
+        lost.write_bytes(whole.replace(checksum, b" " * len(checksum)))
+        self.refuse(self.run_arguments(self.work / "f.csv", model=lost), [lost, "has lost its checksum"])
+        old = self.work / "old"
+        old.write_bytes(lost.read_bytes().replace(b"dermis model 3", b"dermis model 2"))
+        for arguments in (self.run_arguments(self.work / "f.csv", model=old), self.evaluate_arguments(model=old)):
+            result = dermis(*arguments)
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stderr.count("has no checksum"), 1, result.stderr)
+            self.assertIn(f"{old}: is of an older dermis", result.stderr)
+        self.assertNotIn("checksum", dermis(*self.run_arguments(self.work / "f.csv")).stderr)
+
     def test_a_header_that_was_changed(self):
         whole = self.model.read_bytes()
         changed = self.work / "model"
-        for old, new in ((b"dermis model 2", b"dermis model 9"), (b"rows = 4", b"rows = 3"),
+        for old, new in ((b"dermis model 3", b"dermis model 9"), (b"rows = 4", b"rows = 3"),
                          (b"networks.gain", b"networks.gone"), (b"F64", b"F32")):
             with self.subTest(new):
                 self.assertIn(old, whole)

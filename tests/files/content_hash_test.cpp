@@ -23,6 +23,14 @@ TEST(ContentHash, agrees_with_the_published_vectors) {
   EXPECT_EQ(hash_of("foobar"), "fnv1a64:85944171f73967e8");
 }
 
+TEST(ContentHash, does_not_depend_on_the_pieces) {
+  ContentHash hash;
+  hash.add("foo");
+  hash.add("");
+  hash.add("bar");
+  EXPECT_EQ(hash.text(), "fnv1a64:85944171f73967e8");
+}
+
 TEST(ContentHash, covers_files_larger_than_one_piece) {
   const std::string bytes(3'000'000, 'x');
   std::string changed = bytes;

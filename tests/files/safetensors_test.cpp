@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <regex>
 
 #include "support/mutations.hpp"
 #include "support/places.hpp"
@@ -77,7 +79,8 @@ TEST(Safetensors, agrees_with_an_independent_reader) {
   ASSERT_NE(output, nullptr);
   std::string text(4096, '\0');
   text.resize(std::fread(text.data(), 1, text.size(), output.get()));
-  EXPECT_EQ(text, R"({"metadata":{"format":"dermis","note":"two\nlines \"quoted\""},"tensors":{)"
+  text = std::regex_replace(text, std::regex(R"("checksum":"fnv1a64:[0-9a-f]{16}",)"), "\"checksum\":\"...\",");
+  EXPECT_EQ(text, R"({"metadata":{"checksum":"...","format":"dermis","note":"two\nlines \"quoted\""},"tensors":{)"
                   R"("bytes":{"dtype":"U8","shape":[3],"values":[1,2,255]},)"
                   R"("counts":{"dtype":"I64","shape":[1,2],"values":[-1,9007199254740993]},)"
                   R"("none":{"dtype":"F32","shape":[0,5],"values":[]},)"
@@ -203,6 +206,69 @@ TEST(Safetensors, leaves_the_old_file_where_the_new_one_cannot_be_written) {
   const Status full = write_safetensors("/dev/full", example());
   ASSERT_FALSE(full);
   EXPECT_EQ(full.error().message, "cannot write '/dev/full': No space left on device");
+}
+
+TEST(Safetensors, refuses_a_file_in_which_any_bit_was_flipped) {
+  const std::string bytes = written_bytes(example());
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    std::string flipped = bytes;
+    flipped[bit / 8] = static_cast<char>(static_cast<unsigned char>(flipped[bit / 8]) ^ (1U << bit % 8));
+    const Result<SafetensorsFile> read = safetensors_from_bytes(flipped, "m");
+    // A key that is no longer "checksum" leaves a file without one, which check_format() refuses.
+    EXPECT_FALSE(read && read->has_checksum) << bit;
+  }
+}
+
+TEST(Safetensors, refuses_a_file_whose_tensors_were_exchanged) {
+  SafetensorsFile file;
+  put_tensor(file, "a", {2}, std::vector<float>{1.0F, 2.0F});
+  put_tensor(file, "b", {2}, std::vector<float>{3.0F, 4.0F});
+  std::string bytes = written_bytes(file);
+  ASSERT_TRUE(safetensors_from_bytes(bytes, "m"));
+  std::swap_ranges(bytes.end() - 8, bytes.end(), bytes.end() - 16);
+  EXPECT_EQ(error_of_bytes(bytes),
+            "m.safetensors: is damaged: its checksum differs; restore it from a copy, or make it again");
+}
+
+TEST(Safetensors, takes_the_same_content_in_other_words) {
+  const std::string bytes = written_bytes(example());
+  std::uint64_t length = 0;
+  std::memcpy(&length, bytes.data(), sizeof(length));
+  const std::string header = "  " + bytes.substr(sizeof(length), length);
+  const Result<SafetensorsFile> read =
+      safetensors_from_bytes(bytes_with(header, bytes.substr(sizeof(length) + length)), "m");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_TRUE(read->has_checksum);
+}
+
+TEST(Safetensors, a_file_of_before_there_were_checksums_is_read_and_noted) {
+  const support::TemporaryFolder folder;
+  support::write_bytes(folder.file("old"), bytes_with(R"({"__metadata__":{"format":"f 1"}})", ""));
+  const Result<SafetensorsFile> old = read_safetensors(folder.file("old"));
+  ASSERT_TRUE(old);
+  EXPECT_FALSE(old->has_checksum);
+  EXPECT_EQ(checksum_note(folder.file("old")).value_or(""),
+            folder.file("old") + ": is of an older dermis and has no checksum, so damage to it would not show");
+  ASSERT_TRUE(write_safetensors(folder.file("new"), *old));
+  EXPECT_TRUE(read_safetensors(folder.file("new"))->has_checksum);
+  EXPECT_FALSE(checksum_note(folder.file("new")));
+  EXPECT_FALSE(checksum_note(folder.file("absent")));
+}
+
+TEST(Safetensors, a_file_of_a_format_with_a_checksum_must_not_have_lost_it) {
+  constexpr FileFormat kFormat{"f 2", "f 1", "is no f"};
+  const auto verdict = [&](const char* format, bool has_checksum) {
+    SafetensorsFile file;
+    file.metadata["format"] = format;
+    file.has_checksum = has_checksum;
+    const Status right = check_format(file, kFormat);
+    return right ? "" : right.error().message;
+  };
+  EXPECT_EQ(verdict("f 2", true), "");
+  EXPECT_EQ(verdict("f 1", false), "");
+  EXPECT_EQ(verdict("f 2", false), "is damaged: it has lost its checksum; restore it from a copy, or make it again");
+  EXPECT_EQ(verdict("f 3", true), "is no f");
+  EXPECT_EQ(check_format(SafetensorsFile{}, kFormat).error().message, "is no f");
 }
 
 TEST(Safetensors, gives_a_value_or_a_one_line_error_for_mutations) {

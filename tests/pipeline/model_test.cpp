@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -187,6 +189,49 @@ TEST(Model, without_memory_says_nothing_of_it) {
   EXPECT_FALSE(read_model(folder.file("m.safetensors"))->memory);
 }
 
+TEST(Model, a_file_in_which_bits_were_flipped_or_tensors_exchanged_is_refused) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_model(folder.file("whole"), make_model()));
+  const std::string whole = bytes_of(folder.file("whole"));
+  Random random(9);
+  for (int flip = 0; flip < 300; ++flip) {
+    std::string flipped = whole;
+    char& byte = flipped[random.below(flipped.size())];
+    byte = static_cast<char>(static_cast<unsigned char>(byte) ^ (1U << random.below(8)));
+    write_bytes(folder.file("m"), flipped);
+    expect_refused(folder.file("m"));
+  }
+  const std::string key = "\"checksum\":";
+  std::string renamed = whole;
+  renamed.replace(renamed.find(key), key.size(), "\"checksun\":");
+  write_bytes(folder.file("m"), renamed);
+  expect_refused(folder.file("m"), "is damaged: it has lost its checksum");
+  write_damaged(folder.file("m"), [](auto& file) {
+    std::swap(file.tensors["networks.reference_siemens"], file.tensors["networks.heaviest_siemens"]);
+  });
+  std::string exchanged = bytes_of(folder.file("m"));
+  const auto checksum_in = [](std::string& bytes) { return std::span(bytes).subspan(bytes.find("fnv1a64:"), 24); };
+  std::string original = whole;
+  std::ranges::copy(checksum_in(original), checksum_in(exchanged).begin());
+  write_bytes(folder.file("m"), exchanged);
+  expect_refused(folder.file("m"), "is damaged: its checksum differs");
+}
+
+TEST(Model, of_before_there_were_checksums_is_read) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_model(folder.file("m"), make_model()));
+  std::string old = bytes_of(folder.file("m"));
+  const std::size_t key = old.find("\"checksum\":");
+  const std::size_t size = std::string(R"("checksum":"fnv1a64:0123456789abcdef",)").size();
+  old.replace(key, size, std::string(size, ' '));
+  old.replace(old.find("dermis model 3"), 14, "dermis model 2");
+  write_bytes(folder.file("m"), old);
+  const auto read = read_model(folder.file("m"));
+  ASSERT_TRUE(read) << read.error().message;
+  expect_equal(*read, make_model());
+  EXPECT_TRUE(files::checksum_note(folder.file("m")));
+}
+
 TEST(Model, memory_that_cannot_be_undone_is_refused) {
   const TemporaryFolder folder;
   write_damaged(folder.file("m"), [&](auto& file) {
@@ -269,7 +314,7 @@ TEST(Model, missing_file_is_refused) {
 
 TEST(Model, safetensors_of_another_kind_are_refused_with_the_mend) {
   const TemporaryFolder folder;
-  for (const char* format : {"", "pt", "dermis model 3"}) {
+  for (const char* format : {"", "pt", "dermis model 4"}) {
     write_damaged(folder.file("m"), [&](auto& file) { file.metadata["format"] = format; });
     expect_refused(folder.file("m"), "dermis calibrate");
   }

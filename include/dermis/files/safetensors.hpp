@@ -30,13 +30,15 @@ struct Tensor {
 struct SafetensorsFile {
   std::map<std::string, std::string> metadata;
   std::map<std::string, Tensor> tensors;
+  bool has_checksum = false;  ///< It was read, and its content fits the checksum in it.
 
   /// The elements of a tensor, which must have this shape and element type (float, double, std::uint8_t or
   /// std::int64_t). They live as long as the tensor. Errors name the tensor, without a path.
   template <typename T>
   [[nodiscard]] Result<std::span<const T>> view(const std::string& name, const std::vector<std::size_t>& shape) const;
 
-  bool operator==(const SafetensorsFile&) const = default;
+  /// By content.
+  bool operator==(const SafetensorsFile& other) const { return metadata == other.metadata && tensors == other.tensors; }
 };
 
 /// `values` as the tensor `name` of the file.
@@ -71,11 +73,27 @@ class TensorReader {
 };
 
 /// Reads a file of at most 1 GiB with a header of at most 4 MiB. The tensors must fill the file without gap or overlap.
+/// Metadata and tensors must fit the checksum, if there is one.
 [[nodiscard]] Result<SafetensorsFile> read_safetensors(const std::string& path);
 /// The same from memory; `name` stands for the path in messages.
 [[nodiscard]] Result<SafetensorsFile> safetensors_from_bytes(std::string_view bytes, const std::string& name);
 
-/// Writes the file atomically. The same content gives the same bytes; tensors are aligned to their element size.
+/// What the metadata "format" of a file of ours says.
+struct FileFormat {
+  const char* name;              ///< Such a file has a checksum.
+  const char* without_checksum;  ///< The same from before there were checksums.
+  const char* otherwise;         ///< The error of any other file.
+};
+
+/// That the file is of the format, and has not lost its checksum. The error names no path.
+[[nodiscard]] Status check_format(const SafetensorsFile& file, const FileFormat& format);
+
+/// For who opens a file of ours: a line that says that it has no checksum, so that damage to it does not show. Empty
+/// where it has one, and where it is no regular safetensors file.
+[[nodiscard]] std::optional<std::string> checksum_note(const std::string& path);
+
+/// Writes the file atomically, with a checksum as its metadata "checksum". The same content gives the same bytes;
+/// tensors are aligned to their element size.
 [[nodiscard]] Status write_safetensors(const std::string& path, const SafetensorsFile& file);
 
 }  // namespace dermis::files

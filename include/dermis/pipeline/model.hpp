@@ -22,8 +22,8 @@ struct Model {
   ArrayDescription array;
   fusion::ForceNetworks networks;
   std::vector<fusion::LookUpTables> baselines;
-  std::optional<fusion::MemoryLaw> memory{};      ///< Of the material, where the calibration learned one.
-  std::optional<fusion::StripTable> strip{};      ///< Learned positions on a strip, where the calibration had some.
+  std::optional<fusion::MemoryLaw> memory{};  ///< Of the material, where the calibration learned one.
+  std::optional<fusion::StripTable> strip{};  ///< Learned positions on a strip, where the calibration had some.
   std::map<std::string, std::string> provenance;  ///< Hashes, counts and statistics of the calibration, as text.
 };
 
@@ -31,7 +31,8 @@ struct Model {
 [[nodiscard]] Status write_model(const std::string& path, const Model& model);
 
 /// Reads a model file, or, by the ending .toml, the array.toml of an array whose readings are forces: its
-/// direct_model(). A model read is complete and consistent, or an error that names the file.
+/// direct_model(). A model read is complete and consistent, or an error that names the file. Damage is found by the
+/// checksum in the file, which those of older releases do not have: files::checksum_note().
 [[nodiscard]] Result<Model> read_model(const std::string& path);
 
 }  // namespace dermis::pipeline

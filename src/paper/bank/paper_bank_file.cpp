@@ -16,7 +16,8 @@ namespace {
 
 using files::SafetensorsFile;
 
-constexpr const char* kFormat = "dermis paper bank 1";
+constexpr files::FileFormat kFormat{"dermis paper bank 2", "dermis paper bank 1",
+                                    "is not a bank of the paper; 'dermis calibrate' writes one"};
 
 bool all_finite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
@@ -77,7 +78,7 @@ Status write_paper_bank(const std::string& path, const PaperBank& bank) {
   const std::size_t taxels = bank.taxel_count();
   const std::size_t parameters = bank.networks().shape().parameter_count();
   SafetensorsFile file;
-  file.metadata["format"] = kFormat;
+  file.metadata["format"] = kFormat.name;
   std::vector<double> ratio;
   for (const PaperBank::Range& range : bank.ratio()) ratio.insert(ratio.end(), {range.low, range.high});
   file.tensors["ratio"] = {{taxels, 2}, std::move(ratio)};
@@ -94,9 +95,8 @@ Status write_paper_bank(const std::string& path, const PaperBank& bank) {
 Result<PaperBank> read_paper_bank(const std::string& path) {
   const Result<SafetensorsFile> file = files::read_safetensors(path);
   if (!file) return file.error();
-  const auto format = file->metadata.find("format");
-  if (format == file->metadata.end() || format->second != kFormat) {
-    return bad_input(path + ": is not a bank of the paper; 'dermis calibrate' writes one");
+  if (const Status right = files::check_format(*file, kFormat); !right) {
+    return bad_input(path + ": " + right.error().message);
   }
   Result<PaperBank> bank = bank_from(*file);
   if (!bank) return bad_input(path + ": " + bank.error().message);
