@@ -29,14 +29,16 @@ typedef enum dermis_status {
 
 /* Flags of dermis_force_frame.status; 0 if all is well. */
 enum {
-  DERMIS_FRAME_REJECTED = 1,            /* Wrong shape, not a number, out of the ADC's range, time going backwards. */
+  DERMIS_FRAME_REJECTED = 1,            /* Wrong shape, not a number, absurd supply, time going backwards. */
   DERMIS_FRAME_SATURATED = 2,           /* At least one taxel is saturated. */
   DERMIS_FRAME_ABOVE_RANGE = 4,         /* At least one taxel is beyond its heaviest calibrated load. */
   DERMIS_FRAME_DEAD_TAXELS = 8,         /* The array has dead taxels. */
   DERMIS_FRAME_TEMPERATURE_UNKNOWN = 16, /* The mean of the calibration is taken. */
   DERMIS_FRAME_TEMPERATURE_CLAMPED = 32, /* Outside the calibrated temperatures. */
   DERMIS_FRAME_NOT_CONVERGED = 64,      /* The crosstalk inversion did not reach its tolerance. */
-  DERMIS_FRAME_LINE_FAULT = 128         /* A line or taxel is faulty and masked. */
+  DERMIS_FRAME_LINE_FAULT = 128,        /* A line or taxel is faulty and masked. */
+  DERMIS_FRAME_SUPPLY_CLAMPED = 256,    /* Outside the supplies of the calibration: the nearest is used. */
+  DERMIS_FRAME_SUPPLY_IMPLAUSIBLE = 512 /* More than 20 % from nominal, too: that is used. */
 };
 
 /* Values of dermis_force_frame.taxels. */

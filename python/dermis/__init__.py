@@ -39,6 +39,8 @@ class FrameStatus(_enum.IntFlag):
     TEMPERATURE_CLAMPED = 32
     NOT_CONVERGED = 64
     LINE_FAULT = 128
+    SUPPLY_CLAMPED = 256
+    SUPPLY_IMPLAUSIBLE = 512
 
 
 class TaxelStatus(_enum.IntEnum):

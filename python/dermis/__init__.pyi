@@ -27,7 +27,7 @@ class Failed(Error, RuntimeError):
 
 class FrameStatus(enum.IntFlag):
     OK = 0
-    REJECTED = 1  # wrong shape, not a number, out of the ADC's range, time going backwards
+    REJECTED = 1  # wrong shape, not a number, out of the ADC's range, an absurd supply, time going backwards
     SATURATED = 2  # at least one taxel
     ABOVE_RANGE = 4  # at least one taxel is beyond its heaviest calibrated load
     DEAD_TAXELS = 8
@@ -35,6 +35,8 @@ class FrameStatus(enum.IntFlag):
     TEMPERATURE_CLAMPED = 32  # outside the calibrated temperatures
     NOT_CONVERGED = 64  # the crosstalk inversion
     LINE_FAULT = 128  # a line or taxel is faulty and masked
+    SUPPLY_CLAMPED = 256  # outside the supplies of the calibration: the nearest is used
+    SUPPLY_IMPLAUSIBLE = 512  # more than 20 % from nominal, too: that is used
 
 class TaxelStatus(enum.IntEnum):
     OK = 0
@@ -157,7 +159,7 @@ class Forces:
     @property
     def time_ns(self) -> NDArray[np.int64]: ...
     @property
-    def status(self) -> NDArray[np.uint8]: ...
+    def status(self) -> NDArray[np.uint16]: ...
     @property
     def newtons(self) -> NDArray[np.float32]: ...
     @property
@@ -182,6 +184,9 @@ class Pipeline:
         """counts (rows, cols); temperature [C]; supply [V]; time_ns: now, by the host's clock, where it is None."""
     def run(self, frames: Recording | _Path) -> Forces:
         """All frames. Other threads run meanwhile."""
+    @property
+    def why_rejected(self) -> str:
+        """Of the last frame: what was wrong, and what is expected; '' where it was not rejected."""
     def tare(self) -> None:
         """Takes the next second, at least 10 frames, for unloaded."""
     def follow_drift(self, follow: bool = True) -> None:

@@ -283,7 +283,7 @@ void bind_many_frames(py::module_& module) {
           [](const py::tuple& state) {
             Forces forces({state[0].cast<std::size_t>(), state[1].cast<std::size_t>()}, 0);
             forces.time_ns = state[2].cast<std::vector<std::int64_t>>();
-            forces.status = state[3].cast<std::vector<std::uint8_t>>();
+            forces.status = state[3].cast<std::vector<std::uint16_t>>();
             forces.newtons = state[4].cast<std::vector<float>>();
             forces.sigma_newtons = state[5].cast<std::vector<float>>();
             forces.taxels = state[6].cast<std::vector<std::uint8_t>>();
@@ -333,7 +333,7 @@ Forces::Forces(const FrameShape& array_shape, std::size_t frames)
 void Forces::set(std::size_t index, const ForceFrame& frame) {
   const auto first = static_cast<std::ptrdiff_t>(index * shape.taxel_count());
   time_ns[index] = frame.time.count();
-  status[index] = static_cast<std::uint8_t>(frame.status);
+  status[index] = static_cast<std::uint16_t>(frame.status);
   std::copy(frame.newtons.begin(), frame.newtons.end(), newtons.begin() + first);
   std::copy(frame.sigma_newtons.begin(), frame.sigma_newtons.end(), sigma_newtons.begin() + first);
   std::transform(frame.taxels.begin(), frame.taxels.end(), taxels.begin() + first,

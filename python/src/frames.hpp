@@ -49,7 +49,7 @@ struct Forces {
 
   FrameShape shape;
   std::vector<std::int64_t> time_ns;  // [frames]
-  std::vector<std::uint8_t> status;   // [frames], flags of FrameStatus
+  std::vector<std::uint16_t> status;  // [frames], flags of FrameStatus
   std::vector<float> newtons;         // [frames, rows, cols]
   std::vector<float> sigma_newtons;   // [frames, rows, cols]
   std::vector<std::uint8_t> taxels;   // [frames, rows, cols], TaxelStatus

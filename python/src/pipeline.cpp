@@ -5,6 +5,7 @@
 #include <chrono>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <utility>
 
 #include "bindings.hpp"
@@ -58,6 +59,11 @@ class SharedPipeline {
     return forces;
   }
 
+  std::string why_rejected() {
+    const std::unique_lock lock = exclusively();
+    return pipeline_.why_rejected();
+  }
+
   void tare() {
     const std::unique_lock lock = exclusively();
     pipeline_.drift().tare();
@@ -103,6 +109,7 @@ void bind_pipeline(py::module_& module) {
             return self.run(recording_of(frames));
           },
           py::arg("frames"))
+      .def_property_readonly("why_rejected", &SharedPipeline::why_rejected)
       .def("tare", &SharedPipeline::tare)
       .def("follow_drift", &SharedPipeline::follow_drift, py::arg("follow") = true);
 }

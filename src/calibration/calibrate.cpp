@@ -101,6 +101,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   report.first_rejection = database.first_rejection;
   report.remarks = database.remarks;
   calibration.model.array = database.array;
+  calibration.model.supply = database.supply;
   calibration.model.networks = training->networks;
   Result<UncertaintyReport> uncertainty = timed(report, "uncertainty", [&] {
     return fit_uncertainty(memory ? memory->felt : database, *training, calibration.model);

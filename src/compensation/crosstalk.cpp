@@ -112,7 +112,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   }
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
-  supply_error_->add(conductance.siemens, conductance.sigma_siemens);
+  supply_error_->add(conductance.siemens, conditioned.supply_doubt, conductance.sigma_siemens);
   if (!result.solved) {
     conductance.status |= FrameStatus::not_converged;
     std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);

@@ -24,7 +24,7 @@ class LineFaultMonitor::Implementation {
 
   bool observe(const ConditionedFrame& conditioned, const ConductanceFrame& conductance) noexcept {
     const std::size_t frame = frame_++;
-    if (has(conditioned.status, FrameStatus::rejected)) return false;
+    if (has(conditioned.status, FrameStatus::rejected | FrameStatus::supply_implausible)) return false;
     const bool solved = !has(conductance.status, FrameStatus::not_converged);
     sums_.sum(conditioned, conductance, solved);
     unloaded_.expect(conditioned, sums_, frame, solved);

@@ -29,6 +29,7 @@ constexpr double kRangeSigmas = 3.0;
 constexpr double kMostAveraged = 25.0;  // Not all noise is white.
 constexpr std::size_t kLeastTareFrames = 10;
 constexpr double kLongestTareS = 10.0;
+constexpr FrameStatus kTellsNoOffset = FrameStatus::not_converged | FrameStatus::supply_implausible;
 
 double seconds(Nanos span) {
   return 1e-9 * static_cast<double>(span.count());
@@ -122,7 +123,7 @@ void OffsetDrift::Implementation::process(ConductanceFrame& frame) noexcept {
   const bool fits =
       frame.siemens.size() == taxels && frame.sigma_siemens.size() == taxels && frame.taxels.size() == taxels;
   if (has(frame.status, FrameStatus::rejected) || !fits) return;
-  if (observes && !has(frame.status, FrameStatus::not_converged)) {
+  if (observes && !has(frame.status, kTellsNoOffset)) {
     const double since_last_s = seconds(frame.time - block_.last_time);
     const double block_s = seconds(frame.time - block_.begin);
     if (block_.frames > 0 && (since_last_s < 0.0 || since_last_s > kLongestGapS)) {

@@ -22,8 +22,9 @@ SupplyError::SupplyError(const ArrayDescription& array)
   row_ohm_ = readout.load_ohm;
 }
 
-void SupplyError::add(std::span<const double> siemens, std::span<double> sigma_siemens) noexcept {
-  if (supply_noise_ == 0.0) return;
+void SupplyError::add(std::span<const double> siemens, double doubt, std::span<double> sigma_siemens) noexcept {
+  const double supply_sigma = std::hypot(supply_noise_, doubt);
+  if (supply_sigma == 0.0) return;
   std::fill(column_gain_.begin(), column_gain_.end(), 1.0);
   for (std::size_t row = 0; row < row_gain_.size(); ++row) {
     double row_siemens = 0.0;
@@ -36,7 +37,7 @@ void SupplyError::add(std::span<const double> siemens, std::span<double> sigma_s
   for (std::size_t row = 0; row < row_gain_.size(); ++row) {
     for (std::size_t col = 0; col < cols_; ++col) {
       double& sigma = sigma_siemens[row * cols_ + col];
-      const double error = supply_noise_ * row_gain_[row] * column_gain_[col] * siemens[row * cols_ + col];
+      const double error = supply_sigma * row_gain_[row] * column_gain_[col] * siemens[row * cols_ + col];
       sigma = std::sqrt(sigma * sigma + error * error);
     }
   }

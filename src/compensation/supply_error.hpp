@@ -22,7 +22,8 @@ class SupplyError {
   explicit SupplyError(const ArrayDescription& array);
 
   /// Adds it to the standard deviations of the taxels [rows, cols]; all zero where the ADC's reference is the supply.
-  void add(std::span<const double> siemens, std::span<double> sigma_siemens) noexcept;
+  /// `doubt`: relative error of the frame's supply beside its noise, 0 or more.
+  void add(std::span<const double> siemens, double doubt, std::span<double> sigma_siemens) noexcept;
 
  private:
   std::size_t cols_;

@@ -8,7 +8,7 @@
 namespace dermis {
 
 std::string to_string(FrameStatus status) {
-  static constexpr std::array<std::pair<FrameStatus, const char*>, 8> kNames{{
+  static constexpr std::array<std::pair<FrameStatus, const char*>, 10> kNames{{
       {FrameStatus::rejected, "rejected"},
       {FrameStatus::saturated, "saturated"},
       {FrameStatus::above_range, "above_range"},
@@ -17,6 +17,8 @@ std::string to_string(FrameStatus status) {
       {FrameStatus::temperature_clamped, "temperature_clamped"},
       {FrameStatus::not_converged, "not_converged"},
       {FrameStatus::line_fault, "line_fault"},
+      {FrameStatus::supply_clamped, "supply_clamped"},
+      {FrameStatus::supply_implausible, "supply_implausible"},
   }};
   std::string text;
   for (const auto& [flag, name] : kNames) {

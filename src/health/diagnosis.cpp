@@ -27,6 +27,13 @@ std::string temperature_text(const Diagnosis& diagnosis, const pipeline::Model& 
                                 calibrated.centre_celsius + calibrated.half_span_celsius);
 }
 
+std::string supply_text(const Diagnosis& diagnosis, const pipeline::Model& model) {
+  const auto text = [](const preprocessing::SupplyRange& range) {
+    return fmt::format("{:.2f} to {:.2f} V", range.least_v, range.most_v);
+  };
+  return text(*diagnosis.supply) + (model.supply ? ", calibrated " + text(*model.supply) : ", unknown when calibrated");
+}
+
 std::string unloaded_text(const Diagnosis& diagnosis) {
   if (!diagnosis.offset_drift) return "unknown";
   std::string text = fmt::format("{:+.1f} % against the calibration", 100.0 * *diagnosis.offset_drift);
@@ -54,6 +61,7 @@ std::string describe(const Diagnosis& diagnosis, const pipeline::Model& model) {
   text += fmt::format("unloaded     {}\n", unloaded_text(diagnosis));
   text += fmt::format("gains        {}\n", gains_text(diagnosis.ageing));
   text += fmt::format("temperature  {}\n", temperature_text(diagnosis, model));
+  if (diagnosis.supply) text += fmt::format("supply       {}\n", supply_text(diagnosis, model));
   text += fmt::format("circuit      {} frames unsolved, worst misfit {:.2f} standard deviations\n",
                       diagnosis.frames_unsolved, diagnosis.worst_misfit_sigma);
   if (!diagnosis.blind_lines.empty()) {

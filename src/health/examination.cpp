@@ -96,6 +96,7 @@ class Examination::Implementation {
     if (!first_time_) first_time_ = raw.time;
     last_time_ = raw.time;
     follow_temperature(pipeline.conditioned());
+    follow_supply(raw);
     follow(pipeline.line_faults().faults(), frame, model_.array, counted_.faults);
     missing_.add(raw, pipeline.conditioned());
     const auto& taxels = pipeline.conditioned().taxels;
@@ -135,6 +136,13 @@ class Examination::Implementation {
     const double celsius = *conditioned.temperature_celsius;
     const TemperatureRange range = counted_.temperature.value_or(TemperatureRange{celsius, celsius});
     counted_.temperature = {std::min(range.coldest_celsius, celsius), std::max(range.hottest_celsius, celsius)};
+  }
+
+  void follow_supply(const RawFrame& raw) {
+    if (!raw.supply_v || !model_.array.readout.adc_reference_v) return;
+    const preprocessing::SupplyRange range =
+        counted_.supply.value_or(preprocessing::SupplyRange{*raw.supply_v, *raw.supply_v});
+    counted_.supply = {std::min(range.least_v, *raw.supply_v), std::max(range.most_v, *raw.supply_v)};
   }
 
   void follow_noise(const ConductanceFrame& conductance) {

@@ -24,6 +24,11 @@ bool leaves_calibrated_range(const TemperatureRange& temperature, const fusion::
          temperature.hottest_celsius > calibrated.centre_celsius + half_span;
 }
 
+bool leaves_trusted_range(const preprocessing::SupplyRange& supply, const pipeline::Model& model) {
+  const preprocessing::SupplyRange trusted = preprocessing::SupplyBounds(model.array.readout, model.supply).trusted();
+  return !trusted.contains(supply.least_v) || !trusted.contains(supply.most_v);
+}
+
 }  // namespace
 
 std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline::Model& model) {
@@ -59,6 +64,10 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline:
   if (diagnosis.ageing.has_aged()) found.push_back(describe(diagnosis.ageing));
   if (diagnosis.temperature && leaves_calibrated_range(*diagnosis.temperature, model.networks)) {
     found.emplace_back("the temperature leaves the calibrated range: forces there are those at its end");
+  }
+  if (diagnosis.supply && leaves_trusted_range(*diagnosis.supply, model)) {
+    found.emplace_back(
+        "the supply leaves the calibrated range: forces are less sure; check its meter, or calibrate there");
   }
   return found;
 }

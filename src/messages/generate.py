@@ -41,7 +41,7 @@ ENUMERATIONS = {
 SPELLED_OUT = {"warn": "warning"}
 UNNAMED = {"FrameStatus": ["FrameStatus::ok"]}  # no flag
 
-CONSTANT = re.compile(r"^(?:uint8|byte) ([A-Z]\w*)=(\d+)", re.MULTILINE)
+CONSTANT = re.compile(r"^(?:uint8|uint16|byte) ([A-Z]\w*)=(\d+)", re.MULTILINE)
 MEMBER_TYPE = re.compile(r"^(\w+/\w+)", re.MULTILINE)
 MEMBER = re.compile(r"^([\w/]+)(\[\])? (\w+)(?: *#.*)?$", re.MULTILINE)
 

@@ -228,13 +228,13 @@ Result<FrameShape> decode_grid(std::span<const std::uint8_t> message, ForceFrame
 void encode_frame_status(const ForceFrame& frame, std::vector<std::uint8_t>& message) {
   CdrWriter writer(message);
   writer.write(frame.time.count());
-  writer.write(static_cast<std::uint8_t>(frame.status));
+  writer.write(static_cast<std::uint16_t>(frame.status));
 }
 
 Status decode_frame_status(std::span<const std::uint8_t> message, ForceFrame& frame) {
   CdrReader reader(message);
   frame.time = read_nanos(reader);
-  frame.status = static_cast<FrameStatus>(reader.read<std::uint8_t>());
+  frame.status = static_cast<FrameStatus>(reader.read<std::uint16_t>());
   if (!reader.good()) return not_whole(frame_status_type());
   return Done{};
 }

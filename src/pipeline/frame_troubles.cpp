@@ -33,10 +33,16 @@ void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipe
   if (is_rejected || is_unsolved) ++lost_;
   if ((is_rejected || is_unsolved) && is_outside) ++lost_outside_;
   if (has(force.status, FrameStatus::line_fault)) ++faulty_;
+  if (has(force.status, FrameStatus::supply_clamped | FrameStatus::supply_implausible)) add_supply(raw, pipeline);
   if (!is_rejected) return;
   if (rejected_++ > 0) return;
-  first_rejection_ =
-      fmt::format("{}: {}", place_of(prefix_, source, number_), preprocessing::to_string(pipeline.rejection()));
+  first_rejection_ = fmt::format("{}: {}", place_of(prefix_, source, number_), pipeline.why_rejected());
+}
+
+void FrameTroubles::add_supply(const RawFrame& raw, const Pipeline& pipeline) {
+  if (supply_clamped_++ > 0) return;
+  const auto& [least_v, most_v] = pipeline.supply_bounds().trusted();
+  first_supply_ = fmt::format("{:.3g} V, where {:.3g} to {:.3g} V are trusted", *raw.supply_v, least_v, most_v);
 }
 
 std::string FrameTroubles::cause() const {
@@ -60,6 +66,10 @@ std::vector<std::string> FrameTroubles::describe() const {
     lines.push_back(
         fmt::format("{} of {} frames with faulty lines or taxels, which are masked: 'dermis doctor' tells which",
                     faulty_, frames_));
+  }
+  if (supply_clamped_ > 0) {
+    lines.push_back(fmt::format("{} of {} frames with a supply outside of the calibration, the first: {}",
+                                supply_clamped_, frames_, first_supply_));
   }
   return lines;
 }

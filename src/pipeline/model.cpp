@@ -22,6 +22,7 @@ using files::SafetensorsFile;
 using files::TensorReader;
 using fusion::ForceNetworks;
 using fusion::LookUpTables;
+using preprocessing::SupplyRange;
 
 constexpr files::FileFormat kFormat{"dermis model 3", "dermis model 2",
                                     "is not a dermis model; write one with 'dermis calibrate'"};
@@ -191,6 +192,18 @@ fusion::MemoryLaw get_memory(TensorReader& reader) {
   return law;
 }
 
+/// Only where it is known: files without it stay as they always were.
+void put_supply(SafetensorsFile& file, const SupplyRange& supply) {
+  put_tensor<double>(file, "supply.range_v", {2}, {supply.least_v, supply.most_v});
+}
+
+std::optional<SupplyRange> get_supply(const SafetensorsFile& file, TensorReader& reader) {
+  if (!file.tensors.contains("supply.range_v")) return std::nullopt;
+  std::vector<double> range;
+  reader.get("supply.range_v", {2}, range);
+  return range.size() == 2 ? std::optional(SupplyRange{range[0], range[1]}) : std::nullopt;
+}
+
 bool is_consistent(const Model& model) {
   const std::size_t taxels = model.array.taxel_count();
   if (model.networks.taxel_count() != taxels || !model.networks.is_consistent()) return false;
@@ -198,6 +211,7 @@ bool is_consistent(const Model& model) {
     if (tables.taxel_count() != taxels || !tables.is_consistent()) return false;
   }
   if (model.memory && !model.memory->is_consistent()) return false;
+  if (model.supply && !model.supply->is_consistent()) return false;
   const bool is_strip = (model.array.rows > 1) != (model.array.cols > 1);
   return !model.strip || (is_strip && model.strip->is_consistent());
 }
@@ -225,6 +239,7 @@ Status write_model(const std::string& path, const Model& model) {
   }
   if (model.memory) put_memory(file, *model.memory);
   if (model.strip) put_strip(file, *model.strip);
+  if (model.supply) put_supply(file, *model.supply);
   return files::write_safetensors(path, file);
 }
 
@@ -260,6 +275,7 @@ Result<Model> read_model(const std::string& path) {
   }
   if (file->metadata.contains("memory")) model.memory = get_memory(reader);
   if (file->metadata.contains("strip.knots")) model.strip = get_strip(*file, reader);
+  model.supply = get_supply(*file, reader);
   if (reader.first_error()) return bad_input(path + ": " + reader.first_error()->message);
   if (!is_consistent(model)) {
     return bad_input(path + ": holds values out of range; write it again with 'dermis calibrate'");

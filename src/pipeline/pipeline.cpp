@@ -70,7 +70,8 @@ compensation::UnloadedConductance unloaded(const fusion::ForceNetworks& networks
 
 Result<Pipeline> Pipeline::create(const Model& model) {
   if (Status valid = model.array.validate(); !valid) return valid.error();
-  const bool is_consistent = model.networks.is_consistent() && (!model.memory || model.memory->is_consistent());
+  const bool is_consistent = model.networks.is_consistent() && (!model.memory || model.memory->is_consistent()) &&
+                             (!model.supply || model.supply->is_consistent());
   if (model.networks.taxel_count() != model.array.taxel_count() || !is_consistent) {
     return bad_input("the model's networks do not fit its array, or hold values out of range");
   }
@@ -81,7 +82,7 @@ Result<Pipeline> Pipeline::create(const Model& model) {
 }
 
 Pipeline::Pipeline(const Model& model, compensation::Compensator compensator)
-    : conditioner_(model.array),
+    : conditioner_(model.array, model.supply),
       compensator_(std::move(compensator)),
       monitor_(model.array, model.networks.unloaded.offset_siemens),
       drift_({model.array.rows, model.array.cols}, unloaded(model.networks)),

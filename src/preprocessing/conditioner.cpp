@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include "dermis/core/neighbours.hpp"
@@ -40,14 +40,17 @@ const char* to_string(Rejection rejection) noexcept {
     case Rejection::not_a_number: return "a value that is not a number";
     case Rejection::too_few_readings: return "more than half of the readings are missing or outside the ADC range";
     case Rejection::supply_not_positive: return "a supply of 0 V or less";
+    case Rejection::supply_impossible: return "a supply that the array cannot have";
+    case Rejection::supply_in_millivolts: return "a supply that looks like millivolts, give volts";
     case Rejection::supply_unknown: return "no supply voltage (add supply_v to the frames or to array.toml)";
     case Rejection::time_going_backwards: return "time going backwards";
   }
   return "none";
 }
 
-Conditioner::Conditioner(ArrayDescription array)
-    : array_(std::move(array)),
+Conditioner::Conditioner(const ArrayDescription& array, const SupplyBounds& supply_bounds)
+    : array_(array),
+      supply_bounds_(supply_bounds),
       full_scale_counts_(static_cast<float>(array_.readout.full_scale_counts())),
       least_counts_(array_.readout.quantity == Quantity::counts ? 0.0F : -full_scale_counts_),
       highest_counts_(std::numeric_limits<float>::infinity()),
@@ -58,6 +61,20 @@ Conditioner::Conditioner(ArrayDescription array)
     highest_counts_ = static_cast<float>(readout.rail_counts.value_or(readout.full_scale_counts())) - kHalfCount;
   } else {
     lowest_counts_ = static_cast<float>(readout.rail_counts.value_or(0.0)) + kHalfCount;
+  }
+}
+
+Conditioner::Conditioner(const ArrayDescription& array) : Conditioner(array, SupplyBounds(array.readout)) {}
+
+Conditioner::Conditioner(const ArrayDescription& array, const std::optional<SupplyRange>& calibrated)
+    : Conditioner(array, SupplyBounds(array.readout, calibrated)) {}
+
+std::string Conditioner::why_rejected() const {
+  switch (rejection_) {
+    case Rejection::none: return "";
+    case Rejection::supply_impossible:
+    case Rejection::supply_in_millivolts: return supply_bounds_.describe_impossible(rejected_supply_v_);
+    default: return to_string(rejection_);
   }
 }
 
@@ -74,20 +91,30 @@ std::size_t Conditioner::count_missing(const RawFrame& raw) const noexcept {
 
 Rejection Conditioner::inspect(const RawFrame& raw) const noexcept {
   if (raw.counts.size() != array_.taxel_count()) return Rejection::wrong_shape;
-  const bool has_infinite_temperature = raw.temperature_celsius && std::isinf(*raw.temperature_celsius);
-  if (has_infinite_temperature || (raw.supply_v && !std::isfinite(*raw.supply_v))) return Rejection::not_a_number;
-  if (raw.supply_v && *raw.supply_v <= 0.0) return Rejection::supply_not_positive;
-  const Readout& readout = array_.readout;
-  const bool needs_supply = readout.adc_reference_v && readout.circuit != Circuit::none;
-  if (needs_supply && !raw.supply_v && !readout.supply_v) return Rejection::supply_unknown;
+  if (raw.temperature_celsius && std::isinf(*raw.temperature_celsius)) return Rejection::not_a_number;
+  if (const Rejection supply = inspect_supply(raw); supply != Rejection::none) return supply;
   if (last_time_ && raw.time < *last_time_) return Rejection::time_going_backwards;
   return Rejection::none;
+}
+
+Rejection Conditioner::inspect_supply(const RawFrame& raw) const noexcept {
+  const Readout& readout = array_.readout;
+  if (!raw.supply_v) {
+    const bool needs_supply = readout.adc_reference_v && readout.circuit != Circuit::none;
+    return needs_supply && !readout.supply_v ? Rejection::supply_unknown : Rejection::none;
+  }
+  const double supply_v = *raw.supply_v;
+  if (!std::isfinite(supply_v)) return Rejection::not_a_number;
+  if (supply_v <= 0.0) return Rejection::supply_not_positive;
+  if (supply_bounds_.is_possible(supply_v)) return Rejection::none;
+  return supply_bounds_.is_in_millivolts(supply_v) ? Rejection::supply_in_millivolts : Rejection::supply_impossible;
 }
 
 void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
   conditioned.time = raw.time;
   conditioned.temperature_celsius = without_nan(raw.temperature_celsius);
   conditioned.status = FrameStatus::ok;
+  conditioned.supply_doubt = 0.0;
   conditioned.ratio.resize(array_.taxel_count());
   conditioned.taxels.resize(array_.taxel_count());
   rejection_ = inspect(raw);
@@ -95,6 +122,7 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   const std::size_t missing = rejection_ == Rejection::none ? count_missing(raw) : 0;
   if (2 * missing > array_.taxel_count() - array_.absent.size()) rejection_ = Rejection::too_few_readings;
   if (rejection_ != Rejection::none) {
+    rejected_supply_v_ = raw.supply_v.value_or(0.0);
     conditioned.status = FrameStatus::rejected;
     std::fill(conditioned.ratio.begin(), conditioned.ratio.end(), 0.0);
     std::fill(conditioned.taxels.begin(), conditioned.taxels.end(), TaxelStatus::invalid);
@@ -103,11 +131,12 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   last_time_ = raw.time;
   convert(raw, conditioned);
   if (missing > 0 || !array_.absent.empty()) mark_missing(raw, conditioned);
+  if (raw.supply_v && !supply_bounds_.trusted().contains(*raw.supply_v)) doubt_supply(*raw.supply_v, conditioned);
 }
 
 void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept {
   const Readout& readout = array_.readout;
-  const std::optional<double> supply_v = raw.supply_v ? raw.supply_v : readout.supply_v;
+  const std::optional<double> supply_v = raw.supply_v ? supply_bounds_.used(*raw.supply_v) : readout.supply_v;
   const double reference = readout.adc_reference_v && supply_v ? *readout.adc_reference_v / *supply_v : 1.0;
   const double scale = (readout.pressure_raises_reading ? reference : -reference) / readout.full_scale_counts();
   conditioned.sigma_ratio = std::abs(scale) * readout.adc_noise_counts;
@@ -124,6 +153,12 @@ void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) co
   }
   std::fill(conditioned.taxels.begin(), conditioned.taxels.end(), TaxelStatus::ok);
   if (saturated != 0) mark_saturated(raw, conditioned);
+}
+
+void Conditioner::doubt_supply(double measured_v, ConditionedFrame& conditioned) const noexcept {
+  conditioned.supply_doubt = std::abs(supply_bounds_.used(measured_v) / measured_v - 1.0);
+  conditioned.status |=
+      supply_bounds_.is_plausible(measured_v) ? FrameStatus::supply_clamped : FrameStatus::supply_implausible;
 }
 
 void Conditioner::mark_saturated(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept {

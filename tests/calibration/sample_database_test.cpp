@@ -155,6 +155,25 @@ TEST(SampleDatabase, removes_crosstalk_and_supply) {
   }
 }
 
+TEST(SampleDatabase, knows_the_supplies_of_its_frames_without_outliers) {
+  std::vector<RawFrame> frames = frames_of(400);
+  std::vector<Load> loads;
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    frames[k].counts.assign(6, 100.0F);
+    frames[k].supply_v = 4.8 + 0.001 * static_cast<double>(k);
+    loads.push_back({k, LoadKind::force, kAll, 0.0});
+  }
+  frames[7].supply_v = 12.0;
+  frames[8].supply_v.reset();
+  const auto database = build_sample_database(bare_array(), frames, loads);
+  ASSERT_TRUE(database) << database.error().message;
+  ASSERT_TRUE(database->supply);
+  EXPECT_NEAR(database->supply->least_v, 4.8, 0.005);
+  EXPECT_NEAR(database->supply->most_v, 5.2, 0.005);
+  for (RawFrame& frame : frames) frame.supply_v.reset();
+  EXPECT_FALSE(build_sample_database(bare_array(), frames, loads)->supply);
+}
+
 TEST(SampleDatabase, drops_a_total_that_a_saturated_taxel_makes_incomplete) {
   std::vector<RawFrame> frames = frames_of(3);
   frames[1].counts[0] = 1023.0F;

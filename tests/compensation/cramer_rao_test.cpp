@@ -176,6 +176,25 @@ TEST(SupplyError, is_what_the_inversion_makes_of_a_wrong_supply) {
   }
 }
 
+TEST(SupplyError, of_a_doubted_supply_is_that_of_so_much_noise) {
+  Random random(2);
+  ArrayDescription array = random_array(4, Circuit::divider, random);
+  array.readout.adc_reference_v = 5.0;
+  array.readout.supply_v = 5.0;
+  ConditionedFrame conditioned;
+  conditioned.ratio.assign(16, 0.05);
+  conditioned.sigma_ratio = 1e-6;
+  conditioned.taxels.assign(16, TaxelStatus::ok);
+  ConductanceFrame noisy;
+  array.readout.supply_noise = 0.05;
+  Compensator::create(array)->process(conditioned, noisy);
+  ConductanceFrame doubted;
+  array.readout.supply_noise = 0.03;
+  conditioned.supply_doubt = 0.04;
+  Compensator::create(array)->process(conditioned, doubted);
+  for (std::size_t k = 0; k < 16; ++k) EXPECT_NEAR(doubted.sigma_siemens[k] / noisy.sigma_siemens[k], 1.0, 1e-9);
+}
+
 TEST(SupplyError, is_nothing_where_the_reference_is_the_supply) {
   Random random(1);
   ArrayDescription array = random_array(4, Circuit::divider, random);

@@ -7,8 +7,9 @@ import re
 import sys
 from pathlib import Path
 
-IDL = {"bool": "boolean", "byte": "octet", "uint8": "octet", "uint32": "unsigned long", "uint64": "unsigned long long",
-       "int32": "long", "int64": "long long", "float32": "float", "float64": "double", "string": "string"}
+IDL = {"bool": "boolean", "byte": "octet", "uint8": "octet", "uint16": "unsigned short", "uint32": "unsigned long",
+       "uint64": "unsigned long long", "int32": "long", "int64": "long long", "float32": "float", "float64": "double",
+       "string": "string"}
 PRINT = {"string": "print_text", "float32": "print_number", "float64": "print_number", "bool": "print_bool",
          "uint64": "print_unsigned"}
 FIELD = re.compile(r"^([\w/]+)(\[\])? (\w+)\s*(?:#.*)?$", re.MULTILINE)

@@ -15,7 +15,7 @@ MESSAGES = ROOT / "src/messages/msg/dermis_msgs"
 # The grammar of ROS 2, but for what we do not use: bounds, defaults and arrays of fixed size.
 FIELD = re.compile(r"(?:bool|byte|u?int(?:8|16|32|64)|float(?:32|64)|string|[a-z][a-z0-9_]*/[A-Z][A-Za-z0-9]*)(?:\[\])? "
                    r"[a-z](?:_?[a-z0-9]+)*")
-CONSTANT = re.compile(r"uint8 [A-Z](?:_?[A-Z0-9]+)*=\d+")
+CONSTANT = re.compile(r"uint(?:8|16) [A-Z](?:_?[A-Z0-9]+)*=\d+")
 
 
 class Package(unittest.TestCase):

@@ -38,6 +38,17 @@ TEST(Diagnosis, a_healthy_array_is_called_healthy) {
             "healthy\n");
 }
 
+TEST(Diagnosis, a_supply_that_has_a_part_in_the_forces_is_told) {
+  pipeline::Model model = support::hand_made_model(4, 5);
+  Diagnosis diagnosis = healthy();
+  diagnosis.supply = {4.71, 5.02};
+  EXPECT_NE(describe(diagnosis, model).find("supply       4.71 to 5.02 V, unknown when calibrated\n"),
+            std::string::npos);
+  model.supply = {4.5, 5.5};
+  EXPECT_NE(describe(diagnosis, model).find("supply       4.71 to 5.02 V, calibrated 4.50 to 5.50 V\n"),
+            std::string::npos);
+}
+
 TEST(Diagnosis, what_is_not_known_is_called_unknown) {
   const pipeline::Model model = support::hand_made_model(4, 5);
   const std::string text = describe(Diagnosis{}, model);

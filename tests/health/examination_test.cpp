@@ -192,6 +192,20 @@ TEST(Examination, a_temperature_beyond_the_calibration_is_found_with_a_margin_of
   EXPECT_TRUE(says(examine(measurement), "the temperature leaves the calibrated range"));
 }
 
+TEST(Examination, a_supply_outside_of_the_calibration_is_found) {
+  Measurement measurement;
+  measurement.model.array.readout.adc_reference_v = 5.0;
+  measurement.model.array.readout.supply_v = 6.0;
+  measurement.model.supply = preprocessing::SupplyRange{4.9, 6.1};
+  const Diagnosis inside = examine(measurement);
+  EXPECT_EQ(inside.supply, (preprocessing::SupplyRange{5.0, 5.0}));
+  EXPECT_FALSE(says(inside, "the supply leaves the calibrated range"));
+  measurement.model.supply = preprocessing::SupplyRange{5.9, 6.1};
+  EXPECT_TRUE(says(examine(measurement), "the supply leaves the calibrated range"));
+  measurement.model.array.readout.adc_reference_v.reset();
+  EXPECT_FALSE(examine(measurement).supply) << "it has no part in the forces";
+}
+
 TEST(Examination, readings_at_the_end_of_the_adc_are_counted) {
   Measurement measurement;
   measurement.model.array.readout.adc_reference_v = 1.0;

@@ -185,7 +185,7 @@ ForceFrame random_forces(std::size_t taxel_count, std::uint64_t seed) {
   Random random(seed);
   ForceFrame frame;
   frame.time = Nanos(1'000'000'007);
-  frame.status = FrameStatus::saturated | FrameStatus::line_fault;
+  frame.status = FrameStatus::saturated | FrameStatus::supply_implausible;
   for (std::size_t i = 0; i < taxel_count; ++i) {
     frame.newtons.push_back(random.below(5) == 0 ? kNan : static_cast<float>(random.uniform(0.0, 40.0)));
     frame.sigma_newtons.push_back(random.below(5) == 0 ? kInfinity : static_cast<float>(random.uniform(0.0, 1.0)));

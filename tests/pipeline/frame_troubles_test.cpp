@@ -6,9 +6,11 @@
 
 #include <chrono>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "dermis/pipeline/direct_model.hpp"
+#include "support/hand_made_model.hpp"
 
 namespace dermis::pipeline {
 namespace {
@@ -62,6 +64,29 @@ TEST(FrameTroubles, has_nothing_to_say_of_good_frames) {
   const FrameTroubles troubles = troubles_of(pair_of(Quantity::force), frames_of({{0.0F, 1.0F}, {2.0F, 0.0F}}));
   EXPECT_TRUE(troubles.describe().empty());
   EXPECT_TRUE(troubles.verdict());
+}
+
+TEST(FrameTroubles, says_how_many_frames_have_a_supply_outside_of_the_calibration_and_which) {
+  Model model = support::hand_made_model(1, 2);
+  model.array.readout.adc_reference_v = 5.0;
+  model.array.readout.supply_v = 5.0;
+  Result<Pipeline> pipeline = Pipeline::create(model);
+  ASSERT_TRUE(pipeline);
+  FrameTroubles troubles(model.array, "f.csv");
+  ForceFrame force;
+  std::vector<RawFrame> frames = frames_of({{9.0F, 9.0F}, {9.0F, 9.0F}, {9.0F, 9.0F}, {9.0F, 9.0F}});
+  const std::vector<double> supply_v{5.0, 6.5, 8.0, 5000.0};
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    frames[k].supply_v = supply_v[k];
+    pipeline->process(frames[k], force);
+    troubles.add(frames[k], force, *pipeline);
+  }
+  EXPECT_EQ(
+      troubles.describe(),
+      (std::vector<std::string>{
+          "1 of 4 frames rejected, the first: f.csv: frame 4: a supply of 5000 V (1.67 to 15 V are possible): it "
+          "looks like millivolts, give volts",
+          "2 of 4 frames with a supply outside of the calibration, the first: 6.5 V, where 4 to 6 V are trusted"}));
 }
 
 TEST(FrameTroubles, says_how_many_frames_were_rejected_and_where_the_first_stands) {

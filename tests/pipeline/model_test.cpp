@@ -67,6 +67,7 @@ Model make_model() {
   model.networks.dead[5] = 1;
   model.networks.tables = {{1, 4}, 2, {1e-4F, 3e-4F, 2e-4F, 1e-3F}, {1.0F, 7.0F, 0.5F, 9.0F}, {0.01F, -0.002F}};
   model.memory = fusion::MemoryLaw{{0.1F, 0.0F, 0.05F, 0.2F}, {0.01F, 0.03F, 0.02F}};
+  model.supply = preprocessing::SupplyRange{4.6, 5.4};
   model.baselines = {make_baseline(6, "raw look-up", fusion::LookUpSignal::reading),
                      make_baseline(6, "look-up", fusion::LookUpSignal::conductance)};
   model.provenance = {{"frames", "120"}, {"note", "two\nlines, \"quotes\" and \xC2\xB5"}, {"empty", ""}};
@@ -126,6 +127,7 @@ void expect_equal(const Model& a, const Model& b) {
     EXPECT_EQ(a.baselines[k].temperature_coefficient, b.baselines[k].temperature_coefficient);
   }
   EXPECT_EQ(a.memory, b.memory);
+  EXPECT_EQ(a.supply, b.supply);
   EXPECT_EQ(a.provenance, b.provenance);
 }
 
@@ -187,6 +189,25 @@ TEST(Model, without_memory_says_nothing_of_it) {
   ASSERT_TRUE(write_model(folder.file("m.safetensors"), support::hand_made_model(2, 2)));
   EXPECT_EQ(bytes_of(folder.file("m.safetensors")).find("memory"), std::string::npos);
   EXPECT_FALSE(read_model(folder.file("m.safetensors"))->memory);
+}
+
+TEST(Model, without_a_supply_says_nothing_of_it) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(write_model(folder.file("m.safetensors"), support::hand_made_model(2, 2)));
+  EXPECT_EQ(bytes_of(folder.file("m.safetensors")).find("supply.range"), std::string::npos);
+  EXPECT_FALSE(read_model(folder.file("m.safetensors"))->supply);
+}
+
+TEST(Model, a_supply_out_of_order_is_refused) {
+  const TemporaryFolder folder;
+  write_damaged(folder.file("m"), [&](auto& file) {
+    file.tensors["supply.range_v"].values = std::vector<double>{5.4, 4.6};
+  });
+  expect_refused(folder.file("m"), "out of range");
+  write_damaged(folder.file("m"), [&](auto& file) {
+    file.tensors["supply.range_v"] = {{1}, std::vector<double>{5.4}};
+  });
+  expect_refused(folder.file("m"), "supply.range_v");
 }
 
 TEST(Model, a_file_in_which_bits_were_flipped_or_tensors_exchanged_is_refused) {

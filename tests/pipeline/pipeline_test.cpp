@@ -317,6 +317,76 @@ TEST(Pipeline, rejected_frame_says_why_and_has_no_force) {
   EXPECT_EQ(pipeline->rejection(), preprocessing::Rejection::none);
 }
 
+/// hand_made_model() with an ADC whose reference is in volts, calibrated at 4.5 to 5.5 V.
+Model model_at_5_volts() {
+  Model model = hand_made_model(4, 4);
+  model.array.readout.adc_reference_v = 5.0;
+  model.array.readout.supply_v = 5.0;
+  model.supply = preprocessing::SupplyRange{4.5, 5.5};
+  return model;
+}
+
+TEST(Pipeline, a_supply_that_is_told_wrong_is_flagged_or_rejected_and_sigma_covers_the_error) {
+  const Model model = model_at_5_volts();
+  Random random(5);
+  const std::vector<double> newtons = random_presses(16, random);
+  RawFrame raw = measure(model, newtons, 25.0, 5.3);
+  ForceFrame right;
+  make_pipeline(model)->process(raw, right);
+  ASSERT_EQ(right.status, FrameStatus::ok);
+  for (const double told_v : {0.1, 1.0, 1.7, 2.0, 3.0, 4.0, 4.3, 5.7, 6.5, 10.0, 14.0, 50.0, 5000.0, 1e308}) {
+    SCOPED_TRACE(testing::Message() << told_v << " V");
+    raw.supply_v = told_v;
+    ForceFrame force;
+    make_pipeline(model)->process(raw, force);
+    const bool is_possible = told_v > 5.0 / 3.0 && told_v < 15.0;
+    EXPECT_EQ(has(force.status, FrameStatus::rejected), !is_possible);
+    if (!is_possible) continue;
+    EXPECT_TRUE(has(force.status, FrameStatus::supply_clamped | FrameStatus::supply_implausible));
+    for (std::size_t k = 0; k < newtons.size(); ++k) {
+      if (newtons[k] == 0.0) continue;
+      EXPECT_NEAR(force.newtons[k], right.newtons[k], 2.0F * force.sigma_newtons[k]) << k;
+      EXPECT_LT(force.newtons[k], 1.5F * right.newtons[k]) << k;
+      EXPECT_GT(force.sigma_newtons[k], right.sigma_newtons[k]) << k;
+    }
+  }
+}
+
+TEST(Pipeline, sigma_grows_with_the_distance_of_the_supply_from_the_calibration) {
+  const Model model = model_at_5_volts();
+  Random random(5);
+  RawFrame raw = measure(model, random_presses(16, random), 25.0, 5.0);
+  ForceFrame force;
+  double last = 0.0;
+  for (const double supply_v : {5.5, 5.8, 6.2, 8.0, 12.0}) {
+    raw.supply_v = supply_v;
+    make_pipeline(model)->process(raw, force);
+    double relative = 0.0;
+    for (std::size_t k = 0; k < 16; ++k) {
+      if (force.newtons[k] > 1.0F) relative += static_cast<double>(force.sigma_newtons[k] / force.newtons[k]);
+    }
+    EXPECT_GT(relative, last) << supply_v;
+    last = relative;
+  }
+}
+
+TEST(Pipeline, says_what_was_wrong_with_a_rejected_frame) {
+  const Model model = model_at_5_volts();
+  const auto pipeline = make_pipeline(model);
+  RawFrame raw = random_frame(model, 1);
+  ForceFrame force;
+  pipeline->process(raw, force);
+  EXPECT_EQ(pipeline->why_rejected(), "");
+  raw.supply_v = 4987.0;
+  pipeline->process(raw, force);
+  EXPECT_EQ(pipeline->why_rejected(),
+            "a supply of 4987 V (1.67 to 15 V are possible): it looks like millivolts, give volts");
+  raw.supply_v = 5.0;
+  raw.counts.pop_back();
+  pipeline->process(raw, force);
+  EXPECT_EQ(pipeline->why_rejected(), "wrong number of readings");
+}
+
 TEST(Pipeline, statuses_of_all_units_meet_in_the_frame) {
   Model model = hand_made_model(2, 2);
   model.array.readout.circuit = Circuit::transimpedance;

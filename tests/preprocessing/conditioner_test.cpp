@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "dermis/core/random.hpp"
@@ -216,6 +218,85 @@ TEST(Conditioner, rejects_a_supply_that_is_not_positive) {
   EXPECT_EQ(rejection_of(make_frame({1.0F, 2.0F, 3.0F}, -5.0)), Rejection::supply_not_positive);
 }
 
+/// A divider at 5 V whose ADC has a reference in volts.
+ArrayDescription at_5_volts() {
+  ArrayDescription array = make_array();
+  array.readout.adc_reference_v = 3.3;
+  array.readout.supply_v = 5.0;
+  return array;
+}
+
+/// Of an array that was calibrated at 4.5 to 5.5 V.
+ConditionedFrame condition_calibrated(const ArrayDescription& array, double supply_v) {
+  Conditioner conditioner(array, SupplyRange{4.5, 5.5});
+  ConditionedFrame conditioned;
+  conditioner.process(make_frame({0.0F, 819.0F, 4095.0F}, supply_v), conditioned);
+  return conditioned;
+}
+
+TEST(Conditioner, a_supply_of_the_calibration_is_divided_out_as_it_was_measured) {
+  for (const double supply_v : {4.46, 4.5, 5.0, 5.5, 5.55}) {
+    const auto conditioned = condition_calibrated(at_5_volts(), supply_v);
+    EXPECT_EQ(conditioned.status, FrameStatus::saturated) << supply_v;
+    EXPECT_EQ(conditioned.supply_doubt, 0.0) << supply_v;
+    EXPECT_NEAR(conditioned.ratio[1], 0.2 * 3.3 / supply_v, 1e-15);
+  }
+}
+
+TEST(Conditioner, a_supply_outside_of_the_calibration_is_replaced_and_doubted_by_the_distance) {
+  for (const auto& [supply_v, used_v, flag] :
+       {std::tuple(4.2, 4.455, FrameStatus::supply_clamped), std::tuple(5.9, 5.555, FrameStatus::supply_clamped),
+        std::tuple(2.0, 5.0, FrameStatus::supply_implausible),
+        std::tuple(10.0, 5.0, FrameStatus::supply_implausible)}) {
+    const auto conditioned = condition_calibrated(at_5_volts(), supply_v);
+    EXPECT_EQ(conditioned.status, FrameStatus::saturated | flag) << supply_v;
+    EXPECT_NEAR(conditioned.ratio[1], 0.2 * 3.3 / used_v, 1e-15) << supply_v;
+    EXPECT_NEAR(conditioned.supply_doubt, std::abs(used_v / supply_v - 1.0), 1e-12) << supply_v;
+  }
+}
+
+TEST(Conditioner, a_doubted_supply_is_told_beside_missing_readings) {
+  Conditioner conditioner(at_5_volts(), SupplyRange{4.5, 5.5});
+  ConditionedFrame conditioned;
+  conditioner.process(make_frame({1.0F, kNan, 3.0F}, 4.2), conditioned);
+  EXPECT_EQ(conditioned.status, FrameStatus::supply_clamped);
+}
+
+TEST(Conditioner, rejects_a_supply_that_the_readout_cannot_have_and_says_what_is_expected) {
+  for (const double supply_v : {1e-300, 0.1, 1.6, 15.1, 1e308}) {
+    EXPECT_EQ(condition_calibrated(at_5_volts(), supply_v).status, FrameStatus::rejected) << supply_v;
+  }
+  Conditioner conditioner(at_5_volts(), SupplyRange{4.5, 5.5});
+  ConditionedFrame conditioned;
+  conditioner.process(make_frame({1.0F, 2.0F, 3.0F}, 0.1), conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::supply_impossible);
+  EXPECT_EQ(conditioner.why_rejected(), "a supply of 0.1 V (1.67 to 15 V are possible): check what measures it");
+  conditioner.process(make_frame({1.0F, 2.0F, 3.0F}, 5000.0), conditioned);
+  EXPECT_EQ(conditioner.rejection(), Rejection::supply_in_millivolts);
+  EXPECT_EQ(conditioner.why_rejected(),
+            "a supply of 5000 V (1.67 to 15 V are possible): it looks like millivolts, give volts");
+  conditioner.process(make_frame({1.0F, 2.0F, 3.0F}, 5.0), conditioned);
+  EXPECT_EQ(conditioner.why_rejected(), "");
+  EXPECT_EQ(conditioned.status, FrameStatus::ok);
+}
+
+TEST(Conditioner, of_a_calibration_takes_every_supply_that_is_possible) {
+  for (const double supply_v : {1.7, 3.0, 14.9}) {
+    const auto conditioned = condition(at_5_volts(), make_frame({0.0F, 819.0F, 4094.0F}, supply_v));
+    EXPECT_EQ(conditioned.status, FrameStatus::ok) << supply_v;
+    EXPECT_NEAR(conditioned.ratio[1], 0.2 * 3.3 / supply_v, 1e-15) << supply_v;
+  }
+  EXPECT_EQ(condition(at_5_volts(), make_frame({0.0F, 1.0F, 2.0F}, 5000.0)).status, FrameStatus::rejected);
+}
+
+TEST(Conditioner, any_supply_is_right_where_the_reading_does_not_depend_on_it) {
+  for (const double supply_v : {0.1, 2.0, 5000.0, 1e308}) {
+    const auto conditioned = condition_calibrated(make_array(), supply_v);
+    EXPECT_EQ(conditioned.status, FrameStatus::saturated) << supply_v;
+    EXPECT_EQ(conditioned.supply_doubt, 0.0) << supply_v;
+  }
+}
+
 TEST(Conditioner, rejects_time_going_backwards_but_not_time_standing_still) {
   Conditioner conditioner(make_array());
   ConditionedFrame conditioned;
@@ -328,10 +409,11 @@ TEST(Rejection, every_reason_has_words_of_its_own) {
   std::set<std::string> words;
   for (const Rejection reason :
        {Rejection::none, Rejection::wrong_shape, Rejection::not_a_number, Rejection::too_few_readings,
-        Rejection::supply_not_positive, Rejection::time_going_backwards}) {
+        Rejection::supply_not_positive, Rejection::supply_impossible, Rejection::supply_in_millivolts,
+        Rejection::supply_unknown, Rejection::time_going_backwards}) {
     words.insert(to_string(reason));
   }
-  EXPECT_EQ(words.size(), 6U);
+  EXPECT_EQ(words.size(), 9U);
 }
 
 TEST(BareReadings, are_the_share_of_full_scale_whatever_the_supply) {

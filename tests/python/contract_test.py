@@ -33,7 +33,7 @@ def cpp_enumerators(header, name):
     """In their order, with the values that are given; shifts are calculated."""
     values, last = {}, -1
     for enumerator, value in re.findall(r"(\w+)(?: = ([^,\n]+))?,?(?= |\n|$)", re.sub(r"///.*", "", block(
-            (INCLUDE / header).read_text(), rf"enum class {name} : std::uint8_t"))):
+            (INCLUDE / header).read_text(), rf"enum class {name} : std::uint\d+_t"))):
         last = eval(value.replace("U", "")) if value else last + 1
         values[enumerator.upper()] = last
     return values
@@ -50,7 +50,7 @@ def c_struct(name):
 
 def message(name):
     text = (ROOT / f"src/messages/msg/dermis_msgs/{name}.msg").read_text()
-    constants = {constant: int(value) for constant, value in re.findall(r"^uint8 ([A-Z_]+)=(\d+)", text, re.MULTILINE)}
+    constants = {constant: int(value) for constant, value in re.findall(r"^uint\d+ ([A-Z_]+)=(\d+)", text, re.MULTILINE)}
     return constants, re.findall(r"^[\w/]+(?:\[\])? ([a-z]\w*)", text, re.MULTILINE), text
 
 
@@ -78,7 +78,7 @@ class Enumerations(unittest.TestCase):
     def test_the_status_of_a_frame(self):
         expected = cpp_enumerators("core/frames.hpp", "FrameStatus")
         self.assertEqual(expected.pop("OK"), 0)
-        self.assertEqual(len(expected), 8)
+        self.assertEqual(len(expected), 10)
         self.assertEqual({member.name: member.value for member in dermis.FrameStatus if member}, expected)
         self.assertEqual(dermis.FrameStatus.OK, 0)
         self.assertEqual(c_enumerators("FRAME_"), expected)

@@ -74,6 +74,16 @@ class Pipeline(workspace.CalibratedArray):
         self.assertIn(dermis.FrameStatus.REJECTED, force.status)
         self.assertTrue(np.isnan(force.newtons).all())
 
+    def test_a_supply_that_cannot_be_is_told_with_what_is_expected(self):
+        pipeline = dermis.Pipeline(self.loaded)
+        counts = self.recording.counts[0]
+        for supply, flag in ((5.0, 0), (2.0, dermis.FrameStatus.SUPPLY_IMPLAUSIBLE), (5.7, dermis.FrameStatus.SUPPLY_CLAMPED)):
+            status = pipeline.process(counts, temperature=25.0, supply=supply).status
+            flags = dermis.FrameStatus.SUPPLY_IMPLAUSIBLE | dermis.FrameStatus.SUPPLY_CLAMPED
+            self.assertEqual((status & flags, pipeline.why_rejected), (flag, ""), supply)
+        self.assertIn(dermis.FrameStatus.REJECTED, pipeline.process(counts, supply=5000.0).status)
+        self.assertRegex(pipeline.why_rejected, r"^a supply of 5000 V .*millivolts")
+
     def test_two_threads_in_one_pipeline_are_refused_and_others_run_meanwhile(self):
         pipeline = dermis.Pipeline(self.loaded)
         many = dermis.Recording(np.tile(self.recording.counts, (400, 1, 1)), rate_hz=100.0, supply_v=5.0)

@@ -77,7 +77,7 @@ RawFrame random_frame(Random& random, int number) {
 ForceFrame random_forces(Random& random, const RawFrame& frame) {
   ForceFrame forces;
   forces.time = frame.time;
-  forces.status = static_cast<FrameStatus>(random.below(256));
+  forces.status = static_cast<FrameStatus>(random.below(1024));
   for (std::size_t i = 0; i < kShape.taxel_count(); ++i) {
     forces.newtons.push_back(static_cast<float>(random.uniform(0.0, 40.0)));
     forces.sigma_newtons.push_back(random.below(9) == 0 ? std::numeric_limits<float>::infinity() : 0.25F);

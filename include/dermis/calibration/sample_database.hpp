@@ -14,6 +14,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/preprocessing/supply_bounds.hpp"
 
 namespace dermis::calibration {
 
@@ -45,7 +46,8 @@ struct Sample {
 struct SampleDatabase {
   ArrayDescription array;
   std::vector<Sample> samples;
-  double siemens_per_count = 0.0;  ///< Conductance of one ADC count at an unloaded taxel [S].
+  double siemens_per_count = 0.0;                    ///< Conductance of one ADC count at an unloaded taxel [S].
+  std::optional<preprocessing::SupplyRange> supply;  ///< Of all samples but outliers; empty: their frames give none.
   std::size_t frames_rejected = 0;
   std::string first_rejection;       ///< "frame 17: a supply of 0 V or less"; empty when none.
   std::vector<std::string> remarks;  ///< What is wrong with labels and readings, what is left out, a sentence each.

@@ -26,16 +26,18 @@ enum class TaxelStatus : std::uint8_t {
 };
 
 /// Outcome of a frame: a set of flags, empty when all is well.
-enum class FrameStatus : std::uint8_t {
+enum class FrameStatus : std::uint16_t {
   ok = 0,
-  rejected = 1U << 0U,             ///< Wrong shape, not a number, out of ADC range or time going backwards.
-  saturated = 1U << 1U,            ///< At least one taxel is saturated.
-  above_range = 1U << 2U,          ///< At least one taxel is beyond its heaviest calibrated load.
-  dead_taxels = 1U << 3U,          ///< The array has dead taxels.
+  rejected = 1U << 0U,     ///< Wrong shape, not a number, out of ADC range, an absurd supply or time going backwards.
+  saturated = 1U << 1U,    ///< At least one taxel is saturated.
+  above_range = 1U << 2U,  ///< At least one taxel is beyond its heaviest calibrated load.
+  dead_taxels = 1U << 3U,  ///< The array has dead taxels.
   temperature_unknown = 1U << 4U,  ///< The frame has no temperature: the middle of the calibration is used.
   temperature_clamped = 1U << 5U,  ///< More than 1 C outside the calibrated temperatures: clamped to the nearest.
   not_converged = 1U << 6U,        ///< The crosstalk inversion did not reach its tolerance.
-  line_fault = 1U << 7U,  ///< A line or taxel is faulty: masked, the rest is solved with the fault in the model.
+  line_fault = 1U << 7U,      ///< A line or taxel is faulty: masked, the rest is solved with the fault in the model.
+  supply_clamped = 1U << 8U,  ///< Outside the supplies of the calibration: the nearest is used, sigma grows.
+  supply_implausible = 1U << 9U,  ///< More than 20 % from nominal, too: the nominal supply is used, sigma grows.
 };
 
 [[nodiscard]] constexpr FrameStatus operator|(FrameStatus a, FrameStatus b) noexcept {
@@ -81,6 +83,7 @@ struct ConditionedFrame {
   std::optional<double> temperature_celsius;
   std::vector<double> ratio;  ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
   double sigma_ratio = 0.0;   ///< Standard deviation of every ratio, rounding included.
+  double supply_doubt = 0.0;  ///< Relative difference of the measured supply and the one used; 0 where it is that.
   std::vector<TaxelStatus> taxels;
 };
 

@@ -11,6 +11,7 @@
 #include "dermis/health/ageing_monitor.hpp"
 #include "dermis/health/fault_words.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/preprocessing/supply_bounds.hpp"
 
 namespace dermis::health {
 
@@ -23,21 +24,22 @@ struct TemperatureRange {
 struct Diagnosis {
   std::size_t frames = 0;
   std::size_t frames_rejected = 0;
-  std::size_t frames_unsolved = 0;                ///< Their readings do not fit the circuit of the array.
-  std::map<std::string, std::size_t> rejections;  ///< Frames by the reason.
-  double seconds = 0.0;                           ///< From the first to the last frame that was not rejected [s].
-  std::optional<double> noise_counts;             ///< Of a reading; empty: something touched the array all the time.
-  double saturated_share = 0.0;                   ///< Of all readings, 0 ... 1.
-  std::string missing_readings;                   ///< Of which taxels in how many frames; empty: of none.
-  std::optional<double> offset_drift;             ///< Of the unloaded conductance, relative; empty: not known.
-  std::optional<double> offset_spread;            ///< Of this drift over the taxels, standard deviation.
-  AgeingEvidence ageing;                          ///< Of the gains.
-  std::optional<TemperatureRange> temperature;    ///< Empty: no frame carried one.
-  double worst_misfit_sigma = 0.0;                ///< Of a solved reading [standard deviations].
-  std::vector<std::string> blind_lines;           ///< Read too little unloaded for a break to be seen: "row 3".
-  std::vector<FaultHistory> faults;               ///< In the order in which they were found.
-  std::vector<std::string> findings;              ///< What is wrong, a sentence each, worst first.
-  std::vector<std::string> remarks;               ///< What may be wrong or not, a sentence each.
+  std::size_t frames_unsolved = 0;                   ///< Their readings do not fit the circuit of the array.
+  std::map<std::string, std::size_t> rejections;     ///< Frames by the reason.
+  double seconds = 0.0;                              ///< From the first to the last frame that was not rejected [s].
+  std::optional<double> noise_counts;                ///< Of a reading; empty: something touched the array all the time.
+  double saturated_share = 0.0;                      ///< Of all readings, 0 ... 1.
+  std::string missing_readings;                      ///< Of which taxels in how many frames; empty: of none.
+  std::optional<double> offset_drift;                ///< Of the unloaded conductance, relative; empty: not known.
+  std::optional<double> offset_spread;               ///< Of this drift over the taxels, standard deviation.
+  AgeingEvidence ageing;                             ///< Of the gains.
+  std::optional<TemperatureRange> temperature;       ///< Empty: no frame carried one.
+  std::optional<preprocessing::SupplyRange> supply;  ///< Empty: no frame carried one, or it has no part in the forces.
+  double worst_misfit_sigma = 0.0;                   ///< Of a solved reading [standard deviations].
+  std::vector<std::string> blind_lines;              ///< Read too little unloaded for a break to be seen: "row 3".
+  std::vector<FaultHistory> faults;                  ///< In the order in which they were found.
+  std::vector<std::string> findings;                 ///< What is wrong, a sentence each, worst first.
+  std::vector<std::string> remarks;                  ///< What may be wrong or not, a sentence each.
 
   [[nodiscard]] bool is_healthy() const noexcept { return findings.empty(); }
 };

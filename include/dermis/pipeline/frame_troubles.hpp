@@ -36,6 +36,7 @@ class FrameTroubles {
   [[nodiscard]] Status verdict() const;
 
  private:
+  void add_supply(const RawFrame& raw, const Pipeline& pipeline);
   [[nodiscard]] std::string cause() const;
 
   std::string prefix_;  ///< Of messages: "frames.csv: ", or nothing.
@@ -48,6 +49,8 @@ class FrameTroubles {
   std::size_t lost_ = 0;          ///< Without a force: rejected, or not solved.
   std::size_t lost_outside_ = 0;  ///< Of these, with readings that are none of the ADC.
   std::string first_rejection_;
+  std::size_t supply_clamped_ = 0;
+  std::string first_supply_;
 };
 
 }  // namespace dermis::pipeline

@@ -13,6 +13,7 @@
 #include "dermis/fusion/look_up.hpp"
 #include "dermis/fusion/material_memory.hpp"
 #include "dermis/fusion/strip_table.hpp"
+#include "dermis/preprocessing/supply_bounds.hpp"
 
 namespace dermis::pipeline {
 
@@ -24,6 +25,8 @@ struct Model {
   std::vector<fusion::LookUpTables> baselines;
   std::optional<fusion::MemoryLaw> memory{};  ///< Of the material, where the calibration learned one.
   std::optional<fusion::StripTable> strip{};  ///< Learned positions on a strip, where the calibration had some.
+  /// Supplies of the frames of the calibration; empty: they had none, or the model is of a time that did not keep them.
+  std::optional<preprocessing::SupplyRange> supply{};
   std::map<std::string, std::string> provenance;  ///< Hashes, counts and statistics of the calibration, as text.
 };
 

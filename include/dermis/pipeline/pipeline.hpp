@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/compensation/line_faults.hpp"
@@ -29,6 +30,10 @@ class Pipeline {
   [[nodiscard]] const ConditionedFrame& conditioned() const noexcept { return conditioned_; }
   [[nodiscard]] const ConductanceFrame& conductance() const noexcept { return conductance_; }
   [[nodiscard]] preprocessing::Rejection rejection() const noexcept { return conditioner_.rejection(); }
+  [[nodiscard]] std::string why_rejected() const { return conditioner_.why_rejected(); }
+  [[nodiscard]] const preprocessing::SupplyBounds& supply_bounds() const noexcept {
+    return conditioner_.supply_bounds();
+  }
   [[nodiscard]] const compensation::LineFaultMonitor& line_faults() const noexcept { return monitor_; }
 
   /// Zero is that of the calibration until the drift is followed (set_options) or tared.

@@ -29,6 +29,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kMaxRejectedShare = 0.1;
+constexpr double kOutliers = 0.005;          // of the supplies, at either end
 constexpr double kMostMissingShare = 0.001;  // of the samples of the median taxel
 constexpr std::size_t kFramesPerTask = 128;
 constexpr std::size_t kFramesPerBatch = 128 * kFramesPerTask;
@@ -58,15 +59,20 @@ class Selection {
       missing_.add(frames[next_], conditioned);
       if (conditioner_.rejection() == preprocessing::Rejection::none) {
         batch.push_back({next_, std::move(conditioned)});
+        if (frames[next_].supply_v) supplies_v_.push_back(*frames[next_].supply_v);
       } else if (database.frames_rejected++ == 0) {
-        database.first_rejection =
-            fmt::format("frame {}: {}", next_, preprocessing::to_string(conditioner_.rejection()));
+        database.first_rejection = fmt::format("frame {}: {}", next_, conditioner_.why_rejected());
       }
     }
     return batch;
   }
 
   [[nodiscard]] const preprocessing::MissingReadings& missing() const { return missing_; }
+  /// Of the frames so far, without the outliers among many.
+  [[nodiscard]] std::optional<preprocessing::SupplyRange> supply() const {
+    if (supplies_v_.empty()) return std::nullopt;
+    return preprocessing::SupplyRange{quantile(supplies_v_, kOutliers), quantile(supplies_v_, 1.0 - kOutliers)};
+  }
   [[nodiscard]] double share_done() const {
     return static_cast<double>(next_) / static_cast<double>(is_chosen_.size());
   }
@@ -76,6 +82,7 @@ class Selection {
   preprocessing::PhaseSelector phase_;
   preprocessing::Conditioner conditioner_;
   preprocessing::MissingReadings missing_;
+  std::vector<double> supplies_v_;
   std::size_t next_ = 0;
 };
 
@@ -230,6 +237,7 @@ Result<SampleDatabase> invert_frames(const ArrayDescription& array, std::span<co
     invert_batch(batch, loads_of, database);
     if (progress) progress(selection.share_done());
   }
+  database.supply = selection.supply();
   if (selection.missing().any()) {
     database.remarks.push_back(selection.missing().describe() + " with a label: left out");
   }
