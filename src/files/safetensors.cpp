@@ -205,7 +205,9 @@ Result<json> parse_header(std::string_view text) {
   HeaderGuard guard;
   json header = json::parse(text.begin(), text.end(), std::ref(guard), false);
   if (guard.mistake()) return bad_input(*guard.mistake());
-  if (header.is_discarded()) return bad_input("its header is not JSON; it is no safetensors file or is damaged");
+  const bool ends_early = text.find('\0') != std::string_view::npos;  // the parser would be content with what is before
+  if (header.is_discarded() || ends_early)
+    return bad_input("its header is not JSON; it is no safetensors file or is damaged");
   if (!header.is_object()) return bad_input("its header is not a JSON object");
   return header;
 }

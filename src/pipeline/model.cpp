@@ -194,14 +194,14 @@ fusion::MemoryLaw get_memory(TensorReader& reader) {
 
 /// Only where it is known: files without it stay as they always were.
 void put_supply(SafetensorsFile& file, const SupplyRange& supply) {
+  file.metadata["supply"] = "range";
   put_tensor<double>(file, "supply.range_v", {2}, {supply.least_v, supply.most_v});
 }
 
-std::optional<SupplyRange> get_supply(const SafetensorsFile& file, TensorReader& reader) {
-  if (!file.tensors.contains("supply.range_v")) return std::nullopt;
+SupplyRange get_supply(TensorReader& reader) {
   std::vector<double> range;
   reader.get("supply.range_v", {2}, range);
-  return range.size() == 2 ? std::optional(SupplyRange{range[0], range[1]}) : std::nullopt;
+  return range.size() == 2 ? SupplyRange{range[0], range[1]} : SupplyRange{};
 }
 
 bool is_consistent(const Model& model) {
@@ -275,7 +275,7 @@ Result<Model> read_model(const std::string& path) {
   }
   if (file->metadata.contains("memory")) model.memory = get_memory(reader);
   if (file->metadata.contains("strip.knots")) model.strip = get_strip(*file, reader);
-  model.supply = get_supply(*file, reader);
+  if (file->metadata.contains("supply")) model.supply = get_supply(reader);
   if (reader.first_error()) return bad_input(path + ": " + reader.first_error()->message);
   if (!is_consistent(model)) {
     return bad_input(path + ": holds values out of range; write it again with 'dermis calibrate'");

@@ -156,7 +156,7 @@ void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) co
 }
 
 void Conditioner::doubt_supply(double measured_v, ConditionedFrame& conditioned) const noexcept {
-  conditioned.supply_doubt = std::abs(supply_bounds_.used(measured_v) / measured_v - 1.0);
+  conditioned.supply_doubt = supply_bounds_.doubt(measured_v);
   conditioned.status |=
       supply_bounds_.is_plausible(measured_v) ? FrameStatus::supply_clamped : FrameStatus::supply_implausible;
 }

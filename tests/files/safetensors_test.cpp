@@ -146,6 +146,8 @@ TEST(Safetensors, refuses_a_huge_header) {
 TEST(Safetensors, refuses_a_header_that_is_no_object) {
   EXPECT_EQ(error_of("{x"), "m.safetensors: its header is not JSON; it is no safetensors file or is damaged");
   EXPECT_EQ(error_of("\"\xFF\""), "m.safetensors: its header is not JSON; it is no safetensors file or is damaged");
+  EXPECT_EQ(error_of(std::string("{}\0", 3)),
+            "m.safetensors: its header is not JSON; it is no safetensors file or is damaged");
   EXPECT_EQ(error_of("[1]"), "m.safetensors: its header is not a JSON object");
   EXPECT_EQ(error_of(std::string(100'000, '[')), "m.safetensors: its header is nested too deeply");
   EXPECT_EQ(error_of(R"({"x":[[{"y":1}]]})"), "m.safetensors: its header is nested too deeply");

@@ -243,7 +243,7 @@ TEST(Conditioner, a_supply_of_the_calibration_is_divided_out_as_it_was_measured)
   }
 }
 
-TEST(Conditioner, a_supply_outside_of_the_calibration_is_replaced_and_doubted_by_the_distance) {
+TEST(Conditioner, a_supply_outside_of_the_calibration_is_replaced_and_doubted_by_its_distance_from_nominal) {
   for (const auto& [supply_v, used_v, flag] :
        {std::tuple(4.2, 4.455, FrameStatus::supply_clamped), std::tuple(5.9, 5.555, FrameStatus::supply_clamped),
         std::tuple(2.0, 5.0, FrameStatus::supply_implausible),
@@ -251,7 +251,7 @@ TEST(Conditioner, a_supply_outside_of_the_calibration_is_replaced_and_doubted_by
     const auto conditioned = condition_calibrated(at_5_volts(), supply_v);
     EXPECT_EQ(conditioned.status, FrameStatus::saturated | flag) << supply_v;
     EXPECT_NEAR(conditioned.ratio[1], 0.2 * 3.3 / used_v, 1e-15) << supply_v;
-    EXPECT_NEAR(conditioned.supply_doubt, std::abs(used_v / supply_v - 1.0), 1e-12) << supply_v;
+    EXPECT_NEAR(conditioned.supply_doubt, std::abs(5.0 / supply_v - 1.0), 1e-12) << supply_v;
   }
 }
 

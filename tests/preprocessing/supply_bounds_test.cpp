@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <optional>
+#include <tuple>
 
 namespace dermis::preprocessing {
 namespace {
@@ -42,6 +43,15 @@ TEST(SupplyBounds, call_implausible_what_is_a_fifth_from_nominal_and_was_not_cal
   EXPECT_FALSE(bounds.is_plausible(2.9));
   EXPECT_TRUE(bounds.is_plausible(6.0));
   EXPECT_FALSE(bounds.is_plausible(6.1));
+}
+
+TEST(SupplyBounds, use_what_is_trusted_else_the_nearest_else_nominal_and_doubt_it) {
+  const SupplyBounds bounds(readout(5.0), SupplyRange{4.5, 5.5});
+  for (const auto& [supply_v, used_v, doubt] : {std::tuple(4.6, 4.6, 0.0), std::tuple(4.0, 4.455, 0.25),
+                                                std::tuple(2.5, 5.0, 1.0), std::tuple(10.0, 5.0, 0.5)}) {
+    EXPECT_NEAR(bounds.used(supply_v), used_v, 1e-12);
+    EXPECT_NEAR(bounds.doubt(supply_v), doubt, 1e-12);
+  }
 }
 
 TEST(SupplyBounds, take_the_middle_of_the_calibration_for_nominal_where_none_is_given) {

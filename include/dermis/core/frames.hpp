@@ -83,7 +83,7 @@ struct ConditionedFrame {
   std::optional<double> temperature_celsius;
   std::vector<double> ratio;  ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
   double sigma_ratio = 0.0;   ///< Standard deviation of every ratio, rounding included.
-  double supply_doubt = 0.0;  ///< Relative difference of the measured supply and the one used; 0 where it is that.
+  double supply_doubt = 0.0;  ///< Relative standard deviation of a supply that is not trusted, beside its noise.
   std::vector<TaxelStatus> taxels;
 };
 

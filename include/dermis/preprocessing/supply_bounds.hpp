@@ -53,6 +53,11 @@ class SupplyBounds {
   [[nodiscard]] double used(double supply_v) const noexcept {
     return is_plausible(supply_v) ? std::clamp(supply_v, trusted_.least_v, trusted_.most_v) : nominal_v_;
   }
+  /// Standard deviation of what is used, relative, beside the noise of the meter: 0 where the supply is trusted. Where
+  /// it is not, the meter may be right, or the supply as ever: the distance from nominal covers both.
+  [[nodiscard]] double doubt(double supply_v) const noexcept {
+    return trusted_.contains(supply_v) ? 0.0 : std::abs(nominal_v_ / supply_v - 1.0);
+  }
   /// It is not possible, but a thousandth of it is.
   [[nodiscard]] bool is_in_millivolts(double supply_v) const noexcept;
 
@@ -60,7 +65,7 @@ class SupplyBounds {
   [[nodiscard]] std::string describe_impossible(double supply_v) const;
 
  private:
-  double nominal_v_ = 0.0;  // where not everything is plausible
+  double nominal_v_ = 0.0;  // where not everything is trusted
   SupplyRange trusted_;
   SupplyRange plausible_;
   SupplyRange possible_;
