@@ -8,6 +8,7 @@
 #include "compensation/fault_inversion.hpp"
 #include "compensation/grounded_rows.hpp"
 #include "compensation/newton_inversion.hpp"
+#include "compensation/possible_readings.hpp"
 #include "compensation/proportional.hpp"
 #include "compensation/readout_parts.hpp"
 #include "compensation/supply_error.hpp"
@@ -19,6 +20,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr double kToleranceCounts = 0.01;
+constexpr int kMostSuspects = 4;
 constexpr double kFaultToleranceCounts = 0.05;  // around an inversion that is right to kToleranceCounts
 
 using Inversion = Result<std::unique_ptr<CrosstalkInversion>>;
@@ -81,6 +83,7 @@ Result<Compensator> Compensator::create(const ArrayDescription& array, std::span
 Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
                          std::span<const double> typical_siemens)
     : inversion_(std::move(inversion)),
+      possible_(std::make_unique<PossibleReadings>(array)),
       supply_error_(std::make_unique<SupplyError>(array)),
       faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts(),
                                                typical_siemens)) {}
@@ -105,11 +108,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
     return;
   }
-  InversionResult result = invert(conditioned.ratio, conductance);
-  if (!result.solved && are_few_saturated(conditioned)) {  // a reading that no taxel gives
-    std::replace(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::saturated, TaxelStatus::invalid);
-    result = invert(conditioned.ratio, conductance);
-  }
+  const InversionResult result = invert_possible(conditioned, conductance);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
   supply_error_->add(conductance.siemens, conditioned.supply_doubt, conductance.sigma_siemens);
@@ -118,6 +117,23 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
   }
   if (faults_->any()) mask_faulty_taxels(conductance);
+}
+
+/// Without the readings that no taxels give: those that are impossible alone, and the largest as long as there is no
+/// solution.
+InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned,
+                                             ConductanceFrame& conductance) noexcept {
+  possible_->check(conditioned.ratio, conditioned.sigma_ratio, conductance.taxels);
+  InversionResult result = invert(conditioned.ratio, conductance);
+  if (!result.solved && are_few_saturated(conditioned)) {
+    std::replace(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::saturated, TaxelStatus::invalid);
+    result = invert(conditioned.ratio, conductance);
+  }
+  for (int suspects = 0; !result.solved && suspects < kMostSuspects; ++suspects) {
+    conductance.taxels[possible_->largest(conditioned.ratio, conductance.taxels)] = TaxelStatus::invalid;
+    result = invert(conditioned.ratio, conductance);
+  }
+  return result;
 }
 
 InversionResult Compensator::invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept {

@@ -14,6 +14,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxRounds = 20;
+constexpr int kEstimateRounds = 3;  // what the neighbours of a taxel tell hardly depends on it
 constexpr double kMostStretch = 5.0;
 constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end
 constexpr double kMostRise = 1.0;        // of the logarithm above both neighbours
@@ -139,20 +140,30 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
   estimate_unknown(equivalent_);
   InversionResult result = healthy.invert(equivalent_, siemens);
+  if (!any_) return keep_estimates(healthy, siemens);
   if (!circuits_) return result;
   for (int round = 0; round < kMaxRounds; ++round) {
     estimate_unknown(siemens);
     circuits_->healthy.solve(siemens, correction_.healthy_ratio);
-    if (any_) {
-      circuits_->faulty.solve(siemens, correction_.faulty_ratio);
-    } else {
-      std::copy(correction_.healthy_ratio.begin(), correction_.healthy_ratio.end(), correction_.faulty_ratio.begin());
-    }
+    circuits_->faulty.solve(siemens, correction_.faulty_ratio);
     result.residual_ratio = misfit(siemens);
     if (correct(round == 0) <= tolerance_) return result;
     result.solved = healthy.invert(equivalent_, siemens).solved;
   }
-  if (any_) result.solved = false;  // else only what is estimated has not settled
+  result.solved = false;
+  return result;
+}
+
+/// The circuit is healthy: taxels without a reading are estimated from their neighbours, and these solved with them.
+InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept {
+  for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
+    if (unknown_[taxel] != 0) equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
+  }
+  InversionResult result;
+  for (int round = 0; round < kEstimateRounds; ++round) {
+    estimate_unknown(siemens);
+    result = healthy.invert(equivalent_, siemens);
+  }
   return result;
 }
 

@@ -20,10 +20,10 @@ namespace dermis::compensation {
 ///   T' = T + T_healthy(G) - T_faulty(G),   G <- invert_healthy(T')
 ///
 /// Taxels whose conductance no reading tells (on a silent line, stuck, without a reading in this frame) are estimated
-/// from their neighbours. An open row still couples the columns through them: eliminating it adds -g g^T / sum(g) to
-/// their equations. For resistive lines, switches, real amplifiers, `none` and arrays of more than 256 lines there is
-/// no faulty circuit: the readings of faulty lines are replaced by those of their neighbours, and the rest is solved as
-/// if healthy.
+/// from their neighbours. Without faults, the healthy inversion keeps those estimates. An open row still couples the
+/// columns through them: eliminating it adds -g g^T / sum(g) to their equations. For resistive lines, switches, real
+/// amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit: the readings of faulty lines are
+/// replaced by those of their neighbours, and the rest is solved as if healthy.
 class FaultInversion {
  public:
   /// `typical_siemens`: see Compensator::create.
@@ -70,6 +70,7 @@ class FaultInversion {
   void add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const;
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
+  InversionResult keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept;
   double correct(bool first) noexcept;
   void estimate_unknown(std::span<double> values) const noexcept;
   [[nodiscard]] double misfit(std::span<const double> siemens) const noexcept;

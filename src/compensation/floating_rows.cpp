@@ -42,6 +42,7 @@ FloatingRows::FloatingRows(const ArrayDescription& array)
       change_(at(array.cols + array.rows)),
       readings_(at(array.rows), at(array.cols)),
       siemens_(at(array.rows), at(array.cols)),
+      kept_(at(array.rows), at(array.cols)),
       raised_(at(array.rows), at(array.cols)),
       potentials_(at(array.rows), at(array.cols)),
       driven_(at(array.rows)),
@@ -65,7 +66,8 @@ bool FloatingRows::allows(std::span<const double> ratio) const noexcept {
   for (Index row = 0; row < drive_ohm_.size(); ++row) {
     double current = 0.0;
     for (Index col = 0; col < load_siemens_.size(); ++col) {
-      current += ratio[static_cast<std::size_t>(row * load_siemens_.size() + col)] * load_siemens_[col];
+      const double reading = ratio[static_cast<std::size_t>(row * load_siemens_.size() + col)];
+      if (!std::isnan(reading)) current += reading * load_siemens_[col];
     }
     if (!(drive_ohm_[row] * current < 1.0)) return false;
   }
@@ -74,7 +76,12 @@ bool FloatingRows::allows(std::span<const double> ratio) const noexcept {
 
 double FloatingRows::solve(std::span<const double> ratio, double enough, std::span<double> siemens) noexcept {
   readings_ = Eigen::Map<const Matrix>(ratio.data(), readings_.rows(), readings_.cols());
-  raised_ = readings_;
+  kept_ = Eigen::Map<const Matrix>(siemens.data(), kept_.rows(), kept_.cols());
+  for (Index k = 0; k < readings_.size(); ++k) {
+    const double load = load_siemens_[k % load_siemens_.size()];
+    const double reading = readings_.data()[k];
+    raised_.data()[k] = std::isnan(reading) ? kept_.data()[k] / (load + kept_.data()[k]) : reading;
+  }
   find_potentials();
   if (!has_last_) start();
   mixing_.forget();
@@ -163,18 +170,29 @@ double FloatingRows::follow() noexcept {
     }
     change_[cols + row] = std::log(factor) - logarithms_[cols + row];
     siemens_.row(row) = (factor * returned_.row(row)).cwiseMin(kMostSiemens);
-    for (Index col = 0; col < cols; ++col) {
-      const double at_zero = raised_(row, col) - returned_(row, col) * driven_[row] / coupling_(col, col);
-      const double next = std::max(readings_(row, col), at_zero);
-      raised = std::max(raised, std::abs(next - raised_(row, col)));
-      raised_(row, col) = next;
-      siemens_(row, col) = next > readings_(row, col) ? 0.0 : std::max(0.0, siemens_(row, col));
-    }
+    for (Index col = 0; col < cols; ++col) raised = std::max(raised, follow_taxel(row, col, factor));
   }
   change_.head(cols) =
       (load_siemens_ + siemens_.colwise().sum()).transpose().array().log().matrix() - logarithms_.head(cols);
   if (!change_.allFinite()) return std::numeric_limits<double>::infinity();
   return std::max(raised, change_.cwiseAbs().maxCoeff());
+}
+
+/// A taxel below 0 S is held there, and one without a reading where it is kept: the reading follows. Returns its
+/// change.
+double FloatingRows::follow_taxel(Index row, Index col, double factor) noexcept {
+  const bool is_kept = std::isnan(readings_(row, col));
+  const double wanted = is_kept ? kept_(row, col) / factor : 0.0;  // of p M
+  const double held = raised_(row, col) + (wanted - returned_(row, col)) * driven_[row] / coupling_(col, col);
+  const double next = is_kept ? held : std::max(readings_(row, col), held);
+  const double change = std::abs(next - raised_(row, col));
+  raised_(row, col) = next;
+  if (is_kept) {
+    siemens_(row, col) = kept_(row, col);
+  } else {
+    siemens_(row, col) = next > readings_(row, col) ? 0.0 : std::max(0.0, siemens_(row, col));
+  }
+  return change;
 }
 
 }  // namespace dermis::compensation

@@ -30,9 +30,10 @@ class FloatingRows {
   /// false: the drivers cannot carry what these readings [rows, cols] take from them, whatever the taxels are.
   [[nodiscard]] bool allows(std::span<const double> ratio) const noexcept;
 
-  /// The conductances [rows, cols] of readings that it allows, until a pass changes nothing by more than `enough`
-  /// (relative; of raised readings, over the supply). Starts from the last frame that settled. Returns what the last
-  /// pass has changed, more than `enough` where it does not settle, infinity where it runs away. Allocates nothing.
+  /// The conductances [rows, cols] of readings that it allows, those of taxels without a reading as `siemens` has them,
+  /// until a pass changes nothing by more than `enough` (relative; of raised readings, over the supply). Starts from
+  /// the last frame that settled. Returns what the last pass has changed, more than `enough` where it does not settle,
+  /// infinity where it runs away. Allocates nothing.
   [[nodiscard]] double solve(std::span<const double> ratio, double enough, std::span<double> siemens) noexcept;
 
   /// Does not start from the last frame.
@@ -45,6 +46,7 @@ class FloatingRows {
   void find_potentials() noexcept;
   void couple_columns() noexcept;
   [[nodiscard]] double follow() noexcept;
+  [[nodiscard]] double follow_taxel(Eigen::Index row, Eigen::Index col, double factor) noexcept;
 
   Eigen::VectorXd drive_ohm_;
   Eigen::RowVectorXd load_siemens_;
@@ -54,7 +56,8 @@ class FloatingRows {
   bool has_last_ = false;
   Matrix readings_;
   Matrix siemens_;
-  Matrix raised_;             // readings, those of taxels at 0 S as the circuit gives them
+  Matrix kept_;               // conductances of taxels without a reading
+  Matrix raised_;             // readings, those of taxels at 0 S or without one as the circuit gives them
   Matrix potentials_;         // p: of the columns at 1 V of the driven row
   Eigen::VectorXd driven_;    // potential of the driven row
   Eigen::VectorXd currents_;  // c: of the driven row at 1 V; 0: none of its readings shows any

@@ -47,6 +47,7 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
       mixing_(state_.siemens.size()),
       sigma_column_(state_.stride),
       sigma_(state_.siemens.size()) {
+  state_.kept.reserve(array.taxel_count());
   const Readout& readout = array.readout;
   state_.drive_ohm = readout.drive_ohm;
   const double weakest_driver = *std::max_element(state_.drive_ohm.begin(), state_.drive_ohm.end());
@@ -73,7 +74,7 @@ double GroundedRows::siemens_per_ratio() const noexcept {
 
 InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
   std::swap(state_.estimate, last_estimate_);
-  load(ratio);
+  load(ratio, siemens);
   estimate_from_readings(state_);
   if (has_last_) {
     start_warm(state_, last_estimate_);
@@ -103,10 +104,13 @@ void GroundedRows::forget() noexcept {
 }
 
 /// y of the readings, with what the sources drove into the array in the last frame.
-void GroundedRows::load(std::span<const double> ratio) noexcept {
+void GroundedRows::load(std::span<const double> ratio, std::span<const double> siemens) noexcept {
+  state_.kept.clear();
   for (std::size_t row = 0; row < state_.rows; ++row) {
     for (std::size_t col = 0; col < state_.cols; ++col) {
-      const double reading = reading_siemens_[col] * ratio[row * state_.cols + col];
+      const std::size_t taxel = row * state_.cols + col;
+      if (std::isnan(ratio[taxel])) state_.kept.push_back({row, col, siemens[taxel]});
+      const double reading = reading_siemens_[col] * ratio[taxel];
       state_.measured[row * state_.stride + col] = reading + offset_siemens_[col] + sources_.siemens[col];
     }
   }

@@ -36,6 +36,8 @@ namespace dermis::compensation {
 /// formula (2)) or from the last frame's, moved by the change of the textbook's. Where the plain iteration does not
 /// shrink quickly (heavy loads on weak drivers), Anderson's mixing of ln G takes over.
 ///
+/// A taxel without a reading keeps its conductance: its y is what that draws at the present G, which (a) to (c) give.
+///
 /// Certificate. With the present G and R = Z - G diag(w), y - y(G) = D S^-1 R for all loaded. D S^-1 >= 0 as S is an
 /// M-matrix; its columns sum to at most 1, as 1^T S >= 1^T D (the current of every row is at most that of its driver);
 /// and its diagonal is at least 1/a, as S D^-1 <= diag(a). Its other elements of column i are thus at most 1 - 1/a_i,
@@ -83,7 +85,7 @@ class GroundedRows final : public CrosstalkInversion {
     std::vector<double> log_step;
   };
 
-  void load(std::span<const double> ratio) noexcept;
+  void load(std::span<const double> ratio, std::span<const double> siemens) noexcept;
   [[nodiscard]] double certify() noexcept;
   [[nodiscard]] bool follow_sources() noexcept;
   void find_row_currents() noexcept;

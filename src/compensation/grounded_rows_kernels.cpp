@@ -26,14 +26,17 @@ using Vec = hn::Vec<D>;
 constexpr double kLeastShare = 1e-6;      // What a column leaves of the supply stays positive under noise.
 constexpr double kLeastLineRatio = 0.05;  // What a row leaves of the supply, for the estimate.
 
-/// (c): `sum` of Z; for one loaded column the mean of Rd y weighted by Z+ is `drop` over `weight`.
+/// (c): `sum` of Z; for one loaded column the mean of Rd y weighted by Z+ is `drop` over `weight`. Kept taxels draw
+/// G w, with the w that this gives.
 HWY_INLINE Vec column_scale(D d, const GroundedRowsState& state, std::size_t col, Vec sum, Vec drop, Vec weight) {
   const Vec one = hn::Set(d, 1.0);
-  Vec share = hn::NegMulAdd(hn::LoadU(d, state.column_ohm.data() + col), sum, one);
+  const Vec ohm = hn::LoadU(d, state.column_ohm.data() + col);
+  Vec share = hn::NegMulAdd(ohm, hn::Sub(sum, hn::LoadU(d, state.kept_drawn.data() + col)), one);
   if (state.idle_columns == IdleColumns::floating) {
     share = hn::Sub(share, hn::IfThenElseZero(hn::Gt(weight, hn::Zero(d)), hn::Div(drop, weight)));
   }
-  return hn::Div(one, hn::Max(share, hn::Set(d, kLeastShare)));
+  const Vec kept = hn::MulAdd(ohm, hn::LoadU(d, state.kept_siemens.data() + col), one);
+  return hn::Div(kept, hn::Max(share, hn::Set(d, kLeastShare)));
 }
 
 void estimate_kernel(GroundedRowsState& state) {
@@ -49,6 +52,7 @@ void estimate_kernel(GroundedRowsState& state) {
       drop = hn::MulAdd(hn::Mul(hn::Set(d, state.drive_ohm[row]), y), y, drop);
     }
     const Vec scale = column_scale(d, state, col, sum, drop, sum);
+    hn::StoreU(scale, d, &state.column_scale[col]);
     for (std::size_t row = 0; row < state.rows; ++row) {
       const std::size_t k = row * state.stride + col;
       hn::StoreU(hn::Mul(hn::Max(hn::LoadU(d, &state.measured[k]), zero), scale), d, &state.estimate[k]);
@@ -169,7 +173,6 @@ void advance_kernel(GroundedRowsState& state) {
       hn::StoreU(hn::Max(y, hn::Mul(returned, inverse_gain)), d, &state.explained[k]);
     }
   }
-  refresh_kernel(state);
 }
 
 /// Base of column j: what noise of y_ij alone makes of G_ij, but for the line gain a_i.
@@ -248,6 +251,8 @@ GroundedRowsState::GroundedRowsState(std::size_t row_count, std::size_t col_coun
       explained(rows * stride),
       dropped(rows * stride),
       estimate(rows * stride),
+      kept_siemens(stride),
+      kept_drawn(stride),
       siemens(rows * stride),
       shunted(rows * stride),
       coupling(cols * stride),
@@ -258,7 +263,18 @@ GroundedRowsState::GroundedRowsState(std::size_t row_count, std::size_t col_coun
       column_scale(stride) {}
 
 void estimate_from_readings(GroundedRowsState& state) noexcept {
+  std::fill(state.kept_siemens.begin(), state.kept_siemens.end(), 0.0);
+  std::fill(state.kept_drawn.begin(), state.kept_drawn.end(), 0.0);
+  for (const auto& [row, col, siemens] : state.kept) {
+    state.kept_siemens[col] += siemens;
+    state.measured[row * state.stride + col] = 0.0;
+  }
   HWY_DYNAMIC_DISPATCH(estimate_kernel)(state);
+  for (const auto& [row, col, siemens] : state.kept) {
+    const std::size_t k = row * state.stride + col;
+    state.estimate[k] = siemens;
+    state.measured[k] = siemens / state.column_scale[col];
+  }
 }
 
 void start_cold(GroundedRowsState& state) noexcept {
@@ -273,6 +289,7 @@ void start_warm(GroundedRowsState& state, const std::vector<double>& last_estima
 }
 
 void refresh(GroundedRowsState& state) noexcept {
+  for (const auto& [row, col, siemens] : state.kept) state.siemens[row * state.stride + col] = siemens;
   HWY_DYNAMIC_DISPATCH(refresh_kernel)(state);
 }
 
@@ -280,11 +297,18 @@ double assess(GroundedRowsState& state) noexcept {
   const auto [rows, cols, stride] = std::tuple(state.rows, state.cols, state.stride);
   multiply({state.shunted.data(), 1, stride}, state.dropped.data(), cols, rows, stride, state.coupling.data());
   multiply({state.siemens.data(), stride, 1}, state.coupling.data(), rows, cols, stride, state.returned.data());
+  std::fill(state.kept_drawn.begin(), state.kept_drawn.end(), 0.0);
+  for (const auto& [row, col, siemens] : state.kept) {
+    const std::size_t k = row * stride + col;
+    state.kept_drawn[col] += state.line_gain[row] * state.explained[k] - state.returned[k];
+    state.measured[k] = (siemens * state.column_part[col] + state.returned[k]) / state.line_gain[row];
+  }
   return HWY_DYNAMIC_DISPATCH(assess_kernel)(state);
 }
 
 void advance(GroundedRowsState& state) noexcept {
   HWY_DYNAMIC_DISPATCH(advance_kernel)(state);
+  refresh(state);
 }
 
 void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept {

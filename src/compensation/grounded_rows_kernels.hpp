@@ -13,6 +13,13 @@ namespace dermis::compensation {
 /// [rows, stride], row-major: zeros fill up the columns to whole SIMD vectors.
 /// Many members: the symbols of formula (4), of the circuit, the frame and the iterate.
 struct GroundedRowsState {
+  /// A taxel without a reading, whose conductance is given.
+  struct KeptTaxel {
+    std::size_t row;
+    std::size_t col;
+    double siemens;
+  };
+
   GroundedRowsState(std::size_t row_count, std::size_t col_count, IdleColumns columns);
 
   std::size_t rows;
@@ -30,6 +37,9 @@ struct GroundedRowsState {
   std::vector<double> explained;  // y', above y where a taxel is held at 0 S
   std::vector<double> dropped;    // Rd y'
   std::vector<double> estimate;   // G by the textbook, from y alone
+  std::vector<KeptTaxel> kept;
+  std::vector<double> kept_siemens;  // sums over the columns [stride]
+  std::vector<double> kept_drawn;    // Z of them, likewise [stride]
 
   // The iterate.
   std::vector<double> siemens;       // G
@@ -51,7 +61,8 @@ void start_cold(GroundedRowsState& state) noexcept;
 /// Starts at the solution that `state` holds, moved by what the estimate has changed; `last_estimate` was its own.
 void start_warm(GroundedRowsState& state, const std::vector<double>& last_estimate) noexcept;
 
-/// Equations (b) and (c) at the present G; gives its certificate, as a ratio, and prepares advance().
+/// Equations (b) and (c) at the present G; gives its certificate, as a ratio, and prepares advance(). The readings of
+/// kept taxels become what these draw.
 [[nodiscard]] double assess(GroundedRowsState& state) noexcept;
 
 /// Equations (d) and (e): the next G and y'.
@@ -60,7 +71,7 @@ void advance(GroundedRowsState& state) noexcept;
 /// Standard deviation of G [rows, stride] from that of y, `sigma` [stride]; see GroundedRows::propagate_noise.
 void spread_noise(GroundedRowsState& state, const std::vector<double>& sigma, std::vector<double>& out) noexcept;
 
-/// After a change of G or y' from outside.
+/// After a change of G or y' from outside, which keeps what is kept.
 void refresh(GroundedRowsState& state) noexcept;
 
 }  // namespace dermis::compensation

@@ -14,7 +14,7 @@ constexpr double kLeastOwnShare = 1e-3;  // of a taxel in its reading that the s
 
 NewtonEquations::NewtonEquations(ScaledCircuit& circuit)
     : circuit_(circuit), solver_(circuit.x().size()), held_(circuit.x().size()) {
-  for (auto* values : {&own_slope_, &row_scale_, &column_scale_, &right_, &solution_, &scaled_}) {
+  for (auto* values : {&own_slope_, &row_scale_, &column_scale_, &wanted_, &right_, &solution_, &scaled_}) {
     values->resize(circuit.x().size());
   }
 }
@@ -29,8 +29,10 @@ void NewtonEquations::set_up() noexcept {
     const double least_own_slope = kLeastOwnShare * reading.open_slope(model.ratio()[k]);
     row_scale_[k] = slope;
     column_scale_[k] = 1.0 / (slope * std::max(own_slope_[k], least_own_slope));
-    held_[k] = x[k] + circuit_.misfit()[k] <= 0.0;
-    right_[k] = held_[k] ? -circuit_.siemens()[k] / column_scale_[k] : circuit_.misfit()[k];
+    wanted_[k] = circuit_.is_kept(k) ? circuit_.measured()[k] : 0.0;
+    held_[k] = circuit_.is_kept(k) || x[k] + circuit_.misfit()[k] <= 0.0;
+    const double lacking = reading.siemens(wanted_[k]) - circuit_.siemens()[k];
+    right_[k] = held_[k] ? lacking / column_scale_[k] : circuit_.misfit()[k];
   }
 }
 
@@ -50,7 +52,8 @@ void NewtonEquations::solve(double damping, double accuracy) noexcept {
 
 double NewtonEquations::change(std::size_t taxel) const noexcept {
   const double x = circuit_.x()[taxel];
-  return held_[taxel] ? -x : solution_[taxel] * column_scale_[taxel] / circuit_.readings()[taxel].siemens_slope(x);
+  return held_[taxel] ? wanted_[taxel] - x
+                      : solution_[taxel] * column_scale_[taxel] / circuit_.readings()[taxel].siemens_slope(x);
 }
 
 }  // namespace dermis::compensation

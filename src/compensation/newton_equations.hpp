@@ -20,7 +20,8 @@ class NewtonEquations {
   /// `circuit` is to outlive it.
   explicit NewtonEquations(ScaledCircuit& circuit);
 
-  /// Sets the equations up where the circuit was solved last. Taxels with x + misfit <= 0 are held at 0 S.
+  /// Sets the equations up where the circuit was solved last. Taxels with x + misfit <= 0 are held at 0 S,
+  /// and those without a reading where they are wanted.
   void set_up() noexcept;
   /// Asks for all taxels, with these right sides, in x of the readings.
   void release_taxels() noexcept;
@@ -44,6 +45,7 @@ class NewtonEquations {
   std::vector<double> own_slope_;
   std::vector<double> row_scale_;
   std::vector<double> column_scale_;
+  std::vector<double> wanted_;  // x of a taxel that is held
   std::vector<double> right_;
   std::vector<double> solution_;
   std::vector<double> scaled_;

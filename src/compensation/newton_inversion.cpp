@@ -51,13 +51,13 @@ double NewtonInversion::siemens_per_ratio() const noexcept {
 }
 
 InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span<double> siemens) noexcept {
-  if (!std::all_of(ratio.begin(), ratio.end(), [](double value) { return std::isfinite(value); })) {
+  if (std::any_of(ratio.begin(), ratio.end(), [](double value) { return std::isinf(value); })) {
     std::fill(siemens.begin(), siemens.end(), 0.0);
     return {false, std::numeric_limits<double>::infinity()};
   }
-  circuit_.set_frame(ratio);
+  circuit_.set_frame(ratio, siemens);
   steps_left_ = most_steps_;
-  const bool solved = solve(ratio);
+  const bool solved = solve(ratio, siemens);
   std::copy(circuit_.siemens().begin(), circuit_.siemens().end(), siemens.begin());
   if (solved) {
     for (std::size_t k = 0; k < ratio.size(); ++k) last_shift_[k] = circuit_.x()[k] - circuit_.measured()[k];
@@ -66,12 +66,13 @@ InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span
   return {solved, circuit_.residual_ratio()};
 }
 
-bool NewtonInversion::solve(std::span<const double> ratio) noexcept {
+bool NewtonInversion::solve(std::span<const double> ratio, std::span<const double> siemens) noexcept {
   if (floating_rows_) {
     if (!floating_rows_->allows(ratio)) {
       start(false);
       return false;
     }
+    std::copy(siemens.begin(), siemens.end(), circuit_.siemens().begin());
     const double moved =
         floating_rows_->solve(ratio, std::max(kShareOfTolerance * tolerance_, kFineEnough), circuit_.siemens());
     if (moved <= kNear) {

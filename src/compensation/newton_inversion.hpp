@@ -47,7 +47,7 @@ class NewtonInversion final : public CrosstalkInversion {
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
 
  private:
-  [[nodiscard]] bool solve(std::span<const double> ratio) noexcept;
+  [[nodiscard]] bool solve(std::span<const double> ratio, std::span<const double> siemens) noexcept;
   void start(bool from_last_frame) noexcept;
   void start_at_siemens() noexcept;
   [[nodiscard]] bool iterate(int bold_steps) noexcept;

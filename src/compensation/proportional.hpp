@@ -15,6 +15,7 @@ class Proportional final : public CrosstalkInversion {
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override {
     bool finite = true;
     for (std::size_t k = 0; k < ratio.size(); ++k) {
+      if (std::isnan(ratio[k])) continue;  // keeps its conductance
       finite = finite && std::isfinite(ratio[k]);
       siemens[k] = std::isfinite(ratio[k]) ? std::max(ratio[k], 0.0) : 0.0;
     }

@@ -60,9 +60,14 @@ ScaledCircuit::ScaledCircuit(const ArrayDescription& array, CircuitModel model) 
   for (auto* values : {&measured_, &x_, &siemens_, &misfit_}) values->resize(array.taxel_count());
 }
 
-void ScaledCircuit::set_frame(std::span<const double> ratio) noexcept {
+void ScaledCircuit::set_frame(std::span<const double> ratio, std::span<const double> siemens) noexcept {
   ratio_ = ratio;
   for (std::size_t k = 0; k < ratio.size(); ++k) {
+    if (is_kept(k)) {
+      readings_[k].scale = readings_[k].noise;
+      measured_[k] = readings_[k].scaled_siemens(siemens[k]);
+      continue;
+    }
     readings_[k].scale = std::max(readings_[k].noise, -readings_[k].apparent_siemens(ratio[k]));
     measured_[k] = readings_[k].scaled(ratio[k]);
   }
@@ -71,7 +76,9 @@ void ScaledCircuit::set_frame(std::span<const double> ratio) noexcept {
 void ScaledCircuit::solve() noexcept {
   for (std::size_t k = 0; k < x_.size(); ++k) siemens_[k] = readings_[k].siemens(x_[k]);
   model_.solve(siemens_);
-  for (std::size_t k = 0; k < x_.size(); ++k) misfit_[k] = measured_[k] - readings_[k].scaled(model_.ratio()[k]);
+  for (std::size_t k = 0; k < x_.size(); ++k) {
+    misfit_[k] = measured_[k] - (is_kept(k) ? x_[k] : readings_[k].scaled(model_.ratio()[k]));
+  }
 }
 
 double ScaledCircuit::merit() const noexcept {
@@ -86,6 +93,7 @@ double ScaledCircuit::merit() const noexcept {
 double ScaledCircuit::residual_ratio() const noexcept {
   double largest = 0.0;
   for (std::size_t k = 0; k < x_.size(); ++k) {
+    if (is_kept(k)) continue;
     const double difference = ratio_[k] - model_.ratio()[k];
     largest = std::max(largest, x_[k] > 0.0 ? std::abs(difference) : difference);
   }

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -40,8 +41,9 @@ class ScaledCircuit {
   /// `model` is of `array`.
   ScaledCircuit(const ArrayDescription& array, CircuitModel model);
 
-  /// The frame to compare with; `ratio` is to outlive the comparison.
-  void set_frame(std::span<const double> ratio) noexcept;
+  /// The frame to compare with; `ratio` is to outlive the comparison. Where it is not a number, the taxel is wanted at
+  /// `siemens`, and its measured() is that.
+  void set_frame(std::span<const double> ratio, std::span<const double> siemens) noexcept;
 
   /// The taxels, to be set before solve().
   [[nodiscard]] std::vector<double>& x() noexcept { return x_; }
@@ -55,7 +57,9 @@ class ScaledCircuit {
   /// The taxels [S]; solve() sets them from x.
   [[nodiscard]] std::vector<double>& siemens() noexcept { return siemens_; }
   [[nodiscard]] const std::vector<double>& siemens() const noexcept { return siemens_; }
-  /// x of the readings of the frame less x of those of the circuit.
+  /// The taxel has no reading.
+  [[nodiscard]] bool is_kept(std::size_t taxel) const noexcept { return std::isnan(ratio_[taxel]); }
+  /// x of the readings of the frame less x of those of the circuit; what a taxel without a reading lacks.
   [[nodiscard]] const std::vector<double>& misfit() const noexcept { return misfit_; }
 
   /// The root of the sum of squares of max(misfit, -x).

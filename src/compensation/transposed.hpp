@@ -20,6 +20,7 @@ class Transposed final : public CrosstalkInversion {
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override {
     transpose(ratio, rows_, cols_, ratio_);
+    transpose(siemens, rows_, cols_, values_);
     const InversionResult result = inversion_->invert(ratio_, values_);
     transpose(values_, cols_, rows_, siemens);
     return result;

@@ -26,19 +26,23 @@ InversionResult VirtualGround::invert(std::span<const double> ratio, std::span<d
   for (std::size_t row = 0; row < drive_ohm_.size(); ++row) {
     const std::span<const double> readings = ratio.subspan(row * cols, cols);
     const std::span<double> conductances = siemens.subspan(row * cols, cols);
-    double row_siemens = 0.0;
+    double row_current = 0.0;   // of the readings, over the supply
+    double kept_siemens = 0.0;  // of taxels without one
     for (std::size_t col = 0; col < cols; ++col) {
-      conductances[col] = std::max(readings[col], 0.0) * load_siemens_[col];  // held at 0 S below
-      row_siemens += conductances[col];
+      if (std::isnan(readings[col])) {
+        kept_siemens += conductances[col];
+      } else {
+        row_current += std::max(readings[col], 0.0) * load_siemens_[col];  // held at 0 S below
+      }
     }
-    const double line_ratio = 1.0 - drive_ohm_[row] * row_siemens;  // row voltage / supply
-    if (!(line_ratio > 0.0)) {                                      // or a reading is not a number
-      solvable = false;
-      if (!std::isfinite(row_siemens)) std::fill(conductances.begin(), conductances.end(), 0.0);
-      continue;
+    const double line_ratio = (1.0 - drive_ohm_[row] * row_current) / (1.0 + drive_ohm_[row] * kept_siemens);
+    solvable = solvable && line_ratio > 0.0;
+    line_gain_[row] = line_ratio > 0.0 ? 1.0 / line_ratio : 1.0;
+    const double gain = std::isfinite(row_current) ? line_gain_[row] : 0.0;
+    for (std::size_t col = 0; col < cols; ++col) {
+      if (std::isnan(readings[col])) continue;
+      conductances[col] = gain > 0.0 ? std::max(readings[col], 0.0) * load_siemens_[col] * gain : 0.0;
     }
-    line_gain_[row] = 1.0 / line_ratio;
-    for (double& conductance : conductances) conductance *= line_gain_[row];
   }
   std::copy(siemens.begin(), siemens.end(), siemens_.begin());
   return {solvable, 0.0};

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -243,7 +244,7 @@ TEST(CrosstalkInversion, unknown_circuit_passes_positive_readings_on) {
   const auto inverted = invert(array, ratio);
   EXPECT_TRUE(inverted.solved);
   EXPECT_EQ(inverted.siemens, (std::vector<double>{0.0, 0.0, 0.5, 1.0}));
-  EXPECT_FALSE(invert(array, {0.0, std::nan(""), 0.5, 1.0}).solved);
+  EXPECT_FALSE(invert(array, {0.0, std::numeric_limits<double>::infinity(), 0.5, 1.0}).solved);
 }
 
 TEST(CrosstalkInversion, a_frame_does_not_depend_on_what_was_forgotten_and_hardly_on_the_one_before) {

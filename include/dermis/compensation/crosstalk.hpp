@@ -45,9 +45,10 @@ class CrosstalkInversion {
   virtual ~CrosstalkInversion() = default;
 
   /// ratio [rows, cols] (reading / supply) -> siemens [rows, cols], finite and >= 0. Starts from the last frame's
-  /// solution where there is one. A reading below what the neighbours alone explain gives 0 S. Where the readings have
-  /// no solution in this circuit, or are not numbers, `solved` is false and `siemens` holds the best attempt. Allocates
-  /// nothing.
+  /// solution where there is one. A reading below what the neighbours alone explain gives 0 S. Where a reading is not a
+  /// number (NaN), the taxel keeps the conductance that `siemens` gives it, finite and >= 0, and the others are solved
+  /// with it. Where the readings have no solution in this circuit, or are infinite, `solved` is false and `siemens`
+  /// holds the best attempt. Allocates nothing.
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
   /// Forgets the last frame: the next one does not depend on it, not in the last bit.
@@ -67,6 +68,7 @@ class CrosstalkInversion {
     const ArrayDescription& array, const InversionOptions& options = {});
 
 class FaultInversion;
+class PossibleReadings;
 class SupplyError;
 
 /// Unit 3 of the paper, the Compensation Unit: it corrects data "that deviate from the actual values by a known
@@ -86,8 +88,9 @@ class Compensator {
   void set_faults(std::span<const LineFault> faults);
 
   /// Taxels without a reading (TaxelStatus::invalid) are estimated from their neighbours, so that the others are
-  /// solved. If the circuit has no solution with the saturated taxels, they are estimated too (at most half) and become
-  /// invalid. Allocates nothing once `conductance` has the array's size.
+  /// solved. So are readings that the circuit cannot give, whatever the taxels are; they become invalid. If it has no
+  /// solution with the saturated taxels (at most half), or with the largest readings, these follow. Allocates nothing
+  /// once `conductance` has the array's size.
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
 
   /// See CrosstalkInversion.
@@ -98,9 +101,11 @@ class Compensator {
   Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
               std::span<const double> typical_siemens);
   InversionResult invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept;
+  InversionResult invert_possible(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
   void mask_faulty_taxels(ConductanceFrame& conductance) const noexcept;
 
   std::unique_ptr<CrosstalkInversion> inversion_;
+  std::unique_ptr<PossibleReadings> possible_;
   std::unique_ptr<SupplyError> supply_error_;
   std::unique_ptr<FaultInversion> faults_;
 };
