@@ -8,6 +8,7 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <limits>
@@ -23,6 +24,9 @@
 #include "dermis/core/nearest_name.hpp"
 #include "dermis/core/version.hpp"
 #include "dermis/files/safetensors.hpp"
+#include "dermis/paper/paper_bank_file.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/recognition/classes_file.hpp"
 #include "reference.hpp"
 #include "status_line.hpp"
 
@@ -100,10 +104,14 @@ std::string names_of(std::span<const CommandEntry> commands) {
 
 /// Says which of the command's files, of those that dermis writes, were written before such files had checksums.
 void tell_missing_checksums(const CLI::App& command) {
-  for (const char* const name : {"--model", "--classes", "--bank"}) {
+  static constexpr std::array<std::pair<const char*, files::FileFormat>, 3> kFiles{
+      {{"--model", pipeline::kModelFormat},
+       {"--classes", recognition::kClassesFormat},
+       {"--bank", paper::kPaperBankFormat}}};
+  for (const auto& [name, format] : kFiles) {
     const CLI::Option* const option = command.get_option_no_throw(name);
     if (option == nullptr || option->count() == 0) continue;
-    if (const auto note = files::checksum_note(option->as<std::string>())) say(*note);
+    if (const auto note = files::checksum_note(option->as<std::string>(), format)) say(*note);
   }
 }
 

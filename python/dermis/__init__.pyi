@@ -80,7 +80,8 @@ class Model:
     def write(self, path: _Path) -> None: ...
 
 def read_array(path: _Path) -> ArrayDescription: ...
-def read_model(path: _Path) -> Model: ...
+def read_model(path: _Path) -> Model:
+    """Warns of a file from before there were checksums: damage to it does not show."""
 
 class RawFrame:
     """Counts of one frame. `counts` is a view (rows, cols); it keeps the frame alive."""

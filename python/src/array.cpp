@@ -1,13 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "bindings.hpp"
 #include "dermis/files/array_toml.hpp"
+#include "dermis/files/safetensors.hpp"
 #include "dermis/pipeline/direct_model.hpp"
 #include "dermis/pipeline/model.hpp"
 
 namespace dermis::python {
+namespace {
+
+/// With a warning of Python where the file is of before there were checksums.
+std::shared_ptr<pipeline::Model> read_model(const std::string& path) {
+  auto model = std::make_shared<pipeline::Model>(value_or_raise(pipeline::read_model(path)));
+  const std::optional<std::string> note = files::checksum_note(path, pipeline::kModelFormat);
+  if (note && PyErr_WarnEx(PyExc_UserWarning, note->c_str(), 1) != 0) throw py::error_already_set();
+  return model;
+}
+
+}  // namespace
 
 void bind_array(py::module_& module) {
   py::class_<ArrayDescription>(module, "ArrayDescription")
@@ -59,11 +73,7 @@ void bind_array(py::module_& module) {
       "read_array", [](const py::object& path) { return value_or_raise(files::read_array(path_of(path))); },
       py::arg("path"));
   module.def(
-      "read_model",
-      [](const py::object& path) {
-        return std::make_shared<pipeline::Model>(value_or_raise(pipeline::read_model(path_of(path))));
-      },
-      py::arg("path"));
+      "read_model", [](const py::object& path) { return read_model(path_of(path)); }, py::arg("path"));
 }
 
 }  // namespace dermis::python

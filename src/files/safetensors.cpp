@@ -345,11 +345,13 @@ Status check_format(const SafetensorsFile& file, const FileFormat& format) {
   return Done{};
 }
 
-std::optional<std::string> checksum_note(const std::string& path) {
+std::optional<std::string> checksum_note(const std::string& path, const FileFormat& format) {
   std::error_code error;
   if (path.ends_with(".toml") || !std::filesystem::is_regular_file(path, error)) return std::nullopt;
   const Result<SafetensorsFile> file = read_safetensors(path);
   if (!file || file->has_checksum) return std::nullopt;
+  const auto told = file->metadata.find("format");
+  if (told == file->metadata.end() || told->second != format.without_checksum) return std::nullopt;
   return path + ": is of an older dermis and has no checksum, so damage to it would not show";
 }
 

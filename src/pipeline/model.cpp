@@ -24,8 +24,6 @@ using fusion::ForceNetworks;
 using fusion::LookUpTables;
 using preprocessing::SupplyRange;
 
-constexpr files::FileFormat kFormat{"dermis model 3", "dermis model 2",
-                                    "is not a dermis model; write one with 'dermis calibrate'"};
 constexpr const char* kFormatWithoutSigma = "dermis model 1";
 constexpr const char* kProvenancePrefix = "provenance.";
 constexpr std::size_t kMaxBaselines = 16;
@@ -229,7 +227,7 @@ Result<Model> read_direct_model(const std::string& path) {
 Status write_model(const std::string& path, const Model& model) {
   if (!is_consistent(model)) return failed("cannot write '" + path + "': the model holds values out of range");
   SafetensorsFile file;
-  file.metadata["format"] = kFormat.name;
+  file.metadata["format"] = kModelFormat.name;
   file.metadata["array"] = files::array_to_toml(model.array);
   for (const auto& [key, text] : model.provenance) file.metadata[kProvenancePrefix + key] = text;
   put_networks(file, model.networks);
@@ -251,7 +249,7 @@ Result<Model> read_model(const std::string& path) {
     return bad_input(path + ": is of an older dermis that did not know how sure its forces are; write it again with " +
                      "'dermis calibrate'");
   }
-  if (const Status right = files::check_format(*file, kFormat); !right) {
+  if (const Status right = files::check_format(*file, kModelFormat); !right) {
     return bad_input(path + ": " + right.error().message);
   }
   Model model;

@@ -16,6 +16,7 @@
 
 #include "dermis/files/safetensors.hpp"
 #include "dermis/files/suit_toml.hpp"
+#include "dermis/pipeline/model.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "dermis/sources/recorded_order.hpp"
@@ -111,10 +112,12 @@ Status read_classes_of_suit(const std::string& path, const Notice& notice, Serve
 /// Of the files that suit.toml names; a command tells those that its user named.
 void tell_missing_checksums(const SuitDescription& suit, const Notice& notice) {
   if (!notice) return;
-  std::set<std::string> paths{suit.classes};
-  for (const SuitArray& array : suit.arrays) paths.insert({array.model, array.classes});
-  for (const std::string& path : paths) {
-    if (const auto note = files::checksum_note(path)) notice(*note);
+  std::set<std::pair<std::string, const files::FileFormat*>> named{{suit.classes, &recognition::kClassesFormat}};
+  for (const SuitArray& array : suit.arrays) {
+    named.insert({{array.model, &pipeline::kModelFormat}, {array.classes, &recognition::kClassesFormat}});
+  }
+  for (const auto& [path, format] : named) {
+    if (const auto note = files::checksum_note(path, *format)) notice(*note);
   }
 }
 

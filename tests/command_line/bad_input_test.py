@@ -446,6 +446,7 @@ class ModelFile(SmallArray):
         lost = self.work / "lost"
         lost.write_bytes(whole.replace(checksum, b" " * len(checksum)))
         self.refuse(self.run_arguments(self.work / "f.csv", model=lost), [lost, "has lost its checksum"])
+        self.assertNotIn("has no checksum", dermis(*self.run_arguments(self.work / "f.csv", model=lost)).stderr)
         old = self.work / "old"
         old.write_bytes(lost.read_bytes().replace(b"dermis model 3", b"dermis model 2"))
         for arguments in (self.run_arguments(self.work / "f.csv", model=old), self.evaluate_arguments(model=old)):

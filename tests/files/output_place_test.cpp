@@ -121,8 +121,9 @@ TEST(OutputPlace, leaves_what_it_has_begun_itself) {
   const support::TemporaryFolder folder;
   const Result<OutputPlace> first = open_output(folder.file("model"));
   const Result<OutputPlace> second = open_output(folder.file("model"));
-  ASSERT_TRUE(first && second);
-  for (const auto* place : {&*first, &*second}) {
+  const Result<OutputPlace> by_another_path = open_output(folder.file("./model"));
+  ASSERT_TRUE(first && second && by_another_path);
+  for (const auto* place : {&*first, &*second, &*by_another_path}) {
     ::close(place->descriptor);
     EXPECT_TRUE(std::filesystem::exists(place->unfinished.path()));
   }

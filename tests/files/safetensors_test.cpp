@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/files/safetensors.hpp"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -243,22 +244,28 @@ TEST(Safetensors, takes_the_same_content_in_other_words) {
   EXPECT_TRUE(read->has_checksum);
 }
 
+constexpr FileFormat kFormat{"f 2", "f 1", "is no f"};
+
 TEST(Safetensors, a_file_of_before_there_were_checksums_is_read_and_noted) {
   const support::TemporaryFolder folder;
   support::write_bytes(folder.file("old"), bytes_with(R"({"__metadata__":{"format":"f 1"}})", ""));
   const Result<SafetensorsFile> old = read_safetensors(folder.file("old"));
   ASSERT_TRUE(old);
   EXPECT_FALSE(old->has_checksum);
-  EXPECT_EQ(checksum_note(folder.file("old")).value_or(""),
+  EXPECT_EQ(checksum_note(folder.file("old"), kFormat).value_or(""),
             folder.file("old") + ": is of an older dermis and has no checksum, so damage to it would not show");
   ASSERT_TRUE(write_safetensors(folder.file("new"), *old));
   EXPECT_TRUE(read_safetensors(folder.file("new"))->has_checksum);
-  EXPECT_FALSE(checksum_note(folder.file("new")));
-  EXPECT_FALSE(checksum_note(folder.file("absent")));
+  EXPECT_FALSE(checksum_note(folder.file("new"), kFormat));
+  EXPECT_FALSE(checksum_note(folder.file("absent"), kFormat));
+  for (const char* const other : {"f 2", "f 3"}) {
+    support::write_bytes(folder.file("other"),
+                         bytes_with(fmt::format(R"({{"__metadata__":{{"format":"{}"}}}})", other), ""));
+    EXPECT_FALSE(checksum_note(folder.file("other"), kFormat)) << other;
+  }
 }
 
 TEST(Safetensors, a_file_of_a_format_with_a_checksum_must_not_have_lost_it) {
-  constexpr FileFormat kFormat{"f 2", "f 1", "is no f"};
   const auto verdict = [&](const char* format, bool has_checksum) {
     SafetensorsFile file;
     file.metadata["format"] = format;

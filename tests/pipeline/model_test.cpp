@@ -250,7 +250,7 @@ TEST(Model, of_before_there_were_checksums_is_read) {
   const auto read = read_model(folder.file("m"));
   ASSERT_TRUE(read) << read.error().message;
   expect_equal(*read, make_model());
-  EXPECT_TRUE(files::checksum_note(folder.file("m")));
+  EXPECT_TRUE(files::checksum_note(folder.file("m"), kModelFormat));
 }
 
 TEST(Model, memory_that_cannot_be_undone_is_refused) {

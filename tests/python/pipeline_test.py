@@ -53,6 +53,18 @@ class Pipeline(workspace.CalibratedArray):
             force = dermis.Pipeline(self.loaded).process(counts, raw.temperature_celsius, raw.supply_v, raw.time_ns)
             np.testing.assert_array_equal(force.newtons, expected)
 
+    def test_a_model_of_before_there_were_checksums_is_read_with_a_warning(self):
+        whole = self.model.read_bytes()
+        checksum = re.search(rb'"checksum":"fnv1a64:[0-9a-f]{16}",', whole).group()
+        old = self.folder / "old.safetensors"
+        old.write_bytes(whole.replace(checksum, b" " * len(checksum)).replace(b"dermis model 3", b"dermis model 2"))
+        with self.assertWarnsRegex(UserWarning, "has no checksum"):
+            newtons = dermis.Pipeline(dermis.read_model(old)).run(self.recording).newtons
+        np.testing.assert_array_equal(newtons, dermis.Pipeline(self.loaded).run(self.recording).newtons)
+        old.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+        with self.assertRaisesRegex(dermis.BadInput, "its checksum differs"):
+            dermis.read_model(old)
+
     def test_views_outlive_what_they_were_taken_from(self):
         newtons = dermis.Pipeline(dermis.read_model(self.model)).process(self.recording[5]).newtons
         counts = dermis.Recording.read(self.frames).counts

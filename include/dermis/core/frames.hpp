@@ -22,7 +22,7 @@ enum class TaxelStatus : std::uint8_t {
   above_range,  ///< Beyond the heaviest calibrated load: extrapolated, at most to eight times that load.
   dead,         ///< Did not answer to its calibration loads: no force is given (NaN).
   line_fault,   ///< On an open or shorted line, or stuck: no force is given (NaN).
-  invalid,      ///< The reading is missing or not a number, or the crosstalk has no solution: no force (NaN).
+  invalid,      ///< No reading, one that the circuit cannot give, or the crosstalk has no solution: no force (NaN).
 };
 
 /// Outcome of a frame: a set of flags, empty when all is well.

@@ -88,9 +88,9 @@ struct FileFormat {
 /// That the file is of the format, and has not lost its checksum. The error names no path.
 [[nodiscard]] Status check_format(const SafetensorsFile& file, const FileFormat& format);
 
-/// For who opens a file of ours: a line that says that it has no checksum, so that damage to it does not show. Empty
-/// where it has one, and where it is no regular safetensors file.
-[[nodiscard]] std::optional<std::string> checksum_note(const std::string& path);
+/// For who opens a file of ours: a line that says that it is of before there were checksums, so that damage to it does
+/// not show. Empty for every other file.
+[[nodiscard]] std::optional<std::string> checksum_note(const std::string& path, const FileFormat& format);
 
 /// Writes the file atomically, with a checksum as its metadata "checksum". The same content gives the same bytes;
 /// tensors are aligned to their element size.

@@ -5,9 +5,14 @@
 #include <string>
 
 #include "dermis/core/result.hpp"
+#include "dermis/files/safetensors.hpp"
 #include "dermis/paper/paper_bank.hpp"
 
 namespace dermis::paper {
+
+/// Of a bank file.
+inline constexpr files::FileFormat kPaperBankFormat{"dermis paper bank 2", "dermis paper bank 1",
+                                                    "is not a bank of the paper; 'dermis calibrate' writes one"};
 
 /// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it; 135 MB for 16 x 16 taxels.
 [[nodiscard]] Status write_paper_bank(const std::string& path, const PaperBank& bank);

@@ -9,6 +9,7 @@
 
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/result.hpp"
+#include "dermis/files/safetensors.hpp"
 #include "dermis/fusion/force_fusion.hpp"
 #include "dermis/fusion/look_up.hpp"
 #include "dermis/fusion/material_memory.hpp"
@@ -29,6 +30,10 @@ struct Model {
   std::optional<preprocessing::SupplyRange> supply{};
   std::map<std::string, std::string> provenance;  ///< Hashes, counts and statistics of the calibration, as text.
 };
+
+/// Of a model file.
+inline constexpr files::FileFormat kModelFormat{"dermis model 3", "dermis model 2",
+                                                "is not a dermis model; write one with 'dermis calibrate'"};
 
 /// Writes a safetensors file (docs/file-formats.md) beside `path` and renames it.
 [[nodiscard]] Status write_model(const std::string& path, const Model& model);

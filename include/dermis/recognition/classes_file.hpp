@@ -6,10 +6,14 @@
 #include <string_view>
 
 #include "dermis/core/result.hpp"
+#include "dermis/files/safetensors.hpp"
 #include "dermis/recognition/classes.hpp"
 
 /// Classes as safetensors: docs/recognition.md names its tensors. The same classes give the same bytes.
 namespace dermis::recognition {
+
+inline constexpr files::FileFormat kClassesFormat{"dermis classes 2", "dermis classes 1",
+                                                  "holds no classes; write them with 'dermis learn'"};
 
 [[nodiscard]] Status write_classes(const std::string& path, const Classes& classes);
 

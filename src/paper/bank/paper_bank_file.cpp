@@ -16,9 +16,6 @@ namespace {
 
 using files::SafetensorsFile;
 
-constexpr files::FileFormat kFormat{"dermis paper bank 2", "dermis paper bank 1",
-                                    "is not a bank of the paper; 'dermis calibrate' writes one"};
-
 bool all_finite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float value) { return std::isfinite(value); });
 }
@@ -78,7 +75,7 @@ Status write_paper_bank(const std::string& path, const PaperBank& bank) {
   const std::size_t taxels = bank.taxel_count();
   const std::size_t parameters = bank.networks().shape().parameter_count();
   SafetensorsFile file;
-  file.metadata["format"] = kFormat.name;
+  file.metadata["format"] = kPaperBankFormat.name;
   std::vector<double> ratio;
   for (const PaperBank::Range& range : bank.ratio()) ratio.insert(ratio.end(), {range.low, range.high});
   file.tensors["ratio"] = {{taxels, 2}, std::move(ratio)};
@@ -95,7 +92,7 @@ Status write_paper_bank(const std::string& path, const PaperBank& bank) {
 Result<PaperBank> read_paper_bank(const std::string& path) {
   const Result<SafetensorsFile> file = files::read_safetensors(path);
   if (!file) return file.error();
-  if (const Status right = files::check_format(*file, kFormat); !right) {
+  if (const Status right = files::check_format(*file, kPaperBankFormat); !right) {
     return bad_input(path + ": " + right.error().message);
   }
   Result<PaperBank> bank = bank_from(*file);

@@ -22,8 +22,6 @@ using files::TensorReader;
 using Json = nlohmann::json;
 using Shape = std::vector<std::size_t>;
 
-constexpr files::FileFormat kFormat{"dermis classes 2", "dermis classes 1",
-                                    "holds no classes; write them with 'dermis learn'"};
 constexpr std::size_t kMostColumns = 65536;
 constexpr std::array kQuantities{"counts", "pressure", "force"};  // in the order of Quantity
 
@@ -186,9 +184,9 @@ Expert expert_from(const Json& json, std::size_t place, std::size_t class_count,
 }
 
 Result<Classes> classes_from(const SafetensorsFile& file) {
-  if (Status right = files::check_format(file, kFormat); !right) return right.error();
+  if (Status right = files::check_format(file, kClassesFormat); !right) return right.error();
   const auto description = file.metadata.find("classes");
-  if (description == file.metadata.end()) return bad_input(kFormat.otherwise);
+  if (description == file.metadata.end()) return bad_input(kClassesFormat.otherwise);
   const Json json = Json::parse(description->second, nullptr, false);
   JsonReader reader;
   TensorReader tensors(file);
@@ -219,7 +217,7 @@ Status write_classes(const std::string& path, const Classes& classes) {
     return failed("cannot write " + files::in_quotes(path) + ": " + checked.error().message);
   }
   SafetensorsFile file;
-  file.metadata["format"] = kFormat.name;
+  file.metadata["format"] = kClassesFormat.name;
   file.metadata["classes"] = description_of(classes).dump(-1, ' ', false, Json::error_handler_t::replace);
   put_tensor(file, "examples", {classes.examples.size()}, classes.examples);
   put_tensor(file, "doubts", {classes.doubts.size()}, classes.doubts);
