@@ -316,8 +316,7 @@ TEST(Recording, warm_writing_allocates_nothing) {
     ASSERT_TRUE((*writer)->write(frames[0]));
     if (guard.count() > 0) ++frames_with_allocations;
   }
-  EXPECT_LE(frames_with_allocations, 8U)
-      << "only the index of chunks grows, by doubling, and the chunks that wait for the disk";
+  EXPECT_LE(frames_with_allocations, 8U) << "only where chunks wait for the disk";
   ASSERT_TRUE((*writer)->commit());
 }
 
