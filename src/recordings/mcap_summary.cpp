@@ -217,8 +217,7 @@ Status McapSummary::cut_batches(std::uint64_t room) {
   const auto fits = [&] { return last_.file_bytes + last_.record_bytes + last_.index_bytes + end_bytes <= room; };
   while (batches_.size() > sizeof(Written) && !fits()) {
     batches_.cut(batches_.size() - sizeof(Written));
-    const Status read = batches_.read(batches_.size() - sizeof(Written), bytes_of(last_));
-    if (!read) return read;
+    if (Status read = batches_.read(batches_.size() - sizeof(Written), bytes_of(last_)); !read) return read;
   }
   chunk_indexes_.cut(last_.index_bytes);
   drop_batch();
