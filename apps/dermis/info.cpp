@@ -69,6 +69,7 @@ void print_json(const std::string& file, const FrameFileInfo& info) {
                {"cols", info.shape ? Json(info.shape->cols) : Json(nullptr)},
                {"lost", or_null(info.lost)},
                {"complete", info.complete},
+               {"unread", or_null(info.unread)},
                {"temperature_celsius", or_null(info.temperature_celsius)},
                {"name", or_null(info.notes.name)},
                {"array_toml", or_null(info.notes.array_toml)},
@@ -113,6 +114,7 @@ void print_text(const FrameFileInfo& info) {
   if (info.start_utc) print_line("start", utc_text(*info.start_utc));
   if (info.lost) print_line("lost", fmt::format("{} frames", *info.lost));
   print_line("complete", info.complete ? "yes" : "no: " + mend_of(info));
+  print_line("unread", info.unread);
   if (info.temperature_celsius) {
     print_line("temperature",
                fmt::format("{:.2f} to {:.2f} C", info.temperature_celsius->first, info.temperature_celsius->second));
@@ -136,7 +138,10 @@ Status print_info(const InfoOptions& options) {
   } else {
     print_text(*info);
   }
-  if (info->frames == 0) return bad_input(options.file + ": has no frame");
+  if (info->frames == 0) {
+    return bad_input(options.file + ": has no frame" + (info->unread.empty() ? "" : ": " + info->unread));
+  }
+  if (!info->unread.empty()) return failed(options.file + ": not all frames can be read: " + info->unread);
   if (!info->complete) return failed(options.file + ": is not complete: " + mend_of(*info));
   return Done{};
 }

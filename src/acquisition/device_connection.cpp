@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "acquisition/device_connection.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <thread>
 #include <utility>
@@ -12,6 +13,7 @@ namespace dermis::acquisition {
 namespace {
 
 constexpr Nanos kTick = std::chrono::milliseconds(50);
+constexpr Nanos kLongestPause = std::chrono::seconds(1);
 constexpr Nanos kNoticeAfter = std::chrono::seconds(2);
 
 std::string seconds_text(Nanos time) {
@@ -36,6 +38,7 @@ Status DeviceConnection::try_open() {
 
 Result<std::size_t> DeviceConnection::read(std::span<std::uint8_t> into, bool device_was_here) {
   const ByteStream::Transferred read = stream_->read(into, kTick);
+  if (is_returning_ && (read.bytes > 0 || now().steady - opened_ >= kLongestPause)) come_back();
   if (read.end != ByteStream::End::none) {
     if (const Status ended = end(read.end, device_was_here); !ended) return ended.error();
   }
@@ -59,11 +62,29 @@ Status DeviceConnection::end(ByteStream::End how, bool device_was_here) {
     return Done{};
   }
   how_it_ended_ = how;
+  leave();
+  return Done{};
+}
+
+void DeviceConnection::leave() {
+  const Nanos time = now().steady;
+  const bool was_short = time - opened_ < kLongestPause;
+  pause_ = was_short ? std::clamp(2 * pause_, kTick, kLongestPause) : kTick;
+  next_try_ = time + pause_;
+  if (std::exchange(is_returning_, false)) {
+    state_ = State::away;
+    return;
+  }
   enter(State::away);
   if (reconnect_ > Nanos{}) {
     notice_(name() + what_happened() + ": waiting up to " + seconds_text(reconnect_) + " for it to come back");
   }
-  return Done{};
+}
+
+void DeviceConnection::come_back() {
+  is_returning_ = false;
+  ++reconnections_;
+  notice_(name() + " is back");
 }
 
 Status DeviceConnection::wait_for_first() {
@@ -71,6 +92,7 @@ Status DeviceConnection::wait_for_first() {
   if (!opened) return opened.error();
   if (*opened) {
     enter(State::open);
+    opened_ = since_;
   } else if (transport_ == Transport::tcp_listen && !waiting_noticed_ && now().steady - since_ >= kNoticeAfter) {
     waiting_noticed_ = true;
     notice_("listening on " + name() + ": no device has connected yet");
@@ -81,11 +103,12 @@ Status DeviceConnection::wait_for_first() {
 Status DeviceConnection::wait_for_return() {
   if (now().steady - since_ >= reconnect_) return give_up();
   std::this_thread::sleep_for(kTick);
+  if (now().steady < next_try_) return Done{};
   const Result<bool> opened = stream_->open(kTick);
   if (!opened || !*opened) return Done{};
-  ++reconnections_;
-  notice_(name() + " is back");
-  enter(State::open);
+  state_ = State::open;
+  opened_ = now().steady;
+  is_returning_ = true;
   return Done{};
 }
 

@@ -15,8 +15,9 @@
 
 namespace dermis::acquisition {
 
-/// The stream of a device that may not be there yet, or may go away and come back. A call takes 100 ms at most.
-/// Not thread-safe.
+/// The stream of a device that may not be there yet, or may go away and come back. It is back when it sends, or stays
+/// for a second: who accepts and closes at once is asked less and less often, once a second in the end. A call takes
+/// 100 ms at most. Not thread-safe.
 class DeviceConnection {
  public:
   enum class State {
@@ -48,6 +49,8 @@ class DeviceConnection {
   Status end(ByteStream::End how, bool device_was_here);
   Status wait_for_first();
   Status wait_for_return();
+  void leave();
+  void come_back();
   Status give_up();
   [[nodiscard]] std::string what_happened() const;
   void enter(State state);
@@ -57,7 +60,11 @@ class DeviceConnection {
   std::unique_ptr<ByteStream> stream_;
   Notice notice_;
   State state_ = State::waiting;
-  Nanos since_;  // of the state
+  Nanos since_;  // of the state; of one that is away, until it is back
+  Nanos opened_{};
+  Nanos pause_{};              // between the tries
+  Nanos next_try_{};           // of one that is away
+  bool is_returning_ = false;  // It is open again, and not yet back.
   ByteStream::End how_it_ended_ = ByteStream::End::none;
   bool waiting_noticed_ = false;
   std::uint64_t reconnections_ = 0;

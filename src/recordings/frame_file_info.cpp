@@ -36,6 +36,7 @@ Result<FrameFileInfo> info_of_recording(const std::string& path) {
   info.compression = recording->compression;
   info.software = recording->software_version;
   info.topics = std::move(recording->topics);
+  info.unread = std::move(recording->unread);
   return info;
 }
 

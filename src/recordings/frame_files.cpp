@@ -28,6 +28,15 @@ Result<std::unique_ptr<Interface>> as(Result<std::unique_ptr<Opened>> opened) {
   return std::unique_ptr<Interface>(*std::move(opened));
 }
 
+/// ": the images of ... are in 'json'", where the file tells.
+std::string why_not(const std::string& path) {
+  const RecordingPlace place = recording_place(path);
+  const Result<FrameFormat> format = frame_format(place.path);
+  if (!format || *format != FrameFormat::mcap) return {};
+  const Result<RecordingInfo> info = recording_info(place.path);
+  return info && !info->unread.empty() ? ": " + info->unread : std::string();
+}
+
 /// A file that may have no frame, or not all that it was to have.
 class FrameFile final : public FrameSource {
  public:
@@ -40,7 +49,7 @@ class FrameFile final : public FrameSource {
     if (!more) return more;
     has_frame_ = has_frame_ || *more;
     if (*more || std::exchange(has_ended_, true)) return more;
-    if (!has_frame_) return bad_input(path_ + ": has no frame");
+    if (!has_frame_) return bad_input(path_ + ": has no frame" + why_not(path_));
     if (loss_) {
       loss_(path_ + ": was not written to its end, so that its last frames may be missing; 'dermis recover' makes it " +
             "complete");

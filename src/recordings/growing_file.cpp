@@ -2,10 +2,12 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "recordings/growing_file.hpp"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace dermis::recordings {
@@ -45,29 +47,25 @@ Status GrowingFile::append(std::span<const std::uint8_t> bytes) {
   return Done{};
 }
 
-Status GrowingFile::try_room_for(std::span<const std::uint8_t> bytes) {
-  const std::uint64_t size = size_;
-  Status tried = append(bytes);
+void GrowingFile::go_back_to(std::uint64_t size) {
   size_ = size;
-  cut_back();
-  return tried;
+  static_cast<void>(::lseek(descriptor_, static_cast<off_t>(size), SEEK_SET));
 }
 
 std::uint64_t GrowingFile::room() const {
-  return static_cast<std::uint64_t>(std::max<off_t>(::lseek(descriptor_, 0, SEEK_END), 0));
-}
-
-Status GrowingFile::end_at(std::uint64_t place, std::span<const std::uint8_t> bytes) {
-  const int error_number = files::write_all(descriptor_, std::as_bytes(bytes), place);
-  size_ = error_number == 0 ? place + bytes.size() : place;
-  cut_back();
-  if (error_number != 0) return files::cannot_write(target_, error_number);
-  return Done{};
+  struct stat info {};
+  return ::fstat(descriptor_, &info) == 0 ? static_cast<std::uint64_t>(info.st_size) : 0;
 }
 
 void GrowingFile::cut_back() const {
   const auto end = static_cast<off_t>(size_);
   if (::ftruncate(descriptor_, end) == 0) static_cast<void>(::lseek(descriptor_, end, SEEK_SET));
+}
+
+std::string GrowingFile::place_beside() const {
+  std::error_code no_folder;
+  if (unfinished_.exists()) return target_ + ".index";
+  return (std::filesystem::temp_directory_path(no_folder) / "dermis.index").string();
 }
 
 Status GrowingFile::appear() {

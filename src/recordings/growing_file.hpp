@@ -21,19 +21,21 @@ class GrowingFile {
   /// Removes a file that has not appeared.
   ~GrowingFile();
 
-  /// Appends the bytes. What it has written of them when it fails stays until cut_back() or end_at().
+  /// Appends the bytes. What it has written of them when it fails stays until cut_back().
   [[nodiscard]] Status append(std::span<const std::uint8_t> bytes);
   /// The last append() failed for want of room.
   [[nodiscard]] bool is_full() const noexcept { return is_full_; }
-  /// Whether append() would work.
-  [[nodiscard]] Status try_room_for(std::span<const std::uint8_t> bytes);
-  /// To what append() has written whole. A pipe cannot be: its reader sees a cut file.
-  void cut_back() const;
+  /// append() goes on at an earlier size. What is behind stays on the disk until cut_back(): within room(), append()
+  /// needs no more of it. A pipe cannot go back.
+  void go_back_to(std::uint64_t size);
   /// How many bytes the file has on the disk, with those that cut_back() would remove.
   [[nodiscard]] std::uint64_t room() const;
-  /// The file ends with these bytes, from `place` on. Within room() they need no more of the disk.
-  [[nodiscard]] Status end_at(std::uint64_t place, std::span<const std::uint8_t> bytes);
+  /// To what append() has written whole. A pipe cannot be: its reader sees a cut file.
+  void cut_back() const;
   [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
+
+  /// A name for further files, on the same disk where this file is on one.
+  [[nodiscard]] std::string place_beside() const;
 
   /// Puts the file in its place; nothing where it is there already. A file that it replaces is gone only when the bytes
   /// of this one are on the disk.

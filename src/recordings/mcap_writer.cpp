@@ -27,7 +27,10 @@ bool has_same_schema(const McapChannel& a, const McapChannel& b) {
 
 struct McapWriter::State {
   State(GrowingFile growing_file, McapCompression chunk_compression)
-      : file(std::move(growing_file)), compression(chunk_compression), compressor(chunk_compression) {}
+      : file(std::move(growing_file)),
+        compression(chunk_compression),
+        compressor(chunk_compression),
+        summary(file.place_beside()) {}
 
   // Of the thread that adds.
   Batch open;
@@ -58,6 +61,7 @@ struct McapWriter::State {
   void end_chunk(const Batch& batch);
   void append_message_indexes(const Batch& batch, Bytes& places);
   void note(const Status& status);
+  [[nodiscard]] Status try_end();
   void append_end();
   [[nodiscard]] Status status() const;
 };
@@ -124,7 +128,7 @@ void McapWriter::State::end_chunk(const Batch& batch) {
   const std::uint64_t chunk_place = place();
   const std::uint64_t compressed_bytes = append_chunk(batch);
   const std::uint64_t chunk_end = place();
-  Bytes& index = summary.records;
+  Bytes& index = summary.chunk_index;
   const Record record(index, Opcode::chunk_index);
   append_number(index, batch.first_time);
   append_number(index, batch.last_time);
@@ -173,7 +177,7 @@ void McapWriter::State::write(const Batch& batch) {
     file.cut_back();
     summary.drop_batch();
   } else {
-    summary.keep_batch(pending);
+    note(summary.keep_batch(pending));
   }
   pending.clear();
 }
@@ -182,15 +186,26 @@ void McapWriter::State::note(const Status& status) {
   if (!status && !first_error) first_error = status.error();
 }
 
+/// Whether the end of the file has room.
+Status McapWriter::State::try_end() {
+  const Status tried = summary.append_end(file);
+  file.go_back_to(summary.file_bytes());
+  file.cut_back();
+  return tried;
+}
+
 /// Where the disk is full, the end of a file that others see takes the room of its last chunks.
 void McapWriter::State::append_end() {
-  const Status ended = file.append(summary.end_of_file());
+  Status ended = summary.append_end(file);
   if (ended) return;
   note(ended);
-  const bool may_make_room = file.is_full() && file.has_appeared() && !summary.batches.empty();
-  if (!may_make_room) return file.cut_back();
-  summary.cut_batches(file.room());
-  note(file.end_at(summary.written().file_bytes, summary.end_of_file()));
+  if (file.is_full() && file.has_appeared() && summary.has_batches()) {
+    ended = summary.cut_batches(file.room());
+    file.go_back_to(summary.file_bytes());
+    if (ended) ended = summary.append_end(file);
+  }
+  if (!ended) file.go_back_to(summary.file_bytes());
+  file.cut_back();
 }
 
 Status McapWriter::State::status() const {
@@ -299,7 +314,7 @@ Status McapWriter::write_sealed() {
 /// A file appears only where its end has room: a disk that is full from the beginning replaces nothing.
 Status McapWriter::appear() {
   const bool is_first = !state_->first_error && !state_->file.has_appeared();
-  if (is_first) state_->note(state_->file.try_room_for(state_->summary.end_of_file()));
+  if (is_first) state_->note(state_->try_end());
   if (!state_->first_error) state_->note(state_->file.appear());
   return state_->status();
 }

@@ -3,6 +3,7 @@
 #include "recordings/recording_counts.hpp"
 
 #include "dermis/messages/ros_messages.hpp"
+#include "recordings/message_kind.hpp"
 #include "recordings/recording_description.hpp"
 
 namespace dermis::recordings {
@@ -10,17 +11,24 @@ namespace dermis::recordings {
 void RecordingCounts::count(const McapMessage& message, const McapChannel& channel) {
   ++messages_[message.channel];
   const std::string folder(topic_folder(channel.topic));
-  if (channel.schema_name == messages::acquisition_type().name && messages::decode_acquisition(message.data, frame_)) {
+  const MessageKind kind = kind_of(channel);
+  if (kind == MessageKind::acquisition && messages::decode_acquisition(message.data, frame_)) {
     lost_[folder] += frame_.acquisition.lost_before;
   }
-  if (channel.schema_name != messages::image_type().name) return;
+  if (kind != MessageKind::image) return;
+  const Result<FrameShape> decoded = messages::decode_image(message.data, frame_);
+  if (!decoded) {
+    if (unread_.empty())
+      unread_ = "an image of " + printable(channel.topic) + " cannot be read: " + decoded.error().message;
+    return;
+  }
   if (!first_folder_) first_folder_ = folder;
   const auto [place, is_new] = images_.try_emplace(folder);
   Images& images = place->second;
   if (is_new) {
     images.channel = message.channel;
     images.counts.first_log_time = message.log_time;
-    if (const Result<FrameShape> decoded = messages::decode_image(message.data, frame_)) images.counts.shape = *decoded;
+    images.counts.shape = *decoded;
   }
   if (images.channel != message.channel) return;
   images.counts.last_log_time = message.log_time;

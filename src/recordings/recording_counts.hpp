@@ -27,6 +27,8 @@ class RecordingCounts {
   void count(const McapMessage& message, const McapChannel& channel);
 
   [[nodiscard]] const std::map<std::uint16_t, std::uint64_t>& messages() const noexcept { return messages_; }
+  /// Why the first image is no frame that is none; empty: all are.
+  [[nodiscard]] const std::string& unread() const noexcept { return unread_; }
   /// Of the images in a folder of topics.
   [[nodiscard]] FrameCounts in_folder(const std::string& folder) const;
   /// Of the first topic of images; losses are those of all topics.
@@ -42,6 +44,7 @@ class RecordingCounts {
   std::map<std::string, Images> images_;       ///< By folder.
   std::map<std::string, std::uint64_t> lost_;  ///< By folder.
   std::optional<std::string> first_folder_;
+  std::string unread_;
   RawFrame frame_;  ///< What was decoded last.
 };
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "recordings/recording_description.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include "dermis/core/array_description.hpp"
@@ -41,6 +42,12 @@ std::string_view topic_folder(std::string_view topic) {
 std::string value_of(const std::map<std::string, std::string>& values, const char* key) {
   const auto found = values.find(key);
   return found == values.end() ? std::string() : found->second;
+}
+
+std::string printable(std::string name) {
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');
+  return files::in_quotes(name);
 }
 
 std::vector<RecordingDescription> descriptions_of(const McapReader& mcap) {

@@ -29,6 +29,9 @@ struct RecordingDescription {
 /// "/left/raw" -> "/left/"
 [[nodiscard]] std::string_view topic_folder(std::string_view topic);
 
+/// In quotes. The name may be anything that a file says.
+[[nodiscard]] std::string printable(std::string name);
+
 /// The value of a key, or an empty one.
 [[nodiscard]] std::string value_of(const std::map<std::string, std::string>& values, const char* key);
 

@@ -6,18 +6,11 @@
 #include <utility>
 
 #include "dermis/files/input.hpp"
-#include "dermis/files/text.hpp"
 #include "dermis/recordings/recording.hpp"
+#include "recordings/recording_description.hpp"
 
 namespace dermis::recordings {
 namespace {
-
-/// The name may be anything that a file says.
-std::string printable(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, '?');
-  return files::in_quotes(name);
-}
 
 /// "'chest', 'left_hand' and 38 more": the names of a whole suit fill screens.
 std::string names_of(const std::vector<RecordedArray>& arrays) {

@@ -73,6 +73,7 @@ class RecoveryRun {
   std::uint64_t kept_bytes_ = 0;    ///< Of all records that were kept.
   std::uint64_t data_end_ = 0;
   std::uint64_t work_ = 0;  ///< Bytes that were read in vain, or tried as chunks.
+  std::string first_loss_;  ///< What was wrong with the first damaged chunk.
   Recovery recovery_;
 };
 
@@ -82,9 +83,12 @@ Result<Recovery> RecoveryRun::run() {
   recovery_.was_complete = footer->has_value();
   kept_end_ = kept_bytes_ = scanner_.place();
   if (const Status read = read_records(); !read) return read.error();
+  recovery_.lost_bytes = data_end_ - kept_bytes_;
+  if (recovery_.messages == 0 && recovery_.lost_bytes > 0) {
+    return failed(scanner_.name() + ": nothing can be recovered" + first_loss_);
+  }
   add_totals();
   if (const Status finished = writer_->finish(); !finished) return finished.error();
-  recovery_.lost_bytes = data_end_ - kept_bytes_;
   return recovery_;
 }
 
@@ -153,7 +157,10 @@ bool RecoveryRun::keep(const McapRecord& record) {
 
 bool RecoveryRun::take_chunk(ByteView body) {
   const Result<McapChunk> chunk = parse_chunk(body, decompressor_);
-  if (!chunk) return false;
+  if (!chunk) {
+    if (first_loss_.empty()) first_loss_ = ": " + chunk.error().message;
+    return false;
+  }
   ByteView records = chunk->records;
   bool is_whole = true;
   while (is_whole && !records.empty()) {

@@ -10,6 +10,7 @@
 #include "dermis/files/input.hpp"
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/recordings/suit_recording.hpp"
+#include "recordings/message_kind.hpp"
 #include "recordings/recording_description.hpp"
 
 namespace dermis::recordings {
@@ -51,18 +52,9 @@ void ReadArray::add_to(RawFrame& frame, std::uint64_t log_time) {
 
 /// What the messages of a channel are to the frames.
 struct Use {
-  enum class Kind : std::uint8_t { none, image, acquisition, temperature };
-  Kind kind = Kind::none;
+  MessageKind kind = MessageKind::none;
   std::size_t array = 0;
 };
-
-Use::Kind kind_of(const McapChannel& channel) {
-  if (channel.encoding != "cdr") return Use::Kind::none;
-  if (channel.schema_name == messages::image_type().name) return Use::Kind::image;
-  if (channel.schema_name == messages::acquisition_type().name) return Use::Kind::acquisition;
-  if (channel.schema_name == messages::temperature_type().name) return Use::Kind::temperature;
-  return Use::Kind::none;
-}
 
 }  // namespace
 
@@ -132,7 +124,7 @@ Use SuitRecordingReader::Implementation::find_use(std::uint16_t id, const McapCh
   Use use{kind_of(channel), 0};
   const std::string_view folder = topic_folder(channel.topic);
   if (folders_.empty()) {
-    if (use.kind != Use::Kind::image) return use;
+    if (use.kind != MessageKind::image) return use;
     uses_.clear();
     folders_.emplace(folder, 0);
   } else {
@@ -140,9 +132,9 @@ Use SuitRecordingReader::Implementation::find_use(std::uint16_t id, const McapCh
     if (found == folders_.end()) return {};
     use.array = found->second;
     const bool has_images = std::any_of(uses_.begin(), uses_.end(), [&](const auto& known) {
-      return known.first != id && known.second.kind == Use::Kind::image && known.second.array == use.array;
+      return known.first != id && known.second.kind == MessageKind::image && known.second.array == use.array;
     });
-    if (use.kind == Use::Kind::image && has_images) return {};
+    if (use.kind == MessageKind::image && has_images) return {};
   }
   return use;
 }
@@ -162,11 +154,11 @@ Error SuitRecordingReader::Implementation::error(const McapMessage& message, con
 
 Status SuitRecordingReader::Implementation::take_other(const Use& use, const McapMessage& message) {
   ReadArray& array = read_[use.array];
-  if (use.kind == Use::Kind::acquisition) {
+  if (use.kind == MessageKind::acquisition) {
     const Status taken = messages::decode_acquisition(message.data, array.acquisition);
     if (!taken) return error(message, taken.error());
     array.acquisition_time = message.log_time;
-  } else if (use.kind == Use::Kind::temperature) {
+  } else if (use.kind == MessageKind::temperature) {
     const Result<double> taken = messages::decode_temperature(message.data);
     if (!taken) return error(message, taken.error());
     array.celsius = *taken;
@@ -196,8 +188,8 @@ Result<bool> SuitRecordingReader::Implementation::read_frame(std::size_t& array,
     if (arrays_.empty()) describe();
     const Use use = use_of(message);
     const bool is_wanted = !only_ || *only_ == use.array;
-    if (use.kind == Use::Kind::none || !is_wanted || message.log_time < begin_time_) continue;
-    if (use.kind == Use::Kind::image) {
+    if (use.kind == MessageKind::none || !is_wanted || message.log_time < begin_time_) continue;
+    if (use.kind == MessageKind::image) {
       if (const Status taken = take_image(use, message, frame); !taken) return taken.error();
       arrays_[use.array].shape = *read_[use.array].shape;
       array = use.array;

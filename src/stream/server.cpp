@@ -13,6 +13,7 @@
 #include <utility>  // Asio 1.74 forgets it
 
 #include "stream/access.hpp"
+#include "stream/budget.hpp"
 #include "stream/client.hpp"
 #include "stream/notice_limiter.hpp"
 #include "stream/session.hpp"
@@ -29,6 +30,9 @@ constexpr std::size_t kMostChannels = 4096;
 constexpr std::size_t kMostWaitingBytes = 64U << 20U;  // published, not yet handed to the clients
 constexpr std::size_t kMostVisitors = 64;              // connections that are no clients of the stream
 constexpr std::size_t kMostAtOnce = 16;                // connections that are taken in a row
+constexpr double kMostConnects = 1000;                 // in a second, after as many at once as there are visitors
+constexpr double kMostUpgrades = 100;                  // in a second: who becomes a client is told of all channels
+constexpr double kMostUpgradesAtOnce = 16;
 
 std::string random_session() {
   std::random_device device;
@@ -93,6 +97,7 @@ class Server::Implementation final : public SessionOwner {
 
   [[nodiscard]] const Site& site() const override { return site_; }
   [[nodiscard]] bool enter(const std::shared_ptr<Session>& session) override;
+  [[nodiscard]] Budget::Clock::time_point turn() override;
   [[nodiscard]] std::unique_ptr<Client> make_client(const std::string& peer, bool is_sdk, Ask ask) override;
   [[nodiscard]] asio::thread_pool& desk() override { return desk_; }
   void leave(const std::shared_ptr<Session>& session) override;
@@ -115,6 +120,15 @@ class Server::Implementation final : public SessionOwner {
     std::set<std::shared_ptr<Session>> clients;
   };
 
+  /// Where connections come in.
+  struct Door {
+    explicit Door(asio::io_context& context) : acceptor(context), pause(context) {}
+    tcp::acceptor acceptor;
+    asio::steady_timer pause;
+    Budget connects{kMostVisitors, kMostConnects};
+    Budget upgrades{kMostUpgradesAtOnce, kMostUpgrades};
+  };
+
   struct Subscriptions {
     std::vector<std::atomic<int>> now = std::vector<std::atomic<int>>(kMostChannels);  // [channel]
     std::atomic<std::uint64_t> so_far = 0;
@@ -122,6 +136,7 @@ class Server::Implementation final : public SessionOwner {
 
   void accept();
   void accept_waiting();
+  void accept_at(Budget::Clock::time_point time);
   void admit(tcp::socket socket);
   void hand_out();
   void change_subscribers(ChannelId channel, int change);
@@ -137,8 +152,7 @@ class Server::Implementation final : public SessionOwner {
   std::atomic<bool> parameters_pending_{false};
   asio::io_context context_{1};
   asio::thread_pool desk_{1};  // the owner's handlers and services run here
-  tcp::acceptor acceptor_{context_};
-  asio::steady_timer pause_{context_};
+  Door door_{context_};
   std::uint16_t port_ = 0;
   Connected connected_;
   NoticeLimiter notices_;
@@ -150,13 +164,13 @@ class Server::Implementation final : public SessionOwner {
 Status Server::Implementation::listen() {
   error_code error;
   const tcp::endpoint endpoint(asio::ip::make_address(numeric_address(options_.host), error), options_.port);
-  if (!error) acceptor_.open(endpoint.protocol(), error);
-  if (!error) acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-  if (!error) acceptor_.bind(endpoint, error);
-  if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
-  if (!error) acceptor_.non_blocking(true, error);
+  if (!error) door_.acceptor.open(endpoint.protocol(), error);
+  if (!error) door_.acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) door_.acceptor.bind(endpoint, error);
+  if (!error) door_.acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (!error) door_.acceptor.non_blocking(true, error);
   if (error) return in_use_or_forbidden(options_, error);
-  port_ = acceptor_.local_endpoint(error).port();
+  port_ = door_.acceptor.local_endpoint(error).port();
   return Done{};
 }
 
@@ -175,23 +189,31 @@ void Server::Implementation::stop() {
 }
 
 void Server::Implementation::accept() {
-  acceptor_.async_wait(tcp::acceptor::wait_read, [this](const error_code& error) {
+  door_.acceptor.async_wait(tcp::acceptor::wait_read, [this](const error_code& error) {
     if (!error) accept_waiting();
   });
 }
 
-/// Several at a time: where many come, one for each round of what the others want would keep the last waiting long.
+/// Several at a time: where many come, one for each round of what the others want would keep the last waiting long. Who
+/// comes back without end waits in the queue of the system, so that the streams have the time of this thread.
 void Server::Implementation::accept_waiting() {
   error_code error;
   for (std::size_t i = 0; i < kMostAtOnce && !error; ++i) {
+    if (door_.connects.free_at() > Budget::Clock::now()) return accept_at(door_.connects.free_at());
     tcp::socket socket(context_);
-    acceptor_.accept(socket, error);
-    if (!error) admit(std::move(socket));
+    door_.acceptor.accept(socket, error);
+    if (error) break;
+    door_.connects.spend(1);
+    admit(std::move(socket));
   }
   if (!error || error == asio::error::would_block) return accept();
   notices_.say("accept", "cannot take a connection: " + error.message());
-  pause_.expires_after(std::chrono::milliseconds(100));
-  pause_.async_wait([this](const error_code&) { accept(); });
+  accept_at(Budget::Clock::now() + std::chrono::milliseconds(100));
+}
+
+void Server::Implementation::accept_at(Budget::Clock::time_point time) {
+  door_.pause.expires_at(time);
+  door_.pause.async_wait([this](const error_code&) { accept(); });
 }
 
 /// Who says nothing, or says it slowly, has to make room: a new connection is always taken.
@@ -213,6 +235,12 @@ bool Server::Implementation::enter(const std::shared_ptr<Session>& session) {
   connected_.clients.insert(session);
   count_clients();
   return true;
+}
+
+Budget::Clock::time_point Server::Implementation::turn() {
+  const Budget::Clock::time_point free = door_.upgrades.free_at();
+  door_.upgrades.spend(1);
+  return free;
 }
 
 std::unique_ptr<Client> Server::Implementation::make_client(const std::string& peer, bool is_sdk, Ask ask) {

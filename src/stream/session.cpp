@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "stream/session.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <filesystem>
@@ -19,9 +20,10 @@ using std::chrono::seconds;
 
 constexpr std::size_t kMostMessageBytes = 1U << 20U;  // from a client
 constexpr std::uint32_t kMostHeaderBytes = 8192;
-constexpr int kMostRequests = 200;      // of a client in a second; the next has to wait
-constexpr int kSendBuffer = 256 << 10;  // [bytes]; what waits there cannot be dropped any more
-constexpr seconds kRequestTime{5};      // from the connection, or the last answer, to the end of the request
+constexpr double kMostRequests = 200;              // at once, and then in a second; the next has to wait
+constexpr double kMostRequestBytes = 256U << 10U;  // in a second, after a message of the most bytes
+constexpr int kSendBuffer = 256 << 10;             // [bytes]; what waits there cannot be dropped any more
+constexpr seconds kRequestTime{5};                 // from the connection, or the last answer, to the end of the request
 constexpr seconds kIdleTime{30};
 
 /// What came is wrong, rather than nothing any more.
@@ -41,13 +43,30 @@ Session::Session(SessionOwner& owner, tcp::socket socket)
     : owner_(owner),
       stream_(std::move(socket)),
       buffer_(2 * kMostMessageBytes),
-      requests_until_(stream_.get_executor()) {
+      requests_{Budget(kMostRequests, kMostRequests), Budget(kMostMessageBytes, kMostRequestBytes)},
+      pause_(stream_.get_executor()) {
   ErrorCode ignored;
   tcp::socket& connection = stream_.next_layer().socket();
   connection.set_option(tcp::no_delay(true), ignored);
   connection.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
   const tcp::endpoint peer = connection.remote_endpoint(ignored);
   if (!ignored) peer_ = peer.address().to_string(ignored) + ":" + std::to_string(peer.port());
+}
+
+void Session::at(Budget::Clock::time_point time, std::function<void()> then) {
+  if (time <= Budget::Clock::now()) return then();
+  pause_.expires_at(time);
+  pause_.async_wait([self = shared_from_this(), then = std::move(then)](const ErrorCode& ended) {
+    if (!ended) then();
+  });
+}
+
+Budget::Clock::time_point Session::next_request() const {
+  return std::max(requests_.count.free_at(), requests_.bytes.free_at());
+}
+
+void Session::await_request() {
+  at(next_request(), [this] { read_request(); });
 }
 
 void Session::read_request() {
@@ -62,6 +81,7 @@ void Session::read_request() {
 void Session::on_request(const ErrorCode& error) {
   if (is_no_http(error)) return cut("sent no HTTP: " + error.message());
   if (error) return end();
+  requests_.count.spend(1);
   const Request& request = parser_->get();
   if (!websocket::is_upgrade(request)) {
     if (const std::optional<std::string> file = owner_.site().file(request)) return send_file(*file);
@@ -71,7 +91,7 @@ void Session::on_request(const ErrorCode& error) {
   if (!owner_.enter(shared_from_this())) {
     return refuse(make_refusal(request, http::status::service_unavailable, "too many clients; close one of them"));
   }
-  upgrade(request);
+  at(owner_.turn(), [this] { upgrade(); });
 }
 
 void Session::refuse(Response refusal) {
@@ -85,7 +105,7 @@ void Session::respond(Response response) {
   http::async_write(stream_.next_layer(), *response_, [self = shared_from_this()](const ErrorCode& error, std::size_t) {
     if (error || !self->response_->keep_alive()) return self->end();
     self->response_.reset();
-    self->read_request();
+    self->await_request();
   });
 }
 
@@ -127,7 +147,8 @@ void Session::send_piece() {
       [self = shared_from_this()](const ErrorCode& error, std::size_t) { error ? self->end() : self->send_pieces(); });
 }
 
-void Session::upgrade(const Request& request) {
+void Session::upgrade() {
+  const Request& request = parser_->get();
   const std::string_view subprotocol = choose_subprotocol(view(request[http::field::sec_websocket_protocol]));
   stream_.next_layer().expires_never();  // the stream has time-outs of its own
   stream_.set_option(websocket::stream_base::timeout{kRequestTime, kIdleTime, true});
@@ -170,15 +191,7 @@ void Session::flush() {
 void Session::read_on() {
   if (is_reading_ || awaits_answer_ || client_->queue().control_bytes() > 0) return;
   is_reading_ = true;
-  const auto now = std::chrono::steady_clock::now();
-  if (now >= requests_until_.expiry()) {
-    requests_until_.expires_at(now + seconds(1));
-    requests_ = 0;
-  }
-  if (++requests_ <= kMostRequests) return read_message();
-  requests_until_.async_wait([self = shared_from_this()](const ErrorCode& ended) {
-    if (!ended) self->read_message();
-  });
+  at(next_request(), [this] { read_message(); });
 }
 
 void Session::read_message() {
@@ -195,6 +208,8 @@ void Session::on_message(const ErrorCode& error) {
   if (error == beast::error::timeout) return cut("said nothing for " + std::to_string(kIdleTime.count()) + " s");
   if (error) return end();
   const asio::const_buffer bytes = buffer_.cdata();
+  requests_.count.spend(1);
+  requests_.bytes.spend(static_cast<double>(bytes.size()));
   const Status received =
       client_->receive({static_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, stream_.got_text());
   if (!received) return cut("does not speak the protocol: " + received.error().message);
@@ -228,7 +243,7 @@ void Session::cut(const std::string& why) {
 void Session::end() {
   ErrorCode ignored;
   stream_.next_layer().socket().close(ignored);
-  requests_until_.cancel();
+  pause_.cancel();
   owner_.leave(shared_from_this());
 }
 

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 
+#include "stream/budget.hpp"
 #include "stream/client.hpp"
 #include "stream/file_on_its_way.hpp"
 #include "stream/site.hpp"
@@ -31,6 +32,8 @@ class SessionOwner {
   [[nodiscard]] virtual const Site& site() const = 0;
   /// Takes a connection among the clients of the stream; false where there are too many.
   [[nodiscard]] virtual bool enter(const std::shared_ptr<Session>& session) = 0;
+  /// When the connection that has entered may become a client.
+  [[nodiscard]] virtual Budget::Clock::time_point turn() = 0;
   [[nodiscard]] virtual std::unique_ptr<Client> make_client(const std::string& peer, bool is_sdk, Ask ask) = 0;
   /// Where what the clients ask of the owner of the server may take its time.
   [[nodiscard]] virtual boost::asio::thread_pool& desk() = 0;
@@ -46,7 +49,7 @@ class Session : public std::enable_shared_from_this<Session> {
   /// `owner` must outlive it.
   Session(SessionOwner& owner, boost::asio::ip::tcp::socket socket);
 
-  void start() { read_request(); }
+  void start() { await_request(); }
 
   /// The client of the stream; null while this is plain HTTP.
   [[nodiscard]] Client* client() noexcept { return client_.get(); }
@@ -59,6 +62,16 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   using ErrorCode = boost::beast::error_code;
 
+  /// What of them is read.
+  struct Requests {
+    Budget count;
+    Budget bytes;
+  };
+
+  void at(Budget::Clock::time_point time, std::function<void()> then);
+  /// When it may ask again.
+  [[nodiscard]] Budget::Clock::time_point next_request() const;
+  void await_request();
   void read_request();
   void on_request(const ErrorCode& error);
   void refuse(Response refusal);
@@ -69,7 +82,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void send_piece();
   /// Reads at the owner's desk, so that a disk that stalls holds no stream up; then goes on here.
   void read_file(std::function<bool(FileOnItsWay&)> read, std::function<void(bool)> then);
-  void upgrade(const Request& request);
+  void upgrade();
   void on_upgrade(const ErrorCode& error, bool is_sdk);
   void read_on();
   void read_message();
@@ -91,8 +104,8 @@ class Session : public std::enable_shared_from_this<Session> {
   bool is_writing_ = false;
   bool is_reading_ = false;
   bool awaits_answer_ = false;
-  boost::asio::steady_timer requests_until_;  // the end of the second in which requests_ are counted
-  int requests_ = 0;
+  Requests requests_;
+  boost::asio::steady_timer pause_;
 };
 
 }  // namespace dermis::stream

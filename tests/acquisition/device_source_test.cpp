@@ -242,6 +242,28 @@ TEST(DeviceSource, a_peer_that_closes_ends_the_source) {
   expect_end(*source);
 }
 
+TEST(DeviceSource, a_peer_that_accepts_and_closes_at_once_is_one_line) {
+  const auto listener = target("tcp-listen://127.0.0.1:0");
+  ASSERT_TRUE(listener->open(0ms));
+  const std::vector<RawFrame> frames = random_frames(4, 4);
+  Notices notices;
+  const auto source = open("tcp://" + listener->name() + "?protocol=dermis&reconnect_s=20", notices.options());
+  std::thread peer([&] {
+    ASSERT_TRUE(*listener->open(kLong));
+    send(*listener, encoded({frames[0], frames[1]}));
+    for (int connections = 0; connections < 5; ++connections) {  // each closes the last
+      while (!*listener->open(kLong)) {
+      }
+    }
+    send(*listener, encoded({frames[2], frames[3]}));
+  });
+  expect_frames(*source, {frames[0], frames[1], frames[2], frames[3]});
+  peer.join();
+  const std::string text = notices.text();
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 4) << text;  // two, but for a machine that stalls for a second
+  expect_words(text, {"has closed", "is back"});
+}
+
 /// Host and port that were free a moment ago.
 std::string free_place(const std::string& scheme) {
   const Result<std::unique_ptr<ByteStream>> probe = make_source_stream(*parse_source_uri(scheme + "://127.0.0.1:0"));

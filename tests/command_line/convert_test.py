@@ -5,6 +5,7 @@ import csv
 import itertools
 import json
 import random
+import struct
 from fractions import Fraction
 
 import h5py
@@ -15,6 +16,7 @@ from support import SmallArray, dermis, error_lines, files_limited_to
 
 ROWS, COLS, FRAMES = 4, 5, 200
 SOURCE = f"sim:multitouch?rows={ROWS}&cols={COLS}&rate=1000&seed=3"
+MAGIC = b"\x89MCAP0\r\n"
 NAMES = ("a.csv", "a.mcap", "a.h5", "a.wiresens.hdf5", "a.npy")
 TIMED = [name for name in NAMES if not name.endswith(".npy")]
 WARM = ("a.csv", "a.mcap", "a.h5")  # with temperature and supply
@@ -378,6 +380,66 @@ class Info(FrameFiles):
         self.refuse(("info", self.written("b.mcap", "no recording")), ["b.mcap"])
 
 
+def records(recording):
+    """(opcode, begin, end) of each record, without its header."""
+    place = len(MAGIC)
+    while place < len(recording) - len(MAGIC):
+        opcode, size = struct.unpack_from("<BQ", recording, place)
+        yield opcode, place + 9, place + 9 + size
+        place += 9 + size
+
+
+def rewritten(recording, change):
+    """The bytes of a recording of which `change` has changed some, and which says nothing of checksums of its own."""
+    changed = bytearray(recording)
+    change(changed)
+    summary, = struct.unpack_from("<Q", changed, len(changed) - len(MAGIC) - 20)
+    changed[summary - 4:summary] = changed[-len(MAGIC) - 4:-len(MAGIC)] = bytes(4)
+    return bytes(changed)
+
+
+def in_gzip(recording):
+    recording[:] = recording.replace(b"\x03\0\0\0lz4", b"\x03\0\0\0gzi")
+
+
+def in_json(recording):
+    recording[:] = recording.replace(b"\x03\0\0\0cdr", b"\x03\0\0\0jsn")
+
+
+def without_schemas(recording):
+    for opcode, begin, _ in records(recording):
+        if opcode == 4:
+            recording[begin + 2:begin + 4] = bytes(2)
+
+
+class Unread(FrameFiles):
+    """Recordings that others have written again, with the totals that dermis wrote."""
+
+    def rewrite(self, change):
+        path = self.work / f"{change.__name__}.mcap"
+        path.write_bytes(rewritten(self.recording.read_bytes(), change))
+        return path
+
+    def test_info_tells_what_is_there_and_why_it_is_not_read(self):
+        for change, why in ((in_json, "'/small/raw' are in 'jsn'; frames are read in 'cdr'"),
+                            (without_schemas, "'/small/raw' have no schema"), (in_gzip, "compressed with 'gzi'")):
+            with self.subTest(change.__name__):
+                path = self.rewrite(change)
+                result = dermis("info", path)
+                self.assertEqual(result.returncode, 2, result.stdout)
+                self.assertRegex(result.stdout, "frames +0\n")
+                self.assertRegex(result.stdout, f"topic +/small/raw .*{FRAMES} messages")
+                [line] = result.stderr.splitlines()
+                self.assertIn(f"{path.name}: has no frame: ", line)
+                self.assertIn(why, line)
+                self.assertIn(why, json.loads(dermis("info", path, "--json").stdout)["unread"])
+                self.refuse(("convert", path, self.work / "out.csv"), [path.name, why])
+
+    def test_a_recovery_of_nothing_fails(self):
+        self.refuse(("recover", self.rewrite(in_gzip), "--out", self.work / "out.mcap"),
+                    ["in_gzip.mcap: nothing can be recovered: the chunk is compressed with 'gzi'"], status=1)
+
+
 class Recover(FrameFiles):
     @classmethod
     def setUpClass(cls):
@@ -411,9 +473,14 @@ class Recover(FrameFiles):
         for size in sorted(chooser.randrange(1000, len(whole)) for _ in range(8)):
             cut = self.work / "cut.mcap"
             cut.write_bytes(whole[:size])
-            self.assertFalse(self.told("cut.mcap", (1, 2))["complete"])  # 2 where no frame is left
+            left = self.told("cut.mcap", (1, 2))  # 2 where no frame is left
+            self.assertFalse(left["complete"])
+            if left["frames"] == 0:
+                self.refuse(("recover", cut, "--out", self.work / "out.mcap"), ["cut.mcap: nothing can be recovered"],
+                            status=1)
+                continue
             text = self.succeed("recover", cut, "--out", self.work / "out.mcap")
-            info = self.told("out.mcap", (0, 2))
+            info = self.recovered("out.mcap")
             self.assertTrue(info["complete"])
             self.assertIn(f"{info['frames']} frames", text)
             self.assertGreaterEqual(info["frames"], previous)

@@ -310,6 +310,8 @@ TEST(SuitRecording, of_any_cut_is_recovered_with_its_totals) {
     support::write_bytes(folder.file("cut.mcap"), bytes.substr(0, size));
     const std::vector<Written> readable = read_suit(folder.file("cut.mcap"));
     const Result<Recovery> recovery = recover_recording(folder.file("cut.mcap"), folder.file("whole.mcap"));
+    ASSERT_EQ(recovery.has_value(), !readable.empty());
+    if (readable.empty()) continue;
     ASSERT_TRUE(recovery) << recovery.error().message;
     EXPECT_EQ(recovery->frames, readable.size());
     expect_same(read_suit(folder.file("whole.mcap")), readable);

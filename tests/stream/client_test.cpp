@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "stream/budget.hpp"
 #include "stream/notice_limiter.hpp"
 
 namespace dermis::stream {
@@ -180,6 +181,31 @@ TEST_F(StreamClient, calls_services) {
   client.queue().push_text("first");
   call(1, "abc");
   EXPECT_EQ(next_text()["op"], "serviceCallFailure");
+}
+
+TEST(Budget, gives_some_at_once_and_then_so_much_a_second) {
+  using std::chrono::milliseconds;
+  const auto start = Budget::Clock::now();
+  Budget budget(5, 10);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_LE(budget.free_at(), start);
+    budget.spend(1, start);
+  }
+  for (int i = 1; i <= 10; ++i) {
+    EXPECT_NEAR(static_cast<double>((budget.free_at() - start).count()), 1e8 * (i - 1), 100.0) << i;
+    budget.spend(1, start);
+  }
+}
+
+TEST(Budget, makes_good_what_was_spent_beyond_it_and_saves_no_more_than_it_gives_at_once) {
+  const auto start = Budget::Clock::now();
+  Budget budget(5, 10);
+  budget.spend(25, start);
+  EXPECT_NEAR(static_cast<double>((budget.free_at() - start).count()), 2e9, 100.0);
+  const auto late = start + std::chrono::hours(1);
+  EXPECT_LE(budget.free_at(), late);
+  budget.spend(15, late);
+  EXPECT_NEAR(static_cast<double>((budget.free_at() - late).count()), 1e9, 100.0);
 }
 
 TEST(NoticeLimiter, keeps_repetitions_back_and_counts_them) {

@@ -396,6 +396,36 @@ TEST_F(StreamServer, takes_as_many_clients_as_it_may) {
   EXPECT_TRUE(eventually([&] { return upgrade_status("/", {"127.0.0.1", {}, {}}) == 101U; }));
 }
 
+TEST_F(StreamServer, who_comes_back_without_end_gets_a_place_each_time_and_takes_nobody_elses) {
+  serve();
+  const ChannelId channel = server->add_channel("/x", "t", "s");
+  for (int i = 0; i < 50; ++i) EXPECT_EQ(upgrade_status("/", {"127.0.0.1", {}, {}}), 101U);
+  for (int i = 0; i < 150; ++i) EXPECT_EQ(upgrade_status("/", {"evil.org", {}, {}}), 403U);
+  Socket socket(context);
+  socket.next_layer() = connect();
+  ASSERT_EQ(shake_hands(socket), 101U);
+  subscribe(socket, channel);
+  server->publish(channel, Nanos(1), std::array<std::uint8_t, 1>{7});
+  EXPECT_EQ(read_json(socket)["op"], "serverInfo");
+  EXPECT_EQ(read_json(socket)["op"], "advertise");
+  EXPECT_EQ(static_cast<std::uint8_t>(read(socket)[13]), 7);
+}
+
+TEST_F(StreamServer, answers_all_that_is_asked_at_length_though_later) {
+  serve();
+  Socket socket(context);
+  socket.next_layer() = connect();
+  ASSERT_EQ(shake_hands(socket), 101U);
+  EXPECT_EQ(read_json(socket)["op"], "serverInfo");
+  const std::string padding(600'000, 'x');  // more than the budget of a second
+  for (int i = 0; i < 3; ++i) {
+    say(socket, R"({"op":"getParameters","parameterNames":[],"id":")" + std::to_string(i) + R"(","more":")" + padding +
+                    R"("})");
+  }
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(read_json(socket)["id"], std::to_string(i));
+  EXPECT_TRUE(log.lines().empty());
+}
+
 TEST_F(StreamServer, an_owner_that_takes_long_does_not_hold_up_the_stream) {
   serve();
   const ChannelId channel = server->add_channel("/x", "t", "s");

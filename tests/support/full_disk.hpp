@@ -31,6 +31,23 @@ class SmallDisk {
   rlimit before_{};
 };
 
+/// This process can open no file.
+class NoMoreFiles {
+ public:
+  NoMoreFiles() {
+    getrlimit(RLIMIT_NOFILE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = 0;
+    setrlimit(RLIMIT_NOFILE, &limit);
+  }
+  NoMoreFiles(const NoMoreFiles&) = delete;
+  NoMoreFiles& operator=(const NoMoreFiles&) = delete;
+  ~NoMoreFiles() { setrlimit(RLIMIT_NOFILE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
 /// What `write` (a Status) gives in a process of its own whose files cannot grow beyond `size` bytes: 0 where it works,
 /// 1 where its error is that of a full disk, and otherwise more. The process ends by exit(), as programs do.
 template <typename Write>

@@ -31,6 +31,7 @@ struct FrameFileInfo {
   std::string software;
   std::vector<RecordedArrayInfo> arrays;  ///< If there are several: shape and notes are then theirs.
   std::vector<RecordingTopic> topics;
+  std::string unread;  ///< As RecordingInfo::unread.
 
   /// Frames a second; only for one array, because several have rates of their own.
   [[nodiscard]] std::optional<double> rate_hz() const;

@@ -124,9 +124,11 @@ struct RecordingInfo {
   std::string software_version;           ///< "dermis 0.1.0"; empty if unknown.
   std::vector<RecordedArrayInfo> arrays;  ///< One at least.
   std::vector<RecordingTopic> topics;
+  std::string unread;  ///< Why messages that should be frames are none: in JSON, without a schema ... Empty: none are.
 };
 
-/// From the summary if there is one, otherwise by reading everything.
+/// From the summary of a file of dermis, if it has one and its first frame can be read; otherwise by reading
+/// everything.
 [[nodiscard]] Result<RecordingInfo> recording_info(const std::string& path);
 
 /// What a recovery found.
@@ -140,6 +142,7 @@ struct Recovery {
 };
 
 /// Reads a whole, cut or damaged MCAP file, and writes everything readable as a complete one. `out` must not be `in`.
+/// It fails and writes nothing where all messages are lost.
 [[nodiscard]] Result<Recovery> recover_recording(const std::string& in, const std::string& out);
 /// The same from a stream that can seek; `name` stands for the path in messages.
 [[nodiscard]] Result<Recovery> recover_recording(std::unique_ptr<std::istream> in, const std::string& name,

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+
+#include "dermis/recordings/mcap.hpp"
+
+namespace dermis::recordings {
+
+/// What the messages of a topic are to the frames.
+enum class MessageKind : std::uint8_t { none, image, acquisition, temperature };
+
+/// Frames are read of messages in CDR alone.
+[[nodiscard]] MessageKind kind_of(const McapChannel& channel);
+
+}  // namespace dermis::recordings
