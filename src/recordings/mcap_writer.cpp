@@ -188,7 +188,7 @@ void McapWriter::State::note(const Status& status) {
 
 /// Whether the end of the file has room.
 Status McapWriter::State::try_end() {
-  const Status tried = summary.append_end(file);
+  Status tried = summary.append_end(file);
   file.go_back_to(summary.file_bytes());
   file.cut_back();
   return tried;
