@@ -95,4 +95,5 @@ int main(int argc, char** argv) {
   const std::uint64_t hours = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 24;
   const std::size_t arrays = argc > 3 ? std::strtoull(argv[3], nullptr, 10) : 8;
   dermis::write_recording(argv[1], hours, arrays);
+  return 0;
 }

@@ -70,7 +70,7 @@ Status SpilledBytes::read(std::uint64_t place, std::span<std::uint8_t> bytes) co
     return failed("cannot read " + files::in_quotes(path_) + ": " + std::strerror(error_number));
   }
   if (of_memory.empty()) return Done{};
-  const std::size_t begin = static_cast<std::size_t>(place + of_file.size() - in_file_);
+  const auto begin = static_cast<std::size_t>(place + of_file.size() - in_file_);
   std::copy_n(recent_.begin() + static_cast<std::ptrdiff_t>(begin), of_memory.size(), of_memory.begin());
   return Done{};
 }

@@ -318,7 +318,7 @@ TEST(Mcap, a_long_index_takes_no_memory_and_no_file_that_others_see) {
     return ::mallinfo2().uordblks + ::mallinfo2().hblkhd;
   };
   const std::size_t early = bytes_in_use_after(5'000);
-  EXPECT_LE(bytes_in_use_after(20'000), early + 64 * 1024);
+  EXPECT_LE(bytes_in_use_after(20'000), early + std::size_t{64} * 1024);
   EXPECT_EQ(folder.file_count(), 1U);
   EXPECT_TRUE((*writer)->finish());
 }
