@@ -2,7 +2,9 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """Devices, real ones as far as a computer has them: pseudo-terminals, sockets, and the emulated device on the other
 side. Contents are compared, never times."""
+import contextlib
 import fcntl
+import glob
 import os
 import pty
 import signal
@@ -78,8 +80,20 @@ class Terminal:
         while data:
             data = data[os.write(self.master, data):]
 
+    def is_open_elsewhere(self):
+        name, own = os.ttyname(self.slave), f"/proc/{os.getpid()}/"
+        for file in glob.iglob("/proc/[0-9]*/fd/*"):
+            with contextlib.suppress(OSError):  # of a process that has just ended
+                if not file.startswith(own) and os.readlink(file) == name:
+                    return True
+        return False
+
     def wait_until_read(self):
-        """Until a program has taken all that was sent."""
+        """Until a program has opened it and taken all that was sent. On a busy machine the system itself holds what was
+        sent for a while, so that nothing seems to wait."""
+        patience = time.monotonic() + 60
+        while not self.is_open_elsewhere() and time.monotonic() < patience:
+            time.sleep(0.02)
         idle = 0
         while idle < 10:
             waiting = fcntl.ioctl(self.slave, termios.FIONREAD, struct.pack("i", 0))
