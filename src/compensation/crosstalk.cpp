@@ -53,6 +53,10 @@ Inversion newton(const ArrayDescription& array, double tolerance, const Inversio
       std::make_unique<NewtonInversion>(array, std::move(*model), tolerance, options));
 }
 
+bool is_invalid(TaxelStatus taxel) {
+  return taxel == TaxelStatus::invalid;
+}
+
 }  // namespace
 
 Inversion make_crosstalk_inversion(const ArrayDescription& array, const InversionOptions& options) {
@@ -133,6 +137,7 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
     conductance.taxels[possible_->largest(conditioned.ratio, conductance.taxels)] = TaxelStatus::invalid;
     result = invert(conditioned.ratio, conductance);
   }
+  if (std::all_of(conductance.taxels.begin(), conductance.taxels.end(), is_invalid)) result.solved = false;
   return result;
 }
 

@@ -409,7 +409,7 @@ TEST(Pipeline, statuses_of_all_units_meet_in_the_frame) {
   EXPECT_EQ(to_string(force.status), "dead_taxels+temperature_unknown");
 }
 
-TEST(Pipeline, frame_of_saturated_readings_is_flagged_and_has_no_force) {
+TEST(Pipeline, frame_without_a_solution_is_flagged_and_has_no_force) {
   Model model = hand_made_model(2, 2);
   model.array.readout.circuit = Circuit::transimpedance;
   model.array.readout.load_ohm.assign(2, 20.0);  // full scale on both columns draws 2 supplies through the driver
@@ -419,7 +419,7 @@ TEST(Pipeline, frame_of_saturated_readings_is_flagged_and_has_no_force) {
   raw.counts.assign(4, static_cast<float>(model.array.readout.full_scale_counts()));
   ForceFrame force;
   pipeline->process(raw, force);
-  EXPECT_EQ(force.status, FrameStatus::saturated);
+  EXPECT_EQ(force.status, FrameStatus::saturated | FrameStatus::not_converged);
   for (const float newtons : force.newtons) EXPECT_TRUE(std::isnan(newtons));
 }
 
