@@ -96,7 +96,7 @@ Compensator& Compensator::operator=(Compensator&&) noexcept = default;
 Compensator::~Compensator() = default;
 
 void Compensator::set_faults(std::span<const LineFault> faults) {
-  faults_->set_faults(faults);
+  faults_->set_faults(faults, *inversion_);
 }
 
 void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {

@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kMaxRounds = 20;
 constexpr int kEstimateRounds = 3;  // what the neighbours of a taxel tell hardly depends on it
+constexpr double kShortSiemens = 2.0;  // of a shorted crossing that is kept
 constexpr double kMostStretch = 5.0;
 constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end
 constexpr double kMostRise = 1.0;        // of the logarithm above both neighbours
@@ -71,18 +72,26 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
   typical_siemens_.resize(array.taxel_count(), 1.0);
   for (const std::size_t taxel : array.absent) absent_[taxel] = 1;
   supplied_rows_.reserve(array.rows);
+  crossings_.reserve(array.taxel_count());
   shorted_.reserve(array.rows + array.cols);
 }
 
-void FaultInversion::set_faults(std::span<const LineFault> faults) {
+void FaultInversion::set_faults(std::span<const LineFault> faults, CrosstalkInversion& healthy) {
   any_ = std::any_of(faults.begin(), faults.end(),
                      [](const LineFault& fault) { return fault.kind != LineFaultKind::drifting_driver; });
+  lines_are_faulty_ = false;
   std::fill(masked_.begin(), masked_.end(), std::uint8_t{0});
   std::fill(hidden_.begin(), hidden_.end(), std::uint8_t{0});
   supplied_rows_.clear();
   shorted_.clear();
-  if (circuits_) circuits_->faulty.restore();
+  crossings_.clear();
+  if (circuits_) {
+    circuits_->healthy.restore();
+    circuits_->faulty.restore();
+  }
   for (const LineFault& fault : faults) add(fault);
+  mask_joined_lines();
+  crossings_are_kept_ = !healthy.set_shorted(crossings_);
 }
 
 void FaultInversion::add(const LineFault& fault) {
@@ -93,13 +102,37 @@ void FaultInversion::add(const LineFault& fault) {
   });
   if (array_.readout.circuit == Circuit::none) return;  // nothing to subtract or to solve
   if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
+  if (fault.kind == LineFaultKind::shorted_crossing && !silences_row(fault, array_)) crossings_.push_back(fault.place);
   if (traits.effect == LineFaultEffect::shorted) {
     shorted_.push_back({*traits.axis, fault.place, ratio_of_shorted_lines(array_, *traits.axis, fault.place)});
   }
-  if (circuits_) add_to_circuit(fault, circuits_->faulty);
+  lines_are_faulty_ = lines_are_faulty_ || traits.scope == LineFaultScope::line ||
+                      traits.scope == LineFaultScope::line_pair;
+  if (!circuits_) return;
+  add_to_circuit(fault, circuits_->healthy, circuits_->faulty);
 }
 
-void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const {
+/// Rows that touch one column are one row, and columns that touch one row: what each of their taxels is, no reading
+/// tells.
+void FaultInversion::mask_joined_lines() noexcept {
+  for (std::size_t a = 0; a < crossings_.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      for (const std::size_t taxel : {crossings_[a], crossings_[b]}) {
+        if (crossings_[a] / array_.cols == crossings_[b] / array_.cols) mask_line(Axis::column, taxel % array_.cols);
+        if (crossings_[a] % array_.cols == crossings_[b] % array_.cols) mask_line(Axis::row, taxel / array_.cols);
+      }
+      // Two taxels are between the two nodes, and only their sum is told.
+      masked_[array_.index(crossings_[a] / array_.cols, crossings_[b] % array_.cols)] = 1;
+      masked_[array_.index(crossings_[b] / array_.cols, crossings_[a] % array_.cols)] = 1;
+    }
+  }
+}
+
+void FaultInversion::mask_line(Axis axis, std::size_t line) noexcept {
+  for (std::size_t k = 0; k < line_length(array_, axis); ++k) masked_[taxel_on_line(array_, axis, line, k)] = 1;
+}
+
+void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& healthy, LumpedCircuit& circuit) const {
   const LineFaultTraits& traits = traits_of(fault.kind);
   switch (traits.effect) {
     case LineFaultEffect::silent:
@@ -113,7 +146,13 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circu
       }
       break;
     case LineFaultEffect::shorted: circuit.join_lines(*traits.axis, fault.place); break;
+    case LineFaultEffect::crossed:
+      if (silences_row(fault, array_)) break;
+      healthy.join_crossing(fault.place);
+      circuit.join_crossing(fault.place);
+      break;
     case LineFaultEffect::stuck:
+    case LineFaultEffect::impossible:
     case LineFaultEffect::dead:
     case LineFaultEffect::drifting: break;  // of the reading, of the taxel's conductance, reported alone
   }
@@ -138,9 +177,10 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   subtract_supplied_rows(ratio);
   average_shorted_lines();
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
+  if (!lines_are_faulty_) return keep_estimates(healthy, siemens);
   estimate_unknown(equivalent_);
+  keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
-  if (!any_) return keep_estimates(healthy, siemens);
   if (!circuits_) return result;
   for (int round = 0; round < kMaxRounds; ++round) {
     estimate_unknown(siemens);
@@ -148,13 +188,14 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
     circuits_->faulty.solve(siemens, correction_.faulty_ratio);
     result.residual_ratio = misfit(siemens);
     if (correct(round == 0) <= tolerance_) return result;
+    keep_crossings(siemens);
     result.solved = healthy.invert(equivalent_, siemens).solved;
   }
   result.solved = false;
   return result;
 }
 
-/// The circuit is healthy: taxels without a reading are estimated from their neighbours, and these solved with them.
+/// The lines are healthy: taxels without a reading are estimated from their neighbours, and these solved with them.
 InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept {
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     if (unknown_[taxel] != 0) equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
@@ -162,9 +203,18 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
   InversionResult result;
   for (int round = 0; round < kEstimateRounds; ++round) {
     estimate_unknown(siemens);
+    keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
   }
   return result;
+}
+
+/// Their readings count where the inversion solves them; else they are what they are.
+void FaultInversion::keep_crossings(std::span<double> siemens) noexcept {
+  for (const std::size_t taxel : crossings_) {
+    equivalent_[taxel] = crossings_are_kept_ ? std::numeric_limits<double>::quiet_NaN() : measured_[taxel];
+    if (crossings_are_kept_) siemens[taxel] = kShortSiemens;
+  }
 }
 
 /// T' from both circuits at the present conductances; how far it is from the T' that led to them. The step is

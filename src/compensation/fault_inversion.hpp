@@ -20,16 +20,18 @@ namespace dermis::compensation {
 ///   T' = T + T_healthy(G) - T_faulty(G),   G <- invert_healthy(T')
 ///
 /// Taxels whose conductance no reading tells (on a silent line, stuck, without a reading in this frame) are estimated
-/// from their neighbours. Without faults, the healthy inversion keeps those estimates. An open row still couples the
-/// columns through them: eliminating it adds -g g^T / sum(g) to their equations. For resistive lines, switches, real
-/// amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit: the readings of faulty lines are
-/// replaced by those of their neighbours, and the rest is solved as if healthy.
+/// from their neighbours. Without faults of lines, the healthy inversion keeps those estimates. An open row still
+/// couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. Shorted crossings are in
+/// both circuits: the inversion solves them, or keeps their taxels at a large conductance. For resistive lines, switches, real amplifiers, `none` and arrays of more than 256 lines there is
+/// no faulty circuit: the readings of faulty lines are replaced by those of their neighbours, and the rest is solved as
+/// if healthy.
 class FaultInversion {
  public:
   /// `typical_siemens`: see Compensator::create.
   FaultInversion(const ArrayDescription& array, double tolerance_ratio, std::span<const double> typical_siemens);
 
-  void set_faults(std::span<const LineFault> faults);  ///< Allocates nothing.
+  /// `healthy` is told of shorted crossings. Allocates nothing.
+  void set_faults(std::span<const LineFault> faults, CrosstalkInversion& healthy);
   [[nodiscard]] bool any() const noexcept { return any_; }
 
   /// The taxel has no force of its own to report.
@@ -67,10 +69,13 @@ class FaultInversion {
   };
 
   void add(const LineFault& fault);
-  void add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const;
+  void mask_joined_lines() noexcept;
+  void mask_line(Axis axis, std::size_t line) noexcept;
+  void add_to_circuit(const LineFault& fault, LumpedCircuit& healthy, LumpedCircuit& circuit) const;
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
   InversionResult keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept;
+  void keep_crossings(std::span<double> siemens) noexcept;
   double correct(bool first) noexcept;
   void estimate_unknown(std::span<double> values) const noexcept;
   [[nodiscard]] double misfit(std::span<const double> siemens) const noexcept;
@@ -79,11 +84,14 @@ class FaultInversion {
   double tolerance_;
   std::vector<double> typical_siemens_;  // [taxels]
   bool any_ = false;
+  bool lines_are_faulty_ = false;  // so that the circuit is another one
   std::optional<Circuits> circuits_;
   std::vector<std::uint8_t> absent_;   // from the sheet [taxels]
   std::vector<std::uint8_t> masked_;   // [taxels]
   std::vector<std::uint8_t> hidden_;   // by a fault [taxels]
   std::vector<std::uint8_t> unknown_;  // hidden, or without a reading [taxels]
+  std::vector<std::size_t> crossings_;  // shorted taxels
+  bool crossings_are_kept_ = false;     // as large conductances
   std::vector<std::size_t> supplied_rows_;
   std::vector<ShortedLines> shorted_;
   std::vector<double> measured_;    // T without what supplied rows add [taxels]

@@ -9,6 +9,7 @@
 
 #include "compensation/readout_parts.hpp"
 #include "compensation/sensed_line.hpp"
+#include "compensation/shorted_crossings.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -48,8 +49,10 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
       sigma_column_(state_.stride),
       sigma_(state_.siemens.size()) {
   state_.kept.reserve(array.taxel_count());
+  state_.shorted.reserve(array.cols);
+  joined_.reserve(array.rows);
   const Readout& readout = array.readout;
-  state_.drive_ohm = readout.drive_ohm;
+  state_.drive_ohm = drive_ohm_ = readout.drive_ohm;
   const double weakest_driver = *std::max_element(state_.drive_ohm.begin(), state_.drive_ohm.end());
   const bool one_loaded = readout.idle_columns == IdleColumns::floating;
   const auto cols = static_cast<std::ptrdiff_t>(array.cols);
@@ -97,6 +100,40 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   return {solved, certificate};
 }
 
+bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
+  forget();
+  state_.shorted.clear();
+  joined_.clear();
+  state_.drive_ohm = drive_ohm_;
+  const bool can = sources_.ratio.empty() && std::all_of(taxels.begin(), taxels.end(), [&](std::size_t taxel) {
+    return add_shorted(taxel / state_.cols, taxel % state_.cols);
+  });
+  if (can) return true;
+  state_.shorted.clear();
+  joined_.clear();
+  state_.drive_ohm = drive_ohm_;
+  return taxels.empty();
+}
+
+/// false: it closes a chain of lines.
+bool GroundedRows::add_shorted(std::size_t row, std::size_t col) noexcept {
+  const auto in_row = [&](const auto& crossing) { return crossing.row == row; };
+  const auto in_col = [&](const auto& crossing) { return crossing.col == col; };
+  const auto is_joined = [&](const JoinedRows& pair) { return pair.other == row; };
+  const bool row_is_shorted = std::any_of(state_.shorted.begin(), state_.shorted.end(), in_row);
+  const auto column = std::find_if(state_.shorted.begin(), state_.shorted.end(), in_col);
+  if (std::any_of(joined_.begin(), joined_.end(), is_joined)) return false;
+  if (column == state_.shorted.end()) {
+    state_.shorted.push_back({row, col, row_is_shorted});
+    return true;
+  }
+  double& first_ohm = state_.drive_ohm[column->row];
+  if (row_is_shorted || first_ohm == 0.0 || drive_ohm_[row] == 0.0) return false;
+  joined_.push_back({column->row, row});
+  first_ohm = 1.0 / (1.0 / first_ohm + 1.0 / drive_ohm_[row]);
+  return true;
+}
+
 void GroundedRows::forget() noexcept {
   has_last_ = false;
   std::fill(sources_.siemens.begin(), sources_.siemens.end(), 0.0);
@@ -114,6 +151,20 @@ void GroundedRows::load(std::span<const double> ratio, std::span<const double> s
       state_.measured[row * state_.stride + col] = reading + offset_siemens_[col] + sources_.siemens[col];
     }
   }
+  if (!state_.shorted.empty()) load_shorted();
+}
+
+/// Joined rows are driven together; of the second of them nothing is left.
+void GroundedRows::load_shorted() noexcept {
+  for (const auto& [first, other] : joined_) {
+    for (std::size_t col = 0; col < state_.cols; ++col) {
+      double& reading = state_.measured[other * state_.stride + col];
+      state_.measured[first * state_.stride + col] += reading;
+      reading = 0.0;
+    }
+    std::erase_if(state_.kept, [row = other](const auto& taxel) { return taxel.row == row; });
+  }
+  take_loads_away(state_);
 }
 
 double GroundedRows::certify() noexcept {

@@ -59,6 +59,7 @@ class GroundedRows final : public CrosstalkInversion {
   /// `array` is a divider or transimpedance with grounded idle rows.
   GroundedRows(const ArrayDescription& array, double tolerance_ratio, bool counts_driver_errors);
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
+  [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override;
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
@@ -75,6 +76,12 @@ class GroundedRows final : public CrosstalkInversion {
     std::vector<double> column_sum;     // G^T 1
   };
 
+  /// Rows that touch one column are one row; its readings stand in the first.
+  struct JoinedRows {
+    std::size_t first;
+    std::size_t other;
+  };
+
   /// Anderson's mixing of ln G.
   struct Mixing {
     explicit Mixing(std::size_t size);
@@ -85,7 +92,9 @@ class GroundedRows final : public CrosstalkInversion {
     std::vector<double> log_step;
   };
 
+  [[nodiscard]] bool add_shorted(std::size_t row, std::size_t col) noexcept;
   void load(std::span<const double> ratio, std::span<const double> siemens) noexcept;
+  void load_shorted() noexcept;
   [[nodiscard]] double certify() noexcept;
   [[nodiscard]] bool follow_sources() noexcept;
   void find_row_currents() noexcept;
@@ -96,7 +105,9 @@ class GroundedRows final : public CrosstalkInversion {
   void keep() noexcept;
 
   double tolerance_;
+  std::vector<double> drive_ohm_;  // without shorted crossings [rows]
   GroundedRowsState state_;
+  std::vector<JoinedRows> joined_;
   std::vector<double> reading_siemens_;  // y of a ratio of 1 [stride]
   std::vector<double> offset_siemens_;   // y of a ratio of 0 [stride]
   Sources sources_;

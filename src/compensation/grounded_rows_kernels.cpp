@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "compensation/matrix_product.hpp"
+#include "compensation/shorted_crossings.hpp"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "compensation/grounded_rows_kernels.cpp"
@@ -270,6 +271,7 @@ void estimate_from_readings(GroundedRowsState& state) noexcept {
     state.measured[row * state.stride + col] = 0.0;
   }
   HWY_DYNAMIC_DISPATCH(estimate_kernel)(state);
+  if (!state.shorted.empty()) estimate_with_shorted(state);
   for (const auto& [row, col, siemens] : state.kept) {
     const std::size_t k = row * state.stride + col;
     state.estimate[k] = siemens;
@@ -290,20 +292,25 @@ void start_warm(GroundedRowsState& state, const std::vector<double>& last_estima
 
 void refresh(GroundedRowsState& state) noexcept {
   for (const auto& [row, col, siemens] : state.kept) state.siemens[row * state.stride + col] = siemens;
+  if (!state.shorted.empty()) add_up_nodes(state);
   HWY_DYNAMIC_DISPATCH(refresh_kernel)(state);
+  if (!state.shorted.empty()) take_columns_away(state);
 }
 
 double assess(GroundedRowsState& state) noexcept {
   const auto [rows, cols, stride] = std::tuple(state.rows, state.cols, state.stride);
   multiply({state.shunted.data(), 1, stride}, state.dropped.data(), cols, rows, stride, state.coupling.data());
   multiply({state.siemens.data(), stride, 1}, state.coupling.data(), rows, cols, stride, state.returned.data());
+  if (!state.shorted.empty()) return_through_nodes(state);
   std::fill(state.kept_drawn.begin(), state.kept_drawn.end(), 0.0);
   for (const auto& [row, col, siemens] : state.kept) {
     const std::size_t k = row * stride + col;
     state.kept_drawn[col] += state.line_gain[row] * state.explained[k] - state.returned[k];
     state.measured[k] = (siemens * state.column_part[col] + state.returned[k]) / state.line_gain[row];
   }
-  return HWY_DYNAMIC_DISPATCH(assess_kernel)(state);
+  const double certificate = HWY_DYNAMIC_DISPATCH(assess_kernel)(state);
+  if (!state.shorted.empty()) scale_shorted_columns(state);
+  return certificate;
 }
 
 void advance(GroundedRowsState& state) noexcept {

@@ -20,6 +20,13 @@ struct GroundedRowsState {
     double siemens;
   };
 
+  /// A row and a column that touch: one node (shorted_crossings.hpp).
+  struct ShortedCrossing {
+    std::size_t row;
+    std::size_t col;
+    bool is_second;  ///< Of its row: its column stands for no conductances, they are in the column of the first.
+  };
+
   GroundedRowsState(std::size_t row_count, std::size_t col_count, IdleColumns columns);
 
   std::size_t rows;
@@ -31,6 +38,7 @@ struct GroundedRowsState {
   std::vector<double> drive_ohm;          // Rd [rows]
   std::vector<double> column_ohm;         // RL [stride]
   std::vector<double> certificate_ratio;  // Ratio per bound on D S^-1 R [stride]
+  std::vector<ShortedCrossing> shorted;   // at most one a column
 
   // The frame.
   std::vector<double> measured;   // y

@@ -11,7 +11,7 @@ using Effect = LineFaultEffect;
 using Scope = LineFaultScope;
 
 // In the order of LineFaultKind. The readings of a supplied row can be subtracted; a dead taxel conducts nothing.
-constexpr std::array<LineFaultTraits, 9> kTraits{{
+constexpr std::array<LineFaultTraits, 11> kTraits{{
     {"silent_row", Effect::silent, Scope::line, Axis::row, true},
     {"silent_column", Effect::silent, Scope::line, Axis::column, true},
     {"supplied_row", Effect::supplied, Scope::line, Axis::row, false},
@@ -20,6 +20,8 @@ constexpr std::array<LineFaultTraits, 9> kTraits{{
     {"shorted_columns", Effect::shorted, Scope::line_pair, Axis::column, false},
     {"stuck_taxel", Effect::stuck, Scope::taxel, {}, true},
     {"dead_taxel", Effect::dead, Scope::taxel, {}, false},
+    {"shorted_crossing", Effect::crossed, Scope::taxel, {}, true},
+    {"impossible_reading", Effect::impossible, Scope::taxel, {}, true},
     {"drifting_driver", Effect::drifting, Scope::driver, {}, false},
 }};
 
@@ -46,12 +48,16 @@ std::string place_name(const LineFault& fault, const ArrayDescription& array) {
   return std::string("driver of ") + to_string(driven_axis(array)) + " " + line;
 }
 
+bool silences_row(const LineFault& fault, const ArrayDescription& array) noexcept {
+  return fault.kind == LineFaultKind::shorted_crossing && array.readout.circuit == Circuit::transimpedance;
+}
+
 std::size_t masked_taxel_count(const LineFault& fault, const ArrayDescription& array) noexcept {
   const LineFaultTraits& traits = traits_of(fault.kind);
   switch (traits.scope) {
     case Scope::line: return line_length(array, *traits.axis);
     case Scope::line_pair: return 2 * line_length(array, *traits.axis);
-    case Scope::taxel: return 1;
+    case Scope::taxel: return silences_row(fault, array) ? array.cols : 1;
     case Scope::driver: break;
   }
   return 0;

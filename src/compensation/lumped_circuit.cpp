@@ -25,6 +25,7 @@ LumpedCircuit::LumpedCircuit(const ArrayDescription& array)
       assembled_(nodes_ * nodes_),
       right_(nodes_ * right_columns_) {
   assert(!array.has_unknown_circuit() && array.readout.circuit != Circuit::none);
+  crossings_.reserve(array.taxel_count());
   restore();
 }
 
@@ -37,6 +38,7 @@ void LumpedCircuit::restore() {
   }
   supply_siemens_.assign(nodes_, 0.0);
   joint_siemens_.assign(nodes_, 0.0);
+  crossings_.clear();
   ground_siemens_.assign(nodes_, 0.0);
   is_open_.assign(nodes_, false);
 }
@@ -53,6 +55,10 @@ void LumpedCircuit::ground_line(Axis axis, std::size_t line) {
 
 void LumpedCircuit::join_lines(Axis axis, std::size_t line) {
   joint_siemens_[node_of(axis, line)] = axis == Axis::row ? kShortSiemens : kShortSiemens * ground_gain();
+}
+
+void LumpedCircuit::join_crossing(std::size_t taxel) {
+  crossings_.push_back(taxel);
 }
 
 void LumpedCircuit::tie_column_to_supply(std::size_t col) {
@@ -115,6 +121,9 @@ void LumpedCircuit::assemble(std::span<const double> siemens) noexcept {
   }
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
     connect(taxel / array_.cols, array_.rows + taxel % array_.cols, siemens[taxel]);
+  }
+  for (const std::size_t taxel : crossings_) {
+    connect(taxel / array_.cols, array_.rows + taxel % array_.cols, kShortSiemens * ground_gain());
   }
   for (std::size_t line = 0; line < load_siemens_.size() && !one_loaded(); ++line) {
     const std::size_t node = sensed_node(line);

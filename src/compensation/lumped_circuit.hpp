@@ -26,6 +26,7 @@ class LumpedCircuit {
   void open_line(Axis axis, std::size_t line);
   void ground_line(Axis axis, std::size_t line);
   void join_lines(Axis axis, std::size_t line);  ///< With the next row or column.
+  void join_crossing(std::size_t taxel);         ///< Its row with its column.
   void tie_column_to_supply(std::size_t col);
   void set_drive_ohm(std::size_t driven_line, double ohm);
 
@@ -57,6 +58,7 @@ class LumpedCircuit {
   std::vector<double> load_siemens_;    // [sensed lines]
   std::vector<double> supply_siemens_;  // from every node to the supply [nodes]
   std::vector<double> joint_siemens_;   // from every node to the next one [nodes]
+  std::vector<std::size_t> crossings_;  // taxels whose row and column are joined
   std::vector<double> ground_siemens_;  // from every node to 0 V, beside driver and load [nodes]
   std::vector<bool> is_open_;           // [nodes]
   std::size_t right_columns_;

@@ -16,7 +16,9 @@ class Transposed final : public CrosstalkInversion {
  public:
   /// `inversion` is for [cols, rows].
   Transposed(std::unique_ptr<CrosstalkInversion> inversion, std::size_t rows, std::size_t cols)
-      : inversion_(std::move(inversion)), rows_(rows), cols_(cols), ratio_(rows * cols), values_(rows * cols) {}
+      : inversion_(std::move(inversion)), rows_(rows), cols_(cols), ratio_(rows * cols), values_(rows * cols) {
+    shorted_.reserve(rows * cols);
+  }
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override {
     transpose(ratio, rows_, cols_, ratio_);
@@ -24,6 +26,11 @@ class Transposed final : public CrosstalkInversion {
     const InversionResult result = inversion_->invert(ratio_, values_);
     transpose(values_, cols_, rows_, siemens);
     return result;
+  }
+  [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override {
+    shorted_.clear();
+    for (const std::size_t taxel : taxels) shorted_.push_back(taxel % cols_ * rows_ + taxel / cols_);
+    return inversion_->set_shorted(shorted_);
   }
   void forget() noexcept override { inversion_->forget(); }
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override {
@@ -45,6 +52,7 @@ class Transposed final : public CrosstalkInversion {
   std::size_t cols_;
   std::vector<double> ratio_;   // [cols, rows]
   std::vector<double> values_;  // [cols, rows]
+  std::vector<std::size_t> shorted_;
 };
 
 }  // namespace dermis::compensation

@@ -83,6 +83,9 @@ class Nodes {
   Nodes(const ArrayDescription& array, const LineFaults& faults, std::span<const double> siemens)
       : rows_(array.rows), lines_(array.rows + array.cols), node_(lines_) {
     std::iota(node_.begin(), node_.end(), std::size_t{0});
+    for (const std::size_t taxel : taxel_indices(array, faults.shorted_taxels)) {
+      join(taxel / array.cols, rows_ + taxel % array.cols);
+    }
     for (const std::size_t row : faults.rows.shorted) join(row, row + 1);
     for (const std::size_t col : faults.columns.shorted) join(rows_ + col, rows_ + col + 1);
     laplacian_ = Eigen::MatrixXd::Zero(size(), size());
@@ -162,7 +165,7 @@ class Scan {
       for (std::size_t sensed = 0; sensed < sensed_lines; ++sensed) {
         if (one_loaded || sensed == 0) voltages = nodes_.voltages(ties(driven, sensed, one_loaded));
         const std::size_t taxel = columns_driven ? array_.index(sensed, driven) : array_.index(driven, sensed);
-        ratio[taxel] = reading(sensed, voltages);
+        ratio[taxel] = reading(driven, sensed, voltages);
       }
     }
   }
@@ -221,7 +224,7 @@ class Scan {
     return {1.0 / array_.readout.load_ohm[line], 0.0, false};
   }
 
-  [[nodiscard]] double reading(std::size_t sensed, const Eigen::VectorXd& voltages) const {
+  [[nodiscard]] double reading(std::size_t driven, std::size_t sensed, const Eigen::VectorXd& voltages) const {
     const Line state = sensed_line(sensed);
     if (state.open) return 0.0;
     const std::size_t node = sensed_node(sensed);
@@ -233,7 +236,18 @@ class Scan {
       if (column_line(line).short_to) return *column_line(line).short_to * kBeyondAdc;
       feedback_siemens += 1.0 / array_.readout.load_ohm[line];
     }
-    return nodes_.current_into(node, voltages) / feedback_siemens;
+    return (nodes_.current_into(node, voltages) + driver_current(driven, node)) / feedback_siemens;
+  }
+
+  /// Of the drivers of rows that are shorted to this column at virtual ground, over the supply [S].
+  [[nodiscard]] double driver_current(std::size_t driven, std::size_t node) const {
+    double current = 0.0;
+    for (std::size_t row = 0; row < array_.rows; ++row) {
+      if (nodes_.of_row(row) != node) continue;
+      const Tie tie = driver(row, row == driven);
+      current += tie.rigid ? kBeyondAdc * tie.ratio : tie.siemens * tie.ratio;
+    }
+    return current;
   }
 
   const ArrayDescription& array_;
@@ -258,7 +272,8 @@ bool LineFaults::any() const noexcept {
   const bool is_line_broken = std::any_of(kLineBreaks.begin(), kLineBreaks.end(), [&](const auto& kind) {
     return !(rows.*kind.lines).empty() || !(columns.*kind.lines).empty();
   });
-  return is_line_broken || !dead_taxels.empty() || !stuck_taxels.empty() || !drifting_rows.empty();
+  return is_line_broken || !dead_taxels.empty() || !stuck_taxels.empty() || !shorted_taxels.empty() ||
+         !drifting_rows.empty();
 }
 
 Status LineFaults::validate(const ArrayDescription& array) const {
@@ -271,6 +286,7 @@ Status LineFaults::validate(const ArrayDescription& array) const {
   if (Status valid = check("faults.drifting_rows", drifting_rows, array.driven_lines()); !valid) return valid;
   if (Status valid = check_taxels("dead_taxels", dead_taxels, array); !valid) return valid;
   if (Status valid = check_taxels("stuck_taxels", stuck_taxels, array); !valid) return valid;
+  if (Status valid = check_taxels("shorted_taxels", shorted_taxels, array); !valid) return valid;
   if (!(stuck_ratio >= 0.0 && stuck_ratio <= 1.0)) return bad_input("faults.stuck_ratio: must be 0 to 1");
   if (!(drift_ohm >= 0.0 && std::isfinite(drift_ohm))) return bad_input("faults.drift_ohm: must be 0 or more");
   if (until_frame <= from_frame) return bad_input("faults.until_frame: must be above from_frame");
@@ -285,6 +301,7 @@ void read_line_faults(files::ConfigFile& file, LineFaults& faults) {
   file.texts("faults.dead_taxels", faults.dead_taxels);
   file.texts("faults.stuck_taxels", faults.stuck_taxels);
   file.number("faults.stuck_ratio", faults.stuck_ratio);
+  file.texts("faults.shorted_taxels", faults.shorted_taxels);
   file.counts("faults.drifting_rows", faults.drifting_rows);
   file.number("faults.drift_ohm", faults.drift_ohm);
   file.count("faults.drift_frames", faults.drift_frames);

@@ -51,6 +51,11 @@ class CrosstalkInversion {
   /// holds the best attempt. Allocates nothing.
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
+  /// From the next frame on, the row and the column of each of these taxels are one node, and their own conductances
+  /// are not solved; a second call replaces the first. false: this circuit is not solved so, the taxels are to be kept
+  /// at the conductance of a short, or none of their readings used. Allocates nothing.
+  [[nodiscard]] virtual bool set_shorted(std::span<const std::size_t> taxels) noexcept { return taxels.empty(); }
+
   /// Forgets the last frame: the next one does not depend on it, not in the last bit.
   virtual void forget() noexcept {}
 

@@ -22,11 +22,13 @@ enum class LineFaultKind {
   shorted_columns,  ///< Shorted to the next column.
   stuck_taxel,      ///< Its reading stays the same, noise included.
   dead_taxel,       ///< Reads less than an unloaded taxel can.
+  shorted_crossing,    ///< Row and column of a taxel touch there and are one line.
+  impossible_reading,  ///< A taxel reads more than the circuit can give.
   drifting_driver,  ///< The resistance of a driver has risen: the whole line sags with its own current.
 };
 
 /// What has happened, wherever it is.
-enum class LineFaultEffect { silent, supplied, shorted, stuck, dead, drifting };
+enum class LineFaultEffect { silent, supplied, shorted, stuck, dead, crossed, impossible, drifting };
 
 /// What a fault is on.
 enum class LineFaultScope { line, line_pair, taxel, driver };
@@ -60,6 +62,9 @@ struct LineFault {
 
 /// "row 3", "columns 4 and 5", "taxel r3c5", "driver of row 3".
 [[nodiscard]] std::string place_name(const LineFault& fault, const ArrayDescription& array);
+
+/// A row that touches a column at virtual ground stands at 0 V, so that its taxels read nothing.
+[[nodiscard]] bool silences_row(const LineFault& fault, const ArrayDescription& array) noexcept;
 
 /// Number of taxels that a fault masks: all on the faulty lines, or the faulty one. A drifting driver masks none and is
 /// only reported, because a wrong suspicion must not cost taxels.

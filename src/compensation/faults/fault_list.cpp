@@ -14,7 +14,9 @@ std::uint8_t cause_of(const LineFaultTraits& traits) {
     case LineFaultEffect::silent:
     case LineFaultEffect::supplied: return kLineCause[*traits.axis];
     case LineFaultEffect::shorted: return kPairCause;
-    case LineFaultEffect::stuck: return kStuckCause;
+    case LineFaultEffect::stuck:
+    case LineFaultEffect::crossed:
+    case LineFaultEffect::impossible: return kStuckCause;
     case LineFaultEffect::dead: return kDeadCause;
     case LineFaultEffect::drifting: break;
   }

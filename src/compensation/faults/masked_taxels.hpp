@@ -13,6 +13,10 @@ namespace dermis::compensation {
 template <typename Visit>
 void for_each_masked_taxel(const LineFault& fault, const ArrayDescription& array, const Visit& visit) {
   const LineFaultTraits& traits = traits_of(fault.kind);
+  if (silences_row(fault, array)) {
+    for (std::size_t col = 0; col < array.cols; ++col) visit(array.index(fault.place / array.cols, col));
+    return;
+  }
   if (traits.scope == LineFaultScope::taxel) visit(fault.place);
   if (!traits.axis) return;
   const std::size_t lines = traits.scope == LineFaultScope::line_pair ? 2 : 1;
