@@ -11,6 +11,7 @@
 #include "compensation/possible_readings.hpp"
 #include "compensation/proportional.hpp"
 #include "compensation/readout_parts.hpp"
+#include "compensation/spikes.hpp"
 #include "compensation/supply_error.hpp"
 #include "compensation/transposed.hpp"
 #include "compensation/virtual_ground.hpp"
@@ -31,12 +32,12 @@ Inversion inversion(const Arguments&... arguments) {
 }
 
 /// One column driven, the others grounded, one row sensed: the divider with one load, rows and columns exchanged.
-Inversion flexitac(const ArrayDescription& array, double tolerance, bool counts_driver_errors) {
+Inversion flexitac(const ArrayDescription& array, double tolerance, const InversionOptions& options) {
   ArrayDescription exchanged = array;
   std::swap(exchanged.rows, exchanged.cols);
   exchanged.readout.circuit = Circuit::divider;
   exchanged.readout.idle_columns = IdleColumns::floating;
-  auto rows_driven = std::make_unique<GroundedRows>(exchanged, tolerance, counts_driver_errors);
+  auto rows_driven = std::make_unique<GroundedRows>(exchanged, tolerance, options);
   return std::unique_ptr<CrosstalkInversion>(
       std::make_unique<Transposed>(std::move(rows_driven), array.rows, array.cols));
 }
@@ -44,6 +45,12 @@ Inversion flexitac(const ArrayDescription& array, double tolerance, bool counts_
 bool are_few_saturated(const ConditionedFrame& conditioned) {
   const auto saturated = std::count(conditioned.taxels.begin(), conditioned.taxels.end(), TaxelStatus::saturated);
   return saturated > 0 && 2 * static_cast<std::size_t>(saturated) <= conditioned.taxels.size();
+}
+
+/// Nothing can be told of the others.
+bool are_most_invalid(const ConductanceFrame& conductance) {
+  const auto invalid = std::count(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
+  return 2 * static_cast<std::size_t>(invalid) > conductance.taxels.size();
 }
 
 Inversion newton(const ArrayDescription& array, double tolerance, const InversionOptions& options) {
@@ -67,18 +74,18 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
   if (has_resistive_lines(readout)) return newton(array, tolerance, options);
-  const bool counts_errors = options.counts_driver_errors;
-  if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance, counts_errors);
+  if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance, options);
   if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
-    return inversion<VirtualGround>(array, counts_errors);
+    return inversion<VirtualGround>(array, options.counts_driver_errors);
   }
   if (readout.idle_rows == IdleRows::floating) return newton(array, tolerance, options);
-  return inversion<GroundedRows>(array, tolerance, counts_errors);
+  return inversion<GroundedRows>(array, tolerance, options);
 }
 
 Result<Compensator> Compensator::create(const ArrayDescription& array, std::span<const double> typical_siemens) {
   InversionOptions options;
   options.counts_driver_errors = true;
+  options.is_bounded = true;
   Inversion inversion = make_crosstalk_inversion(array, options);
   if (!inversion) return inversion.error();
   return Compensator(array, std::move(*inversion), typical_siemens);
@@ -88,6 +95,7 @@ Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<Crosstal
                          std::span<const double> typical_siemens)
     : inversion_(std::move(inversion)),
       possible_(std::make_unique<PossibleReadings>(array)),
+      spikes_(std::make_unique<Spikes>(array)),
       supply_error_(std::make_unique<SupplyError>(array)),
       faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts(),
                                                typical_siemens)) {}
@@ -97,6 +105,11 @@ Compensator::~Compensator() = default;
 
 void Compensator::set_faults(std::span<const LineFault> faults) {
   faults_->set_faults(faults, *inversion_);
+}
+
+void Compensator::forget() noexcept {
+  inversion_->forget();
+  spikes_->forget();
 }
 
 void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
@@ -112,6 +125,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
     return;
   }
+  inversion_->start_frame();
   const InversionResult result = invert_possible(conditioned, conductance);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
@@ -128,6 +142,8 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
 InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned,
                                              ConductanceFrame& conductance) noexcept {
   possible_->check(conditioned.ratio, conditioned.sigma_ratio, conductance.taxels);
+  spikes_->check(conditioned.ratio, conditioned.sigma_ratio, conductance.taxels);
+  if (are_most_invalid(conductance)) return {};
   InversionResult result = invert(conditioned.ratio, conductance);
   if (!result.solved && are_few_saturated(conditioned)) {
     std::replace(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::saturated, TaxelStatus::invalid);

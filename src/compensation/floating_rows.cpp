@@ -25,7 +25,7 @@ constexpr double kLeastOpenShare = 1e-4;
 constexpr double kMostApparentRatio = 0.999;
 constexpr double kLeastFactor = 1.0001;
 constexpr double kLeastCurrent = 1e-18;  // [A at 1 V]
-constexpr double kMostSiemens = 1e3;
+constexpr double kHighestSiemens = 1e3;
 
 void multiply_into(const DenseInverse::Matrix& a, const DenseInverse::Matrix& b, DenseInverse::Matrix& out) noexcept {
   multiply({a.data(), static_cast<std::size_t>(a.cols()), 1}, b.data(), static_cast<std::size_t>(a.rows()),
@@ -169,7 +169,7 @@ double FloatingRows::follow() noexcept {
       factor = 1.0 / std::max(open, kLeastOpenShare);
     }
     change_[cols + row] = std::log(factor) - logarithms_[cols + row];
-    siemens_.row(row) = (factor * returned_.row(row)).cwiseMin(kMostSiemens);
+    siemens_.row(row) = (factor * returned_.row(row)).cwiseMin(kHighestSiemens);
     for (Index col = 0; col < cols; ++col) raised = std::max(raised, follow_taxel(row, col, factor));
   }
   change_.head(cols) =

@@ -14,6 +14,8 @@
 namespace dermis::compensation {
 namespace {
 
+constexpr double kLeastSteps = 12.0;  // of a frame where steps are bounded
+constexpr double kMixedWork = 8.0;    // of a mixed step beside a plain one
 constexpr int kPlainSteps = 24;
 constexpr double kShrinks = 0.95;  // of the certificate in a step; what shrinks less is left to the mixing
 constexpr int kMixedSteps = 400;
@@ -36,8 +38,9 @@ GroundedRows::Sources::Sources(std::size_t stride)
 GroundedRows::Mixing::Mixing(std::size_t size)
     : anderson(size, kMixingDepth), log_siemens(size), last_log_siemens(size), log_step(size) {}
 
-GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio, bool counts_driver_errors)
+GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio, const InversionOptions& options)
     : tolerance_(tolerance_ratio),
+      budget_(options.is_bounded ? kLeastSteps : 0.0),
       state_(array.rows, array.cols, array.readout.idle_columns),
       reading_siemens_(state_.stride),
       offset_siemens_(state_.stride),
@@ -63,7 +66,7 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
     state_.column_ohm[col] = sensed.rho;
     state_.certificate_ratio[col] = (one_loaded ? 1.0 + weakest_driver / sensed.rho : 1.0) * sensed.gain;
   }
-  if (counts_driver_errors && !is_absent(readout.drive_error_ohm)) {
+  if (options.counts_driver_errors && !is_absent(readout.drive_error_ohm)) {
     driver_error_.emplace(array, std::vector<double>(state_.column_ohm.begin(), state_.column_ohm.begin() + cols));
   }
   if (is_absent(readout.amplifier_offset_v)) return;
@@ -88,6 +91,7 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   if (!(certificate <= tolerance_)) certificate = iterate_with_mixing(certificate, 0);
   if (!(certificate <= std::max(tolerance_, kRounded))) certificate = iterate_with_mixing(certificate, kDampedSteps);
   const bool solved = certificate <= std::max(tolerance_, kRounded);
+  if (solved) budget_.learn();
   if (!solved) forget();
   has_last_ = solved;
   for (std::size_t row = 0; row < state_.rows; ++row) {
@@ -229,7 +233,7 @@ double GroundedRows::iterate() noexcept {
     if (certificate <= tolerance_) return certificate;
     if (step > 0 && !(certificate < last)) break;
     keep();
-    if (step == kPlainSteps || certificate > kShrinks * last) return certificate;
+    if (step == kPlainSteps || certificate > kShrinks * last || !budget_.take(1.0)) return certificate;
     last = certificate;
     advance(state_);
   }
@@ -250,7 +254,7 @@ double GroundedRows::iterate_with_mixing(double best, int damped_steps) noexcept
   }
   mixing_.anderson.forget();
   int without_gain = 0;
-  for (int step = 0; step < damped_steps + kMixedSteps && best > tolerance_; ++step) {
+  for (int step = 0; step < damped_steps + kMixedSteps && best > tolerance_ && budget_.take(kMixedWork); ++step) {
     take_step();
     const double certificate = certify();
     if (certificate < best) {

@@ -9,6 +9,7 @@
 #include "compensation/anderson_mixing.hpp"
 #include "compensation/driver_error.hpp"
 #include "compensation/grounded_rows_kernels.hpp"
+#include "compensation/step_budget.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 
 namespace dermis::compensation {
@@ -57,9 +58,10 @@ namespace dermis::compensation {
 class GroundedRows final : public CrosstalkInversion {
  public:
   /// `array` is a divider or transimpedance with grounded idle rows.
-  GroundedRows(const ArrayDescription& array, double tolerance_ratio, bool counts_driver_errors);
+  GroundedRows(const ArrayDescription& array, double tolerance_ratio, const InversionOptions& options);
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override;
+  void start_frame() noexcept override { budget_.start_frame(); }
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
@@ -105,6 +107,7 @@ class GroundedRows final : public CrosstalkInversion {
   void keep() noexcept;
 
   double tolerance_;
+  StepBudget budget_;  // in steps without mixing
   std::vector<double> drive_ohm_;  // without shorted crossings [rows]
   GroundedRowsState state_;
   std::vector<JoinedRows> joined_;

@@ -8,6 +8,7 @@
 #include "compensation/faults/drifting_driver_detector.hpp"
 #include "compensation/faults/equal_presses.hpp"
 #include "compensation/faults/grounded_line_detector.hpp"
+#include "compensation/faults/impossible_reading_detector.hpp"
 #include "compensation/faults/shorted_line_detector.hpp"
 #include "compensation/faults/silent_line_detector.hpp"
 #include "compensation/faults/stuck_taxel_detector.hpp"
@@ -55,9 +56,10 @@ class LineFaultMonitor::Implementation {
   UnloadedWitnesses witnesses_;
   EqualPresses equal_presses_;
   // In the order in which they judge a frame; each sees what those before it have found.
-  std::tuple<SilentLineDetector, SuppliedColumnDetector, StuckTaxelDetector, DeadTaxelDetector, ShortedLineDetector,
+  std::tuple<ImpossibleReadingDetector, SilentLineDetector, SuppliedColumnDetector, StuckTaxelDetector, DeadTaxelDetector, ShortedLineDetector,
              SuppliedRowDetector, GroundedLineDetector, DriftingDriverDetector>
-      detectors_{SilentLineDetector(array_, unloaded_, witnesses_),
+      detectors_{ImpossibleReadingDetector(array_),
+                 SilentLineDetector(array_, unloaded_, witnesses_),
                  SuppliedColumnDetector(array_),
                  StuckTaxelDetector(array_),
                  DeadTaxelDetector(array_),

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "compensation/possible_readings.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "compensation/sensed_line.hpp"
@@ -10,35 +12,140 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr double kAllowedRatio = 1.02;  // by how much the resistances of the readout may be wrong
+constexpr double kAllowedShare = 0.02;  // by which resistances of the readout and the supply may be wrong
 constexpr double kAllowedSigmas = 6.0;
-
-double most_ratio(const Readout& readout, std::size_t driven, std::size_t sensed) {
-  const SensedLine line = sensed_line(readout, sensed);
-  const double series = readout.drive_ohm[driven] + line.rho;
-  if (!(series > 0.0)) return std::numeric_limits<double>::infinity();
-  return line.gain * (1.0 - line.emf) / series + line.offset;
-}
+constexpr double kShortOhm = 10.0;         // of taxels none has less
+constexpr double kShortShare = 0.005;      // likewise; a mistake costs one taxel
+constexpr std::size_t kAtOnce = 4;         // sums that do not wait for each other
 
 }  // namespace
 
 PossibleReadings::PossibleReadings(const ArrayDescription& array)
-    : most_ratio_(array.taxel_count(), std::numeric_limits<double>::infinity()) {
+    : cols_(array.cols),
+      rows_are_driven_(driven_axis(array) == Axis::row),
+      one_loaded_(!rows_are_driven_ || array.readout.idle_columns == IdleColumns::floating),
+      sums_are_bounded_(array.readout.circuit != Circuit::transimpedance &&
+                        (!rows_are_driven_ || array.readout.idle_rows == IdleRows::grounded)),
+      most_ratio_(array.taxel_count(), std::numeric_limits<double>::infinity()) {
   if (array.readout.circuit == Circuit::none) return;
-  const bool rows_are_driven = driven_axis(array) == Axis::row;
-  for (std::size_t taxel = 0; taxel < most_ratio_.size(); ++taxel) {
-    const std::size_t row = taxel / array.cols;
-    const std::size_t col = taxel % array.cols;
-    most_ratio_[taxel] = most_ratio(array.readout, rows_are_driven ? row : col, rows_are_driven ? col : row);
+  drive_ohm_ = array.readout.drive_ohm;
+  sums_.resize(array.sensed_lines());
+  for (std::size_t line = 0; line < array.sensed_lines(); ++line) {
+    const SensedLine sensed = sensed_line(array.readout, line);
+    heads_.push_back({1.0 / sensed.gain, -sensed.offset / sensed.gain, sensed.rho, sensed.emf});
+    for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+      const double series = drive_ohm_[driven] + sensed.rho;
+      if (!(series > 0.0)) continue;
+      most_ratio_[taxel_of(driven, line)] = sensed.gain * (1.0 - sensed.emf) / series + sensed.offset;
+    }
   }
 }
 
 void PossibleReadings::check(std::span<const double> ratio, double sigma_ratio,
-                             std::span<TaxelStatus> taxels) const noexcept {
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-    const bool is_possible = ratio[taxel] <= kAllowedRatio * most_ratio_[taxel] + kAllowedSigmas * sigma_ratio;
-    if (!is_possible) taxels[taxel] = TaxelStatus::invalid;
+                             std::span<TaxelStatus> taxels) noexcept {
+  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+    if (may_exceed(driven, ratio)) check_driven(driven, ratio, sigma_ratio, taxels);
   }
+  if (sums_are_bounded_ && !drive_ohm_.empty()) check_sums(ratio, sigma_ratio, taxels);
+}
+
+/// Nothing on the line is above its limits, as the sum and the largest of its readings show.
+bool PossibleReadings::may_exceed(std::size_t driven, std::span<const double> ratio) const noexcept {
+  double sums[kAtOnce] = {};
+  double most[kAtOnce] = {};
+  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+    const Head& head = heads_[sensed];
+    const double own = head.current * ratio[taxel_of(driven, sensed)] + head.offset;
+    const double volts = (head.ohm + kShortOhm) * own + head.emf;
+    sums[sensed % kAtOnce] += one_loaded_ ? 0.0 : own;
+    double& largest = most[sensed % kAtOnce];
+    const double taken = one_loaded_ ? volts + drive_ohm_[driven] * own : volts;
+    largest = taken > largest ? taken : largest;
+  }
+  const double total = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  return drive_ohm_[driven] * total + *std::max_element(most, most + kAtOnce) > 1.0;
+}
+
+void PossibleReadings::check_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
+                                    std::span<TaxelStatus> taxels) const noexcept {
+  for (std::size_t found = 0; found < heads_.size(); ++found) {
+    const double line_drop = drop(driven, ratio, taxels);
+    std::size_t worst = heads_.size();
+    double least = 0.0;
+    for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+      const std::size_t taxel = taxel_of(driven, sensed);
+      if (taxels[taxel] == TaxelStatus::invalid) continue;
+      const auto [of_short, of_circuit] = margins(driven, sensed, ratio[taxel], line_drop, sigma_ratio);
+      const double left = std::min(of_short, of_circuit);
+      if (!(left < least)) continue;
+      least = left;
+      worst = sensed;
+    }
+    if (worst == heads_.size()) return;
+    taxels[taxel_of(driven, worst)] = TaxelStatus::invalid;
+  }
+}
+
+void PossibleReadings::check_sums(std::span<const double> ratio, double sigma_ratio,
+                                  std::span<TaxelStatus> taxels) noexcept {
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+    for (std::size_t sensed = 0; sensed < sums_.size(); ++sensed) sums_[sensed] += ratio[taxel_of(driven, sensed)];
+  }
+  const double noise = kAllowedSigmas * sigma_ratio * std::sqrt(static_cast<double>(drive_ohm_.size()));
+  for (std::size_t sensed = 0; sensed < sums_.size(); ++sensed) {
+    if (sums_[sensed] <= 1.0) continue;
+    double sum = 0.0;
+    for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+      const std::size_t taxel = taxel_of(driven, sensed);
+      if (taxels[taxel] != TaxelStatus::invalid) sum += ratio[taxel];
+    }
+    while (sum > 1.0 + kAllowedShare + noise) {
+      std::size_t worst = taxels.size();
+      for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+        const std::size_t taxel = taxel_of(driven, sensed);
+        if (taxels[taxel] == TaxelStatus::invalid) continue;
+        if (worst == taxels.size() || ratio[taxel] > ratio[worst]) worst = taxel;
+      }
+      taxels[worst] = TaxelStatus::invalid;
+      sum -= ratio[worst];
+    }
+  }
+}
+
+/// Rd_k times the currents of the line; of one loaded column 0, where margins() counts its own.
+double PossibleReadings::drop(std::size_t driven, std::span<const double> ratio,
+                              std::span<const TaxelStatus> taxels) const noexcept {
+  double total = 0.0;
+  for (std::size_t sensed = 0; sensed < heads_.size() && !one_loaded_; ++sensed) {
+    const std::size_t taxel = taxel_of(driven, sensed);
+    if (taxels[taxel] != TaxelStatus::invalid) total += current(sensed, ratio[taxel]);
+  }
+  return drive_ohm_[driven] * total;
+}
+
+PossibleReadings::Margins PossibleReadings::margins(std::size_t driven, std::size_t sensed, double ratio, double drop,
+                                                    double sigma_ratio) const noexcept {
+  const double own = current(sensed, ratio);
+  const double volts = heads_[sensed].ohm * own + heads_[sensed].emf;
+  const double taken = volts + (one_loaded_ ? drive_ohm_[driven] * own : drop);
+  const double slack = 1.0 - taken;
+  const double doubt = kAllowedSigmas * sigma_ratio * std::max(heads_[sensed].ohm * heads_[sensed].current, 0.0);
+  return {slack + kShortShare * taken + doubt - kShortOhm * own, slack + kAllowedShare * taken + doubt};
+}
+
+ReadingVerdict PossibleReadings::judge(std::size_t taxel, std::span<const double> ratio, double sigma_ratio,
+                                       std::span<const TaxelStatus> taxels) const noexcept {
+  if (drive_ohm_.empty()) return ReadingVerdict::possible;
+  const std::size_t driven = rows_are_driven_ ? taxel / cols_ : taxel % cols_;
+  const std::size_t sensed = rows_are_driven_ ? taxel % cols_ : taxel / cols_;
+  double line_drop = drop(driven, ratio, taxels);
+  if (taxels[taxel] == TaxelStatus::invalid && !one_loaded_) {
+    line_drop += drive_ohm_[driven] * current(sensed, ratio[taxel]);
+  }
+  const auto [of_short, of_circuit] = margins(driven, sensed, ratio[taxel], line_drop, sigma_ratio);
+  if (of_circuit < 0.0) return ReadingVerdict::impossible;
+  return of_short < 0.0 ? ReadingVerdict::shorted : ReadingVerdict::possible;
 }
 
 std::size_t PossibleReadings::largest(std::span<const double> ratio,

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -10,20 +11,73 @@
 
 namespace dermis::compensation {
 
-/// What a circuit can read, whatever the taxels are: of a taxel of 0 ohm alone, the current through its driver and its
-/// sensed line.
+enum class ReadingVerdict { possible, shorted, impossible };
+
+/// Which readings of a frame no conductances explain. The current of a driven line comes through its driver, and at
+/// least what all readings of the line carry away leaves it. So the voltage across a taxel is at most
+///
+///   slack_kj = 1 - Rd_k sum_j' I_kj' - V_kj        (one loaded column: - Rd_k I_kj)
+///
+/// and its resistance at most slack / I. Where idle rows are grounded, the readings of a column are less than the
+/// supply together, as they are when all rows are driven at once.
 class PossibleReadings {
  public:
   explicit PossibleReadings(const ArrayDescription& array);
 
-  /// Taxels whose reading is beyond that become invalid; `sigma_ratio` is the noise of a reading. Allocates nothing.
-  void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) const noexcept;
+  /// Taxels whose reading the circuit cannot give, or only where row and column touch, become invalid, the worst of a
+  /// line first. `sigma_ratio` is the noise of a reading. Allocates nothing.
+  void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
+
+  /// Of one taxel, beside those of its line that are not invalid.
+  [[nodiscard]] ReadingVerdict judge(std::size_t taxel, std::span<const double> ratio, double sigma_ratio,
+                                     std::span<const TaxelStatus> taxels) const noexcept;
+
+  /// A reading over that of a taxel of 0 ohm alone.
+  [[nodiscard]] double share_of_most(std::size_t taxel, double ratio) const noexcept {
+    return ratio / most_ratio_[taxel];
+  }
 
   /// The reading nearest to what the circuit can give, of those that are not invalid.
   [[nodiscard]] std::size_t largest(std::span<const double> ratio, std::span<const TaxelStatus> taxels) const noexcept;
 
  private:
+  /// The head of a sensed line, as a reading tells it.
+  struct Head {
+    double current = 0.0;  ///< of a ratio of 1
+    double offset = 0.0;   ///< the current of a ratio of 0
+    double ohm = 0.0;      ///< to
+    double emf = 0.0;      ///< this voltage
+  };
+
+  [[nodiscard]] std::size_t taxel_of(std::size_t driven, std::size_t sensed) const noexcept {
+    return rows_are_driven_ ? driven * cols_ + sensed : sensed * cols_ + driven;
+  }
+  [[nodiscard]] double current(std::size_t sensed, double ratio) const noexcept {
+    return heads_[sensed].current * ratio + heads_[sensed].offset;
+  }
+  [[nodiscard]] bool may_exceed(std::size_t driven, std::span<const double> ratio) const noexcept;
+  void check_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
+                    std::span<TaxelStatus> taxels) const noexcept;
+  void check_sums(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
+  [[nodiscard]] double drop(std::size_t driven, std::span<const double> ratio,
+                            std::span<const TaxelStatus> taxels) const noexcept;
+
+  /// What is left of the slack, negative where the verdict is not `possible`.
+  struct Margins {
+    double of_short;
+    double of_circuit;
+  };
+  [[nodiscard]] Margins margins(std::size_t driven, std::size_t sensed, double ratio, double drop,
+                                double sigma_ratio) const noexcept;
+
+  std::size_t cols_;
+  bool rows_are_driven_;
+  bool one_loaded_;
+  bool sums_are_bounded_;           // of the readings of a column
   std::vector<double> most_ratio_;  // [taxels]; infinite where nothing limits it
+  std::vector<double> drive_ohm_;   // [driven]; empty: the circuit is not known
+  std::vector<Head> heads_;         // [sensed]
+  std::vector<double> sums_;        // [sensed]
 };
 
 }  // namespace dermis::compensation

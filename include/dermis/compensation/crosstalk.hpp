@@ -25,6 +25,9 @@ struct InversionOptions {
   std::optional<int> most_steps = std::nullopt;
   /// propagate_noise() adds the effect of the drivers' error, readout.drive_error_ohm.
   bool counts_driver_errors = false;
+  /// The steps of one frame are few: start_frame() allows some times what the last frames took. Otherwise each call of
+  /// invert() goes on as long as it converges.
+  bool is_bounded = false;
 };
 
 /// How the inversion of a frame ended.
@@ -51,6 +54,9 @@ class CrosstalkInversion {
   /// holds the best attempt. Allocates nothing.
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
+  /// The next calls of invert() are of one new frame, and share what it may take.
+  virtual void start_frame() noexcept {}
+
   /// From the next frame on, the row and the column of each of these taxels are one node, and their own conductances
   /// are not solved; a second call replaces the first. false: this circuit is not solved so, the taxels are to be kept
   /// at the conductance of a short, or none of their readings used. Allocates nothing.
@@ -74,6 +80,7 @@ class CrosstalkInversion {
 
 class FaultInversion;
 class PossibleReadings;
+class Spikes;
 class SupplyError;
 
 /// Unit 3 of the paper, the Compensation Unit: it corrects data "that deviate from the actual values by a known
@@ -99,7 +106,7 @@ class Compensator {
   void process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
 
   /// See CrosstalkInversion.
-  void forget() noexcept { inversion_->forget(); }
+  void forget() noexcept;
   [[nodiscard]] double siemens_per_ratio() const noexcept { return inversion_->siemens_per_ratio(); }
 
  private:
@@ -111,6 +118,7 @@ class Compensator {
 
   std::unique_ptr<CrosstalkInversion> inversion_;
   std::unique_ptr<PossibleReadings> possible_;
+  std::unique_ptr<Spikes> spikes_;
   std::unique_ptr<SupplyError> supply_error_;
   std::unique_ptr<FaultInversion> faults_;
 };

@@ -29,12 +29,15 @@ namespace dermis::compensation {
 /// supplied lines              a column at full scale in all rows, 3 frames, or 20 different loads where loads can do
 ///                             that too; a row of which 3 presses, likewise, show in most rows, while others do not;
 ///                             2 presses where taxels scatter, or 2 frames that show the row at many places then
+/// impossible readings         what the driver's current, with all readings of its line, cannot give; 10 frames
+/// shorted crossings           a reading that leaves less than 10 ohm for its taxel, in 10 frames, and changes as
+///                             noise does; at virtual ground a saturated reading on a row that else reads nothing
 /// drifting drivers            unloaded taxels that fall from one frame to the next when the current of their line
 ///                             rises, and rise when it falls; reported, but neither masked nor corrected
 ///
 /// It cannot find a silent line of 16 whose unloaded taxels read below about 1.7 counts and 1.5 standard
-/// deviations each (sees_silent_*). Nor can it find a short between lines that nothing presses. A taxel at an end of
-/// the ADC, or stuck at an unloaded reading, is not found either. With `circuit = "none"` silent lines and taxels are
+/// deviations each (sees_silent_*). Nor can it find a short between lines that nothing presses. A taxel stuck at an unloaded
+/// reading is not found either, nor one at the end of the ADC where its circuit can give that. With `circuit = "none"` silent lines and taxels are
 /// judged where nothing is pressed, shorts and drivers not at all. Not thread-safe: one per stream.
 class LineFaultMonitor {
  public:

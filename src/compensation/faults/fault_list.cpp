@@ -29,6 +29,7 @@ FaultList::FaultList(const ArrayDescription& array)
     : array_(array),
       causes_(array.taxel_count()),
       witnesses_{std::vector<float>(array.taxel_count(), 1.0F), std::vector<float>(array.taxel_count(), 1.0F)} {
+  suspected_.reserve(array.taxel_count());
   faults_.reserve(3 * (array.rows + array.cols) + 2 * array.taxel_count());
 }
 
@@ -65,6 +66,14 @@ void FaultList::mask_taxels() noexcept {
     const int own = kLineCause[axis] | kDeadCause;
     for (std::size_t taxel = 0; taxel < causes_.size(); ++taxel) {
       witnesses_[axis][taxel] = (causes_[taxel] & ~own) == 0 ? 1.0F : 0.0F;
+    }
+  }
+  // Where a line of low resistance crosses a sensed line, that reads next to nothing of its other taxels.
+  const Axis sensed = crossing(driven_axis(array_));
+  for (const std::size_t taxel : suspected_) {
+    const std::size_t line = sensed == Axis::column ? taxel % array_.cols : taxel / array_.cols;
+    for (std::size_t k = 0; k < line_length(array_, sensed); ++k) {
+      for (const Axis axis : kAxes) witnesses_[axis][taxel_on_line(array_, sensed, line, k)] = 0.0F;
     }
   }
 }

@@ -44,6 +44,14 @@ class FaultList {
   void add(const LineFault& fault) noexcept;
   void remove(LineFaultKind kind, std::size_t place) noexcept;
 
+  /// Readings that are not the taxels' own in this frame, found or not: `taxel_of` each of `suspects`.
+  template <typename Suspects, typename TaxelOf>
+  void suspect(const Suspects& suspects, const TaxelOf& taxel_of) noexcept {
+    suspected_.clear();
+    for (const auto& suspect : suspects) suspected_.push_back(taxel_of(suspect));
+    mask_taxels();
+  }
+
   /// Counts how often the list has changed.
   [[nodiscard]] std::size_t changes() const noexcept { return changes_; }
   void count_change() noexcept { ++changes_; }
@@ -62,6 +70,7 @@ class FaultList {
   std::vector<LineFault> faults_;
   std::vector<std::uint8_t> causes_;       // [taxels]
   PerAxis<std::vector<float>> witnesses_;  // [taxels]
+  std::vector<std::size_t> suspected_;     // taxels
   std::size_t changes_ = 0;
 };
 

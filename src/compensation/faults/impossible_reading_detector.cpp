@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/faults/impossible_reading_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace dermis::compensation {
+namespace {
+
+constexpr int kFrames = 10;
+constexpr std::size_t kMostTaken = 8;  // in one frame: more have a cause in common
+constexpr double kPerFrame = kEvidence / kFrames;
+constexpr double kStillShorted = 0.5;     // of what a taxel of 0 ohm reads alone
+constexpr double kMostRepetitions = 0.8;  // of the frames; what repeats more, though there is noise, is stuck
+constexpr double kNoiseThatShows = 0.7;   // counts; below it good readings repeat, too
+constexpr double kSame = 1e-3;            // standard deviations
+constexpr double kSilentShare = 0.5;      // of what the taxels of a row read unloaded
+constexpr double kSilentSigmas = 5.0;
+
+std::optional<LineFaultKind> found_kind(const FaultList& faults, std::size_t taxel) {
+  for (const LineFaultKind kind : {LineFaultKind::shorted_crossing, LineFaultKind::impossible_reading}) {
+    if (faults.contains(kind, taxel)) return kind;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ImpossibleReadingDetector::ImpossibleReadingDetector(const ArrayDescription& array)
+    : array_(array), possible_(array) {
+  watched_.reserve(array.taxel_count());
+}
+
+void ImpossibleReadingDetector::judge(const Observation& seen, FaultList& faults) noexcept {
+  if (array_.readout.circuit == Circuit::none) return;
+  watch_new(seen);
+  if (watched_.empty()) return;
+  for (Watched& watched : watched_) {
+    const ReadingVerdict now = verdict(seen, watched.taxel);
+    const std::optional<LineFaultKind> kind = found_kind(faults, watched.taxel);
+    kind ? heal(seen, now, *kind, watched, faults) : find(seen, now, watched, faults);
+  }
+  std::erase_if(watched_, [&](const Watched& watched) {
+    const bool is_suspect = watched.impossible.frames > 0 || watched.shorted.frames > 0;
+    const bool is_stuck = faults.contains(LineFaultKind::stuck_taxel, watched.taxel);
+    return is_stuck || (!is_suspect && !found_kind(faults, watched.taxel));
+  });
+  faults.suspect(watched_, [](const Watched& watched) { return watched.taxel; });
+}
+
+void ImpossibleReadingDetector::watch_new(const Observation& seen) noexcept {
+  const auto& before = seen.conditioned.taxels;
+  const auto& after = seen.conductance.taxels;
+  const bool rails = array_.readout.circuit == Circuit::transimpedance;
+  std::size_t taken = 0;
+  for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
+    const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
+    taken += is_taken || (rails && before[taxel] == TaxelStatus::saturated) ? 1 : 0;
+  }
+  if (taken == 0 || !seen.solved || taken > kMostTaken) return;
+  for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
+    const bool is_saturated = rails && before[taxel] == TaxelStatus::saturated;
+    const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
+    if ((is_taken || is_saturated) && verdict(seen, taxel) != ReadingVerdict::possible) watch(taxel);
+  }
+}
+
+void ImpossibleReadingDetector::watch(std::size_t taxel) noexcept {
+  const auto is_same = [taxel](const Watched& watched) { return watched.taxel == taxel; };
+  if (std::any_of(watched_.begin(), watched_.end(), is_same)) return;
+  watched_.push_back({});
+  watched_.back().taxel = taxel;
+}
+
+ReadingVerdict ImpossibleReadingDetector::verdict(const Observation& seen, std::size_t taxel) const noexcept {
+  if (seen.conditioned.taxels[taxel] == TaxelStatus::invalid) return ReadingVerdict::possible;
+  const bool is_saturated = seen.conditioned.taxels[taxel] == TaxelStatus::saturated;
+  if (array_.readout.circuit == Circuit::transimpedance && is_saturated && row_is_silent(seen, taxel)) {
+    return ReadingVerdict::shorted;
+  }
+  return possible_.judge(taxel, seen.conditioned.ratio, seen.conditioned.sigma_ratio, seen.conductance.taxels);
+}
+
+/// But for this taxel.
+bool ImpossibleReadingDetector::row_is_silent(const Observation& seen, std::size_t taxel) const noexcept {
+  const std::size_t row = taxel / array_.cols;
+  double lacking = 0.0;
+  for (std::size_t col = 0; col < array_.cols; ++col) {
+    const std::size_t other = array_.index(row, col);
+    if (other != taxel) lacking += kSilentShare * seen.unloaded.ratio()[other] - seen.conditioned.ratio[other];
+  }
+  return lacking > kSilentSigmas * seen.conditioned.sigma_ratio * std::sqrt(static_cast<double>(array_.cols));
+}
+
+void ImpossibleReadingDetector::find(const Observation& seen, ReadingVerdict verdict, Watched& watched,
+                                     FaultList& faults) const noexcept {
+  const double ratio = seen.conditioned.ratio[watched.taxel];
+  const Nanos time = seen.conditioned.time;
+  const double sigmas = ratio / seen.conditioned.sigma_ratio;  // as counts do, it repeats where the supply changes
+  watched.repetitions += watched.frames > 0 && std::abs(sigmas - watched.last_sigmas) < kSame ? 1 : 0;
+  watched.last_sigmas = sigmas;
+  ++watched.frames;
+  const bool may_be_short = possible_.share_of_most(watched.taxel, ratio) > kStillShorted;
+  const double neutral = verdict == ReadingVerdict::possible && may_be_short ? 0.0 : -kPerFrame;
+  watched.shorted.add(verdict == ReadingVerdict::shorted ? kPerFrame : neutral, seen.frame, time);
+  watched.impossible.add(verdict == ReadingVerdict::impossible ? kPerFrame : -kPerFrame, seen.frame, time);
+  const bool is_impossible = watched.impossible.decides(kFrames);
+  if (!is_impossible && !watched.shorted.decides(kFrames)) return;
+  const bool repeats =
+      array_.readout.adc_noise_counts > kNoiseThatShows && watched.repetitions > kMostRepetitions * watched.frames;
+  const PageTest& test = is_impossible ? watched.impossible : watched.shorted;
+  const bool is_stuck = repeats && array_.readout.circuit != Circuit::transimpedance;
+  const LineFaultKind kind_below = is_stuck ? LineFaultKind::stuck_taxel : LineFaultKind::shorted_crossing;
+  faults.add({.kind = is_impossible ? LineFaultKind::impossible_reading : kind_below,
+              .place = watched.taxel,
+              .frame = test.first_frame,
+              .time = test.first_time});
+  watched.released.restart();
+}
+
+void ImpossibleReadingDetector::heal(const Observation& seen, ReadingVerdict verdict, LineFaultKind kind,
+                                     Watched& watched, FaultList& faults) const noexcept {
+  const double ratio = seen.conditioned.ratio[watched.taxel];
+  const bool reads_little = possible_.share_of_most(watched.taxel, ratio) < kStillShorted &&
+                            seen.conditioned.taxels[watched.taxel] != TaxelStatus::saturated;
+  const bool is_gone = verdict == ReadingVerdict::possible && (kind != LineFaultKind::shorted_crossing || reads_little);
+  watched.released.add(is_gone ? kPerFrame : -kEvidence, seen.frame, seen.conditioned.time);
+  if (!watched.released.decides(kHealFrames)) return;
+  faults.remove(kind, watched.taxel);
+  watched.shorted.restart();
+  watched.impossible.restart();
+}
+
+}  // namespace dermis::compensation

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "compensation/faults/fault_list.hpp"
+#include "compensation/faults/observation.hpp"
+#include "compensation/faults/page_test.hpp"
+#include "compensation/possible_readings.hpp"
+
+namespace dermis::compensation {
+
+/// Readings that Compensator takes out of a frame, ten frames or more. One above what the circuit can give is
+/// impossible. One that only a taxel of a few ohm gives is a shorted crossing, or stuck where it never changes. At
+/// virtual ground a shorted crossing is a saturated taxel on a row that else reads nothing.
+class ImpossibleReadingDetector {
+ public:
+  explicit ImpossibleReadingDetector(const ArrayDescription& array);
+
+  void judge(const Observation& seen, FaultList& faults) noexcept;
+
+ private:
+  struct Watched {
+    std::size_t taxel = 0;
+    double last_sigmas = 0.0;
+    int frames = 0;
+    int repetitions = 0;
+    PageTest impossible;
+    PageTest shorted;
+    PageTest released;
+  };
+
+  void watch_new(const Observation& seen) noexcept;
+  void watch(std::size_t taxel) noexcept;
+  [[nodiscard]] ReadingVerdict verdict(const Observation& seen, std::size_t taxel) const noexcept;
+  [[nodiscard]] bool row_is_silent(const Observation& seen, std::size_t taxel) const noexcept;
+  void find(const Observation& seen, ReadingVerdict verdict, Watched& watched, FaultList& faults) const noexcept;
+  void heal(const Observation& seen, ReadingVerdict verdict, LineFaultKind kind, Watched& watched,
+            FaultList& faults) const noexcept;
+
+  const ArrayDescription& array_;
+  PossibleReadings possible_;
+  std::vector<Watched> watched_;
+};
+
+}  // namespace dermis::compensation

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/spikes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace dermis::compensation {
+namespace {
+
+constexpr double kLeastJump = 0.05;   // of the supply
+constexpr double kLeastFall = 0.2;    // of the others' readings
+constexpr double kSeenSigmas = 6.0;   // of a fall of one reading, or of all small ones together
+constexpr double kLeastLeft = 0.01;   // of the supply
+constexpr std::uint8_t kMostFrames = 3;
+
+/// The lines along which one taxel takes from the others, or nothing.
+std::optional<Axis> sharing_axis(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
+  if (readout.circuit == Circuit::transimpedance) return Axis::row;
+  if (readout.circuit == Circuit::flexitac) return Axis::row;  // its sensed lines
+  if (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded) return Axis::column;
+  return std::nullopt;
+}
+
+}  // namespace
+
+Spikes::Spikes(const ArrayDescription& array)
+    : cols_(array.cols),
+      axis_(sharing_axis(array).value_or(Axis::column)),
+      lines_(line_count(array, axis_)),
+      places_(line_length(array, axis_)),
+      last_(array.taxel_count()),
+      frames_(array.taxel_count()) {
+  if (!sharing_axis(array)) return;
+  taken_.assign(array.taxel_count(), 1.0);
+  if (array.readout.circuit != Circuit::transimpedance) return;
+  for (std::size_t taxel = 0; taxel < taken_.size(); ++taxel) {
+    taken_[taxel] = array.readout.drive_ohm[taxel / cols_] / array.readout.load_ohm[taxel % cols_];
+  }
+}
+
+void Spikes::check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept {
+  if (taken_.empty()) return;
+  if (has_last_ && any_jump(ratio)) {
+    for (std::size_t line = 0; line < lines_; ++line) check_line(line, ratio, sigma_ratio, taxels);
+    for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+      if (taxels[taxel] != TaxelStatus::invalid) last_[taxel] = ratio[taxel];
+    }
+    return;
+  }
+  std::copy(ratio.begin(), ratio.end(), last_.begin());
+  has_last_ = true;
+}
+
+bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
+  std::uint32_t jumps = 0;
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    jumps |= ratio[taxel] - last_[taxel] > kLeastJump ? 1U : 0U;
+  }
+  return jumps != 0;
+}
+
+void Spikes::check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,
+                        std::span<TaxelStatus> taxels) noexcept {
+  double before = 0.0;
+  double now = 0.0;
+  std::size_t jumping = places_;
+  double jump = kLeastJump;
+  for (std::size_t place = 0; place < places_; ++place) {
+    const std::size_t taxel = taxel_of(line, place);
+    if (taxels[taxel] == TaxelStatus::invalid) continue;
+    before += taken_[taxel] * last_[taxel];
+    now += taken_[taxel] * ratio[taxel];
+    if (!(ratio[taxel] - last_[taxel] > jump)) continue;
+    jump = ratio[taxel] - last_[taxel];
+    jumping = place;
+  }
+  if (jumping == places_) return;
+  const double fall = 1.0 - std::max(1.0 - now, kLeastLeft) / std::max(1.0 - before, kLeastLeft);
+  const std::size_t taxel = taxel_of(line, jumping);
+  if (fall < kLeastFall || others_answer(line, jumping, fall, ratio, sigma_ratio, taxels) ||
+      frames_[taxel] == kMostFrames) {
+    frames_[taxel] = 0;
+    return;
+  }
+  ++frames_[taxel];
+  taxels[taxel] = TaxelStatus::invalid;
+  check_line(line, ratio, sigma_ratio, taxels);
+}
+
+/// Or nothing can be seen of it.
+bool Spikes::others_answer(std::size_t line, std::size_t jumping, double fall, std::span<const double> ratio,
+                           double sigma_ratio, std::span<const TaxelStatus> taxels) const noexcept {
+  double small = 0.0;
+  double small_fallen = 0.0;
+  double small_count = 0.0;
+  bool some_stay = false;
+  for (std::size_t place = 0; place < places_; ++place) {
+    const std::size_t taxel = taxel_of(line, place);
+    if (place == jumping || taxels[taxel] == TaxelStatus::invalid) continue;
+    const double expected = fall * last_[taxel];
+    const double fallen = last_[taxel] - ratio[taxel];
+    if (expected > kSeenSigmas * sigma_ratio) {
+      if (fallen > 0.5 * expected) return true;
+      some_stay = some_stay || fallen > -0.5 * expected;
+    } else if (fallen > -kSeenSigmas * sigma_ratio) {
+      small += expected;
+      small_fallen += fallen;
+      small_count += 1.0;
+    }
+  }
+  if (small > kSeenSigmas * sigma_ratio * std::sqrt(2.0 * small_count)) {
+    if (small_fallen > 0.5 * small) return true;
+    some_stay = true;
+  }
+  return !some_stay;
+}
+
+}  // namespace dermis::compensation

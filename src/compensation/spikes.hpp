@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/axis.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::compensation {
+
+/// Readings that jump from one frame to the next while the others of their line do not answer. A taxel that is pressed
+/// takes from the others: with what the line has left of the supply, 1 - s, their readings fall by
+///
+///   f = (1 - s) / (1 - s_last)
+///
+/// where s is the sum of the readings of a column (dividers with grounded rows), or Rd sum_j I_kj of a row (columns at
+/// virtual ground). Where those that were loaded, or the unloaded ones together, should fall and none does, the
+/// largest jump is a spike. A jump that stays is believed after some frames.
+class Spikes {
+ public:
+  explicit Spikes(const ArrayDescription& array);
+
+  /// Spikes become invalid; `sigma_ratio` is the noise of a reading. Allocates nothing.
+  void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
+
+  void forget() noexcept { has_last_ = false; }
+
+ private:
+  [[nodiscard]] bool any_jump(std::span<const double> ratio) const noexcept;
+  void check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,
+                  std::span<TaxelStatus> taxels) noexcept;
+  [[nodiscard]] bool others_answer(std::size_t line, std::size_t jumping, double fall, std::span<const double> ratio,
+                                   double sigma_ratio, std::span<const TaxelStatus> taxels) const noexcept;
+  [[nodiscard]] std::size_t taxel_of(std::size_t line, std::size_t place) const noexcept {
+    return axis_ == Axis::row ? line * cols_ + place : place * cols_ + line;
+  }
+
+  std::size_t cols_;
+  Axis axis_;                        // of the lines whose readings share a supply
+  std::vector<double> taken_;        // of it by a reading of 1, [places, lines]; empty: nothing is known of the circuit
+  std::size_t lines_;
+  std::size_t places_;
+  bool has_last_ = false;
+  std::vector<double> last_;          // [taxels]
+  std::vector<std::uint8_t> frames_;  // for which it has not been believed [taxels]
+};
+
+}  // namespace dermis::compensation
