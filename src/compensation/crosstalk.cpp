@@ -21,7 +21,8 @@ namespace dermis::compensation {
 namespace {
 
 constexpr double kToleranceCounts = 0.01;
-constexpr int kMostSuspects = 4;
+constexpr int kMostAttempts = 3;
+constexpr double kGoodEnoughSigmas = 0.3;  // of a reading: where the steps of a frame are used up
 constexpr double kFaultToleranceCounts = 0.05;  // around an inversion that is right to kToleranceCounts
 
 using Inversion = Result<std::unique_ptr<CrosstalkInversion>>;
@@ -40,11 +41,6 @@ Inversion flexitac(const ArrayDescription& array, double tolerance, const Invers
   auto rows_driven = std::make_unique<GroundedRows>(exchanged, tolerance, options);
   return std::unique_ptr<CrosstalkInversion>(
       std::make_unique<Transposed>(std::move(rows_driven), array.rows, array.cols));
-}
-
-bool are_few_saturated(const ConditionedFrame& conditioned) {
-  const auto saturated = std::count(conditioned.taxels.begin(), conditioned.taxels.end(), TaxelStatus::saturated);
-  return saturated > 0 && 2 * static_cast<std::size_t>(saturated) <= conditioned.taxels.size();
 }
 
 /// Nothing can be told of the others.
@@ -125,7 +121,6 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
     std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
     return;
   }
-  inversion_->start_frame();
   const InversionResult result = invert_possible(conditioned, conductance);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
@@ -137,21 +132,19 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   if (faults_->any()) mask_faulty_taxels(conductance);
 }
 
-/// Without the readings that no taxels give: those that are impossible alone, and the largest as long as there is no
-/// solution.
+/// Without the readings that no conductances explain, and without the largest of lines that have little left of the
+/// supply as long as there is no solution.
 InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned,
                                              ConductanceFrame& conductance) noexcept {
   possible_->check(conditioned.ratio, conditioned.sigma_ratio, conductance.taxels);
   spikes_->check(conditioned.ratio, conditioned.sigma_ratio, conductance.taxels);
-  if (are_most_invalid(conductance)) return {};
-  InversionResult result = invert(conditioned.ratio, conductance);
-  if (!result.solved && are_few_saturated(conditioned)) {
-    std::replace(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::saturated, TaxelStatus::invalid);
+  InversionResult result;
+  for (int attempt = 0; attempt < kMostAttempts && !result.solved; ++attempt) {
+    if (attempt > 0) possible_->take_largest(conditioned.ratio, conductance.taxels);
+    if (are_most_invalid(conductance)) break;
+    inversion_->start_frame();
     result = invert(conditioned.ratio, conductance);
-  }
-  for (int suspects = 0; !result.solved && suspects < kMostSuspects; ++suspects) {
-    conductance.taxels[possible_->largest(conditioned.ratio, conductance.taxels)] = TaxelStatus::invalid;
-    result = invert(conditioned.ratio, conductance);
+    result.solved = result.solved || result.residual_ratio <= kGoodEnoughSigmas * conditioned.sigma_ratio;
   }
   if (std::all_of(conductance.taxels.begin(), conductance.taxels.end(), is_invalid)) result.solved = false;
   return result;

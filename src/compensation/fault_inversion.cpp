@@ -14,7 +14,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxRounds = 20;
-constexpr int kEstimateRounds = 3;  // what the neighbours of a taxel tell hardly depends on it
+constexpr int kEstimateRounds = 2;  // what the neighbours of a taxel tell hardly depends on it
 constexpr double kShortSiemens = 2.0;  // of a shorted crossing that is kept
 constexpr double kMostStretch = 5.0;
 constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end

@@ -16,6 +16,7 @@ constexpr double kAllowedShare = 0.02;  // by which resistances of the readout a
 constexpr double kAllowedSigmas = 6.0;
 constexpr double kShortOhm = 10.0;         // of taxels none has less
 constexpr double kShortShare = 0.005;      // likewise; a mistake costs one taxel
+constexpr double kLittleLeft = 0.6;     // readings of a line together, over what a taxel of 0 ohm reads alone
 constexpr std::size_t kAtOnce = 4;         // sums that do not wait for each other
 
 }  // namespace
@@ -148,17 +149,32 @@ ReadingVerdict PossibleReadings::judge(std::size_t taxel, std::span<const double
   return of_short < 0.0 ? ReadingVerdict::shorted : ReadingVerdict::possible;
 }
 
-std::size_t PossibleReadings::largest(std::span<const double> ratio,
-                                      std::span<const TaxelStatus> taxels) const noexcept {
-  std::size_t found = 0;
+void PossibleReadings::take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept {
+  bool any = false;
   double most = 0.0;
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-    const double share = ratio[taxel] / most_ratio_[taxel];
-    if (taxels[taxel] == TaxelStatus::invalid || !(share > most)) continue;
-    most = share;
-    found = taxel;
+  std::size_t largest_of_all = 0;
+  for (std::size_t sensed = 0; sensed < sums_.size(); ++sensed) {
+    double share = 0.0;
+    double most_of_line = 0.0;
+    std::size_t largest = 0;
+    for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+      const std::size_t taxel = taxel_of(driven, sensed);
+      if (taxels[taxel] == TaxelStatus::invalid) continue;
+      const double own = share_of_most(taxel, ratio[taxel]);
+      share += own;
+      if (!(own > most_of_line)) continue;
+      most_of_line = own;
+      largest = taxel;
+    }
+    if (most_of_line > most) {
+      most = most_of_line;
+      largest_of_all = largest;
+    }
+    if (share < kLittleLeft) continue;
+    taxels[largest] = TaxelStatus::invalid;
+    any = true;
   }
-  return found;
+  if (!any && most > 0.0) taxels[largest_of_all] = TaxelStatus::invalid;
 }
 
 }  // namespace dermis::compensation

@@ -37,8 +37,8 @@ class PossibleReadings {
     return ratio / most_ratio_[taxel];
   }
 
-  /// The reading nearest to what the circuit can give, of those that are not invalid.
-  [[nodiscard]] std::size_t largest(std::span<const double> ratio, std::span<const TaxelStatus> taxels) const noexcept;
+  /// The largest reading of each line that has little left of the supply becomes invalid, or the largest of all.
+  void take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept;
 
  private:
   /// The head of a sensed line, as a reading tells it.

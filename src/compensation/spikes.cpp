@@ -12,6 +12,9 @@ namespace {
 constexpr double kLeastJump = 0.05;   // of the supply
 constexpr double kLeastFall = 0.2;    // of the others' readings
 constexpr double kSeenSigmas = 6.0;   // of a fall of one reading, or of all small ones together
+constexpr double kSeenTogether = 4.0;
+constexpr double kMoreStay = 3.0;     // than fall
+constexpr double kNewShare = 0.125;   // of a reading in its mean
 constexpr double kLeastLeft = 0.01;   // of the supply
 constexpr std::uint8_t kMostFrames = 3;
 
@@ -43,15 +46,24 @@ Spikes::Spikes(const ArrayDescription& array)
 
 void Spikes::check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept {
   if (taken_.empty()) return;
-  if (has_last_ && any_jump(ratio)) {
-    for (std::size_t line = 0; line < lines_; ++line) check_line(line, ratio, sigma_ratio, taxels);
-    for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-      if (taxels[taxel] != TaxelStatus::invalid) last_[taxel] = ratio[taxel];
-    }
+  if (!has_last_) {
+    std::copy(ratio.begin(), ratio.end(), last_.begin());
+    has_last_ = true;
     return;
   }
-  std::copy(ratio.begin(), ratio.end(), last_.begin());
-  has_last_ = true;
+  const bool jumps = any_jump(ratio);
+  for (std::size_t line = 0; line < lines_ && jumps; ++line) check_line(line, ratio, sigma_ratio, taxels);
+  follow(ratio, sigma_ratio, taxels);
+}
+
+/// The mean of readings that change by no more than noise, without those that are not believed.
+void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels) noexcept {
+  const double noise = kSeenSigmas * sigma_ratio;
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    const double change = ratio[taxel] - last_[taxel];
+    const double followed = std::abs(change) > noise ? change : kNewShare * change;
+    last_[taxel] += taxels[taxel] == TaxelStatus::invalid ? 0.0 : followed;
+  }
 }
 
 bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
@@ -90,32 +102,32 @@ void Spikes::check_line(std::size_t line, std::span<const double> ratio, double 
   check_line(line, ratio, sigma_ratio, taxels);
 }
 
-/// Or nothing can be seen of it.
+/// Or nothing can be seen of it. A reading counts by the fall that is expected of it; one that rises is pressed, too.
 bool Spikes::others_answer(std::size_t line, std::size_t jumping, double fall, std::span<const double> ratio,
                            double sigma_ratio, std::span<const TaxelStatus> taxels) const noexcept {
+  double stay = 0.0;
+  double answer = 0.0;
   double small = 0.0;
   double small_fallen = 0.0;
   double small_count = 0.0;
-  bool some_stay = false;
   for (std::size_t place = 0; place < places_; ++place) {
     const std::size_t taxel = taxel_of(line, place);
     if (place == jumping || taxels[taxel] == TaxelStatus::invalid) continue;
     const double expected = fall * last_[taxel];
     const double fallen = last_[taxel] - ratio[taxel];
     if (expected > kSeenSigmas * sigma_ratio) {
-      if (fallen > 0.5 * expected) return true;
-      some_stay = some_stay || fallen > -0.5 * expected;
+      answer += fallen > 0.5 * expected ? expected : 0.0;
+      stay += std::abs(fallen) <= 0.5 * expected ? expected : 0.0;
     } else if (fallen > -kSeenSigmas * sigma_ratio) {
       small += expected;
       small_fallen += fallen;
       small_count += 1.0;
     }
   }
-  if (small > kSeenSigmas * sigma_ratio * std::sqrt(2.0 * small_count)) {
-    if (small_fallen > 0.5 * small) return true;
-    some_stay = true;
+  if (small > kSeenTogether * sigma_ratio * std::sqrt(small_count)) {
+    (small_fallen > 0.5 * small ? answer : stay) += small;
   }
-  return !some_stay;
+  return stay <= kMoreStay * answer;
 }
 
 }  // namespace dermis::compensation

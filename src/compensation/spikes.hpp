@@ -32,6 +32,7 @@ class Spikes {
 
  private:
   [[nodiscard]] bool any_jump(std::span<const double> ratio) const noexcept;
+  void follow(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels) noexcept;
   void check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,
                   std::span<TaxelStatus> taxels) noexcept;
   [[nodiscard]] bool others_answer(std::size_t line, std::size_t jumping, double fall, std::span<const double> ratio,
@@ -46,7 +47,7 @@ class Spikes {
   std::size_t lines_;
   std::size_t places_;
   bool has_last_ = false;
-  std::vector<double> last_;          // [taxels]
+  std::vector<double> last_;          // readings; the mean of those that stay [taxels]
   std::vector<std::uint8_t> frames_;  // for which it has not been believed [taxels]
 };
 

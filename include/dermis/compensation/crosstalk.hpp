@@ -54,7 +54,7 @@ class CrosstalkInversion {
   /// holds the best attempt. Allocates nothing.
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
-  /// The next calls of invert() are of one new frame, and share what it may take.
+  /// The next calls of invert() share what one frame may take.
   virtual void start_frame() noexcept {}
 
   /// From the next frame on, the row and the column of each of these taxels are one node, and their own conductances

@@ -68,12 +68,13 @@ void FaultList::mask_taxels() noexcept {
       witnesses_[axis][taxel] = (causes_[taxel] & ~own) == 0 ? 1.0F : 0.0F;
     }
   }
-  // Where a line of low resistance crosses a sensed line, that reads next to nothing of its other taxels.
-  const Axis sensed = crossing(driven_axis(array_));
+  // A column that a row holds reads next to nothing of its other taxels; at virtual ground the row does.
+  const bool is_row = array_.readout.circuit == Circuit::transimpedance || array_.readout.circuit == Circuit::flexitac;
+  const Axis axis = is_row ? Axis::row : Axis::column;
   for (const std::size_t taxel : suspected_) {
-    const std::size_t line = sensed == Axis::column ? taxel % array_.cols : taxel / array_.cols;
-    for (std::size_t k = 0; k < line_length(array_, sensed); ++k) {
-      for (const Axis axis : kAxes) witnesses_[axis][taxel_on_line(array_, sensed, line, k)] = 0.0F;
+    const std::size_t line = is_row ? taxel / array_.cols : taxel % array_.cols;
+    for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
+      for (const Axis witnessed : kAxes) witnesses_[witnessed][taxel_on_line(array_, axis, line, k)] = 0.0F;
     }
   }
 }
