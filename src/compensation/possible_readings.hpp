@@ -11,7 +11,7 @@
 
 namespace dermis::compensation {
 
-enum class ReadingVerdict { possible, shorted, impossible };
+enum class ReadingVerdict { possible, unknown, shorted, impossible };
 
 /// Which readings of a frame no conductances explain. The current of a driven line comes through its driver, and at
 /// least what all readings of the line carry away leaves it. So the voltage across a taxel is at most

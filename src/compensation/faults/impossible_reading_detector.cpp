@@ -16,6 +16,11 @@ constexpr double kStillShorted = 0.5;     // of what a taxel of 0 ohm reads alon
 constexpr double kMostRepetitions = 0.8;  // of the frames; what repeats more, though there is noise, is stuck
 constexpr double kNoiseThatShows = 0.7;   // counts; below it good readings repeat, too
 constexpr double kSame = 1e-3;            // standard deviations
+constexpr double kHigh = 0.5;             // of the supply: a reading that columns are asked about
+constexpr double kMostOfColumn = 0.6;     // taxels that read no more than unloaded ones
+constexpr double kUnloadedSigmas = 3.0;
+constexpr double kColumnSigmas = 4.0;
+constexpr double kPerFrameOfColumn = 0.5 * kPerFrame;
 constexpr double kSilentShare = 0.5;      // of what the taxels of a row read unloaded
 constexpr double kSilentSigmas = 5.0;
 
@@ -29,13 +34,16 @@ std::optional<LineFaultKind> found_kind(const FaultList& faults, std::size_t tax
 }  // namespace
 
 ImpossibleReadingDetector::ImpossibleReadingDetector(const ArrayDescription& array)
-    : array_(array), possible_(array) {
+    : array_(array),
+      possible_(array),
+      columns_tell_(array.readout.circuit == Circuit::divider && array.readout.idle_rows == IdleRows::grounded) {
   watched_.reserve(array.taxel_count());
 }
 
 void ImpossibleReadingDetector::judge(const Observation& seen, FaultList& faults) noexcept {
   if (array_.readout.circuit == Circuit::none) return;
   watch_new(seen);
+  if (columns_tell_) watch_columns(seen);
   if (watched_.empty()) return;
   for (Watched& watched : watched_) {
     const ReadingVerdict now = verdict(seen, watched.taxel);
@@ -67,6 +75,38 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen) noexcept {
   }
 }
 
+void ImpossibleReadingDetector::watch_columns(const Observation& seen) noexcept {
+  const std::span<const double> sums = seen.sums.ratio(Axis::column);
+  for (std::size_t col = 0; col < array_.cols; ++col) {
+    if (sums[col] < kHigh) continue;
+    for (std::size_t taxel = col; taxel < array_.taxel_count(); taxel += array_.cols) {
+      if (verdict(seen, taxel) == ReadingVerdict::impossible) watch(taxel);
+    }
+  }
+}
+
+/// Of a high reading; `possible` where the others of its column have fallen.
+ReadingVerdict ImpossibleReadingDetector::verdict_of_column(const Observation& seen, std::size_t taxel) const noexcept {
+  const double ratio = seen.conditioned.ratio[taxel];
+  if (ratio < kHigh) return ReadingVerdict::possible;
+  double unloaded = 0.0;
+  double read = 0.0;
+  double count = 0.0;
+  for (std::size_t other = taxel % array_.cols; other < array_.taxel_count(); other += array_.cols) {
+    const double expected = seen.unloaded.ratio()[other];
+    const bool is_unloaded = seen.conditioned.ratio[other] <= expected + kUnloadedSigmas * seen.conditioned.sigma_ratio;
+    if (other == taxel || !is_unloaded) continue;
+    unloaded += expected;
+    read += seen.conditioned.ratio[other];
+    count += 1.0;
+  }
+  const double fall = 0.5 * ratio * unloaded;
+  const bool can_tell = count >= kMostOfColumn * static_cast<double>(array_.rows - 1) &&
+                        fall > kColumnSigmas * seen.conditioned.sigma_ratio * std::sqrt(count);
+  if (!can_tell) return ReadingVerdict::unknown;
+  return read > unloaded - fall ? ReadingVerdict::impossible : ReadingVerdict::possible;
+}
+
 void ImpossibleReadingDetector::watch(std::size_t taxel) noexcept {
   const auto is_same = [taxel](const Watched& watched) { return watched.taxel == taxel; };
   if (std::any_of(watched_.begin(), watched_.end(), is_same)) return;
@@ -80,7 +120,11 @@ ReadingVerdict ImpossibleReadingDetector::verdict(const Observation& seen, std::
   if (array_.readout.circuit == Circuit::transimpedance && is_saturated && row_is_silent(seen, taxel)) {
     return ReadingVerdict::shorted;
   }
-  return possible_.judge(taxel, seen.conditioned.ratio, seen.conditioned.sigma_ratio, seen.conductance.taxels);
+  const ReadingVerdict own =
+      possible_.judge(taxel, seen.conditioned.ratio, seen.conditioned.sigma_ratio, seen.conductance.taxels);
+  if (!columns_tell_ || own == ReadingVerdict::impossible) return own;
+  const ReadingVerdict column = verdict_of_column(seen, taxel);
+  return column == ReadingVerdict::impossible || own == ReadingVerdict::possible ? column : own;
 }
 
 /// But for this taxel.
@@ -103,9 +147,9 @@ void ImpossibleReadingDetector::find(const Observation& seen, ReadingVerdict ver
   watched.last_sigmas = sigmas;
   ++watched.frames;
   const bool may_be_short = possible_.share_of_most(watched.taxel, ratio) > kStillShorted;
-  const double neutral = verdict == ReadingVerdict::possible && may_be_short ? 0.0 : -kPerFrame;
-  watched.shorted.add(verdict == ReadingVerdict::shorted ? kPerFrame : neutral, seen.frame, time);
-  watched.impossible.add(verdict == ReadingVerdict::impossible ? kPerFrame : -kPerFrame, seen.frame, time);
+  const double otherwise = verdict <= ReadingVerdict::unknown && may_be_short ? 0.0 : -kPerFrame;
+  watched.shorted.add(verdict == ReadingVerdict::shorted ? kPerFrame : otherwise, seen.frame, time);
+  watched.impossible.add(evidence_of_impossible(seen, verdict, watched.taxel), seen.frame, time);
   const bool is_impossible = watched.impossible.decides(kFrames);
   if (!is_impossible && !watched.shorted.decides(kFrames)) return;
   const bool repeats =
@@ -120,13 +164,22 @@ void ImpossibleReadingDetector::find(const Observation& seen, ReadingVerdict ver
   watched.released.restart();
 }
 
+double ImpossibleReadingDetector::evidence_of_impossible(const Observation& seen, ReadingVerdict verdict,
+                                                         std::size_t taxel) const noexcept {
+  if (verdict == ReadingVerdict::unknown) return 0.0;
+  if (verdict != ReadingVerdict::impossible) return -kPerFrame;
+  const bool is_taken = seen.conductance.taxels[taxel] == TaxelStatus::invalid;
+  return is_taken ? kPerFrame : kPerFrameOfColumn;
+}
+
 void ImpossibleReadingDetector::heal(const Observation& seen, ReadingVerdict verdict, LineFaultKind kind,
                                      Watched& watched, FaultList& faults) const noexcept {
   const double ratio = seen.conditioned.ratio[watched.taxel];
   const bool reads_little = possible_.share_of_most(watched.taxel, ratio) < kStillShorted &&
                             seen.conditioned.taxels[watched.taxel] != TaxelStatus::saturated;
   const bool is_gone = verdict == ReadingVerdict::possible && (kind != LineFaultKind::shorted_crossing || reads_little);
-  watched.released.add(is_gone ? kPerFrame : -kEvidence, seen.frame, seen.conditioned.time);
+  const double evidence = verdict == ReadingVerdict::unknown ? 0.0 : is_gone ? kPerFrame : -kEvidence;
+  watched.released.add(evidence, seen.frame, seen.conditioned.time);
   if (!watched.released.decides(kHealFrames)) return;
   faults.remove(kind, watched.taxel);
   watched.shorted.restart();

@@ -15,6 +15,9 @@ namespace dermis::compensation {
 /// Readings that Compensator takes out of a frame, ten frames or more. One above what the circuit can give is
 /// impossible. One that only a taxel of a few ohm gives is a shorted crossing, or stuck where it never changes. At
 /// virtual ground a shorted crossing is a saturated taxel on a row that else reads nothing.
+///
+/// Where idle rows are grounded, a taxel that reads T leaves the others of its column 1 - T of what they read. A high
+/// reading beside which most of the column reads as unloaded is impossible, too; that takes twenty frames.
 class ImpossibleReadingDetector {
  public:
   explicit ImpossibleReadingDetector(const ArrayDescription& array);
@@ -35,13 +38,18 @@ class ImpossibleReadingDetector {
   void watch_new(const Observation& seen) noexcept;
   void watch(std::size_t taxel) noexcept;
   [[nodiscard]] ReadingVerdict verdict(const Observation& seen, std::size_t taxel) const noexcept;
+  void watch_columns(const Observation& seen) noexcept;
+  [[nodiscard]] ReadingVerdict verdict_of_column(const Observation& seen, std::size_t taxel) const noexcept;
   [[nodiscard]] bool row_is_silent(const Observation& seen, std::size_t taxel) const noexcept;
   void find(const Observation& seen, ReadingVerdict verdict, Watched& watched, FaultList& faults) const noexcept;
+  [[nodiscard]] double evidence_of_impossible(const Observation& seen, ReadingVerdict verdict,
+                                              std::size_t taxel) const noexcept;
   void heal(const Observation& seen, ReadingVerdict verdict, LineFaultKind kind, Watched& watched,
             FaultList& faults) const noexcept;
 
   const ArrayDescription& array_;
   PossibleReadings possible_;
+  bool columns_tell_;
   std::vector<Watched> watched_;
 };
 
