@@ -106,6 +106,7 @@ void Compensator::set_faults(std::span<const LineFault> faults) {
 void Compensator::forget() noexcept {
   inversion_->forget();
   spikes_->forget();
+  faults_->forget();
 }
 
 void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept {
@@ -125,7 +126,9 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
   supply_error_->add(conductance.siemens, conditioned.supply_doubt, conductance.sigma_siemens);
-  if (!result.solved) {
+  if (result.solved) {
+    faults_->remember(conductance.siemens);
+  } else {
     conductance.status |= FrameStatus::not_converged;
     std::fill(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
   }

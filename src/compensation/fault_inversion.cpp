@@ -15,6 +15,7 @@ namespace {
 
 constexpr int kMaxRounds = 20;
 constexpr int kEstimateRounds = 2;  // what the neighbours of a taxel tell hardly depends on it
+constexpr std::uint8_t kLong = 4;              // frames without a reading, after which the last conductance tells nothing
 constexpr double kShortSiemens = 2.0;  // of a shorted crossing that is kept
 constexpr double kMostStretch = 5.0;
 constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end
@@ -65,6 +66,8 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
       masked_(array.taxel_count()),
       hidden_(array.taxel_count()),
       unknown_(array.taxel_count()),
+      missing_frames_(array.taxel_count(), kLong),
+      last_siemens_(array.taxel_count()),
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
       correction_(array.taxel_count()) {
@@ -158,6 +161,18 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& healt
   }
 }
 
+void FaultInversion::remember(std::span<const double> siemens) noexcept {
+  std::copy(siemens.begin(), siemens.end(), last_siemens_.begin());
+  for (std::size_t taxel = 0; taxel < unknown_.size(); ++taxel) {
+    const int frames = missing_frames_[taxel] + (missing_frames_[taxel] < kLong ? 1 : 0);
+    missing_frames_[taxel] = static_cast<std::uint8_t>(unknown_[taxel] != 0 ? frames : 0);
+  }
+}
+
+void FaultInversion::forget() noexcept {
+  std::fill(missing_frames_.begin(), missing_frames_.end(), std::uint8_t{kLong});
+}
+
 bool FaultInversion::concerns(std::span<const TaxelStatus> taxels) noexcept {
   const std::uint8_t* const absent = absent_.data();
   const std::uint8_t* const hidden = hidden_.data();
@@ -203,10 +218,18 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
   InversionResult result;
   for (int round = 0; round < kEstimateRounds; ++round) {
     estimate_unknown(siemens);
+    hold_missing(siemens);
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
   }
   return result;
+}
+
+/// What a taxel was a moment ago tells more than its neighbours do.
+void FaultInversion::hold_missing(std::span<double> siemens) const noexcept {
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (unknown_[taxel] != 0 && missing_frames_[taxel] < kLong) siemens[taxel] = last_siemens_[taxel];
+  }
 }
 
 /// Their readings count where the inversion solves them; else they are what they are.

@@ -20,7 +20,7 @@ namespace dermis::compensation {
 ///   T' = T + T_healthy(G) - T_faulty(G),   G <- invert_healthy(T')
 ///
 /// Taxels whose conductance no reading tells (on a silent line, stuck, without a reading in this frame) are estimated
-/// from their neighbours. Without faults of lines, the healthy inversion keeps those estimates. An open row still
+/// from their neighbours, but for the first frames, in which they stay what they were. Without faults of lines, the healthy inversion keeps those estimates. An open row still
 /// couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. Shorted crossings are in
 /// both circuits: the inversion solves them, or keeps their taxels at a large conductance. For resistive lines, switches, real amplifiers, `none` and arrays of more than 256 lines there is
 /// no faulty circuit: the readings of faulty lines are replaced by those of their neighbours, and the rest is solved as
@@ -39,6 +39,10 @@ class FaultInversion {
 
   /// Learns which taxels of the next frame have no reading; whether that frame needs invert().
   [[nodiscard]] bool concerns(std::span<const TaxelStatus> taxels) noexcept;
+
+  /// The frame is solved, at these conductances.
+  void remember(std::span<const double> siemens) noexcept;
+  void forget() noexcept;
 
   /// As CrosstalkInversion::invert; `healthy` inverts the circuit without faults.
   InversionResult invert(CrosstalkInversion& healthy, std::span<const double> ratio,
@@ -75,6 +79,7 @@ class FaultInversion {
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
   InversionResult keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept;
+  void hold_missing(std::span<double> siemens) const noexcept;
   void keep_crossings(std::span<double> siemens) noexcept;
   double correct(bool first) noexcept;
   void estimate_unknown(std::span<double> values) const noexcept;
@@ -90,6 +95,8 @@ class FaultInversion {
   std::vector<std::uint8_t> masked_;   // [taxels]
   std::vector<std::uint8_t> hidden_;   // by a fault [taxels]
   std::vector<std::uint8_t> unknown_;  // hidden, or without a reading [taxels]
+  std::vector<std::uint8_t> missing_frames_;  // in which it has been unknown [taxels]
+  std::vector<double> last_siemens_;          // [taxels]
   std::vector<std::size_t> crossings_;  // shorted taxels
   bool crossings_are_kept_ = false;     // as large conductances
   std::vector<std::size_t> supplied_rows_;

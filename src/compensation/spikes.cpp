@@ -10,10 +10,10 @@ namespace dermis::compensation {
 namespace {
 
 constexpr double kLeastJump = 0.05;   // of the supply
-constexpr double kLeastFall = 0.2;    // of the others' readings
+constexpr double kLeastFall = 0.05;   // of the others' readings
 constexpr double kSeenSigmas = 6.0;   // of a fall of one reading, or of all small ones together
 constexpr double kSeenTogether = 4.0;
-constexpr double kMoreStay = 3.0;     // than fall
+constexpr double kMoreStay = 2.0;     // than fall
 constexpr double kNewShare = 0.125;   // of a reading in its mean
 constexpr double kLeastLeft = 0.01;   // of the supply
 constexpr std::uint8_t kMostFrames = 3;
@@ -62,7 +62,9 @@ void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
     const double change = ratio[taxel] - last_[taxel];
     const double followed = std::abs(change) > noise ? change : kNewShare * change;
-    last_[taxel] += taxels[taxel] == TaxelStatus::invalid ? 0.0 : followed;
+    const bool is_reading = taxels[taxel] != TaxelStatus::invalid;
+    last_[taxel] += is_reading ? followed : 0.0;
+    frames_[taxel] = is_reading ? 0 : frames_[taxel];
   }
 }
 
@@ -94,7 +96,6 @@ void Spikes::check_line(std::size_t line, std::span<const double> ratio, double 
   const std::size_t taxel = taxel_of(line, jumping);
   if (fall < kLeastFall || others_answer(line, jumping, fall, ratio, sigma_ratio, taxels) ||
       frames_[taxel] == kMostFrames) {
-    frames_[taxel] = 0;
     return;
   }
   ++frames_[taxel];
