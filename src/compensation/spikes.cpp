@@ -9,7 +9,12 @@
 namespace dermis::compensation {
 namespace {
 
+constexpr Nanos kLongestGap = std::chrono::milliseconds(50);
 constexpr double kLeastJump = 0.05;   // of the supply
+constexpr double kLoadedSigmas = 20.0;
+constexpr double kMostChange = 0.3;   // of a load that is about what it was
+constexpr double kMostChanged = 0.4;  // of the loads; else the frame is not compared with the last
+constexpr std::size_t kNear = 2;      // places: a press reaches them
 constexpr double kLeastFall = 0.05;   // of the others' readings
 constexpr double kSeenSigmas = 6.0;   // of a fall of one reading, or of all small ones together
 constexpr double kSeenTogether = 4.0;
@@ -35,6 +40,7 @@ Spikes::Spikes(const ArrayDescription& array)
       lines_(line_count(array, axis_)),
       places_(line_length(array, axis_)),
       last_(array.taxel_count()),
+      jumped_(array.taxel_count()),
       frames_(array.taxel_count()) {
   if (!sharing_axis(array)) return;
   taken_.assign(array.taxel_count(), 1.0);
@@ -44,16 +50,19 @@ Spikes::Spikes(const ArrayDescription& array)
   }
 }
 
-void Spikes::check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept {
+void Spikes::check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels) noexcept {
   if (taken_.empty()) return;
-  if (!has_last_) {
+  const std::span<const double> ratio = frame.ratio;
+  const Nanos since_last = frame.time - last_time_;
+  last_time_ = frame.time;
+  if (!has_last_ || since_last > kLongestGap || since_last < Nanos{0}) {
     std::copy(ratio.begin(), ratio.end(), last_.begin());
     has_last_ = true;
     return;
   }
-  const bool jumps = any_jump(ratio);
-  for (std::size_t line = 0; line < lines_ && jumps; ++line) check_line(line, ratio, sigma_ratio, taxels);
-  follow(ratio, sigma_ratio, taxels);
+  const bool is_checked = any_jump(ratio) && follows_last(ratio, frame.sigma_ratio);
+  for (std::size_t line = 0; line < lines_ && is_checked; ++line) check_line(line, ratio, frame.sigma_ratio, taxels);
+  follow(ratio, frame.sigma_ratio, taxels);
 }
 
 /// The mean of readings that change by no more than noise, without those that are not believed.
@@ -64,6 +73,7 @@ void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span
     const double followed = std::abs(change) > noise ? change : kNewShare * change;
     const bool is_reading = taxels[taxel] != TaxelStatus::invalid;
     last_[taxel] += is_reading ? followed : 0.0;
+    jumped_[taxel] = is_reading && change > kLeastJump ? 1 : 0;
     frames_[taxel] = is_reading ? 0 : frames_[taxel];
   }
 }
@@ -74,6 +84,19 @@ bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
     jumps |= ratio[taxel] - last_[taxel] > kLeastJump ? 1U : 0U;
   }
   return jumps != 0;
+}
+
+/// Most of the loads are about what they were, those that have just jumped aside: they may fall back.
+bool Spikes::follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept {
+  double loads = 0.0;
+  double changed = 0.0;
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    const double last = last_[taxel];
+    const double load = last > kLoadedSigmas * sigma_ratio && jumped_[taxel] == 0 ? last : 0.0;
+    loads += load;
+    changed += std::abs(ratio[taxel] - last) > kMostChange * last ? load : 0.0;
+  }
+  return changed <= kMostChanged * loads;
 }
 
 void Spikes::check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,
@@ -119,7 +142,7 @@ bool Spikes::others_answer(std::size_t line, std::size_t jumping, double fall, s
     if (expected > kSeenSigmas * sigma_ratio) {
       answer += fallen > 0.5 * expected ? expected : 0.0;
       stay += std::abs(fallen) <= 0.5 * expected ? expected : 0.0;
-    } else if (fallen > -kSeenSigmas * sigma_ratio) {
+    } else if (fallen > -kSeenSigmas * sigma_ratio && (place > jumping + kNear || place + kNear < jumping)) {
       small += expected;
       small_fallen += fallen;
       small_count += 1.0;

@@ -25,13 +25,14 @@ class Spikes {
  public:
   explicit Spikes(const ArrayDescription& array);
 
-  /// Spikes become invalid; `sigma_ratio` is the noise of a reading. Allocates nothing.
-  void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
+  /// Spikes become invalid in `taxels`, where frames follow each other within 50 ms. Allocates nothing.
+  void check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels) noexcept;
 
   void forget() noexcept { has_last_ = false; }
 
  private:
   [[nodiscard]] bool any_jump(std::span<const double> ratio) const noexcept;
+  [[nodiscard]] bool follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept;
   void follow(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels) noexcept;
   void check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,
                   std::span<TaxelStatus> taxels) noexcept;
@@ -47,7 +48,9 @@ class Spikes {
   std::size_t lines_;
   std::size_t places_;
   bool has_last_ = false;
+  Nanos last_time_{};
   std::vector<double> last_;          // readings; the mean of those that stay [taxels]
+  std::vector<std::uint8_t> jumped_;  // in the last frame, and it was believed [taxels]
   std::vector<std::uint8_t> frames_;  // for which it has not been believed [taxels]
 };
 
