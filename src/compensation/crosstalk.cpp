@@ -139,8 +139,10 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
 /// supply as long as there is no solution.
 InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned,
                                              ConductanceFrame& conductance) noexcept {
-  possible_->check(conditioned.ratio, conditioned.sigma_ratio, conductance.taxels);
-  spikes_->check(conditioned, conductance.taxels);
+  if (faults_->keeps_bounds()) {
+    possible_->check(conditioned.ratio, conditioned.sigma_ratio, conductance.taxels);
+    spikes_->check(conditioned, conductance.taxels);
+  }
   InversionResult result;
   for (int attempt = 0; attempt < kMostAttempts && !result.solved; ++attempt) {
     if (attempt > 0) possible_->take_largest(conditioned.ratio, conductance.taxels);

@@ -57,58 +57,65 @@ FaultInversion::Correction::Correction(std::size_t taxels)
       healthy_ratio(taxels),
       faulty_ratio(taxels) {}
 
+FaultInversion::Masks::Masks(const ArrayDescription& array)
+    : absent(array.taxel_count()),
+      masked(array.taxel_count()),
+      hidden(array.taxel_count()),
+      unknown(array.taxel_count()) {
+  for (const std::size_t taxel : array.absent) absent[taxel] = 1;
+}
+
+FaultInversion::Memory::Memory(std::size_t taxels) : siemens(taxels), frames_ago(taxels, kLong) {}
+
 FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_ratio,
                                std::span<const double> typical_siemens)
     : array_(array),
       tolerance_(tolerance_ratio),
       typical_siemens_(typical_siemens.begin(), typical_siemens.end()),
-      absent_(array.taxel_count()),
-      masked_(array.taxel_count()),
-      hidden_(array.taxel_count()),
-      unknown_(array.taxel_count()),
-      missing_frames_(array.taxel_count(), kLong),
-      last_siemens_(array.taxel_count()),
+      is_(array),
+      last_(array.taxel_count()),
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
       correction_(array.taxel_count()) {
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
   typical_siemens_.resize(array.taxel_count(), 1.0);
-  for (const std::size_t taxel : array.absent) absent_[taxel] = 1;
   supplied_rows_.reserve(array.rows);
-  crossings_.reserve(array.taxel_count());
+  crossings_.taxels.reserve(array.taxel_count());
   shorted_.reserve(array.rows + array.cols);
 }
 
 void FaultInversion::set_faults(std::span<const LineFault> faults, CrosstalkInversion& healthy) {
   any_ = std::any_of(faults.begin(), faults.end(),
                      [](const LineFault& fault) { return fault.kind != LineFaultKind::drifting_driver; });
+  keeps_bounds_ = true;
   lines_are_faulty_ = false;
-  std::fill(masked_.begin(), masked_.end(), std::uint8_t{0});
-  std::fill(hidden_.begin(), hidden_.end(), std::uint8_t{0});
+  std::fill(is_.masked.begin(), is_.masked.end(), std::uint8_t{0});
+  std::fill(is_.hidden.begin(), is_.hidden.end(), std::uint8_t{0});
   supplied_rows_.clear();
   shorted_.clear();
-  crossings_.clear();
+  crossings_.taxels.clear();
   if (circuits_) {
     circuits_->healthy.restore();
     circuits_->faulty.restore();
   }
   for (const LineFault& fault : faults) add(fault);
   mask_joined_lines();
-  crossings_are_kept_ = !healthy.set_shorted(crossings_);
+  crossings_.are_kept = !healthy.set_shorted(crossings_.taxels);
 }
 
 void FaultInversion::add(const LineFault& fault) {
   const LineFaultTraits& traits = traits_of(fault.kind);
   for_each_masked_taxel(fault, array_, [&](std::size_t taxel) {
-    masked_[taxel] = 1;
-    if (traits.hides_conductance) hidden_[taxel] = 1;
+    is_.masked[taxel] = 1;
+    if (traits.hides_conductance) is_.hidden[taxel] = 1;
   });
   if (array_.readout.circuit == Circuit::none) return;  // nothing to subtract or to solve
   if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
-  if (fault.kind == LineFaultKind::shorted_crossing && !silences_row(fault, array_)) crossings_.push_back(fault.place);
+  if (fault.kind == LineFaultKind::shorted_crossing && !silences_row(fault, array_)) crossings_.taxels.push_back(fault.place);
   if (traits.effect == LineFaultEffect::shorted) {
     shorted_.push_back({*traits.axis, fault.place, ratio_of_shorted_lines(array_, *traits.axis, fault.place)});
   }
+  keeps_bounds_ = keeps_bounds_ && traits.effect != LineFaultEffect::shorted && traits.effect != LineFaultEffect::supplied;
   lines_are_faulty_ = lines_are_faulty_ || traits.scope == LineFaultScope::line ||
                       traits.scope == LineFaultScope::line_pair;
   if (!circuits_) return;
@@ -118,21 +125,21 @@ void FaultInversion::add(const LineFault& fault) {
 /// Rows that touch one column are one row, and columns that touch one row: what each of their taxels is, no reading
 /// tells.
 void FaultInversion::mask_joined_lines() noexcept {
-  for (std::size_t a = 0; a < crossings_.size(); ++a) {
+  for (std::size_t a = 0; a < crossings_.taxels.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
-      for (const std::size_t taxel : {crossings_[a], crossings_[b]}) {
-        if (crossings_[a] / array_.cols == crossings_[b] / array_.cols) mask_line(Axis::column, taxel % array_.cols);
-        if (crossings_[a] % array_.cols == crossings_[b] % array_.cols) mask_line(Axis::row, taxel / array_.cols);
+      for (const std::size_t taxel : {crossings_.taxels[a], crossings_.taxels[b]}) {
+        if (crossings_.taxels[a] / array_.cols == crossings_.taxels[b] / array_.cols) mask_line(Axis::column, taxel % array_.cols);
+        if (crossings_.taxels[a] % array_.cols == crossings_.taxels[b] % array_.cols) mask_line(Axis::row, taxel / array_.cols);
       }
       // Two taxels are between the two nodes, and only their sum is told.
-      masked_[array_.index(crossings_[a] / array_.cols, crossings_[b] % array_.cols)] = 1;
-      masked_[array_.index(crossings_[b] / array_.cols, crossings_[a] % array_.cols)] = 1;
+      is_.masked[array_.index(crossings_.taxels[a] / array_.cols, crossings_.taxels[b] % array_.cols)] = 1;
+      is_.masked[array_.index(crossings_.taxels[b] / array_.cols, crossings_.taxels[a] % array_.cols)] = 1;
     }
   }
 }
 
 void FaultInversion::mask_line(Axis axis, std::size_t line) noexcept {
-  for (std::size_t k = 0; k < line_length(array_, axis); ++k) masked_[taxel_on_line(array_, axis, line, k)] = 1;
+  for (std::size_t k = 0; k < line_length(array_, axis); ++k) is_.masked[taxel_on_line(array_, axis, line, k)] = 1;
 }
 
 void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& healthy, LumpedCircuit& circuit) const {
@@ -162,21 +169,21 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& healt
 }
 
 void FaultInversion::remember(std::span<const double> siemens) noexcept {
-  std::copy(siemens.begin(), siemens.end(), last_siemens_.begin());
-  for (std::size_t taxel = 0; taxel < unknown_.size(); ++taxel) {
-    const int frames = missing_frames_[taxel] + (missing_frames_[taxel] < kLong ? 1 : 0);
-    missing_frames_[taxel] = static_cast<std::uint8_t>(unknown_[taxel] != 0 ? frames : 0);
+  std::copy(siemens.begin(), siemens.end(), last_.siemens.begin());
+  for (std::size_t taxel = 0; taxel < is_.unknown.size(); ++taxel) {
+    const int frames = last_.frames_ago[taxel] + (last_.frames_ago[taxel] < kLong ? 1 : 0);
+    last_.frames_ago[taxel] = static_cast<std::uint8_t>(is_.unknown[taxel] != 0 ? frames : 0);
   }
 }
 
 void FaultInversion::forget() noexcept {
-  std::fill(missing_frames_.begin(), missing_frames_.end(), std::uint8_t{kLong});
+  std::fill(last_.frames_ago.begin(), last_.frames_ago.end(), std::uint8_t{kLong});
 }
 
 bool FaultInversion::concerns(std::span<const TaxelStatus> taxels) noexcept {
-  const std::uint8_t* const absent = absent_.data();
-  const std::uint8_t* const hidden = hidden_.data();
-  std::uint8_t* const unknown = unknown_.data();
+  const std::uint8_t* const absent = is_.absent.data();
+  const std::uint8_t* const hidden = is_.hidden.data();
+  std::uint8_t* const unknown = is_.unknown.data();
   std::uint8_t any_missing = 0;
   for (std::size_t taxel = 0; taxel < taxels.size(); ++taxel) {
     const auto is_invalid = static_cast<std::uint8_t>(taxels[taxel] == TaxelStatus::invalid);
@@ -213,7 +220,7 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
 /// The lines are healthy: taxels without a reading are estimated from their neighbours, and these solved with them.
 InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept {
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    if (unknown_[taxel] != 0) equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
+    if (is_.unknown[taxel] != 0) equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
   }
   InversionResult result;
   for (int round = 0; round < kEstimateRounds; ++round) {
@@ -228,15 +235,15 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
 /// What a taxel was a moment ago tells more than its neighbours do.
 void FaultInversion::hold_missing(std::span<double> siemens) const noexcept {
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (unknown_[taxel] != 0 && missing_frames_[taxel] < kLong) siemens[taxel] = last_siemens_[taxel];
+    if (is_.unknown[taxel] != 0 && last_.frames_ago[taxel] < kLong) siemens[taxel] = last_.siemens[taxel];
   }
 }
 
 /// Their readings count where the inversion solves them; else they are what they are.
 void FaultInversion::keep_crossings(std::span<double> siemens) noexcept {
-  for (const std::size_t taxel : crossings_) {
-    equivalent_[taxel] = crossings_are_kept_ ? std::numeric_limits<double>::quiet_NaN() : measured_[taxel];
-    if (crossings_are_kept_) siemens[taxel] = kShortSiemens;
+  for (const std::size_t taxel : crossings_.taxels) {
+    equivalent_[taxel] = crossings_.are_kept ? std::numeric_limits<double>::quiet_NaN() : measured_[taxel];
+    if (crossings_.are_kept) siemens[taxel] = kShortSiemens;
   }
 }
 
@@ -248,7 +255,7 @@ double FaultInversion::correct(bool first) noexcept {
   double along = 0.0;
   double square = 0.0;
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    const double known = unknown_[taxel] != 0 ? 0.0 : measured_[taxel] - correction_.faulty_ratio[taxel];
+    const double known = is_.unknown[taxel] != 0 ? 0.0 : measured_[taxel] - correction_.faulty_ratio[taxel];
     const double difference = correction_.healthy_ratio[taxel] + known - equivalent_[taxel];
     change = std::max(change, std::abs(difference));
     sum += difference;
@@ -296,7 +303,7 @@ void FaultInversion::estimate_unknown(std::span<double> values) const noexcept {
   const double floor = kFloorShare * *std::max_element(values.begin(), values.end());
   if (!(floor > 0.0)) return;
   const auto logarithm = [&](std::size_t taxel) -> std::optional<double> {
-    if (unknown_[taxel] != 0 || absent_[taxel] != 0) return std::nullopt;
+    if (is_.unknown[taxel] != 0 || is_.absent[taxel] != 0) return std::nullopt;
     return std::log(std::max(values[taxel], floor) / typical_siemens_[taxel]);
   };
   // Of the taxels at `place` on a line, -2, -1, +1 and +2 steps away.
@@ -309,7 +316,7 @@ void FaultInversion::estimate_unknown(std::span<double> values) const noexcept {
     return between(near);
   };
   for (std::size_t taxel = 0; taxel < values.size(); ++taxel) {
-    if (unknown_[taxel] == 0) continue;
+    if (is_.unknown[taxel] == 0) continue;
     const std::optional<double> down = along(taxel, taxel / array_.cols, array_.rows, array_.cols);
     const std::optional<double> right = along(taxel, taxel % array_.cols, array_.cols, 1);
     const double count = (down ? 1.0 : 0.0) + (right ? 1.0 : 0.0);
@@ -321,7 +328,7 @@ void FaultInversion::estimate_unknown(std::span<double> values) const noexcept {
 double FaultInversion::misfit(std::span<const double> siemens) const noexcept {
   double largest = 0.0;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (unknown_[taxel] != 0) continue;
+    if (is_.unknown[taxel] != 0) continue;
     const double difference = measured_[taxel] - correction_.faulty_ratio[taxel];
     if (siemens[taxel] == 0.0 && difference < 0.0) continue;
     largest = std::max(largest, std::abs(difference));

@@ -34,8 +34,11 @@ class FaultInversion {
   void set_faults(std::span<const LineFault> faults, CrosstalkInversion& healthy);
   [[nodiscard]] bool any() const noexcept { return any_; }
 
+  /// What the readings of a line can be together still holds: none is at the supply or joined with another.
+  [[nodiscard]] bool keeps_bounds() const noexcept { return keeps_bounds_; }
+
   /// The taxel has no force of its own to report.
-  [[nodiscard]] bool is_masked(std::size_t taxel) const noexcept { return masked_[taxel] != 0; }
+  [[nodiscard]] bool is_masked(std::size_t taxel) const noexcept { return is_.masked[taxel] != 0; }
 
   /// Learns which taxels of the next frame have no reading; whether that frame needs invert().
   [[nodiscard]] bool concerns(std::span<const TaxelStatus> taxels) noexcept;
@@ -53,6 +56,29 @@ class FaultInversion {
   struct Circuits {
     LumpedCircuit healthy;
     LumpedCircuit faulty;
+  };
+
+  /// Of each taxel [taxels].
+  struct Masks {
+    explicit Masks(const ArrayDescription& array);
+
+    std::vector<std::uint8_t> absent;   // from the sheet
+    std::vector<std::uint8_t> masked;   // without a force to report
+    std::vector<std::uint8_t> hidden;   // by a fault
+    std::vector<std::uint8_t> unknown;  // hidden, or without a reading
+  };
+
+  /// What the taxels were [taxels].
+  struct Memory {
+    explicit Memory(std::size_t taxels);
+
+    std::vector<double> siemens;
+    std::vector<std::uint8_t> frames_ago;  // at most a few
+  };
+
+  struct Crossings {
+    std::vector<std::size_t> taxels;  // whose row and column touch
+    bool are_kept = false;            // as large conductances
   };
 
   struct ShortedLines {
@@ -89,16 +115,12 @@ class FaultInversion {
   double tolerance_;
   std::vector<double> typical_siemens_;  // [taxels]
   bool any_ = false;
+  bool keeps_bounds_ = true;
   bool lines_are_faulty_ = false;  // so that the circuit is another one
   std::optional<Circuits> circuits_;
-  std::vector<std::uint8_t> absent_;   // from the sheet [taxels]
-  std::vector<std::uint8_t> masked_;   // [taxels]
-  std::vector<std::uint8_t> hidden_;   // by a fault [taxels]
-  std::vector<std::uint8_t> unknown_;  // hidden, or without a reading [taxels]
-  std::vector<std::uint8_t> missing_frames_;  // in which it has been unknown [taxels]
-  std::vector<double> last_siemens_;          // [taxels]
-  std::vector<std::size_t> crossings_;  // shorted taxels
-  bool crossings_are_kept_ = false;     // as large conductances
+  Masks is_;
+  Memory last_;
+  Crossings crossings_;
   std::vector<std::size_t> supplied_rows_;
   std::vector<ShortedLines> shorted_;
   std::vector<double> measured_;    // T without what supplied rows add [taxels]

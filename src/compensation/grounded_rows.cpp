@@ -53,9 +53,9 @@ GroundedRows::GroundedRows(const ArrayDescription& array, double tolerance_ratio
       sigma_(state_.siemens.size()) {
   state_.kept.reserve(array.taxel_count());
   state_.shorted.reserve(array.cols);
-  joined_.reserve(array.rows);
+  joined_.pairs.reserve(array.rows);
   const Readout& readout = array.readout;
-  state_.drive_ohm = drive_ohm_ = readout.drive_ohm;
+  state_.drive_ohm = joined_.drive_ohm = readout.drive_ohm;
   const double weakest_driver = *std::max_element(state_.drive_ohm.begin(), state_.drive_ohm.end());
   const bool one_loaded = readout.idle_columns == IdleColumns::floating;
   const auto cols = static_cast<std::ptrdiff_t>(array.cols);
@@ -107,15 +107,15 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
 bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
   forget();
   state_.shorted.clear();
-  joined_.clear();
-  state_.drive_ohm = drive_ohm_;
+  joined_.pairs.clear();
+  state_.drive_ohm = joined_.drive_ohm;
   const bool can = sources_.ratio.empty() && std::all_of(taxels.begin(), taxels.end(), [&](std::size_t taxel) {
     return add_shorted(taxel / state_.cols, taxel % state_.cols);
   });
   if (can) return true;
   state_.shorted.clear();
-  joined_.clear();
-  state_.drive_ohm = drive_ohm_;
+  joined_.pairs.clear();
+  state_.drive_ohm = joined_.drive_ohm;
   return taxels.empty();
 }
 
@@ -123,18 +123,18 @@ bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
 bool GroundedRows::add_shorted(std::size_t row, std::size_t col) noexcept {
   const auto in_row = [&](const auto& crossing) { return crossing.row == row; };
   const auto in_col = [&](const auto& crossing) { return crossing.col == col; };
-  const auto is_joined = [&](const JoinedRows& pair) { return pair.other == row; };
+  const auto is_joined = [&](const JoinedRows::Pair& pair) { return pair.other == row; };
   const bool row_is_shorted = std::any_of(state_.shorted.begin(), state_.shorted.end(), in_row);
   const auto column = std::find_if(state_.shorted.begin(), state_.shorted.end(), in_col);
-  if (std::any_of(joined_.begin(), joined_.end(), is_joined)) return false;
+  if (std::any_of(joined_.pairs.begin(), joined_.pairs.end(), is_joined)) return false;
   if (column == state_.shorted.end()) {
     state_.shorted.push_back({row, col, row_is_shorted});
     return true;
   }
   double& first_ohm = state_.drive_ohm[column->row];
-  if (row_is_shorted || first_ohm == 0.0 || drive_ohm_[row] == 0.0) return false;
-  joined_.push_back({column->row, row});
-  first_ohm = 1.0 / (1.0 / first_ohm + 1.0 / drive_ohm_[row]);
+  if (row_is_shorted || first_ohm == 0.0 || joined_.drive_ohm[row] == 0.0) return false;
+  joined_.pairs.push_back({column->row, row});
+  first_ohm = 1.0 / (1.0 / first_ohm + 1.0 / joined_.drive_ohm[row]);
   return true;
 }
 
@@ -160,7 +160,7 @@ void GroundedRows::load(std::span<const double> ratio, std::span<const double> s
 
 /// Joined rows are driven together; of the second of them nothing is left.
 void GroundedRows::load_shorted() noexcept {
-  for (const auto& [first, other] : joined_) {
+  for (const auto& [first, other] : joined_.pairs) {
     for (std::size_t col = 0; col < state_.cols; ++col) {
       double& reading = state_.measured[other * state_.stride + col];
       state_.measured[first * state_.stride + col] += reading;

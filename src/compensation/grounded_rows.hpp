@@ -80,8 +80,13 @@ class GroundedRows final : public CrosstalkInversion {
 
   /// Rows that touch one column are one row; its readings stand in the first.
   struct JoinedRows {
-    std::size_t first;
-    std::size_t other;
+    struct Pair {
+      std::size_t first;
+      std::size_t other;
+    };
+
+    std::vector<Pair> pairs;
+    std::vector<double> drive_ohm;  // of the rows apart [rows]
   };
 
   /// Anderson's mixing of ln G.
@@ -108,9 +113,8 @@ class GroundedRows final : public CrosstalkInversion {
 
   double tolerance_;
   StepBudget budget_;  // in steps without mixing
-  std::vector<double> drive_ohm_;  // without shorted crossings [rows]
   GroundedRowsState state_;
-  std::vector<JoinedRows> joined_;
+  JoinedRows joined_;
   std::vector<double> reading_siemens_;  // y of a ratio of 1 [stride]
   std::vector<double> offset_siemens_;   // y of a ratio of 0 [stride]
   Sources sources_;

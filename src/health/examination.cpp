@@ -16,6 +16,7 @@
 #include "dermis/health/ageing_monitor.hpp"
 #include "dermis/preprocessing/missing_readings.hpp"
 #include "health/findings.hpp"
+#include "health/mute_taxels.hpp"
 #include "health/noise_meter.hpp"
 #include "health/offset_meter.hpp"
 #include "health/unloaded_taxels.hpp"
@@ -79,6 +80,7 @@ class Examination::Implementation {
   explicit Implementation(const pipeline::Model& model)
       : model_(model),
         missing_(model.array),
+        mute_(model),
         unloaded_(model),
         offsets_(model.array.taxel_count()),
         ageing_(model),
@@ -106,6 +108,7 @@ class Examination::Implementation {
       return;
     }
     counted_.worst_misfit_sigma = std::max(counted_.worst_misfit_sigma, conductance.residual_sigma);
+    mute_.add(raw, pipeline.conditioned(), force);
     unloaded_.expect(conductance);
     follow_noise(conductance);
     follow_offsets(conductance);
@@ -126,6 +129,7 @@ class Examination::Implementation {
     diagnosis.ageing = ageing_.evidence();
     diagnosis.blind_lines = blind_lines(pipeline.line_faults(), model_.array);
     diagnosis.findings = findings_of(diagnosis, model_);
+    for (const std::string& finding : mute_.findings()) diagnosis.findings.push_back(finding);
     diagnosis.remarks = remarks_on(pipeline.line_faults().suspicions(), model_.array);
     return diagnosis;
   }
@@ -179,6 +183,7 @@ class Examination::Implementation {
   Nanos last_time_{};
   std::size_t saturated_ = 0;  // readings
   preprocessing::MissingReadings missing_;
+  MuteTaxels mute_;
   UnloadedTaxels unloaded_;
   NoiseMeter noise_;
   OffsetMeter offsets_;

@@ -23,6 +23,11 @@ std::pair<std::string, std::string> diagnosis(const LineFault& fault, const Arra
     case LineFaultEffect::shorted: return {"are shorted together", "look for a bridge between " + place};
     case LineFaultEffect::stuck:
       return {"is stuck: its reading does not change", "check the electronics that read " + place};
+    case LineFaultEffect::crossed:
+      return {fmt::format("is shorted: row {} and column {} touch", fault.place / array.cols, fault.place % array.cols),
+              "look for a bridge between the two"};
+    case LineFaultEffect::impossible:
+      return {"reads more than the circuit can give", "check the electronics that read " + place};
     case LineFaultEffect::dead:
       return {"is dead: it reads less than an unloaded taxel", "check the contact of " + place + " with its lines"};
     case LineFaultEffect::drifting: break;

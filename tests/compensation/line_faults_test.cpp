@@ -147,6 +147,8 @@ std::vector<FaultCase> fault_cases(const ArrayDescription& array) {
        [array](auto& f, auto k) { f.dead_taxels = {array.taxel_name(k)}; }},
       {"stuck taxel", Kind::stuck_taxel, false, true, 240,
        [array](auto& f, auto k) { f.stuck_taxels = {array.taxel_name(k)}; }},
+      {"shorted crossing", Kind::shorted_crossing, false, true, 50,
+       [array](auto& f, auto k) { f.shorted_taxels = {array.taxel_name(k)}; }},
   };
 }
 
@@ -182,6 +184,23 @@ TEST(LineFaultMonitor, finds_and_locates_every_fault_and_sees_it_heal) {
         EXPECT_FALSE(has(rig.conductance().status, FrameStatus::line_fault));
       }
     }
+  }
+}
+
+TEST(LineFaultMonitor, names_readings_that_are_stuck_high_and_the_others_keep_theirs) {
+  constexpr std::size_t kTaxel = 2 * 16 + 5;
+  for (const double ratio : {1.0, 0.999, 0.9, 0.8, 0.6}) {
+    SCOPED_TRACE(testing::Message() << "reading " << ratio);
+    Rig rig(reference_circuit(), "contacts", 7, 60);
+    while (rig.read()) {
+      rig.conditioned().ratio[kTaxel] = ratio;
+      rig.process();
+      ASSERT_FALSE(has(rig.conductance().status, FrameStatus::not_converged)) << "frame " << rig.frames();
+    }
+    const auto found = rig.monitor().faults();
+    ASSERT_EQ(found.size(), 1U) << describe(found, reference_circuit());
+    EXPECT_EQ(found[0].kind, LineFaultKind::impossible_reading);
+    EXPECT_EQ(found[0].place, kTaxel);
   }
 }
 

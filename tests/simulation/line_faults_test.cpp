@@ -183,6 +183,24 @@ TEST(LineFaults, shorted_rows_stand_between_their_drivers) {
   }
 }
 
+TEST(LineFaults, a_shorted_crossing_is_the_limit_of_a_taxel_of_0_ohm) {
+  std::vector<ArrayDescription> arrays = {
+      make_array(Circuit::divider), make_array(Circuit::divider, IdleRows::floating),
+      make_array(Circuit::transimpedance), make_array(Circuit::transimpedance, IdleRows::floating),
+      make_array(Circuit::flexitac)};
+  arrays.push_back(make_array(Circuit::divider));
+  arrays.back().readout.idle_columns = IdleColumns::floating;
+  for (const ArrayDescription& array : arrays) {
+    SCOPED_TRACE(testing::Message() << to_string(array.readout.circuit));
+    auto siemens = random_siemens(array, 11);
+    LineFaults faults;
+    faults.shorted_taxels = {"r2c3"};
+    const auto ratio = read(array, siemens, faults);
+    siemens[array.index(2, 3)] = 1e7;
+    expect_near(ratio, read_healthy(array, siemens), 1e-5);
+  }
+}
+
 TEST(LineFaults, every_circuit_reads_finite_numbers_with_every_fault) {
   std::vector<ArrayDescription> arrays = {
       make_array(Circuit::divider), make_array(Circuit::divider, IdleRows::floating),
@@ -192,7 +210,7 @@ TEST(LineFaults, every_circuit_reads_finite_numbers_with_every_fault) {
   arrays.back().readout.idle_columns = IdleColumns::floating;
   arrays.push_back(make_array(Circuit::divider));
   arrays.back().readout.drive_ohm.assign(arrays.back().rows, 0.0);
-  std::vector<LineFaults> all(11);
+  std::vector<LineFaults> all(12);
   all[0].rows.open = {0, 5};
   all[1].columns.open = {0, 4};
   all[2].rows.grounded = {1};
@@ -206,6 +224,7 @@ TEST(LineFaults, every_circuit_reads_finite_numbers_with_every_fault) {
   all[9].drift_ohm = 100.0;
   all[10].rows.open = {0, 1, 2, 3, 4, 5};
   all[10].columns.open = {0, 1, 2, 3, 4};
+  all[11].shorted_taxels = {"r0c0", "r0c2", "r3c2", "r5c4"};
   for (std::size_t circuit = 0; circuit < arrays.size(); ++circuit) {
     for (std::size_t fault = 0; fault < all.size(); ++fault) {
       for (const double value : read(arrays[circuit], random_siemens(arrays[circuit], 7), all[fault])) {

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "dermis/core/random.hpp"
+#include "dermis/simulation/line_faults.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/reference_array.hpp"
 #include "support/simd_targets.hpp"
@@ -819,6 +820,30 @@ TEST_P(AgainstNgspice, agrees_within_one_part_in_a_billion) {
   const auto ratio = ratios(array, siemens);
   ASSERT_EQ(expected.size(), ratio.size());
   for (std::size_t i = 0; i < ratio.size(); ++i) EXPECT_NEAR(ratio[i] / expected[i], 1.0, 1e-9) << "reading " << i;
+}
+
+/// ngspice has a resistor of a microohm there.
+TEST(ShortedCrossing, agrees_with_ngspice_in_every_circuit) {
+  if (std::system("command -v ngspice > /dev/null") != 0) GTEST_SKIP() << "ngspice is not on the PATH";
+  constexpr std::uint64_t kSeed = 17;
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  Random random(kSeed);
+  for (const CircuitKind& kind : kCircuitKinds) {
+    if (kind.has_real_amplifiers) continue;
+    SCOPED_TRACE(kind.name);
+    const ArrayDescription array = random_array(kind, 8, 8, random);
+    auto siemens = random_siemens(array.taxel_count(), random);
+    LineFaults faults;
+    faults.shorted_taxels = {"r2c5", "r6c1"};
+    std::vector<double> ratio(siemens.size());
+    FaultyCircuit::create(array, faults).value().ratios(siemens, 0, ratio);
+    siemens[array.index(2, 5)] = siemens[array.index(6, 1)] = 1e6;
+    const auto expected = simulate_with_ngspice(array, siemens);
+    ASSERT_EQ(expected.size(), ratio.size());
+    for (std::size_t i = 0; i < ratio.size(); ++i) {
+      EXPECT_NEAR(ratio[i], expected[i], 1e-4 * std::abs(expected[i]) + 1e-7) << "reading " << i;
+    }
+  }
 }
 
 std::string name_of(const testing::TestParamInfo<SpiceCase>& info) {

@@ -24,6 +24,10 @@ constexpr double kPerFrameOfColumn = 0.5 * kPerFrame;
 constexpr double kSilentShare = 0.5;      // of what the taxels of a row read unloaded
 constexpr double kSilentSigmas = 5.0;
 
+bool is_of_faulty_line(const FaultList& faults, std::size_t taxel) {
+  return (faults.causes(taxel) & (kRowCause | kColumnCause | kPairCause)) != 0;
+}
+
 std::optional<LineFaultKind> found_kind(const FaultList& faults, std::size_t taxel) {
   for (const LineFaultKind kind : {LineFaultKind::shorted_crossing, LineFaultKind::impossible_reading}) {
     if (faults.contains(kind, taxel)) return kind;
@@ -42,8 +46,8 @@ ImpossibleReadingDetector::ImpossibleReadingDetector(const ArrayDescription& arr
 
 void ImpossibleReadingDetector::judge(const Observation& seen, FaultList& faults) noexcept {
   if (array_.readout.circuit == Circuit::none) return;
-  watch_new(seen);
-  if (columns_tell_) watch_columns(seen);
+  watch_new(seen, faults);
+  if (columns_tell_) watch_columns(seen, faults);
   if (watched_.empty()) return;
   for (Watched& watched : watched_) {
     const ReadingVerdict now = verdict(seen, watched.taxel);
@@ -53,12 +57,12 @@ void ImpossibleReadingDetector::judge(const Observation& seen, FaultList& faults
   std::erase_if(watched_, [&](const Watched& watched) {
     const bool is_suspect = watched.impossible.frames > 0 || watched.shorted.frames > 0;
     const bool is_stuck = faults.contains(LineFaultKind::stuck_taxel, watched.taxel);
-    return is_stuck || (!is_suspect && !found_kind(faults, watched.taxel));
+    return is_stuck || is_of_faulty_line(faults, watched.taxel) || (!is_suspect && !found_kind(faults, watched.taxel));
   });
   faults.suspect(watched_, [](const Watched& watched) { return watched.taxel; });
 }
 
-void ImpossibleReadingDetector::watch_new(const Observation& seen) noexcept {
+void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultList& faults) noexcept {
   const auto& before = seen.conditioned.taxels;
   const auto& after = seen.conductance.taxels;
   const bool rails = array_.readout.circuit == Circuit::transimpedance;
@@ -71,16 +75,16 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen) noexcept {
   for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
     const bool is_saturated = rails && before[taxel] == TaxelStatus::saturated;
     const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
-    if ((is_taken || is_saturated) && verdict(seen, taxel) != ReadingVerdict::possible) watch(taxel);
+    if ((is_taken || is_saturated) && verdict(seen, taxel) != ReadingVerdict::possible) watch(taxel, faults);
   }
 }
 
-void ImpossibleReadingDetector::watch_columns(const Observation& seen) noexcept {
+void ImpossibleReadingDetector::watch_columns(const Observation& seen, const FaultList& faults) noexcept {
   const std::span<const double> sums = seen.sums.ratio(Axis::column);
   for (std::size_t col = 0; col < array_.cols; ++col) {
     if (sums[col] < kHigh) continue;
     for (std::size_t taxel = col; taxel < array_.taxel_count(); taxel += array_.cols) {
-      if (verdict(seen, taxel) == ReadingVerdict::impossible) watch(taxel);
+      if (verdict(seen, taxel) == ReadingVerdict::impossible) watch(taxel, faults);
     }
   }
 }
@@ -107,9 +111,10 @@ ReadingVerdict ImpossibleReadingDetector::verdict_of_column(const Observation& s
   return read > unloaded - fall ? ReadingVerdict::impossible : ReadingVerdict::possible;
 }
 
-void ImpossibleReadingDetector::watch(std::size_t taxel) noexcept {
+/// Unless its line explains it.
+void ImpossibleReadingDetector::watch(std::size_t taxel, const FaultList& faults) noexcept {
   const auto is_same = [taxel](const Watched& watched) { return watched.taxel == taxel; };
-  if (std::any_of(watched_.begin(), watched_.end(), is_same)) return;
+  if (is_of_faulty_line(faults, taxel) || std::any_of(watched_.begin(), watched_.end(), is_same)) return;
   watched_.push_back({});
   watched_.back().taxel = taxel;
 }

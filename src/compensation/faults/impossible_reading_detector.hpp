@@ -35,10 +35,10 @@ class ImpossibleReadingDetector {
     PageTest released;
   };
 
-  void watch_new(const Observation& seen) noexcept;
-  void watch(std::size_t taxel) noexcept;
+  void watch_new(const Observation& seen, const FaultList& faults) noexcept;
+  void watch(std::size_t taxel, const FaultList& faults) noexcept;
   [[nodiscard]] ReadingVerdict verdict(const Observation& seen, std::size_t taxel) const noexcept;
-  void watch_columns(const Observation& seen) noexcept;
+  void watch_columns(const Observation& seen, const FaultList& faults) noexcept;
   [[nodiscard]] ReadingVerdict verdict_of_column(const Observation& seen, std::size_t taxel) const noexcept;
   [[nodiscard]] bool row_is_silent(const Observation& seen, std::size_t taxel) const noexcept;
   void find(const Observation& seen, ReadingVerdict verdict, Watched& watched, FaultList& faults) const noexcept;

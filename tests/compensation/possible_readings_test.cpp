@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/possible_readings.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "dermis/core/random.hpp"
+#include "dermis/simulation/readout_circuit.hpp"
+#include "support/circuits.hpp"
+#include "support/reference_array.hpp"
+
+namespace dermis::compensation {
+namespace {
+
+constexpr double kSigma = 1.0 / 4095.0;
+
+struct Checked {
+  explicit Checked(const ArrayDescription& array)
+      : possible(array), ratio(array.taxel_count(), 0.001), taxels(array.taxel_count(), TaxelStatus::ok) {}
+
+  std::size_t invalid() {
+    possible.check(ratio, kSigma, taxels);
+    return static_cast<std::size_t>(std::count(taxels.begin(), taxels.end(), TaxelStatus::invalid));
+  }
+
+  PossibleReadings possible;
+  std::vector<double> ratio;
+  std::vector<TaxelStatus> taxels;
+};
+
+TEST(PossibleReadings, what_a_taxel_of_any_resistance_reads_is_possible_in_every_circuit) {
+  constexpr std::uint64_t kSeed = 3;
+  Random random(kSeed);
+  for (const support::NamedCircuit& circuit : support::all_circuits()) {
+    SCOPED_TRACE(testing::Message() << circuit << ", seed " << kSeed);
+    const ArrayDescription array = support::random_array(circuit, 6, 5, random);
+    Checked checked(array);
+    for (const double least_ohm : {15.0, 200.0, 1e4}) {
+      const auto siemens = support::random_siemens(array, random, least_ohm, 1e5);
+      simulation::ReadoutCircuit::create(array).value().ratios(siemens, checked.ratio);
+      EXPECT_EQ(checked.invalid(), 0U) << "from " << least_ohm << " ohm";
+    }
+  }
+}
+
+TEST(PossibleReadings, more_than_a_taxel_of_0_ohm_reads_is_impossible) {
+  const ArrayDescription array = support::reference_circuit();
+  Checked checked(array);
+  checked.ratio[array.index(2, 5)] = 0.95;  // 200 / 220 at most
+  EXPECT_EQ(checked.invalid(), 1U);
+  EXPECT_EQ(checked.taxels[array.index(2, 5)], TaxelStatus::invalid);
+  EXPECT_EQ(checked.possible.judge(array.index(2, 5), checked.ratio, kSigma, checked.taxels),
+            ReadingVerdict::impossible);
+}
+
+TEST(PossibleReadings, the_current_of_a_row_leaves_less_for_each_of_its_taxels) {
+  const ArrayDescription array = support::reference_circuit();
+  Checked checked(array);
+  for (std::size_t col = 0; col < 6; ++col) checked.ratio[array.index(2, col)] = 0.5;
+  EXPECT_EQ(checked.invalid(), 0U);
+  checked.ratio[array.index(2, 9)] = 0.8;  // 1 - 20 / 200 (6 0.5 + 0.8) is 0.62
+  EXPECT_EQ(checked.invalid(), 1U);
+  EXPECT_EQ(checked.taxels[array.index(2, 9)], TaxelStatus::invalid);
+}
+
+TEST(PossibleReadings, a_column_reads_less_than_the_supply_in_all_rows_together) {
+  const ArrayDescription array = support::reference_circuit();
+  Checked checked(array);
+  checked.ratio[array.index(2, 9)] = 0.6;
+  checked.ratio[array.index(7, 9)] = 0.5;
+  EXPECT_EQ(checked.invalid(), 1U);
+  EXPECT_EQ(checked.taxels[array.index(2, 9)], TaxelStatus::invalid);
+}
+
+TEST(PossibleReadings, a_reading_that_leaves_a_few_ohm_is_a_short) {
+  const ArrayDescription array = support::reference_circuit();
+  Checked checked(array);
+  const std::size_t taxel = array.index(2, 5);
+  for (const auto& [ohm, verdict] : {std::pair{2.0, ReadingVerdict::shorted}, {15.0, ReadingVerdict::possible}}) {
+    checked.ratio[taxel] = 200.0 / (220.0 + ohm);
+    EXPECT_EQ(checked.possible.judge(taxel, checked.ratio, kSigma, checked.taxels), verdict) << ohm;
+  }
+}
+
+TEST(PossibleReadings, the_largest_of_each_line_with_little_left_is_taken_or_the_largest_of_all) {
+  const ArrayDescription array = support::reference_circuit();
+  Checked checked(array);
+  checked.ratio[array.index(1, 3)] = 0.7;
+  checked.ratio[array.index(2, 3)] = 0.1;
+  checked.ratio[array.index(4, 8)] = 0.75;
+  checked.ratio[array.index(5, 9)] = 0.3;
+  checked.possible.take_largest(checked.ratio, checked.taxels);
+  EXPECT_EQ(std::count(checked.taxels.begin(), checked.taxels.end(), TaxelStatus::invalid), 2);
+  checked.possible.take_largest(checked.ratio, checked.taxels);
+  EXPECT_EQ(std::count(checked.taxels.begin(), checked.taxels.end(), TaxelStatus::invalid), 3);
+  EXPECT_EQ(checked.taxels[array.index(5, 9)], TaxelStatus::invalid);
+}
+
+}  // namespace
+}  // namespace dermis::compensation

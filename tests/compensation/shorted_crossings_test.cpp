@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+
+// Crossings whose row and column touch, in every circuit that the simulator can break.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "dermis/compensation/crosstalk.hpp"
+#include "dermis/simulation/line_faults.hpp"
+#include "support/allocation_guard.hpp"
+#include "support/circuits.hpp"
+
+namespace dermis::compensation {
+namespace {
+
+constexpr std::uint64_t kSeed = 46;
+
+struct Solved {
+  std::vector<double> siemens;  // true
+  ConductanceFrame conductance;
+};
+
+/// Without noise, an array of 7 x 6 taxels with these shorted crossings, that the compensator knows of.
+Solved solve(const ArrayDescription& array, const std::vector<std::size_t>& shorted) {
+  Random random(kSeed);
+  Solved solved;
+  solved.siemens = support::random_siemens(array, random, 1e3, 1e5);
+  simulation::LineFaults faults;
+  std::vector<LineFault> known;
+  for (const std::size_t taxel : shorted) {
+    faults.shorted_taxels.push_back(array.taxel_name(taxel));
+    known.push_back({.kind = LineFaultKind::shorted_crossing, .place = taxel});
+  }
+  ConditionedFrame frame;
+  frame.sigma_ratio = 1e-6;
+  frame.ratio.resize(array.taxel_count());
+  frame.taxels.resize(array.taxel_count());
+  simulation::FaultyCircuit::create(array, faults).value().ratios(solved.siemens, 0, frame.ratio);
+  auto compensator = Compensator::create(array).value();
+  compensator.set_faults(known);
+  compensator.process(frame, solved.conductance);
+  const support::AllocationGuard guard;
+  compensator.set_faults(known);
+  compensator.process(frame, solved.conductance);
+  EXPECT_EQ(guard.count(), 0U);
+  return solved;
+}
+
+/// The taxels that have a conductance have the right one. Returns how many have none.
+std::size_t expect_right(const Solved& solved, double relative) {
+  EXPECT_FALSE(has(solved.conductance.status, FrameStatus::not_converged));
+  std::size_t masked = 0;
+  for (std::size_t taxel = 0; taxel < solved.siemens.size(); ++taxel) {
+    if (solved.conductance.taxels[taxel] == TaxelStatus::line_fault) {
+      ++masked;
+      continue;
+    }
+    EXPECT_NEAR(solved.conductance.siemens[taxel] / solved.siemens[taxel], 1.0, relative) << "taxel " << taxel;
+  }
+  return masked;
+}
+
+ArrayDescription small_array(const support::NamedCircuit& circuit) {
+  Random random(kSeed);
+  ArrayDescription array = support::random_array(circuit, 7, 6, random);
+  for (double& ohm : array.readout.drive_ohm) ohm = 10.0 + 0.1 * ohm;
+  for (double& ohm : array.readout.load_ohm) ohm = 200.0 + 0.01 * ohm;
+  return array;
+}
+
+std::vector<support::NamedCircuit> circuits_with_faults() {
+  auto circuits = support::all_circuits();
+  std::erase_if(circuits, [](const auto& circuit) { return circuit.resistive_lines || circuit.real_amplifiers; });
+  return circuits;
+}
+
+bool merges_lines(const support::NamedCircuit& circuit) {
+  return circuit.circuit == Circuit::flexitac ||
+         (circuit.circuit == Circuit::divider && circuit.idle_rows == IdleRows::grounded);
+}
+
+TEST(ShortedCrossings, the_other_taxels_are_solved_in_every_circuit) {
+  for (const support::NamedCircuit& circuit : circuits_with_faults()) {
+    SCOPED_TRACE(testing::Message() << circuit << ", seed " << kSeed);
+    const ArrayDescription array = small_array(circuit);
+    const std::size_t masked = expect_right(solve(array, {array.index(2, 4)}), merges_lines(circuit) ? 2e-3 : 0.05);
+    EXPECT_EQ(masked, circuit.circuit == Circuit::transimpedance ? array.cols : 1U);
+  }
+}
+
+TEST(ShortedCrossings, of_two_nodes_only_the_sum_of_the_taxels_between_them_is_lost) {
+  for (const support::NamedCircuit& circuit : circuits_with_faults()) {
+    if (!merges_lines(circuit)) continue;
+    SCOPED_TRACE(testing::Message() << circuit << ", seed " << kSeed);
+    const ArrayDescription array = small_array(circuit);
+    EXPECT_EQ(expect_right(solve(array, {array.index(2, 4), array.index(5, 0)}), 2e-3), 4U);
+  }
+}
+
+TEST(ShortedCrossings, two_columns_on_one_row_or_two_rows_on_one_column_are_lost_and_no_more) {
+  for (const support::NamedCircuit& circuit : circuits_with_faults()) {
+    if (!merges_lines(circuit)) continue;
+    SCOPED_TRACE(testing::Message() << circuit << ", seed " << kSeed);
+    const ArrayDescription array = small_array(circuit);
+    EXPECT_EQ(expect_right(solve(array, {array.index(2, 4), array.index(2, 1)}), 2e-3), 2 * array.rows);
+    EXPECT_EQ(expect_right(solve(array, {array.index(2, 4), array.index(6, 4)}), 2e-3), 2 * array.cols);
+  }
+}
+
+}  // namespace
+}  // namespace dermis::compensation
