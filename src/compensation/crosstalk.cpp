@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kToleranceCounts = 0.01;
 constexpr int kMostAttempts = 3;
-constexpr double kGoodEnoughSigmas = 0.3;  // of a reading: where the steps of a frame are used up
+constexpr double kGoodEnoughSigmas = 0.3;       // of a reading: where the steps of a frame are used up
 constexpr double kFaultToleranceCounts = 0.05;  // around an inversion that is right to kToleranceCounts
 
 using Inversion = Result<std::unique_ptr<CrosstalkInversion>>;
@@ -43,10 +43,11 @@ Inversion flexitac(const ArrayDescription& array, double tolerance, const Invers
       std::make_unique<Transposed>(std::move(rows_driven), array.rows, array.cols));
 }
 
-/// Nothing can be told of the others.
-bool are_most_invalid(const ConductanceFrame& conductance) {
-  const auto invalid = std::count(conductance.taxels.begin(), conductance.taxels.end(), TaxelStatus::invalid);
-  return 2 * static_cast<std::size_t>(invalid) > conductance.taxels.size();
+/// Of the readings that came, most are invalid now: nothing can be told of the others.
+bool are_most_taken(const std::vector<TaxelStatus>& came, const std::vector<TaxelStatus>& left) {
+  const auto before = std::count(came.begin(), came.end(), TaxelStatus::invalid);
+  const auto after = std::count(left.begin(), left.end(), TaxelStatus::invalid);
+  return 2 * (after - before) > std::ssize(came) - before;
 }
 
 Inversion newton(const ArrayDescription& array, double tolerance, const InversionOptions& options) {
@@ -124,7 +125,8 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   }
   const InversionResult result = invert_possible(conditioned, conductance);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
-  inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+  if (result.solved) inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+  if (faults_->concerns(conductance.taxels)) faults_->add_doubt(conductance.siemens, conductance.sigma_siemens);
   supply_error_->add(conductance.siemens, conditioned.supply_doubt, conductance.sigma_siemens);
   if (result.solved) {
     faults_->remember(conductance.siemens);
@@ -145,8 +147,8 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
   }
   InversionResult result;
   for (int attempt = 0; attempt < kMostAttempts && !result.solved; ++attempt) {
-    if (attempt > 0) possible_->take_largest(conditioned.ratio, conductance.taxels);
-    if (are_most_invalid(conductance)) break;
+    if (attempt > 0 && !possible_->take_largest(conditioned.ratio, conductance.taxels)) break;
+    if (are_most_taken(conditioned.taxels, conductance.taxels)) break;
     inversion_->start_frame();
     result = invert(conditioned.ratio, conductance);
     result.solved = result.solved || result.residual_ratio <= kGoodEnoughSigmas * conditioned.sigma_ratio;

@@ -9,14 +9,17 @@
 
 #include "compensation/faults/masked_taxels.hpp"
 #include "compensation/readout_parts.hpp"
+#include "compensation/sensed_line.hpp"
 
 namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxRounds = 20;
-constexpr int kEstimateRounds = 2;  // what the neighbours of a taxel tell hardly depends on it
-constexpr std::uint8_t kLong = 4;              // frames without a reading, after which the last conductance tells nothing
-constexpr double kShortSiemens = 2.0;  // of a shorted crossing that is kept
+constexpr int kEstimateRounds = 2;        // what the neighbours of a taxel tell hardly depends on it
+constexpr std::uint8_t kLong = 4;         // frames without a reading, after which the last conductance tells nothing
+constexpr double kDoubtOfUnknown = 0.5;  // relative
+constexpr double kDoubtOfHeld = 0.1;
+constexpr double kShortSiemens = 20.0;  // of a shorted crossing that is kept
 constexpr double kMostStretch = 5.0;
 constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end
 constexpr double kMostRise = 1.0;        // of the logarithm above both neighbours
@@ -111,13 +114,15 @@ void FaultInversion::add(const LineFault& fault) {
   });
   if (array_.readout.circuit == Circuit::none) return;  // nothing to subtract or to solve
   if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
-  if (fault.kind == LineFaultKind::shorted_crossing && !silences_row(fault, array_)) crossings_.taxels.push_back(fault.place);
+  if (fault.kind == LineFaultKind::shorted_crossing && !silences_row(fault, array_))
+    crossings_.taxels.push_back(fault.place);
   if (traits.effect == LineFaultEffect::shorted) {
     shorted_.push_back({*traits.axis, fault.place, ratio_of_shorted_lines(array_, *traits.axis, fault.place)});
   }
-  keeps_bounds_ = keeps_bounds_ && traits.effect != LineFaultEffect::shorted && traits.effect != LineFaultEffect::supplied;
-  lines_are_faulty_ = lines_are_faulty_ || traits.scope == LineFaultScope::line ||
-                      traits.scope == LineFaultScope::line_pair;
+  keeps_bounds_ =
+      keeps_bounds_ && traits.effect != LineFaultEffect::shorted && traits.effect != LineFaultEffect::supplied;
+  lines_are_faulty_ =
+      lines_are_faulty_ || traits.scope == LineFaultScope::line || traits.scope == LineFaultScope::line_pair;
   if (!circuits_) return;
   add_to_circuit(fault, circuits_->healthy, circuits_->faulty);
 }
@@ -128,8 +133,10 @@ void FaultInversion::mask_joined_lines() noexcept {
   for (std::size_t a = 0; a < crossings_.taxels.size(); ++a) {
     for (std::size_t b = 0; b < a; ++b) {
       for (const std::size_t taxel : {crossings_.taxels[a], crossings_.taxels[b]}) {
-        if (crossings_.taxels[a] / array_.cols == crossings_.taxels[b] / array_.cols) mask_line(Axis::column, taxel % array_.cols);
-        if (crossings_.taxels[a] % array_.cols == crossings_.taxels[b] % array_.cols) mask_line(Axis::row, taxel / array_.cols);
+        if (crossings_.taxels[a] / array_.cols == crossings_.taxels[b] / array_.cols)
+          mask_line(Axis::column, taxel % array_.cols);
+        if (crossings_.taxels[a] % array_.cols == crossings_.taxels[b] % array_.cols)
+          mask_line(Axis::row, taxel / array_.cols);
       }
       // Two taxels are between the two nodes, and only their sum is told.
       is_.masked[array_.index(crossings_.taxels[a] / array_.cols, crossings_.taxels[b] % array_.cols)] = 1;
@@ -165,6 +172,25 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& healt
     case LineFaultEffect::impossible:
     case LineFaultEffect::dead:
     case LineFaultEffect::drifting: break;  // of the reading, of the taxel's conductance, reported alone
+  }
+}
+
+/// A conductance of a driven line k and a sensed line j that is wrong by d changes the others by the share Rd_k d, or
+/// RL_j d, to first order.
+void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept {
+  if (array_.readout.circuit == Circuit::none) return;
+  const Axis driven = driven_axis(array_);
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (is_.unknown[taxel] == 0) continue;
+    const double error = (last_.frames_ago[taxel] < kLong ? kDoubtOfHeld : kDoubtOfUnknown) * siemens[taxel];
+    for (const Axis axis : kAxes) {
+      const std::size_t line = axis == Axis::row ? taxel / array_.cols : taxel % array_.cols;
+      const double ohm = axis == driven ? array_.readout.drive_ohm[line] : sensed_line(array_.readout, line).rho;
+      for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
+        const std::size_t other = taxel_on_line(array_, axis, line, k);
+        sigma_siemens[other] = std::hypot(sigma_siemens[other], ohm * error * siemens[other]);
+      }
+    }
   }
 }
 

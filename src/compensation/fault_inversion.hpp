@@ -20,11 +20,12 @@ namespace dermis::compensation {
 ///   T' = T + T_healthy(G) - T_faulty(G),   G <- invert_healthy(T')
 ///
 /// Taxels whose conductance no reading tells (on a silent line, stuck, without a reading in this frame) are estimated
-/// from their neighbours, but for the first frames, in which they stay what they were. Without faults of lines, the healthy inversion keeps those estimates. An open row still
-/// couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. Shorted crossings are in
-/// both circuits: the inversion solves them, or keeps their taxels at a large conductance. For resistive lines, switches, real amplifiers, `none` and arrays of more than 256 lines there is
-/// no faulty circuit: the readings of faulty lines are replaced by those of their neighbours, and the rest is solved as
-/// if healthy.
+/// from their neighbours, but for the first frames, in which they stay what they were. Without faults of lines, the
+/// healthy inversion keeps those estimates. An open row still couples the columns through them: eliminating it adds -g
+/// g^T / sum(g) to their equations. Shorted crossings are in both circuits: the inversion solves them, or keeps their
+/// taxels at a large conductance. For resistive lines, switches, real amplifiers, `none` and arrays of more than 256
+/// lines there is no faulty circuit: the readings of faulty lines are replaced by those of their neighbours, and the
+/// rest is solved as if healthy.
 class FaultInversion {
  public:
   /// `typical_siemens`: see Compensator::create.
@@ -42,6 +43,9 @@ class FaultInversion {
 
   /// Learns which taxels of the next frame have no reading; whether that frame needs invert().
   [[nodiscard]] bool concerns(std::span<const TaxelStatus> taxels) noexcept;
+
+  /// Adds to the standard deviations what the others of a line owe to a taxel whose conductance is only estimated.
+  void add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept;
 
   /// The frame is solved, at these conductances.
   void remember(std::span<const double> siemens) noexcept;

@@ -110,8 +110,8 @@ bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
   joined_.pairs.clear();
   state_.drive_ohm = joined_.drive_ohm;
   const bool can = sources_.ratio.empty() && std::all_of(taxels.begin(), taxels.end(), [&](std::size_t taxel) {
-    return add_shorted(taxel / state_.cols, taxel % state_.cols);
-  });
+                     return add_shorted(taxel / state_.cols, taxel % state_.cols);
+                   });
   if (can) return true;
   state_.shorted.clear();
   joined_.pairs.clear();

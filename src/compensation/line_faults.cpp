@@ -56,8 +56,8 @@ class LineFaultMonitor::Implementation {
   UnloadedWitnesses witnesses_;
   EqualPresses equal_presses_;
   // In the order in which they judge a frame; each sees what those before it have found.
-  std::tuple<ImpossibleReadingDetector, SilentLineDetector, SuppliedColumnDetector, StuckTaxelDetector, DeadTaxelDetector, ShortedLineDetector,
-             SuppliedRowDetector, GroundedLineDetector, DriftingDriverDetector>
+  std::tuple<ImpossibleReadingDetector, SilentLineDetector, SuppliedColumnDetector, StuckTaxelDetector,
+             DeadTaxelDetector, ShortedLineDetector, SuppliedRowDetector, GroundedLineDetector, DriftingDriverDetector>
       detectors_{ImpossibleReadingDetector(array_),
                  SilentLineDetector(array_, unloaded_, witnesses_),
                  SuppliedColumnDetector(array_),

@@ -11,6 +11,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxSteps = 80;
+constexpr double kLeastWork = 6.0;               // of a frame where steps are bounded: solutions of the circuit
 constexpr double kLongestStep = 2.0;             // of x: a factor of e^2 where x is a logarithm
 constexpr double kShortestFraction = 1.0 / 8.0;  // of a step
 constexpr double kLeastDamping = 1e-3;
@@ -37,6 +38,7 @@ NewtonInversion::NewtonInversion(const ArrayDescription& array, CircuitModel mod
       driver_errors_(array, options.counts_driver_errors),
       noise_(make_newton_noise(circuit_, equations_, driver_errors_, options)),
       tolerance_(tolerance_ratio),
+      budget_(options.is_bounded ? kLeastWork : 0.0),
       most_steps_(options.most_steps.value_or(std::numeric_limits<int>::max())),
       last_x_(array.taxel_count()),
       change_(array.taxel_count()),
@@ -62,6 +64,7 @@ InversionResult NewtonInversion::invert(std::span<const double> ratio, std::span
   if (solved) {
     for (std::size_t k = 0; k < ratio.size(); ++k) last_shift_[k] = circuit_.x()[k] - circuit_.measured()[k];
     has_last_frame_ = true;
+    budget_.learn();
   }
   return {solved, circuit_.residual_ratio()};
 }
@@ -116,7 +119,7 @@ void NewtonInversion::start_at_siemens() noexcept {
 bool NewtonInversion::iterate(int bold_steps) noexcept {
   for (int k = 0; k < kMaxSteps; ++k) {
     if (tolerance_ > 0.0 && circuit_.residual_ratio() <= tolerance_) return true;
-    if (--steps_left_ < 0 || !step(k < bold_steps ? kBoldRise : 1.0)) break;
+    if (budget_.is_used_up() || --steps_left_ < 0 || !step(k < bold_steps ? kBoldRise : 1.0)) break;
   }
   return circuit_.residual_ratio() <= std::max(tolerance_, kRounding * circuit_.largest_ratio());
 }
@@ -140,7 +143,12 @@ bool NewtonInversion::step(double allowed_rise) noexcept {
       for (std::size_t k = 0; k < x.size(); ++k) x[k] = moved(k, last_x_[k], fraction * change_[k]);
       circuit_.solve();
       const double after = circuit_.merit();
-      if (!(after < allowed_rise * before)) continue;
+      const bool may_go_on = budget_.take(1.0);
+      if (!(after < allowed_rise * before)) {
+        if (may_go_on) continue;
+        damping_ = kMostDamping;
+        break;
+      }
       damping_ = damping_ > kLeastDamping ? damping_ / kDampingFactor : 0.0;
       return after > kRoundingMerit || after < 0.5 * before;
     }

@@ -10,6 +10,7 @@
 #include "compensation/newton_equations.hpp"
 #include "compensation/newton_noise.hpp"
 #include "compensation/scaled_circuit.hpp"
+#include "compensation/step_budget.hpp"
 #include "dermis/compensation/circuit_model.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 
@@ -42,6 +43,7 @@ class NewtonInversion final : public CrosstalkInversion {
                   const InversionOptions& options);
 
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
+  void start_frame() noexcept override { budget_.start_frame(); }
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
@@ -60,6 +62,7 @@ class NewtonInversion final : public CrosstalkInversion {
   std::unique_ptr<NewtonNoise> noise_;
   std::unique_ptr<FloatingRows> floating_rows_;  // of arrays that it inverts: the start, mostly the solution
   double tolerance_;
+  StepBudget budget_;  // in solutions of the circuit
   int most_steps_;
   int steps_left_ = 0;  // of this frame
   double damping_ = 0.0;

@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kAllowedShare = 0.02;  // by which resistances of the readout and the supply may be wrong
 constexpr double kAllowedSigmas = 6.0;
-constexpr double kShortOhm = 10.0;         // of taxels none has less
-constexpr double kShortShare = 0.005;      // likewise; a mistake costs one taxel
-constexpr double kLittleLeft = 0.6;     // readings of a line together, over what a taxel of 0 ohm reads alone
-constexpr std::size_t kAtOnce = 4;         // sums that do not wait for each other
+constexpr double kShortOhm = 10.0;     // of taxels none has less
+constexpr double kShortShare = 0.005;  // likewise; a mistake costs one taxel
+constexpr double kLittleLeft = 0.6;    // readings of a line together, over what a taxel of 0 ohm reads alone
+constexpr std::size_t kAtOnce = 4;     // sums that do not wait for each other
 
 }  // namespace
 
@@ -149,7 +149,7 @@ ReadingVerdict PossibleReadings::judge(std::size_t taxel, std::span<const double
   return of_short < 0.0 ? ReadingVerdict::shorted : ReadingVerdict::possible;
 }
 
-void PossibleReadings::take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept {
+bool PossibleReadings::take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept {
   bool any = false;
   double most = 0.0;
   std::size_t largest_of_all = 0;
@@ -175,6 +175,7 @@ void PossibleReadings::take_largest(std::span<const double> ratio, std::span<Tax
     any = true;
   }
   if (!any && most > 0.0) taxels[largest_of_all] = TaxelStatus::invalid;
+  return any || most > 0.0;
 }
 
 }  // namespace dermis::compensation

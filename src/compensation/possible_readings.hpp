@@ -37,8 +37,9 @@ class PossibleReadings {
     return ratio / most_ratio_[taxel];
   }
 
-  /// The largest reading of each line that has little left of the supply becomes invalid, or the largest of all.
-  void take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept;
+  /// The largest reading of each line that has little left of the supply becomes invalid, or the largest of all; false:
+  /// there is none.
+  bool take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept;
 
  private:
   /// The head of a sensed line, as a reading tells it.

@@ -67,9 +67,8 @@ void estimate_with_shorted(GroundedRowsState& state) noexcept {
     }
     for (std::size_t col = 0; col < state.stride; ++col) sum += line[col];
     const Crossing* const own = crossing_of_row(state, row);
-    const double left = own != nullptr
-                            ? state.column_ohm[own->col] * state.measured[row * state.stride + own->col]
-                            : 1.0 - state.drive_ohm[row] * sum;
+    const double left = own != nullptr ? state.column_ohm[own->col] * state.measured[row * state.stride + own->col]
+                                       : 1.0 - state.drive_ohm[row] * sum;
     for (std::size_t col = 0; col < state.stride; ++col) line[col] /= std::clamp(left, 0.05, 1.0);
   }
   for (const Crossing& crossing : state.shorted) {

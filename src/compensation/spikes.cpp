@@ -10,7 +10,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr Nanos kLongestGap = std::chrono::milliseconds(50);
-constexpr double kLeastJump = 0.05;   // of the supply
+constexpr double kLeastJump = 0.05;  // of the supply
 constexpr double kLoadedSigmas = 20.0;
 constexpr double kMostChange = 0.3;   // of a load that is about what it was
 constexpr double kMostChanged = 0.4;  // of the loads; else the frame is not compared with the last
@@ -18,9 +18,9 @@ constexpr std::size_t kNear = 2;      // places: a press reaches them
 constexpr double kLeastFall = 0.05;   // of the others' readings
 constexpr double kSeenSigmas = 6.0;   // of a fall of one reading, or of all small ones together
 constexpr double kSeenTogether = 4.0;
-constexpr double kMoreStay = 2.0;     // than fall
-constexpr double kNewShare = 0.125;   // of a reading in its mean
-constexpr double kLeastLeft = 0.01;   // of the supply
+constexpr double kMoreStay = 2.0;    // than fall
+constexpr double kNewShare = 0.125;  // of a reading in its mean
+constexpr double kLeastLeft = 0.01;  // of the supply
 constexpr std::uint8_t kMostFrames = 3;
 
 /// The lines along which one taxel takes from the others, or nothing.

@@ -43,8 +43,8 @@ class Spikes {
   }
 
   std::size_t cols_;
-  Axis axis_;                        // of the lines whose readings share a supply
-  std::vector<double> taken_;        // of it by a reading of 1, [places, lines]; empty: nothing is known of the circuit
+  Axis axis_;                  // of the lines whose readings share a supply
+  std::vector<double> taken_;  // of it by a reading of 1, [places, lines]; empty: nothing is known of the circuit
   std::size_t lines_;
   std::size_t places_;
   bool has_last_ = false;

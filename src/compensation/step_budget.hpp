@@ -34,6 +34,8 @@ class StepBudget {
     return left_ >= 0.0;
   }
 
+  [[nodiscard]] bool is_used_up() const noexcept { return left_ <= 0.0; }
+
  private:
   static constexpr double kTimes = 2.5;
   static constexpr double kShare = 1.0 / 32.0;

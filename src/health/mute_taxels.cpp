@@ -52,8 +52,8 @@ std::vector<std::string> MuteTaxels::findings() const {
     if (forces_[taxel] == 0) {
       found.push_back(fmt::format("taxel {} has a force in none of {} frames: check what it reads", name, frames_));
     } else if (noise_shows && is_high_[taxel] && changes_[taxel] == 0) {
-      found.push_back(fmt::format("taxel {} reads {:g} counts in all {} frames: check the electronics that read it", name,
-                                  counts_[taxel], frames_));
+      found.push_back(fmt::format("taxel {} reads {:g} counts in all {} frames: check the electronics that read it",
+                                  name, counts_[taxel], frames_));
     }
   }
   if (found.size() > std::max<std::size_t>(forces_.size() / kMostShare, 1)) found.clear();

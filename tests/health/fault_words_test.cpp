@@ -54,9 +54,10 @@ TEST(FaultWords, each_kind_says_how_many_taxels_are_masked) {
 }
 
 TEST(FaultWords, readings_without_an_explanation_name_their_lines) {
-  EXPECT_EQ(words_of(fault_of(LineFaultKind::shorted_crossing, 13)),
-            "is shorted: row 2 and column 3 touch since frame 7: look for a bridge between the two; the taxel is masked, "
-            "the rest is still good");
+  EXPECT_EQ(
+      words_of(fault_of(LineFaultKind::shorted_crossing, 13)),
+      "is shorted: row 2 and column 3 touch since frame 7: look for a bridge between the two; the taxel is masked, "
+      "the rest is still good");
   EXPECT_EQ(words_of(fault_of(LineFaultKind::impossible_reading, 13)),
             "reads more than the circuit can give since frame 7: check the electronics that read taxel r2c3; the taxel "
             "is masked, the rest is still good");

@@ -14,17 +14,17 @@ namespace dermis::compensation {
 
 /// What can be seen of a fault from the readings alone.
 enum class LineFaultKind {
-  silent_row,       ///< Open or shorted to 0 V: nothing arrives from the row.
-  silent_column,    ///< The same of a column.
-  supplied_row,     ///< Shorted to the supply: every scan also holds its readings.
-  supplied_column,  ///< Shorted to the supply: it reads full scale whatever is pressed.
-  shorted_rows,     ///< Shorted to the next row: both read their sum.
-  shorted_columns,  ///< Shorted to the next column.
-  stuck_taxel,      ///< Its reading stays the same, noise included.
-  dead_taxel,       ///< Reads less than an unloaded taxel can.
+  silent_row,          ///< Open or shorted to 0 V: nothing arrives from the row.
+  silent_column,       ///< The same of a column.
+  supplied_row,        ///< Shorted to the supply: every scan also holds its readings.
+  supplied_column,     ///< Shorted to the supply: it reads full scale whatever is pressed.
+  shorted_rows,        ///< Shorted to the next row: both read their sum.
+  shorted_columns,     ///< Shorted to the next column.
+  stuck_taxel,         ///< Its reading stays the same, noise included.
+  dead_taxel,          ///< Reads less than an unloaded taxel can.
   shorted_crossing,    ///< Row and column of a taxel touch there and are one line.
   impossible_reading,  ///< A taxel reads more than the circuit can give.
-  drifting_driver,  ///< The resistance of a driver has risen: the whole line sags with its own current.
+  drifting_driver,     ///< The resistance of a driver has risen: the whole line sags with its own current.
 };
 
 /// What has happened, wherever it is.

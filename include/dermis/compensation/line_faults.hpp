@@ -36,9 +36,10 @@ namespace dermis::compensation {
 ///                             rises, and rise when it falls; reported, but neither masked nor corrected
 ///
 /// It cannot find a silent line of 16 whose unloaded taxels read below about 1.7 counts and 1.5 standard
-/// deviations each (sees_silent_*). Nor can it find a short between lines that nothing presses. A taxel stuck at an unloaded
-/// reading is not found either, nor one at the end of the ADC where its circuit can give that. With `circuit = "none"` silent lines and taxels are
-/// judged where nothing is pressed, shorts and drivers not at all. Not thread-safe: one per stream.
+/// deviations each (sees_silent_*). Nor can it find a short between lines that nothing presses. A taxel stuck at an
+/// unloaded reading is not found either, nor one at the end of the ADC where its circuit can give that. With `circuit =
+/// "none"` silent lines and taxels are judged where nothing is pressed, shorts and drivers not at all. Not thread-safe:
+/// one per stream.
 class LineFaultMonitor {
  public:
   /// `unloaded_siemens` [rows, cols]: conductance of the unloaded taxels [S]; 0 or less if unknown, or if the taxel is

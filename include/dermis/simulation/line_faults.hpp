@@ -27,15 +27,15 @@ struct BrokenLines {
 
 /// What is broken in a simulated array, and when.
 struct LineFaults {
-  BrokenLines rows;                        ///< In files "open_rows", "grounded_rows" and so on.
-  BrokenLines columns;                     ///< The same.
-  std::vector<std::string> dead_taxels;    ///< "r3c5": no contact at the crossing, 0 S.
-  std::vector<std::string> stuck_taxels;   ///< "r3c5": the reading does not change.
-  double stuck_ratio = 0.25;               ///< Reading of the stuck taxels over the supply, without noise, 0 ... 1.
-  std::vector<std::string> shorted_taxels; ///< "r3c5": row 3 and column 5 touch there, they are one line.
-  std::vector<std::size_t> drifting_rows;  ///< The driver's resistance rises (the driver of a column in `flexitac`)
-  double drift_ohm = 0.0;                  ///< by this in the end [ohm], >= 0,
-  std::size_t drift_frames = 0;            ///< linearly over so many frames; 0: at once.
+  BrokenLines rows;                         ///< In files "open_rows", "grounded_rows" and so on.
+  BrokenLines columns;                      ///< The same.
+  std::vector<std::string> dead_taxels;     ///< "r3c5": no contact at the crossing, 0 S.
+  std::vector<std::string> stuck_taxels;    ///< "r3c5": the reading does not change.
+  double stuck_ratio = 0.25;                ///< Reading of the stuck taxels over the supply, without noise, 0 ... 1.
+  std::vector<std::string> shorted_taxels;  ///< "r3c5": row 3 and column 5 touch there, they are one line.
+  std::vector<std::size_t> drifting_rows;   ///< The driver's resistance rises (the driver of a column in `flexitac`)
+  double drift_ohm = 0.0;                   ///< by this in the end [ohm], >= 0,
+  std::size_t drift_frames = 0;             ///< linearly over so many frames; 0: at once.
 
   std::size_t from_frame = 0;                                         ///< First frame with the faults.
   std::size_t until_frame = std::numeric_limits<std::size_t>::max();  ///< First frame without them again.

@@ -21,7 +21,7 @@ constexpr double kMostOfColumn = 0.6;     // taxels that read no more than unloa
 constexpr double kUnloadedSigmas = 3.0;
 constexpr double kColumnSigmas = 4.0;
 constexpr double kPerFrameOfColumn = 0.5 * kPerFrame;
-constexpr double kSilentShare = 0.5;      // of what the taxels of a row read unloaded
+constexpr double kSilentShare = 0.5;  // of what the taxels of a row read unloaded
 constexpr double kSilentSigmas = 5.0;
 
 bool is_of_faulty_line(const FaultList& faults, std::size_t taxel) {
