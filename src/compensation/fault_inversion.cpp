@@ -226,6 +226,7 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   average_shorted_lines();
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
   if (!lines_are_faulty_) return keep_estimates(healthy, siemens);
+  healthy.start_frame(false);  // what another circuit takes tells nothing of the frames without a fault
   estimate_unknown(equivalent_);
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);

@@ -14,7 +14,7 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr double kLeastSteps = 12.0;  // of a frame where steps are bounded
+constexpr double kLeastSteps = 20.0;  // of a frame where steps are bounded
 constexpr double kMixedWork = 8.0;    // of a mixed step beside a plain one
 constexpr int kPlainSteps = 24;
 constexpr double kShrinks = 0.95;  // of the certificate in a step; what shrinks less is left to the mixing
@@ -105,7 +105,6 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
 }
 
 bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
-  forget();
   state_.shorted.clear();
   joined_.pairs.clear();
   state_.drive_ohm = joined_.drive_ohm;

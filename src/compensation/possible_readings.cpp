@@ -19,6 +19,11 @@ constexpr double kShortShare = 0.005;  // likewise; a mistake costs one taxel
 constexpr double kLittleLeft = 0.6;    // readings of a line together, over what a taxel of 0 ohm reads alone
 constexpr std::size_t kAtOnce = 4;     // sums that do not wait for each other
 
+/// Of a line of so many taxels: where more of its readings are impossible, none of them tells anything.
+std::size_t most_taken(std::size_t taxels) {
+  return std::max<std::size_t>(2, taxels / 4);
+}
+
 }  // namespace
 
 PossibleReadings::PossibleReadings(const ArrayDescription& array)
@@ -69,7 +74,7 @@ bool PossibleReadings::may_exceed(std::size_t driven, std::span<const double> ra
 
 void PossibleReadings::check_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
                                     std::span<TaxelStatus> taxels) const noexcept {
-  for (std::size_t found = 0; found < heads_.size(); ++found) {
+  for (std::size_t found = 0;; ++found) {
     const double line_drop = drop(driven, ratio, taxels);
     std::size_t worst = heads_.size();
     double least = 0.0;
@@ -83,7 +88,11 @@ void PossibleReadings::check_driven(std::size_t driven, std::span<const double> 
       worst = sensed;
     }
     if (worst == heads_.size()) return;
+    if (found == most_taken(heads_.size())) break;
     taxels[taxel_of(driven, worst)] = TaxelStatus::invalid;
+  }
+  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+    taxels[taxel_of(driven, sensed)] = TaxelStatus::invalid;
   }
 }
 
@@ -101,7 +110,13 @@ void PossibleReadings::check_sums(std::span<const double> ratio, double sigma_ra
       const std::size_t taxel = taxel_of(driven, sensed);
       if (taxels[taxel] != TaxelStatus::invalid) sum += ratio[taxel];
     }
-    while (sum > 1.0 + kAllowedShare + noise) {
+    for (std::size_t found = 0; sum > 1.0 + kAllowedShare + noise; ++found) {
+      if (found == most_taken(drive_ohm_.size())) {
+        for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+          taxels[taxel_of(driven, sensed)] = TaxelStatus::invalid;
+        }
+        break;
+      }
       std::size_t worst = taxels.size();
       for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
         const std::size_t taxel = taxel_of(driven, sensed);

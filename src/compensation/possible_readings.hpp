@@ -25,7 +25,7 @@ class PossibleReadings {
   explicit PossibleReadings(const ArrayDescription& array);
 
   /// Taxels whose reading the circuit cannot give, or only where row and column touch, become invalid, the worst of a
-  /// line first. `sigma_ratio` is the noise of a reading. Allocates nothing.
+  /// line first; all of a line where they are many. `sigma_ratio` is the noise of a reading. Allocates nothing.
   void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
 
   /// Of one taxel, beside those of its line that are not invalid.

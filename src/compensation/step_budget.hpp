@@ -14,16 +14,19 @@ class StepBudget {
   /// `least`: of any frame; 0: nothing is bounded.
   explicit StepBudget(double least) : least_(least) {}
 
-  void start_frame() noexcept {
-    if (least_ == 0.0) return;
+  void start_frame(bool bounded = true) noexcept {
     used_ = 0.0;
+    is_example_ = bounded;
+    left_ = std::numeric_limits<double>::infinity();
+    if (least_ == 0.0 || !bounded) return;
     const bool is_known = typical_ > 0.0 || frames_ == kFirstFrames;
     frames_ += is_known ? 0 : 1;
-    left_ = is_known ? least_ + kTimes * typical_ : std::numeric_limits<double>::infinity();
+    if (is_known) left_ = least_ + kTimes * typical_;
   }
 
   /// The work of this frame is an example of what frames take.
   void learn() noexcept {
+    if (!is_example_) return;
     typical_ = typical_ == 0.0 ? used_ : typical_ + kShare * (std::min(used_, kMostRise * typical_) - typical_);
   }
 
@@ -45,6 +48,7 @@ class StepBudget {
   double least_;
   double typical_ = 0.0;
   double used_ = 0.0;
+  bool is_example_ = true;
   double left_ = std::numeric_limits<double>::infinity();
   int frames_ = 0;
 };

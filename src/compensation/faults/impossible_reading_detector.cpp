@@ -22,7 +22,7 @@ constexpr double kUnloadedSigmas = 3.0;
 constexpr double kColumnSigmas = 4.0;
 constexpr double kPerFrameOfColumn = 0.5 * kPerFrame;
 constexpr double kSilentShare = 0.5;  // of what the taxels of a row read unloaded
-constexpr double kSilentSigmas = 5.0;
+constexpr double kSilentSigmas = 3.0;
 
 bool is_of_faulty_line(const FaultList& faults, std::size_t taxel) {
   return (faults.causes(taxel) & (kRowCause | kColumnCause | kPairCause)) != 0;
