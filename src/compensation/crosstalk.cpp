@@ -22,6 +22,7 @@ namespace {
 
 constexpr double kToleranceCounts = 0.01;
 constexpr int kMostAttempts = 3;
+constexpr double kRetryShare = 0.15;            // of the steps of a frame
 constexpr double kGoodEnoughSigmas = 0.3;       // of a reading: where the steps of a frame are used up
 constexpr double kFaultToleranceCounts = 0.05;  // around an inversion that is right to kToleranceCounts
 
@@ -149,7 +150,7 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
   for (int attempt = 0; attempt < kMostAttempts && !result.solved; ++attempt) {
     if (attempt > 0 && !possible_->take_largest(conditioned.ratio, conductance.taxels)) break;
     if (are_most_taken(conditioned.taxels, conductance.taxels)) break;
-    inversion_->start_frame();
+    inversion_->start_frame(attempt == 0 ? 1.0 : kRetryShare);
     result = invert(conditioned.ratio, conductance);
     result.solved = result.solved || result.residual_ratio <= kGoodEnoughSigmas * conditioned.sigma_ratio;
   }

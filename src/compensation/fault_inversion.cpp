@@ -15,8 +15,9 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxRounds = 20;
-constexpr int kEstimateRounds = 2;        // what the neighbours of a taxel tell hardly depends on it
-constexpr std::uint8_t kLong = 4;         // frames without a reading, after which the last conductance tells nothing
+constexpr int kEstimateRounds = 3;  // what the neighbours of a taxel tell hardly depends on it
+constexpr std::uint8_t kLong = 4;   // frames without a reading, after which the last conductance tells nothing
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kDoubtOfUnknown = 0.5;  // relative
 constexpr double kDoubtOfHeld = 0.1;
 constexpr double kShortSiemens = 20.0;  // of a shorted crossing that is kept
@@ -110,7 +111,9 @@ void FaultInversion::add(const LineFault& fault) {
   const LineFaultTraits& traits = traits_of(fault.kind);
   for_each_masked_taxel(fault, array_, [&](std::size_t taxel) {
     is_.masked[taxel] = 1;
-    if (traits.hides_conductance) is_.hidden[taxel] = 1;
+    if (!traits.hides_conductance) return;
+    is_.hidden[taxel] = 1;
+    last_.frames_ago[taxel] = kLong;  // what it was came of the fault, too
   });
   if (array_.readout.circuit == Circuit::none) return;  // nothing to subtract or to solve
   if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
@@ -178,7 +181,7 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& healt
 /// A conductance of a driven line k and a sensed line j that is wrong by d changes the others by the share Rd_k d, or
 /// RL_j d, to first order.
 void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept {
-  if (array_.readout.circuit == Circuit::none) return;
+  if (array_.readout.circuit == Circuit::none || lines_are_faulty_) return;
   const Axis driven = driven_axis(array_);
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
     if (is_.unknown[taxel] == 0) continue;
@@ -226,7 +229,7 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   average_shorted_lines();
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
   if (!lines_are_faulty_) return keep_estimates(healthy, siemens);
-  healthy.start_frame(false);  // what another circuit takes tells nothing of the frames without a fault
+  healthy.start_frame(kUnbounded);  // what another circuit takes tells nothing of the frames without a fault
   estimate_unknown(equivalent_);
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
@@ -244,13 +247,17 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   return result;
 }
 
-/// The lines are healthy: taxels without a reading are estimated from their neighbours, and these solved with them.
+/// The lines are healthy: taxels without a reading are estimated from their neighbours, and these solved with them. At
+/// first the readings of the neighbours tell of taxels that have had none for long.
 InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept {
+  estimate_unknown(equivalent_);
+  hold_missing(siemens);
+  keep_crossings(siemens);
+  InversionResult result = healthy.invert(equivalent_, siemens);
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
     if (is_.unknown[taxel] != 0) equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
   }
-  InversionResult result;
-  for (int round = 0; round < kEstimateRounds; ++round) {
+  for (int round = 1; round < kEstimateRounds; ++round) {
     estimate_unknown(siemens);
     hold_missing(siemens);
     keep_crossings(siemens);
@@ -260,9 +267,11 @@ InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std:
 }
 
 /// What a taxel was a moment ago tells more than its neighbours do.
-void FaultInversion::hold_missing(std::span<double> siemens) const noexcept {
+void FaultInversion::hold_missing(std::span<double> siemens) noexcept {
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (is_.unknown[taxel] != 0 && last_.frames_ago[taxel] < kLong) siemens[taxel] = last_.siemens[taxel];
+    if (is_.unknown[taxel] == 0 || last_.frames_ago[taxel] == kLong) continue;
+    siemens[taxel] = last_.siemens[taxel];
+    equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
   }
 }
 

@@ -109,7 +109,7 @@ class FaultInversion {
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
   InversionResult keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept;
-  void hold_missing(std::span<double> siemens) const noexcept;
+  void hold_missing(std::span<double> siemens) noexcept;
   void keep_crossings(std::span<double> siemens) noexcept;
   double correct(bool first) noexcept;
   void estimate_unknown(std::span<double> values) const noexcept;

@@ -14,8 +14,8 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr double kLeastSteps = 20.0;  // of a frame where steps are bounded
-constexpr double kMixedWork = 8.0;    // of a mixed step beside a plain one
+constexpr double kLeastSteps = 200.0;  // of a frame where steps are bounded
+constexpr double kMixedWork = 8.0;     // of a mixed step beside a plain one
 constexpr int kPlainSteps = 24;
 constexpr double kShrinks = 0.95;  // of the certificate in a step; what shrinks less is left to the mixing
 constexpr int kMixedSteps = 400;

@@ -61,7 +61,7 @@ class GroundedRows final : public CrosstalkInversion {
   GroundedRows(const ArrayDescription& array, double tolerance_ratio, const InversionOptions& options);
   [[nodiscard]] InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept override;
   [[nodiscard]] bool set_shorted(std::span<const std::size_t> taxels) noexcept override;
-  void start_frame(bool bounded) noexcept override { budget_.start_frame(bounded); }
+  void start_frame(double share) noexcept override { budget_.start_frame(share); }
   void forget() noexcept override;
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override;
   [[nodiscard]] double siemens_per_ratio() const noexcept override;

@@ -11,7 +11,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxSteps = 80;
-constexpr double kLeastWork = 6.0;               // of a frame where steps are bounded: solutions of the circuit
+constexpr double kLeastWork = 40.0;              // of a frame where steps are bounded: solutions of the circuit
 constexpr double kLongestStep = 2.0;             // of x: a factor of e^2 where x is a logarithm
 constexpr double kShortestFraction = 1.0 / 8.0;  // of a step
 constexpr double kLeastDamping = 1e-3;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace dermis::compensation {
@@ -14,14 +15,15 @@ class StepBudget {
   /// `least`: of any frame; 0: nothing is bounded.
   explicit StepBudget(double least) : least_(least) {}
 
-  void start_frame(bool bounded = true) noexcept {
+  /// `share`: of what a frame may take; infinite: nothing is bounded, and this frame is no example.
+  void start_frame(double share = 1.0) noexcept {
     used_ = 0.0;
-    is_example_ = bounded;
+    is_example_ = std::isfinite(share);
     left_ = std::numeric_limits<double>::infinity();
-    if (least_ == 0.0 || !bounded) return;
+    if (least_ == 0.0 || !is_example_) return;
     const bool is_known = typical_ > 0.0 || frames_ == kFirstFrames;
     frames_ += is_known ? 0 : 1;
-    if (is_known) left_ = least_ + kTimes * typical_;
+    if (is_known) left_ = share * (least_ + kTimes * typical_);
   }
 
   /// The work of this frame is an example of what frames take.

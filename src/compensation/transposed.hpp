@@ -32,7 +32,7 @@ class Transposed final : public CrosstalkInversion {
     for (const std::size_t taxel : taxels) shorted_.push_back(taxel % cols_ * rows_ + taxel / cols_);
     return inversion_->set_shorted(shorted_);
   }
-  void start_frame(bool bounded) noexcept override { inversion_->start_frame(bounded); }
+  void start_frame(double share) noexcept override { inversion_->start_frame(share); }
   void forget() noexcept override { inversion_->forget(); }
   void propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept override {
     inversion_->propagate_noise(sigma_ratio, values_);

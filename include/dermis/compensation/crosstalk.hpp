@@ -54,8 +54,8 @@ class CrosstalkInversion {
   /// holds the best attempt. Allocates nothing.
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
-  /// The next calls of invert() share what one frame may take; without `bounded` nothing limits them.
-  virtual void start_frame(bool /*bounded*/ = true) noexcept {}
+  /// The next calls of invert() together may take this share of what one frame may; infinite: nothing limits them.
+  virtual void start_frame(double /*share*/ = 1.0) noexcept {}
 
   /// From the next frame on, the row and the column of each of these taxels are one node, and their own conductances
   /// are not solved; a second call replaces the first. false: this circuit is not solved so, the taxels are to be kept
