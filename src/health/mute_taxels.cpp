@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kFewestFrames = 50;
 constexpr double kHighSigmas = 20.0;
 constexpr double kNoiseThatShows = 0.7;  // counts; below it good readings repeat, too
-constexpr std::size_t kMostShare = 8;    // one taxel in so many
+constexpr std::size_t kMostNamed = 8;
 
 }  // namespace
 
@@ -46,18 +46,49 @@ std::vector<std::string> MuteTaxels::findings() const {
   std::vector<std::string> found;
   if (frames_ < kFewestFrames) return found;
   const bool noise_shows = model_.array.readout.adc_noise_counts > kNoiseThatShows;
+  std::vector<bool> mute(forces_.size());
+  std::vector<bool> fixed(forces_.size());
   for (std::size_t taxel = 0; taxel < forces_.size(); ++taxel) {
     if (is_explained_[taxel]) continue;
-    const std::string name = model_.array.taxel_name(taxel);
-    if (forces_[taxel] == 0) {
-      found.push_back(fmt::format("taxel {} has a force in none of {} frames: check what it reads", name, frames_));
-    } else if (noise_shows && is_high_[taxel] && changes_[taxel] == 0) {
-      found.push_back(fmt::format("taxel {} reads {:g} counts in all {} frames: check the electronics that read it",
-                                  name, counts_[taxel], frames_));
+    mute[taxel] = forces_[taxel] == 0;
+    fixed[taxel] = !mute[taxel] && noise_shows && is_high_[taxel] && changes_[taxel] == 0;
+  }
+  name(mute, fmt::format("no force in any of {} frames: check what is read there", frames_), found);
+  name(fixed, fmt::format("the same high reading in all {} frames: check the electronics that read it", frames_),
+       found);
+  return found;
+}
+
+/// Whole lines by one sentence each; taxels one by one where they are few.
+void MuteTaxels::name(std::vector<bool> taxels, const std::string& what, std::vector<std::string>& found) const {
+  const ArrayDescription& array = model_.array;
+  const auto count = [&] { return static_cast<std::size_t>(std::count(taxels.begin(), taxels.end(), true)); };
+  const bool is_most = 2 * count() > taxels.size();
+  for (const Axis axis : kAxes) {
+    for (std::size_t line = 0; line < line_count(array, axis) && !is_most; ++line) {
+      if (!is_whole_line(taxels, axis, line)) continue;
+      found.push_back(fmt::format("{} {} has {}", to_string(axis), line, what));
+      for (std::size_t k = 0; k < line_length(array, axis); ++k) taxels[taxel_on_line(array, axis, line, k)] = false;
     }
   }
-  if (found.size() > std::max<std::size_t>(forces_.size() / kMostShare, 1)) found.clear();
-  return found;
+  if (count() > kMostNamed) {
+    found.push_back(fmt::format("{} taxels have {}", count(), what));
+    return;
+  }
+  for (std::size_t taxel = 0; taxel < taxels.size(); ++taxel) {
+    if (taxels[taxel]) found.push_back(fmt::format("taxel {} has {}", array.taxel_name(taxel), what));
+  }
+}
+
+/// But for taxels that something else explains.
+bool MuteTaxels::is_whole_line(const std::vector<bool>& taxels, Axis axis, std::size_t line) const {
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < line_length(model_.array, axis); ++k) {
+    const std::size_t taxel = taxel_on_line(model_.array, axis, line, k);
+    if (!taxels[taxel] && !is_explained_[taxel]) return false;
+    count += taxels[taxel] ? 1 : 0;
+  }
+  return 2 * count > line_length(model_.array, axis);
 }
 
 }  // namespace dermis::health

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dermis/core/axis.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/pipeline/model.hpp"
 
@@ -20,10 +21,13 @@ class MuteTaxels {
   /// A frame that was solved.
   void add(const RawFrame& raw, const ConditionedFrame& conditioned, const ForceFrame& force);
 
-  /// A sentence each, few at most; empty before there are enough frames, and where it is so of much of the array.
+  /// A sentence for each line or taxel, few at most; empty before there are enough frames.
   [[nodiscard]] std::vector<std::string> findings() const;
 
  private:
+  void name(std::vector<bool> taxels, const std::string& what, std::vector<std::string>& found) const;
+  [[nodiscard]] bool is_whole_line(const std::vector<bool>& taxels, Axis axis, std::size_t line) const;
+
   const pipeline::Model& model_;
   std::size_t frames_ = 0;
   std::vector<std::size_t> forces_;   // frames with a force [taxels]

@@ -4,9 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "dermis/simulation/adc.hpp"
@@ -227,6 +229,43 @@ TEST(Examination, a_taxel_without_a_reading_is_named) {
   const Diagnosis diagnosis = examined.diagnosis();
   EXPECT_EQ(diagnosis.frames_rejected, 0U);
   EXPECT_TRUE(says(diagnosis, "no reading (not a number, or outside the ADC) of r0c5 in 7 of 10 frames"));
+}
+
+/// Frames of an array of which these readings stand at the end of the ADC.
+Diagnosis examine_saturated(const std::vector<std::size_t>& taxels) {
+  const Measurement measurement;
+  Examined examined(measurement.model);
+  for (std::size_t frame = 0; frame < 100; ++frame) {
+    RawFrame raw = measurement.frame(frame);
+    for (const std::size_t taxel : taxels) raw.counts[taxel] = 65535.0F;
+    examined.add(raw);
+  }
+  return examined.diagnosis();
+}
+
+std::size_t findings_with(const Diagnosis& diagnosis, const std::string& words) {
+  return static_cast<std::size_t>(
+      std::count_if(diagnosis.findings.begin(), diagnosis.findings.end(),
+                    [&](const std::string& finding) { return finding.find(words) != std::string::npos; }));
+}
+
+TEST(Examination, a_reading_that_the_circuit_cannot_give_is_named) {
+  const Diagnosis diagnosis = examine_saturated({3 * 8 + 4});
+  EXPECT_EQ(diagnosis.frames_unsolved, 0U);
+  EXPECT_EQ(findings_with(diagnosis, "r3c4 reads more than the circuit can give"), 1U);
+}
+
+TEST(Examination, a_saturated_line_and_a_saturated_array_are_one_finding_each) {
+  std::vector<std::size_t> row;
+  for (std::size_t col = 0; col < 8; ++col) row.push_back(3 * 8 + col);
+  const Diagnosis of_row = examine_saturated(row);
+  EXPECT_EQ(findings_with(of_row, "row 3 has no force in any of 100 frames"), 1U);
+  EXPECT_EQ(findings_with(of_row, "taxel"), 0U);
+  std::vector<std::size_t> all(64);
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  const Diagnosis of_all = examine_saturated(all);
+  EXPECT_FALSE(of_all.is_healthy());
+  EXPECT_LE(of_all.findings.size(), 3U);
 }
 
 TEST(Examination, rejected_frames_are_counted_by_their_reason) {

@@ -3,6 +3,7 @@
 #include "compensation/faults/impossible_reading_detector.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -10,7 +11,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kFrames = 10;
-constexpr std::size_t kMostTaken = 8;  // in one frame: more have a cause in common
+constexpr std::size_t kMostFound = 8;  // in one frame, and at once: more have a cause in common
 constexpr double kPerFrame = kEvidence / kFrames;
 constexpr double kStillShorted = 0.5;     // of what a taxel of 0 ohm reads alone
 constexpr double kMostRepetitions = 0.8;  // of the frames; what repeats more, though there is noise, is stuck
@@ -41,7 +42,7 @@ ImpossibleReadingDetector::ImpossibleReadingDetector(const ArrayDescription& arr
     : array_(array),
       possible_(array),
       columns_tell_(array.readout.circuit == Circuit::divider && array.readout.idle_rows == IdleRows::grounded) {
-  watched_.reserve(array.taxel_count());
+  watched_.reserve(kMostFound);
 }
 
 void ImpossibleReadingDetector::judge(const Observation& seen, FaultList& faults) noexcept {
@@ -71,7 +72,7 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultLi
     const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
     taken += is_taken || (rails && before[taxel] == TaxelStatus::saturated) ? 1 : 0;
   }
-  if (taken == 0 || !seen.solved || taken > kMostTaken) return;
+  if (taken == 0 || !seen.solved || taken > kMostFound) return;
   for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
     const bool is_saturated = rails && before[taxel] == TaxelStatus::saturated;
     const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
@@ -80,13 +81,14 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultLi
 }
 
 void ImpossibleReadingDetector::watch_columns(const Observation& seen, const FaultList& faults) noexcept {
-  const std::span<const double> sums = seen.sums.ratio(Axis::column);
-  for (std::size_t col = 0; col < array_.cols; ++col) {
-    if (sums[col] < kHigh) continue;
-    for (std::size_t taxel = col; taxel < array_.taxel_count(); taxel += array_.cols) {
-      if (verdict(seen, taxel) == ReadingVerdict::impossible) watch(taxel, faults);
-    }
+  std::array<std::size_t, kMostFound> found;
+  std::size_t count = 0;
+  for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {
+    if (seen.conditioned.ratio[taxel] < kHigh || verdict(seen, taxel) != ReadingVerdict::impossible) continue;
+    if (count == kMostFound) return;
+    found[count++] = taxel;
   }
+  for (std::size_t k = 0; k < count; ++k) watch(found[k], faults);
 }
 
 /// Of a high reading; `possible` where the others of its column have fallen.
@@ -114,7 +116,8 @@ ReadingVerdict ImpossibleReadingDetector::verdict_of_column(const Observation& s
 /// Unless its line explains it.
 void ImpossibleReadingDetector::watch(std::size_t taxel, const FaultList& faults) noexcept {
   const auto is_same = [taxel](const Watched& watched) { return watched.taxel == taxel; };
-  if (is_of_faulty_line(faults, taxel) || std::any_of(watched_.begin(), watched_.end(), is_same)) return;
+  if (watched_.size() == kMostFound || is_of_faulty_line(faults, taxel)) return;
+  if (std::any_of(watched_.begin(), watched_.end(), is_same)) return;
   watched_.push_back({});
   watched_.back().taxel = taxel;
 }

@@ -17,7 +17,8 @@ namespace dermis::compensation {
 /// virtual ground a shorted crossing is a saturated taxel on a row that else reads nothing.
 ///
 /// Where idle rows are grounded, a taxel that reads T leaves the others of its column 1 - T of what they read. A high
-/// reading beside which most of the column reads as unloaded is impossible, too; that takes twenty frames.
+/// reading beside which most of the column reads as unloaded is impossible, too; that takes twenty frames. At most
+/// eight readings have a name at once: more are a line's, or the array's.
 class ImpossibleReadingDetector {
  public:
   explicit ImpossibleReadingDetector(const ArrayDescription& array);
