@@ -107,6 +107,7 @@ void Compensator::set_faults(std::span<const LineFault> faults) {
 
 void Compensator::forget() noexcept {
   inversion_->forget();
+  possible_->forget();
   spikes_->forget();
   faults_->forget();
 }

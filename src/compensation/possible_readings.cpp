@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "compensation/sensed_line.hpp"
 #include "dermis/core/axis.hpp"
@@ -15,7 +16,10 @@ namespace {
 constexpr double kAllowedShare = 0.02;  // by which resistances of the readout and the supply may be wrong
 constexpr double kAllowedSigmas = 6.0;
 constexpr double kShortOhm = 10.0;     // of taxels none has less
-constexpr double kShortShare = 0.005;  // likewise; a mistake costs one taxel
+constexpr double kShortOfLoad = 0.02;  // likewise
+constexpr double kShortShare = 0.005;  // as kAllowedShare; a mistake costs one taxel
+constexpr double kStillShort = 4.0;    // times as many ohm, where the last reading was not believed
+constexpr double kStillShare = 0.03;   // likewise, of the supply
 constexpr double kLittleLeft = 0.6;    // readings of a line together, over what a taxel of 0 ohm reads alone
 constexpr std::size_t kAtOnce = 4;     // sums that do not wait for each other
 
@@ -35,10 +39,14 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
       most_ratio_(array.taxel_count(), std::numeric_limits<double>::infinity()) {
   if (array.readout.circuit == Circuit::none) return;
   drive_ohm_ = array.readout.drive_ohm;
+  taken_.resize(array.taxel_count());
+  last_taken_.resize(array.taxel_count());
+  verdicts_.resize(array.sensed_lines());
   sums_.resize(array.sensed_lines());
   for (std::size_t line = 0; line < array.sensed_lines(); ++line) {
     const SensedLine sensed = sensed_line(array.readout, line);
-    heads_.push_back({1.0 / sensed.gain, -sensed.offset / sensed.gain, sensed.rho, sensed.emf});
+    heads_.push_back({1.0 / sensed.gain, -sensed.offset / sensed.gain, sensed.rho, sensed.emf,
+                      std::max(kShortOhm, kShortOfLoad * sensed.rho)});
     for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
       const double series = drive_ohm_[driven] + sensed.rho;
       if (!(series > 0.0)) continue;
@@ -49,8 +57,11 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
 
 void PossibleReadings::check(std::span<const double> ratio, double sigma_ratio,
                              std::span<TaxelStatus> taxels) noexcept {
+  std::swap(taken_, last_taken_);
+  std::fill(taken_.begin(), taken_.end(), std::uint8_t{0});
+  const bool is_wary = std::exchange(any_taken_, false);
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-    if (may_exceed(driven, ratio)) check_driven(driven, ratio, sigma_ratio, taxels);
+    if (is_wary || may_exceed(driven, ratio)) check_driven(driven, ratio, sigma_ratio, taxels);
   }
   if (sums_are_bounded_ && !drive_ohm_.empty()) check_sums(ratio, sigma_ratio, taxels);
 }
@@ -62,7 +73,7 @@ bool PossibleReadings::may_exceed(std::size_t driven, std::span<const double> ra
   for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
     const Head& head = heads_[sensed];
     const double own = head.current * ratio[taxel_of(driven, sensed)] + head.offset;
-    const double volts = (head.ohm + kShortOhm) * own + head.emf;
+    const double volts = (head.ohm + head.short_ohm) * own + head.emf;
     sums[sensed % kAtOnce] += one_loaded_ ? 0.0 : own;
     double& largest = most[sensed % kAtOnce];
     const double taken = one_loaded_ ? volts + drive_ohm_[driven] * own : volts;
@@ -73,27 +84,53 @@ bool PossibleReadings::may_exceed(std::size_t driven, std::span<const double> ra
 }
 
 void PossibleReadings::check_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
-                                    std::span<TaxelStatus> taxels) const noexcept {
-  for (std::size_t found = 0;; ++found) {
-    const double line_drop = drop(driven, ratio, taxels);
+                                    std::span<TaxelStatus> taxels) noexcept {
+  judge(driven, ratio, sigma_ratio, taxels, verdicts_);
+  const auto is_bad = [](ReadingVerdict verdict) { return verdict >= ReadingVerdict::shorted; };
+  const auto bad = static_cast<std::size_t>(std::count_if(verdicts_.begin(), verdicts_.end(), is_bad));
+  const bool is_all = bad > most_taken(heads_.size());
+  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+    if (is_all || is_bad(verdicts_[sensed])) take(taxel_of(driven, sensed), taxels);
+  }
+}
+
+void PossibleReadings::judge(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
+                             std::span<const TaxelStatus> taxels, std::span<ReadingVerdict> verdicts) const noexcept {
+  double total = 0.0;
+  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+    const std::size_t taxel = taxel_of(driven, sensed);
+    const bool is_there = taxels[taxel] != TaxelStatus::invalid;
+    verdicts[sensed] = is_there ? ReadingVerdict::possible : ReadingVerdict::unknown;
+    if (is_there) total += current(sensed, ratio[taxel]);
+  }
+  while (true) {
     std::size_t worst = heads_.size();
-    double least = 0.0;
+    Margins least{0.0, 0.0};
     for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+      if (verdicts[sensed] != ReadingVerdict::possible) continue;
       const std::size_t taxel = taxel_of(driven, sensed);
-      if (taxels[taxel] == TaxelStatus::invalid) continue;
-      const auto [of_short, of_circuit] = margins(driven, sensed, ratio[taxel], line_drop, sigma_ratio);
-      const double left = std::min(of_short, of_circuit);
-      if (!(left < least)) continue;
+      const Margins left = margins(driven, sensed, current(sensed, ratio[taxel]), total, sigma_ratio);
+      if (!(left.least() < least.least())) continue;
       least = left;
       worst = sensed;
     }
     if (worst == heads_.size()) return;
-    if (found == most_taken(heads_.size())) break;
-    taxels[taxel_of(driven, worst)] = TaxelStatus::invalid;
+    const bool is_impossible = least.of_circuit < 0.0;
+    verdicts[worst] = is_impossible ? ReadingVerdict::impossible : ReadingVerdict::shorted;
+    if (is_impossible) total -= current(worst, ratio[taxel_of(driven, worst)]);
   }
-  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
-    taxels[taxel_of(driven, sensed)] = TaxelStatus::invalid;
-  }
+}
+
+void PossibleReadings::take(std::size_t taxel, std::span<TaxelStatus> taxels) noexcept {
+  if (taxels[taxel] == TaxelStatus::invalid) return;
+  taxels[taxel] = TaxelStatus::invalid;
+  taken_[taxel] = 1;
+  any_taken_ = true;
+}
+
+void PossibleReadings::forget() noexcept {
+  any_taken_ = false;
+  std::fill(taken_.begin(), taken_.end(), std::uint8_t{0});
 }
 
 void PossibleReadings::check_sums(std::span<const double> ratio, double sigma_ratio,
@@ -113,7 +150,7 @@ void PossibleReadings::check_sums(std::span<const double> ratio, double sigma_ra
     for (std::size_t found = 0; sum > 1.0 + kAllowedShare + noise; ++found) {
       if (found == most_taken(drive_ohm_.size())) {
         for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-          taxels[taxel_of(driven, sensed)] = TaxelStatus::invalid;
+          take(taxel_of(driven, sensed), taxels);
         }
         break;
       }
@@ -123,45 +160,23 @@ void PossibleReadings::check_sums(std::span<const double> ratio, double sigma_ra
         if (taxels[taxel] == TaxelStatus::invalid) continue;
         if (worst == taxels.size() || ratio[taxel] > ratio[worst]) worst = taxel;
       }
-      taxels[worst] = TaxelStatus::invalid;
+      take(worst, taxels);
       sum -= ratio[worst];
     }
   }
 }
 
-/// Rd_k times the currents of the line; of one loaded column 0, where margins() counts its own.
-double PossibleReadings::drop(std::size_t driven, std::span<const double> ratio,
-                              std::span<const TaxelStatus> taxels) const noexcept {
-  double total = 0.0;
-  for (std::size_t sensed = 0; sensed < heads_.size() && !one_loaded_; ++sensed) {
-    const std::size_t taxel = taxel_of(driven, sensed);
-    if (taxels[taxel] != TaxelStatus::invalid) total += current(sensed, ratio[taxel]);
-  }
-  return drive_ohm_[driven] * total;
-}
-
-PossibleReadings::Margins PossibleReadings::margins(std::size_t driven, std::size_t sensed, double ratio, double drop,
+/// `own` is the current of the taxel, `total` that of all readings of the line.
+PossibleReadings::Margins PossibleReadings::margins(std::size_t driven, std::size_t sensed, double own, double total,
                                                     double sigma_ratio) const noexcept {
-  const double own = current(sensed, ratio);
-  const double volts = heads_[sensed].ohm * own + heads_[sensed].emf;
-  const double taken = volts + (one_loaded_ ? drive_ohm_[driven] * own : drop);
+  const Head& head = heads_[sensed];
+  const double taken = head.ohm * own + head.emf + drive_ohm_[driven] * (one_loaded_ ? own : total);
   const double slack = 1.0 - taken;
-  const double doubt = kAllowedSigmas * sigma_ratio * std::max(heads_[sensed].ohm * heads_[sensed].current, 0.0);
-  return {slack + kShortShare * taken + doubt - kShortOhm * own, slack + kAllowedShare * taken + doubt};
-}
-
-ReadingVerdict PossibleReadings::judge(std::size_t taxel, std::span<const double> ratio, double sigma_ratio,
-                                       std::span<const TaxelStatus> taxels) const noexcept {
-  if (drive_ohm_.empty()) return ReadingVerdict::possible;
-  const std::size_t driven = rows_are_driven_ ? taxel / cols_ : taxel % cols_;
-  const std::size_t sensed = rows_are_driven_ ? taxel % cols_ : taxel / cols_;
-  double line_drop = drop(driven, ratio, taxels);
-  if (taxels[taxel] == TaxelStatus::invalid && !one_loaded_) {
-    line_drop += drive_ohm_[driven] * current(sensed, ratio[taxel]);
-  }
-  const auto [of_short, of_circuit] = margins(driven, sensed, ratio[taxel], line_drop, sigma_ratio);
-  if (of_circuit < 0.0) return ReadingVerdict::impossible;
-  return of_short < 0.0 ? ReadingVerdict::shorted : ReadingVerdict::possible;
+  const double doubt = kAllowedSigmas * sigma_ratio * std::max(head.ohm * head.current, 0.0);
+  const bool was_taken = last_taken_[taxel_of(driven, sensed)] != 0;
+  const double short_ohm = head.short_ohm * (was_taken ? kStillShort : 1.0);
+  const double nearer = was_taken ? kStillShare * taken : 0.0;
+  return {slack + kShortShare * taken + doubt - short_ohm * own - nearer, slack + kAllowedShare * taken + doubt};
 }
 
 bool PossibleReadings::take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept {

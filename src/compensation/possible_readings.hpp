@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -19,7 +20,8 @@ enum class ReadingVerdict { possible, unknown, shorted, impossible };
 ///   slack_kj = 1 - Rd_k sum_j' I_kj' - V_kj        (one loaded column: - Rd_k I_kj)
 ///
 /// and its resistance at most slack / I. Where idle rows are grounded, the readings of a column are less than the
-/// supply together, as they are when all rows are driven at once.
+/// supply together, as they are when all rows are driven at once. A reading that was taken away in the last frame must
+/// stay further from its limits.
 class PossibleReadings {
  public:
   explicit PossibleReadings(const ArrayDescription& array);
@@ -28,9 +30,16 @@ class PossibleReadings {
   /// line first; all of a line where they are many. `sigma_ratio` is the noise of a reading. Allocates nothing.
   void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
 
-  /// Of one taxel, beside those of its line that are not invalid.
-  [[nodiscard]] ReadingVerdict judge(std::size_t taxel, std::span<const double> ratio, double sigma_ratio,
-                                     std::span<const TaxelStatus> taxels) const noexcept;
+  /// Of the readings of a driven line that are not invalid; `unknown` where they are. The worst is judged first: the
+  /// current of an impossible one is not there, that of a short is. `verdicts` [sensed]. Allocates nothing.
+  void judge(std::size_t driven, std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels,
+             std::span<ReadingVerdict> verdicts) const noexcept;
+
+  [[nodiscard]] std::size_t driven_lines() const noexcept { return drive_ohm_.size(); }
+  [[nodiscard]] std::size_t sensed_lines() const noexcept { return heads_.size(); }
+  [[nodiscard]] std::size_t taxel_of(std::size_t driven, std::size_t sensed) const noexcept {
+    return rows_are_driven_ ? driven * cols_ + sensed : sensed * cols_ + driven;
+  }
 
   /// A reading over that of a taxel of 0 ohm alone.
   [[nodiscard]] double share_of_most(std::size_t taxel, double ratio) const noexcept {
@@ -41,44 +50,49 @@ class PossibleReadings {
   /// there is none.
   bool take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept;
 
+  void forget() noexcept;
+
  private:
   /// The head of a sensed line, as a reading tells it.
   struct Head {
-    double current = 0.0;  ///< of a ratio of 1
-    double offset = 0.0;   ///< the current of a ratio of 0
-    double ohm = 0.0;      ///< to
-    double emf = 0.0;      ///< this voltage
+    double current = 0.0;    ///< of a ratio of 1
+    double offset = 0.0;     ///< the current of a ratio of 0
+    double ohm = 0.0;        ///< to
+    double emf = 0.0;        ///< this voltage
+    double short_ohm = 0.0;  ///< No taxel has less.
   };
 
-  [[nodiscard]] std::size_t taxel_of(std::size_t driven, std::size_t sensed) const noexcept {
-    return rows_are_driven_ ? driven * cols_ + sensed : sensed * cols_ + driven;
-  }
   [[nodiscard]] double current(std::size_t sensed, double ratio) const noexcept {
     return heads_[sensed].current * ratio + heads_[sensed].offset;
   }
   [[nodiscard]] bool may_exceed(std::size_t driven, std::span<const double> ratio) const noexcept;
   void check_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
-                    std::span<TaxelStatus> taxels) const noexcept;
+                    std::span<TaxelStatus> taxels) noexcept;
   void check_sums(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
-  [[nodiscard]] double drop(std::size_t driven, std::span<const double> ratio,
-                            std::span<const TaxelStatus> taxels) const noexcept;
+  void take(std::size_t taxel, std::span<TaxelStatus> taxels) noexcept;
 
   /// What is left of the slack, negative where the verdict is not `possible`.
   struct Margins {
     double of_short;
     double of_circuit;
+
+    [[nodiscard]] double least() const noexcept { return of_short < of_circuit ? of_short : of_circuit; }
   };
-  [[nodiscard]] Margins margins(std::size_t driven, std::size_t sensed, double ratio, double drop,
+  [[nodiscard]] Margins margins(std::size_t driven, std::size_t sensed, double own, double total,
                                 double sigma_ratio) const noexcept;
 
   std::size_t cols_;
   bool rows_are_driven_;
   bool one_loaded_;
-  bool sums_are_bounded_;           // of the readings of a column
-  std::vector<double> most_ratio_;  // [taxels]; infinite where nothing limits it
-  std::vector<double> drive_ohm_;   // [driven]; empty: the circuit is not known
-  std::vector<Head> heads_;         // [sensed]
-  std::vector<double> sums_;        // [sensed]
+  bool sums_are_bounded_;                 // of the readings of a column
+  std::vector<double> most_ratio_;        // [taxels]; infinite where nothing limits it
+  std::vector<double> drive_ohm_;         // [driven]; empty: the circuit is not known
+  std::vector<Head> heads_;               // [sensed]
+  std::vector<double> sums_;              // [sensed]
+  std::vector<ReadingVerdict> verdicts_;  // [sensed]
+  std::vector<std::uint8_t> taken_;       // from this frame [taxels]
+  std::vector<std::uint8_t> last_taken_;  // from the one before [taxels]
+  bool any_taken_ = false;
 };
 
 }  // namespace dermis::compensation

@@ -41,7 +41,9 @@ std::optional<LineFaultKind> found_kind(const FaultList& faults, std::size_t tax
 ImpossibleReadingDetector::ImpossibleReadingDetector(const ArrayDescription& array)
     : array_(array),
       possible_(array),
-      columns_tell_(array.readout.circuit == Circuit::divider && array.readout.idle_rows == IdleRows::grounded) {
+      columns_tell_(array.readout.circuit == Circuit::divider && array.readout.idle_rows == IdleRows::grounded),
+      verdicts_of_line_(possible_.sensed_lines()),
+      verdicts_(array.taxel_count(), ReadingVerdict::possible) {
   watched_.reserve(kMostFound);
 }
 
@@ -63,20 +65,35 @@ void ImpossibleReadingDetector::judge(const Observation& seen, FaultList& faults
   faults.suspect(watched_, [](const Watched& watched) { return watched.taxel; });
 }
 
+void ImpossibleReadingDetector::judge_readings(const Observation& seen) noexcept {
+  const ConditionedFrame& conditioned = seen.conditioned;
+  for (std::size_t driven = 0; driven < possible_.driven_lines(); ++driven) {
+    possible_.judge(driven, conditioned.ratio, conditioned.sigma_ratio, conditioned.taxels, verdicts_of_line_);
+    for (std::size_t sensed = 0; sensed < verdicts_of_line_.size(); ++sensed) {
+      verdicts_[possible_.taxel_of(driven, sensed)] = verdicts_of_line_[sensed];
+    }
+  }
+}
+
+/// Where the Compensator has taken no reading away, all are possible.
 void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultList& faults) noexcept {
   const auto& before = seen.conditioned.taxels;
   const auto& after = seen.conductance.taxels;
+  const auto is_bad = [&](std::size_t taxel) { return verdict(seen, taxel) >= ReadingVerdict::shorted; };
   const bool rails = array_.readout.circuit == Circuit::transimpedance;
-  std::size_t taken = 0;
+  bool is_suspicious = !watched_.empty();
   for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
     const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
-    taken += is_taken || (rails && before[taxel] == TaxelStatus::saturated) ? 1 : 0;
+    is_suspicious = is_suspicious || is_taken || (rails && before[taxel] == TaxelStatus::saturated);
   }
-  if (taken == 0 || !seen.solved || taken > kMostFound) return;
+  std::fill(verdicts_.begin(), verdicts_.end(), ReadingVerdict::possible);
+  if (!is_suspicious) return;
+  judge_readings(seen);
+  std::size_t bad = 0;
+  for (std::size_t taxel = 0; taxel < before.size(); ++taxel) bad += is_bad(taxel) ? 1 : 0;
+  if (bad > kMostFound) return;
   for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
-    const bool is_saturated = rails && before[taxel] == TaxelStatus::saturated;
-    const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
-    if ((is_taken || is_saturated) && verdict(seen, taxel) != ReadingVerdict::possible) watch(taxel, faults);
+    if (is_bad(taxel)) watch(taxel, faults);
   }
 }
 
@@ -128,8 +145,7 @@ ReadingVerdict ImpossibleReadingDetector::verdict(const Observation& seen, std::
   if (array_.readout.circuit == Circuit::transimpedance && is_saturated && row_is_silent(seen, taxel)) {
     return ReadingVerdict::shorted;
   }
-  const ReadingVerdict own =
-      possible_.judge(taxel, seen.conditioned.ratio, seen.conditioned.sigma_ratio, seen.conductance.taxels);
+  const ReadingVerdict own = verdicts_[taxel];
   if (!columns_tell_ || own == ReadingVerdict::impossible) return own;
   const ReadingVerdict column = verdict_of_column(seen, taxel);
   return column == ReadingVerdict::impossible || own == ReadingVerdict::possible ? column : own;
