@@ -139,8 +139,8 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   if (faults_->any()) mask_faulty_taxels(conductance);
 }
 
-/// Without the readings that no conductances explain, and without the largest of lines that have little left of the
-/// supply as long as there is no solution.
+/// Without the readings that no conductances explain. As long as there is no solution, without the largest of lines
+/// that have little left of the supply, then without these lines.
 InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned,
                                              ConductanceFrame& conductance) noexcept {
   if (faults_->keeps_bounds()) {
@@ -149,7 +149,8 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
   }
   InversionResult result;
   for (int attempt = 0; attempt < kMostAttempts && !result.solved; ++attempt) {
-    if (attempt > 0 && !possible_->take_largest(conditioned.ratio, conductance.taxels)) break;
+    if (attempt == 1 && !possible_->take_largest(conditioned.ratio, conductance.taxels)) break;
+    if (attempt == 2 && !possible_->take_full_lines(conditioned.ratio, conductance.taxels)) break;
     if (are_most_taken(conditioned.taxels, conductance.taxels)) break;
     inversion_->start_frame(attempt == 0 ? 1.0 : kRetryShare);
     result = invert(conditioned.ratio, conductance);

@@ -21,10 +21,21 @@ constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kDoubtOfUnknown = 0.5;  // relative
 constexpr double kDoubtOfHeld = 0.1;
 constexpr double kShortSiemens = 20.0;  // of a shorted crossing that is kept
+constexpr double kOpenSiemens = 1e-9;   // of a taxel that is counted elsewhere
 constexpr double kMostStretch = 5.0;
 constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end
 constexpr double kMostRise = 1.0;        // of the logarithm above both neighbours
 constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
+
+bool has_grounded_idle_lines(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
+  return readout.circuit == Circuit::flexitac ||
+         (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded);
+}
+
+bool is_in(const std::vector<std::size_t>& taxels, std::size_t taxel) {
+  return std::find(taxels.begin(), taxels.end(), taxel) != taxels.end();
+}
 
 bool is_modelled(const ArrayDescription& array) {
   const Readout& readout = array.readout;
@@ -85,6 +96,7 @@ FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_r
   typical_siemens_.resize(array.taxel_count(), 1.0);
   supplied_rows_.reserve(array.rows);
   crossings_.taxels.reserve(array.taxel_count());
+  crossings_.in_first.reserve(array.taxel_count());
   shorted_.reserve(array.rows + array.cols);
 }
 
@@ -103,8 +115,7 @@ void FaultInversion::set_faults(std::span<const LineFault> faults, CrosstalkInve
     circuits_->faulty.restore();
   }
   for (const LineFault& fault : faults) add(fault);
-  mask_joined_lines();
-  crossings_.are_kept = !healthy.set_shorted(crossings_.taxels);
+  add_crossings(healthy);
 }
 
 void FaultInversion::add(const LineFault& fault) {
@@ -127,32 +138,55 @@ void FaultInversion::add(const LineFault& fault) {
   lines_are_faulty_ =
       lines_are_faulty_ || traits.scope == LineFaultScope::line || traits.scope == LineFaultScope::line_pair;
   if (!circuits_) return;
-  add_to_circuit(fault, circuits_->healthy, circuits_->faulty);
+  add_to_circuit(fault, circuits_->faulty);
 }
 
 /// Rows that touch one column are one row, and columns that touch one row: what each of their taxels is, no reading
 /// tells.
-void FaultInversion::mask_joined_lines() noexcept {
+void FaultInversion::add_crossings(CrosstalkInversion& healthy) {
+  const bool are_solved = healthy.set_shorted(crossings_.taxels);
+  crossings_.are_corrected = !are_solved && circuits_ && has_grounded_idle_lines(array_);
+  crossings_.are_kept = !are_solved && !crossings_.are_corrected;
+  crossings_.in_first.clear();
+  lines_are_faulty_ = lines_are_faulty_ || crossings_.are_corrected;
   for (std::size_t a = 0; a < crossings_.taxels.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      for (const std::size_t taxel : {crossings_.taxels[a], crossings_.taxels[b]}) {
-        if (crossings_.taxels[a] / array_.cols == crossings_.taxels[b] / array_.cols)
-          mask_line(Axis::column, taxel % array_.cols);
-        if (crossings_.taxels[a] % array_.cols == crossings_.taxels[b] % array_.cols)
-          mask_line(Axis::row, taxel / array_.cols);
-      }
-      // Two taxels are between the two nodes, and only their sum is told.
-      is_.masked[array_.index(crossings_.taxels[a] / array_.cols, crossings_.taxels[b] % array_.cols)] = 1;
-      is_.masked[array_.index(crossings_.taxels[b] / array_.cols, crossings_.taxels[a] % array_.cols)] = 1;
-    }
+    const std::size_t taxel = crossings_.taxels[a];
+    for (std::size_t b = 0; b < a; ++b) join(taxel, crossings_.taxels[b]);
+    if (crossings_.are_corrected) hide_sensed_line(taxel);
+    if (!circuits_) continue;
+    circuits_->faulty.join_crossing(taxel);
+    if (!crossings_.are_corrected) circuits_->healthy.join_crossing(taxel);
   }
 }
 
-void FaultInversion::mask_line(Axis axis, std::size_t line) noexcept {
-  for (std::size_t k = 0; k < line_length(array_, axis); ++k) is_.masked[taxel_on_line(array_, axis, line, k)] = 1;
+/// Beside a driver next to nothing is read of the others of the line.
+void FaultInversion::hide_sensed_line(std::size_t taxel) noexcept {
+  const Axis sensed = crossing(driven_axis(array_));
+  const std::size_t line = sensed == Axis::row ? taxel / array_.cols : taxel % array_.cols;
+  for (std::size_t k = 0; k < line_length(array_, sensed); ++k) {
+    is_.masked[taxel_on_line(array_, sensed, line, k)] = is_.hidden[taxel_on_line(array_, sensed, line, k)] = 1;
+  }
 }
 
-void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& healthy, LumpedCircuit& circuit) const {
+/// Two taxels are between the two nodes, and only their sum is told.
+void FaultInversion::join(std::size_t a, std::size_t b) noexcept {
+  const std::size_t cols = array_.cols;
+  if (a / cols == b / cols) mask_pair(Axis::column, a % cols, b % cols);
+  if (a % cols == b % cols) mask_pair(Axis::row, a / cols, b / cols);
+  is_.masked[array_.index(a / cols, b % cols)] = 1;
+  is_.masked[array_.index(b / cols, a % cols)] = 1;
+}
+
+void FaultInversion::mask_pair(Axis axis, std::size_t first, std::size_t second) noexcept {
+  for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
+    for (const std::size_t line : {first, second}) is_.masked[taxel_on_line(array_, axis, line, k)] = 1;
+    const std::size_t taxel = taxel_on_line(array_, axis, second, k);
+    const bool is_solved = !crossings_.are_kept && !crossings_.are_corrected;
+    if (!is_solved && !is_in(crossings_.taxels, taxel)) crossings_.in_first.push_back(taxel);
+  }
+}
+
+void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const {
   const LineFaultTraits& traits = traits_of(fault.kind);
   switch (traits.effect) {
     case LineFaultEffect::silent:
@@ -167,10 +201,6 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& healt
       break;
     case LineFaultEffect::shorted: circuit.join_lines(*traits.axis, fault.place); break;
     case LineFaultEffect::crossed:
-      if (silences_row(fault, array_)) break;
-      healthy.join_crossing(fault.place);
-      circuit.join_crossing(fault.place);
-      break;
     case LineFaultEffect::stuck:
     case LineFaultEffect::impossible:
     case LineFaultEffect::dead:
@@ -228,14 +258,16 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   subtract_supplied_rows(ratio);
   average_shorted_lines();
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
+  // What another circuit takes tells nothing of the frames without a fault.
+  if (lines_are_faulty_ || crossings_.are_kept) healthy.start_frame(kUnbounded);
   if (!lines_are_faulty_) return keep_estimates(healthy, siemens);
-  healthy.start_frame(kUnbounded);  // what another circuit takes tells nothing of the frames without a fault
   estimate_unknown(equivalent_);
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
   if (!circuits_) return result;
   for (int round = 0; round < kMaxRounds; ++round) {
     estimate_unknown(siemens);
+    for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
     circuits_->healthy.solve(siemens, correction_.healthy_ratio);
     circuits_->faulty.solve(siemens, correction_.faulty_ratio);
     result.residual_ratio = misfit(siemens);
@@ -277,6 +309,9 @@ void FaultInversion::hold_missing(std::span<double> siemens) noexcept {
 
 /// Their readings count where the inversion solves them; else they are what they are.
 void FaultInversion::keep_crossings(std::span<double> siemens) noexcept {
+  for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
+  if (crossings_.are_corrected) return;
+  for (const std::size_t taxel : crossings_.in_first) equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
   for (const std::size_t taxel : crossings_.taxels) {
     equivalent_[taxel] = crossings_.are_kept ? std::numeric_limits<double>::quiet_NaN() : measured_[taxel];
     if (crossings_.are_kept) siemens[taxel] = kShortSiemens;

@@ -80,9 +80,13 @@ class FaultInversion {
     std::vector<std::uint8_t> frames_ago;  // at most a few
   };
 
+  /// Taxels whose row and column touch. Where `healthy` does not solve them they are kept at a large conductance, or,
+  /// where idle rows are grounded, corrected as other faults are.
   struct Crossings {
-    std::vector<std::size_t> taxels;  // whose row and column touch
-    bool are_kept = false;            // as large conductances
+    std::vector<std::size_t> taxels;
+    std::vector<std::size_t> in_first;  // taxels of joined lines, whose conductance stands in the first of them
+    bool are_kept = false;
+    bool are_corrected = false;
   };
 
   struct ShortedLines {
@@ -103,9 +107,11 @@ class FaultInversion {
   };
 
   void add(const LineFault& fault);
-  void mask_joined_lines() noexcept;
-  void mask_line(Axis axis, std::size_t line) noexcept;
-  void add_to_circuit(const LineFault& fault, LumpedCircuit& healthy, LumpedCircuit& circuit) const;
+  void join(std::size_t a, std::size_t b) noexcept;
+  void hide_sensed_line(std::size_t taxel) noexcept;
+  void mask_pair(Axis axis, std::size_t first, std::size_t second) noexcept;
+  void add_crossings(CrosstalkInversion& healthy);
+  void add_to_circuit(const LineFault& fault, LumpedCircuit& circuit) const;
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
   InversionResult keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept;

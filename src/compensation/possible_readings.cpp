@@ -41,12 +41,14 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
   drive_ohm_ = array.readout.drive_ohm;
   taken_.resize(array.taxel_count());
   last_taken_.resize(array.taxel_count());
-  verdicts_.resize(array.sensed_lines());
+  verdicts_.resize(array.taxel_count());
   sums_.resize(array.sensed_lines());
+  const double weakest_driver = *std::max_element(drive_ohm_.begin(), drive_ohm_.end());
   for (std::size_t line = 0; line < array.sensed_lines(); ++line) {
     const SensedLine sensed = sensed_line(array.readout, line);
-    heads_.push_back({1.0 / sensed.gain, -sensed.offset / sensed.gain, sensed.rho, sensed.emf,
-                      std::max(kShortOhm, kShortOfLoad * sensed.rho)});
+    const double short_ohm = std::max(kShortOhm, kShortOfLoad * sensed.rho);
+    heads_.push_back({1.0 / sensed.gain, -sensed.offset / sensed.gain, sensed.rho, sensed.emf, short_ohm,
+                      sensed.rho / (sensed.rho + weakest_driver + short_ohm)});
     for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
       const double series = drive_ohm_[driven] + sensed.rho;
       if (!(series > 0.0)) continue;
@@ -57,17 +59,30 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
 
 void PossibleReadings::check(std::span<const double> ratio, double sigma_ratio,
                              std::span<TaxelStatus> taxels) noexcept {
+  if (drive_ohm_.empty()) return;
   std::swap(taken_, last_taken_);
   std::fill(taken_.begin(), taken_.end(), std::uint8_t{0});
   const bool is_wary = std::exchange(any_taken_, false);
+  if (!is_wary && !any_may_exceed(ratio)) return;
+  judge(ratio, sigma_ratio, taxels, verdicts_);
+  take_bad(taxels);
+}
+
+bool PossibleReadings::any_may_exceed(std::span<const double> ratio) noexcept {
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  bool any = false;
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-    if (is_wary || may_exceed(driven, ratio)) check_driven(driven, ratio, sigma_ratio, taxels);
+    for (std::size_t sensed = 0; sensed < sums_.size(); ++sensed) sums_[sensed] += ratio[taxel_of(driven, sensed)];
+    any = any || driven_may_exceed(driven, ratio);
   }
-  if (sums_are_bounded_ && !drive_ohm_.empty()) check_sums(ratio, sigma_ratio, taxels);
+  for (std::size_t sensed = 0; sensed < sums_.size() && sums_are_bounded_; ++sensed) {
+    any = any || sums_[sensed] > heads_[sensed].most_sum;
+  }
+  return any;
 }
 
 /// Nothing on the line is above its limits, as the sum and the largest of its readings show.
-bool PossibleReadings::may_exceed(std::size_t driven, std::span<const double> ratio) const noexcept {
+bool PossibleReadings::driven_may_exceed(std::size_t driven, std::span<const double> ratio) const noexcept {
   double sums[kAtOnce] = {};
   double most[kAtOnce] = {};
   for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
@@ -83,41 +98,21 @@ bool PossibleReadings::may_exceed(std::size_t driven, std::span<const double> ra
   return drive_ohm_[driven] * total + *std::max_element(most, most + kAtOnce) > 1.0;
 }
 
-void PossibleReadings::check_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
-                                    std::span<TaxelStatus> taxels) noexcept {
-  judge(driven, ratio, sigma_ratio, taxels, verdicts_);
-  const auto is_bad = [](ReadingVerdict verdict) { return verdict >= ReadingVerdict::shorted; };
-  const auto bad = static_cast<std::size_t>(std::count_if(verdicts_.begin(), verdicts_.end(), is_bad));
-  const bool is_all = bad > most_taken(heads_.size());
-  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
-    if (is_all || is_bad(verdicts_[sensed])) take(taxel_of(driven, sensed), taxels);
-  }
-}
-
-void PossibleReadings::judge(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
-                             std::span<const TaxelStatus> taxels, std::span<ReadingVerdict> verdicts) const noexcept {
-  double total = 0.0;
-  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
-    const std::size_t taxel = taxel_of(driven, sensed);
-    const bool is_there = taxels[taxel] != TaxelStatus::invalid;
-    verdicts[sensed] = is_there ? ReadingVerdict::possible : ReadingVerdict::unknown;
-    if (is_there) total += current(sensed, ratio[taxel]);
-  }
-  while (true) {
-    std::size_t worst = heads_.size();
-    Margins least{0.0, 0.0};
-    for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
-      if (verdicts[sensed] != ReadingVerdict::possible) continue;
-      const std::size_t taxel = taxel_of(driven, sensed);
-      const Margins left = margins(driven, sensed, current(sensed, ratio[taxel]), total, sigma_ratio);
-      if (!(left.least() < least.least())) continue;
-      least = left;
-      worst = sensed;
+/// Of lines with many bad readings none tells anything.
+void PossibleReadings::take_bad(std::span<TaxelStatus> taxels) noexcept {
+  const auto take_line = [&](std::size_t size, const auto& taxel_at) {
+    const auto is_bad = [&](std::size_t k) { return verdicts_[taxel_at(k)] >= ReadingVerdict::shorted; };
+    std::size_t bad = 0;
+    for (std::size_t k = 0; k < size; ++k) bad += is_bad(k) ? 1 : 0;
+    for (std::size_t k = 0; k < size && bad > 0; ++k) {
+      if (bad > most_taken(size) || is_bad(k)) take(taxel_at(k), taxels);
     }
-    if (worst == heads_.size()) return;
-    const bool is_impossible = least.of_circuit < 0.0;
-    verdicts[worst] = is_impossible ? ReadingVerdict::impossible : ReadingVerdict::shorted;
-    if (is_impossible) total -= current(worst, ratio[taxel_of(driven, worst)]);
+  };
+  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+    take_line(heads_.size(), [&](std::size_t sensed) { return taxel_of(driven, sensed); });
+  }
+  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+    take_line(drive_ohm_.size(), [&](std::size_t driven) { return taxel_of(driven, sensed); });
   }
 }
 
@@ -133,36 +128,72 @@ void PossibleReadings::forget() noexcept {
   std::fill(taken_.begin(), taken_.end(), std::uint8_t{0});
 }
 
-void PossibleReadings::check_sums(std::span<const double> ratio, double sigma_ratio,
-                                  std::span<TaxelStatus> taxels) noexcept {
-  std::fill(sums_.begin(), sums_.end(), 0.0);
+void PossibleReadings::judge(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels,
+                             std::span<ReadingVerdict> verdicts) const noexcept {
+  std::transform(taxels.begin(), taxels.end(), verdicts.begin(), [](TaxelStatus status) {
+    return status == TaxelStatus::invalid ? ReadingVerdict::unknown : ReadingVerdict::possible;
+  });
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-    for (std::size_t sensed = 0; sensed < sums_.size(); ++sensed) sums_[sensed] += ratio[taxel_of(driven, sensed)];
+    judge_driven(driven, ratio, sigma_ratio, verdicts);
   }
+  for (std::size_t sensed = 0; sensed < heads_.size() && sums_are_bounded_; ++sensed) {
+    judge_sensed(sensed, ratio, sigma_ratio, verdicts);
+  }
+}
+
+void PossibleReadings::judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
+                                    std::span<ReadingVerdict> verdicts) const noexcept {
+  double total = 0.0;
+  for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+    const std::size_t taxel = taxel_of(driven, sensed);
+    if (verdicts[taxel] != ReadingVerdict::unknown) total += current(sensed, ratio[taxel]);
+  }
+  while (true) {
+    std::size_t worst = heads_.size();
+    Margins least{0.0, 0.0};
+    for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
+      const std::size_t taxel = taxel_of(driven, sensed);
+      if (verdicts[taxel] != ReadingVerdict::possible) continue;
+      const Margins left = margins(driven, sensed, current(sensed, ratio[taxel]), total, sigma_ratio);
+      if (!(left.least() < least.least())) continue;
+      least = left;
+      worst = sensed;
+    }
+    if (worst == heads_.size()) return;
+    const std::size_t taxel = taxel_of(driven, worst);
+    const bool is_impossible = least.of_circuit < 0.0;
+    verdicts[taxel] = is_impossible ? ReadingVerdict::impossible : ReadingVerdict::shorted;
+    if (is_impossible) total -= current(worst, ratio[taxel]);
+  }
+}
+
+void PossibleReadings::judge_sensed(std::size_t sensed, std::span<const double> ratio, double sigma_ratio,
+                                    std::span<ReadingVerdict> verdicts) const noexcept {
+  const auto is_there = [&](std::size_t taxel) {
+    return verdicts[taxel] == ReadingVerdict::possible || verdicts[taxel] == ReadingVerdict::shorted;
+  };
   const double noise = kAllowedSigmas * sigma_ratio * std::sqrt(static_cast<double>(drive_ohm_.size()));
-  for (std::size_t sensed = 0; sensed < sums_.size(); ++sensed) {
-    if (sums_[sensed] <= 1.0) continue;
-    double sum = 0.0;
+  double sum = 0.0;
+  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+    const std::size_t taxel = taxel_of(driven, sensed);
+    if (is_there(taxel)) sum += ratio[taxel];
+  }
+  while (sum > 1.0 + kAllowedShare + noise) {
+    std::size_t worst = ratio.size();
     for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
       const std::size_t taxel = taxel_of(driven, sensed);
-      if (taxels[taxel] != TaxelStatus::invalid) sum += ratio[taxel];
+      if (is_there(taxel) && (worst == ratio.size() || ratio[taxel] > ratio[worst])) worst = taxel;
     }
-    for (std::size_t found = 0; sum > 1.0 + kAllowedShare + noise; ++found) {
-      if (found == most_taken(drive_ohm_.size())) {
-        for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-          take(taxel_of(driven, sensed), taxels);
-        }
-        break;
-      }
-      std::size_t worst = taxels.size();
-      for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-        const std::size_t taxel = taxel_of(driven, sensed);
-        if (taxels[taxel] == TaxelStatus::invalid) continue;
-        if (worst == taxels.size() || ratio[taxel] > ratio[worst]) worst = taxel;
-      }
-      take(worst, taxels);
-      sum -= ratio[worst];
-    }
+    verdicts[worst] = ReadingVerdict::impossible;
+    sum -= ratio[worst];
+  }
+  const Head& head = heads_[sensed];
+  for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+    const std::size_t taxel = taxel_of(driven, sensed);
+    if (verdicts[taxel] != ReadingVerdict::possible) continue;
+    const double left = 1.0 - sum + kShortShare * sum + noise - (was_taken(taxel) ? kStillShare * sum : 0.0);
+    const double short_ohm = head.short_ohm * (was_taken(taxel) ? kStillShort : 1.0);
+    if (left * head.ohm < (drive_ohm_[driven] + short_ohm) * ratio[taxel]) verdicts[taxel] = ReadingVerdict::shorted;
   }
 }
 
@@ -173,9 +204,9 @@ PossibleReadings::Margins PossibleReadings::margins(std::size_t driven, std::siz
   const double taken = head.ohm * own + head.emf + drive_ohm_[driven] * (one_loaded_ ? own : total);
   const double slack = 1.0 - taken;
   const double doubt = kAllowedSigmas * sigma_ratio * std::max(head.ohm * head.current, 0.0);
-  const bool was_taken = last_taken_[taxel_of(driven, sensed)] != 0;
-  const double short_ohm = head.short_ohm * (was_taken ? kStillShort : 1.0);
-  const double nearer = was_taken ? kStillShare * taken : 0.0;
+  const bool is_wary = was_taken(taxel_of(driven, sensed));
+  const double short_ohm = head.short_ohm * (is_wary ? kStillShort : 1.0);
+  const double nearer = is_wary ? kStillShare * taken : 0.0;
   return {slack + kShortShare * taken + doubt - short_ohm * own - nearer, slack + kAllowedShare * taken + doubt};
 }
 
@@ -206,6 +237,23 @@ bool PossibleReadings::take_largest(std::span<const double> ratio, std::span<Tax
   }
   if (!any && most > 0.0) taxels[largest_of_all] = TaxelStatus::invalid;
   return any || most > 0.0;
+}
+
+bool PossibleReadings::take_full_lines(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept {
+  bool any = false;
+  for (std::size_t sensed = 0; sensed < sums_.size(); ++sensed) {
+    double share = 0.0;
+    for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
+      const std::size_t taxel = taxel_of(driven, sensed);
+      share += share_of_most(taxel, ratio[taxel]);
+    }
+    for (std::size_t driven = 0; driven < drive_ohm_.size() && share >= kLittleLeft; ++driven) {
+      TaxelStatus& status = taxels[taxel_of(driven, sensed)];
+      any = any || status != TaxelStatus::invalid;
+      status = TaxelStatus::invalid;
+    }
+  }
+  return any;
 }
 
 }  // namespace dermis::compensation

@@ -20,8 +20,11 @@ enum class ReadingVerdict { possible, unknown, shorted, impossible };
 ///   slack_kj = 1 - Rd_k sum_j' I_kj' - V_kj        (one loaded column: - Rd_k I_kj)
 ///
 /// and its resistance at most slack / I. Where idle rows are grounded, the readings of a column are less than the
-/// supply together, as they are when all rows are driven at once. A reading that was taken away in the last frame must
-/// stay further from its limits.
+/// supply together, as they are when all rows are driven at once, and what they leave bounds the resistances, too:
+///
+///   Rd_k + 1 / G_kj  >=  RL_j (1 - sum_k' r_k'j) / r_kj
+///
+/// A reading that was taken away in the last frame must stay further from its limits.
 class PossibleReadings {
  public:
   explicit PossibleReadings(const ArrayDescription& array);
@@ -30,16 +33,10 @@ class PossibleReadings {
   /// line first; all of a line where they are many. `sigma_ratio` is the noise of a reading. Allocates nothing.
   void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
 
-  /// Of the readings of a driven line that are not invalid; `unknown` where they are. The worst is judged first: the
-  /// current of an impossible one is not there, that of a short is. `verdicts` [sensed]. Allocates nothing.
-  void judge(std::size_t driven, std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels,
+  /// Of each reading, `unknown` where it is invalid. The worst of a line is judged first: the current of an impossible
+  /// reading is not there, that of a short is. `verdicts` [taxels]. Allocates nothing.
+  void judge(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels,
              std::span<ReadingVerdict> verdicts) const noexcept;
-
-  [[nodiscard]] std::size_t driven_lines() const noexcept { return drive_ohm_.size(); }
-  [[nodiscard]] std::size_t sensed_lines() const noexcept { return heads_.size(); }
-  [[nodiscard]] std::size_t taxel_of(std::size_t driven, std::size_t sensed) const noexcept {
-    return rows_are_driven_ ? driven * cols_ + sensed : sensed * cols_ + driven;
-  }
 
   /// A reading over that of a taxel of 0 ohm alone.
   [[nodiscard]] double share_of_most(std::size_t taxel, double ratio) const noexcept {
@@ -49,6 +46,9 @@ class PossibleReadings {
   /// The largest reading of each line that has little left of the supply becomes invalid, or the largest of all; false:
   /// there is none.
   bool take_largest(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept;
+
+  /// All readings of these lines become invalid; false: there is no such line.
+  bool take_full_lines(std::span<const double> ratio, std::span<TaxelStatus> taxels) noexcept;
 
   void forget() noexcept;
 
@@ -60,15 +60,23 @@ class PossibleReadings {
     double ohm = 0.0;        ///< to
     double emf = 0.0;        ///< this voltage
     double short_ohm = 0.0;  ///< No taxel has less.
+    double most_sum = 0.0;   ///< Of its readings, below which none is a short.
   };
 
+  [[nodiscard]] std::size_t taxel_of(std::size_t driven, std::size_t sensed) const noexcept {
+    return rows_are_driven_ ? driven * cols_ + sensed : sensed * cols_ + driven;
+  }
   [[nodiscard]] double current(std::size_t sensed, double ratio) const noexcept {
     return heads_[sensed].current * ratio + heads_[sensed].offset;
   }
-  [[nodiscard]] bool may_exceed(std::size_t driven, std::span<const double> ratio) const noexcept;
-  void check_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
-                    std::span<TaxelStatus> taxels) noexcept;
-  void check_sums(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
+  [[nodiscard]] bool was_taken(std::size_t taxel) const noexcept { return last_taken_[taxel] != 0; }
+  [[nodiscard]] bool any_may_exceed(std::span<const double> ratio) noexcept;
+  [[nodiscard]] bool driven_may_exceed(std::size_t driven, std::span<const double> ratio) const noexcept;
+  void judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
+                    std::span<ReadingVerdict> verdicts) const noexcept;
+  void judge_sensed(std::size_t sensed, std::span<const double> ratio, double sigma_ratio,
+                    std::span<ReadingVerdict> verdicts) const noexcept;
+  void take_bad(std::span<TaxelStatus> taxels) noexcept;
   void take(std::size_t taxel, std::span<TaxelStatus> taxels) noexcept;
 
   /// What is left of the slack, negative where the verdict is not `possible`.
@@ -89,7 +97,7 @@ class PossibleReadings {
   std::vector<double> drive_ohm_;         // [driven]; empty: the circuit is not known
   std::vector<Head> heads_;               // [sensed]
   std::vector<double> sums_;              // [sensed]
-  std::vector<ReadingVerdict> verdicts_;  // [sensed]
+  std::vector<ReadingVerdict> verdicts_;  // [taxels]
   std::vector<std::uint8_t> taken_;       // from this frame [taxels]
   std::vector<std::uint8_t> last_taken_;  // from the one before [taxels]
   bool any_taken_ = false;

@@ -42,7 +42,6 @@ ImpossibleReadingDetector::ImpossibleReadingDetector(const ArrayDescription& arr
     : array_(array),
       possible_(array),
       columns_tell_(array.readout.circuit == Circuit::divider && array.readout.idle_rows == IdleRows::grounded),
-      verdicts_of_line_(possible_.sensed_lines()),
       verdicts_(array.taxel_count(), ReadingVerdict::possible) {
   watched_.reserve(kMostFound);
 }
@@ -65,16 +64,6 @@ void ImpossibleReadingDetector::judge(const Observation& seen, FaultList& faults
   faults.suspect(watched_, [](const Watched& watched) { return watched.taxel; });
 }
 
-void ImpossibleReadingDetector::judge_readings(const Observation& seen) noexcept {
-  const ConditionedFrame& conditioned = seen.conditioned;
-  for (std::size_t driven = 0; driven < possible_.driven_lines(); ++driven) {
-    possible_.judge(driven, conditioned.ratio, conditioned.sigma_ratio, conditioned.taxels, verdicts_of_line_);
-    for (std::size_t sensed = 0; sensed < verdicts_of_line_.size(); ++sensed) {
-      verdicts_[possible_.taxel_of(driven, sensed)] = verdicts_of_line_[sensed];
-    }
-  }
-}
-
 /// Where the Compensator has taken no reading away, all are possible.
 void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultList& faults) noexcept {
   const auto& before = seen.conditioned.taxels;
@@ -88,7 +77,7 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultLi
   }
   std::fill(verdicts_.begin(), verdicts_.end(), ReadingVerdict::possible);
   if (!is_suspicious) return;
-  judge_readings(seen);
+  possible_.judge(seen.conditioned.ratio, seen.conditioned.sigma_ratio, before, verdicts_);
   std::size_t bad = 0;
   for (std::size_t taxel = 0; taxel < before.size(); ++taxel) bad += is_bad(taxel) ? 1 : 0;
   if (bad > kMostFound) return;
@@ -151,13 +140,14 @@ ReadingVerdict ImpossibleReadingDetector::verdict(const Observation& seen, std::
   return column == ReadingVerdict::impossible || own == ReadingVerdict::possible ? column : own;
 }
 
-/// But for this taxel.
+/// But for those that touch it.
 bool ImpossibleReadingDetector::row_is_silent(const Observation& seen, std::size_t taxel) const noexcept {
   const std::size_t row = taxel / array_.cols;
   double lacking = 0.0;
   for (std::size_t col = 0; col < array_.cols; ++col) {
     const std::size_t other = array_.index(row, col);
-    if (other != taxel) lacking += kSilentShare * seen.unloaded.ratio()[other] - seen.conditioned.ratio[other];
+    if (seen.conditioned.taxels[other] != TaxelStatus::saturated)
+      lacking += kSilentShare * seen.unloaded.ratio()[other] - seen.conditioned.ratio[other];
   }
   return lacking > kSilentSigmas * seen.conditioned.sigma_ratio * std::sqrt(static_cast<double>(array_.cols));
 }

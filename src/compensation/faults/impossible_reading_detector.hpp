@@ -38,7 +38,6 @@ class ImpossibleReadingDetector {
 
   void watch_new(const Observation& seen, const FaultList& faults) noexcept;
   void watch(std::size_t taxel, const FaultList& faults) noexcept;
-  void judge_readings(const Observation& seen) noexcept;
   [[nodiscard]] ReadingVerdict verdict(const Observation& seen, std::size_t taxel) const noexcept;
   void watch_columns(const Observation& seen, const FaultList& faults) noexcept;
   [[nodiscard]] ReadingVerdict verdict_of_column(const Observation& seen, std::size_t taxel) const noexcept;
@@ -52,8 +51,7 @@ class ImpossibleReadingDetector {
   const ArrayDescription& array_;
   PossibleReadings possible_;
   bool columns_tell_;
-  std::vector<ReadingVerdict> verdicts_of_line_;  // [sensed]
-  std::vector<ReadingVerdict> verdicts_;          // of this frame [taxels]
+  std::vector<ReadingVerdict> verdicts_;  // of this frame [taxels]
   std::vector<Watched> watched_;
 };
 
