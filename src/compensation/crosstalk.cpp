@@ -80,23 +80,23 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   return inversion<GroundedRows>(array, tolerance, options);
 }
 
-Result<Compensator> Compensator::create(const ArrayDescription& array, std::span<const double> typical_siemens) {
+Result<Compensator> Compensator::create(const ArrayDescription& array, const ReferenceConductances& references) {
   InversionOptions options;
   options.counts_driver_errors = true;
   options.is_bounded = true;
   Inversion inversion = make_crosstalk_inversion(array, options);
   if (!inversion) return inversion.error();
-  return Compensator(array, std::move(*inversion), typical_siemens);
+  return Compensator(array, std::move(*inversion), references);
 }
 
 Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
-                         std::span<const double> typical_siemens)
+                         const ReferenceConductances& references)
     : inversion_(std::move(inversion)),
       possible_(std::make_unique<PossibleReadings>(array)),
       spikes_(std::make_unique<Spikes>(array)),
       supply_error_(std::make_unique<SupplyError>(array)),
       faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts(),
-                                               typical_siemens)) {}
+                                               references)) {}
 Compensator::Compensator(Compensator&&) noexcept = default;
 Compensator& Compensator::operator=(Compensator&&) noexcept = default;
 Compensator::~Compensator() = default;

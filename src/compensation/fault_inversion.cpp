@@ -16,15 +16,11 @@ namespace {
 
 constexpr int kMaxRounds = 20;
 constexpr int kEstimateRounds = 3;  // what the neighbours of a taxel tell hardly depends on it
-constexpr std::uint8_t kLong = 4;   // frames without a reading, after which the last conductance tells nothing
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr double kDoubtOfUnknown = 0.5;  // relative
-constexpr double kDoubtOfHeld = 0.1;
 constexpr double kShortSiemens = 20.0;  // of a shorted crossing that is kept
 constexpr double kOpenSiemens = 1e-9;   // of a taxel that is counted elsewhere
 constexpr double kMostStretch = 5.0;
-constexpr double kFloorShare = 1e-3;     // of the largest conductance: where logarithms end
-constexpr double kMostRise = 1.0;        // of the logarithm above both neighbours
 constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
 
 bool has_grounded_idle_lines(const ArrayDescription& array) {
@@ -43,26 +39,6 @@ bool is_modelled(const ArrayDescription& array) {
          has_ideal_amplifiers(readout);
 }
 
-/// The value between four of which some are known: on a parabola, as the logarithm of a Gaussian contact is. Beyond the
-/// last known taxel a contact falls on as it comes, and never rises.
-std::optional<double> between(const std::array<std::optional<double>, 4>& near) {
-  const auto& [far_before, before, after, far_after] = near;
-  if (!before || !after) {
-    const std::optional<double>& next = before ? before : after;
-    const std::optional<double>& far = before ? far_before : far_after;
-    return next && far ? *next - std::max(*far - *next, 0.0) : next;
-  }
-  double value = 0.5 * (*before + *after);
-  if (far_before && far_after) {
-    value = (4.0 * (*before + *after) - (*far_before + *far_after)) / 6.0;
-  } else if (far_before) {
-    value = *before + (*after - *far_before) / 3.0;
-  } else if (far_after) {
-    value = *after + (*before - *far_after) / 3.0;
-  }
-  return std::min(value, std::max(*before, *after) + kMostRise);
-}
-
 }  // namespace
 
 FaultInversion::Correction::Correction(std::size_t taxels)
@@ -73,27 +49,20 @@ FaultInversion::Correction::Correction(std::size_t taxels)
       faulty_ratio(taxels) {}
 
 FaultInversion::Masks::Masks(const ArrayDescription& array)
-    : absent(array.taxel_count()),
-      masked(array.taxel_count()),
-      hidden(array.taxel_count()),
-      unknown(array.taxel_count()) {
+    : absent(array.taxel_count()), masked(array.taxel_count()), hidden(array.taxel_count()) {
   for (const std::size_t taxel : array.absent) absent[taxel] = 1;
 }
 
-FaultInversion::Memory::Memory(std::size_t taxels) : siemens(taxels), frames_ago(taxels, kLong) {}
-
 FaultInversion::FaultInversion(const ArrayDescription& array, double tolerance_ratio,
-                               std::span<const double> typical_siemens)
+                               const ReferenceConductances& references)
     : array_(array),
       tolerance_(tolerance_ratio),
-      typical_siemens_(typical_siemens.begin(), typical_siemens.end()),
       is_(array),
-      last_(array.taxel_count()),
+      missing_(array_, references),
       measured_(array.taxel_count()),
       equivalent_(array.taxel_count()),
       correction_(array.taxel_count()) {
   if (is_modelled(array)) circuits_ = Circuits{LumpedCircuit(array), LumpedCircuit(array)};
-  typical_siemens_.resize(array.taxel_count(), 1.0);
   supplied_rows_.reserve(array.rows);
   crossings_.taxels.reserve(array.taxel_count());
   crossings_.in_first.reserve(array.taxel_count());
@@ -124,7 +93,7 @@ void FaultInversion::add(const LineFault& fault) {
     is_.masked[taxel] = 1;
     if (!traits.hides_conductance) return;
     is_.hidden[taxel] = 1;
-    last_.frames_ago[taxel] = kLong;  // what it was came of the fault, too
+    missing_.forget(taxel);  // what it was came of the fault, too
   });
   if (array_.readout.circuit == Circuit::none) return;  // nothing to subtract or to solve
   if (fault.kind == LineFaultKind::supplied_row) supplied_rows_.push_back(fault.place);
@@ -214,8 +183,8 @@ void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double
   if (array_.readout.circuit == Circuit::none || lines_are_faulty_) return;
   const Axis driven = driven_axis(array_);
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (is_.unknown[taxel] == 0) continue;
-    const double error = (last_.frames_ago[taxel] < kLong ? kDoubtOfHeld : kDoubtOfUnknown) * siemens[taxel];
+    if (!missing_.is_missing(taxel)) continue;
+    const double error = missing_.doubt(taxel) * siemens[taxel];
     for (const Axis axis : kAxes) {
       const std::size_t line = axis == Axis::row ? taxel / array_.cols : taxel % array_.cols;
       const double ohm = axis == driven ? array_.readout.drive_ohm[line] : sensed_line(array_.readout, line).rho;
@@ -227,27 +196,15 @@ void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double
   }
 }
 
-void FaultInversion::remember(std::span<const double> siemens) noexcept {
-  std::copy(siemens.begin(), siemens.end(), last_.siemens.begin());
-  for (std::size_t taxel = 0; taxel < is_.unknown.size(); ++taxel) {
-    const int frames = last_.frames_ago[taxel] + (last_.frames_ago[taxel] < kLong ? 1 : 0);
-    last_.frames_ago[taxel] = static_cast<std::uint8_t>(is_.unknown[taxel] != 0 ? frames : 0);
-  }
-}
-
-void FaultInversion::forget() noexcept {
-  std::fill(last_.frames_ago.begin(), last_.frames_ago.end(), std::uint8_t{kLong});
-}
-
 bool FaultInversion::concerns(std::span<const TaxelStatus> taxels) noexcept {
   const std::uint8_t* const absent = is_.absent.data();
   const std::uint8_t* const hidden = is_.hidden.data();
-  std::uint8_t* const unknown = is_.unknown.data();
+  std::uint8_t* const missing = missing_.missing().data();
   std::uint8_t any_missing = 0;
   for (std::size_t taxel = 0; taxel < taxels.size(); ++taxel) {
     const auto is_invalid = static_cast<std::uint8_t>(taxels[taxel] == TaxelStatus::invalid);
     const auto is_missing = static_cast<std::uint8_t>(is_invalid & ~absent[taxel]);
-    unknown[taxel] = hidden[taxel] | is_missing;
+    missing[taxel] = hidden[taxel] | is_missing;
     any_missing |= is_missing;
   }
   return any_ || any_missing != 0;
@@ -261,12 +218,12 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   // What another circuit takes tells nothing of the frames without a fault.
   if (lines_are_faulty_ || crossings_.are_kept) healthy.start_frame(kUnbounded);
   if (!lines_are_faulty_) return keep_estimates(healthy, siemens);
-  estimate_unknown(equivalent_);
+  missing_.estimate(equivalent_);
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
   if (!circuits_) return result;
   for (int round = 0; round < kMaxRounds; ++round) {
-    estimate_unknown(siemens);
+    missing_.estimate(siemens);
     for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
     circuits_->healthy.solve(siemens, correction_.healthy_ratio);
     circuits_->faulty.solve(siemens, correction_.faulty_ratio);
@@ -279,41 +236,35 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   return result;
 }
 
-/// The lines are healthy: taxels without a reading are estimated from their neighbours, and these solved with them. At
-/// first the readings of the neighbours tell of taxels that have had none for long.
+/// The lines are healthy: taxels without a reading are estimated, and the others solved with them. At first the
+/// readings of the neighbours tell of taxels that have had none for long.
 InversionResult FaultInversion::keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept {
-  estimate_unknown(equivalent_);
-  hold_missing(siemens);
+  missing_.estimate(equivalent_);
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (!missing_.is_missing(taxel) || !missing_.held(taxel)) continue;
+    siemens[taxel] = *missing_.held(taxel);
+    equivalent_[taxel] = kNothing;
+  }
   keep_crossings(siemens);
   InversionResult result = healthy.invert(equivalent_, siemens);
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    if (is_.unknown[taxel] != 0) equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
+    if (missing_.is_missing(taxel)) equivalent_[taxel] = kNothing;
   }
   for (int round = 1; round < kEstimateRounds; ++round) {
-    estimate_unknown(siemens);
-    hold_missing(siemens);
+    missing_.improve(siemens);
     keep_crossings(siemens);
     result = healthy.invert(equivalent_, siemens);
   }
   return result;
 }
 
-/// What a taxel was a moment ago tells more than its neighbours do.
-void FaultInversion::hold_missing(std::span<double> siemens) noexcept {
-  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (is_.unknown[taxel] == 0 || last_.frames_ago[taxel] == kLong) continue;
-    siemens[taxel] = last_.siemens[taxel];
-    equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
-  }
-}
-
 /// Their readings count where the inversion solves them; else they are what they are.
 void FaultInversion::keep_crossings(std::span<double> siemens) noexcept {
   for (const std::size_t taxel : crossings_.in_first) siemens[taxel] = kOpenSiemens;
   if (crossings_.are_corrected) return;
-  for (const std::size_t taxel : crossings_.in_first) equivalent_[taxel] = std::numeric_limits<double>::quiet_NaN();
+  for (const std::size_t taxel : crossings_.in_first) equivalent_[taxel] = kNothing;
   for (const std::size_t taxel : crossings_.taxels) {
-    equivalent_[taxel] = crossings_.are_kept ? std::numeric_limits<double>::quiet_NaN() : measured_[taxel];
+    equivalent_[taxel] = crossings_.are_kept ? kNothing : measured_[taxel];
     if (crossings_.are_kept) siemens[taxel] = kShortSiemens;
   }
 }
@@ -326,7 +277,7 @@ double FaultInversion::correct(bool first) noexcept {
   double along = 0.0;
   double square = 0.0;
   for (std::size_t taxel = 0; taxel < equivalent_.size(); ++taxel) {
-    const double known = is_.unknown[taxel] != 0 ? 0.0 : measured_[taxel] - correction_.faulty_ratio[taxel];
+    const double known = missing_.is_missing(taxel) ? 0.0 : measured_[taxel] - correction_.faulty_ratio[taxel];
     const double difference = correction_.healthy_ratio[taxel] + known - equivalent_[taxel];
     change = std::max(change, std::abs(difference));
     sum += difference;
@@ -368,38 +319,10 @@ void FaultInversion::subtract_supplied_rows(std::span<const double> ratio) noexc
   }
 }
 
-/// Taxels that no reading tells, from their neighbours on the row and on the column; the geometric mean where both
-/// tell.
-void FaultInversion::estimate_unknown(std::span<double> values) const noexcept {
-  const double floor = kFloorShare * *std::max_element(values.begin(), values.end());
-  if (!(floor > 0.0)) return;
-  const auto logarithm = [&](std::size_t taxel) -> std::optional<double> {
-    if (is_.unknown[taxel] != 0 || is_.absent[taxel] != 0) return std::nullopt;
-    return std::log(std::max(values[taxel], floor) / typical_siemens_[taxel]);
-  };
-  // Of the taxels at `place` on a line, -2, -1, +1 and +2 steps away.
-  const auto along = [&](std::size_t taxel, std::size_t place, std::size_t size, std::size_t step) {
-    std::array<std::optional<double>, 4> near;
-    if (place > 1) near[0] = logarithm(taxel - 2 * step);
-    if (place > 0) near[1] = logarithm(taxel - step);
-    if (place + 1 < size) near[2] = logarithm(taxel + step);
-    if (place + 2 < size) near[3] = logarithm(taxel + 2 * step);
-    return between(near);
-  };
-  for (std::size_t taxel = 0; taxel < values.size(); ++taxel) {
-    if (is_.unknown[taxel] == 0) continue;
-    const std::optional<double> down = along(taxel, taxel / array_.cols, array_.rows, array_.cols);
-    const std::optional<double> right = along(taxel, taxel % array_.cols, array_.cols, 1);
-    const double count = (down ? 1.0 : 0.0) + (right ? 1.0 : 0.0);
-    const double sum = down.value_or(0.0) + right.value_or(0.0);
-    values[taxel] = count > 0.0 ? typical_siemens_[taxel] * std::exp(sum / count) : 0.0;
-  }
-}
-
 double FaultInversion::misfit(std::span<const double> siemens) const noexcept {
   double largest = 0.0;
   for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
-    if (is_.unknown[taxel] != 0) continue;
+    if (missing_.is_missing(taxel)) continue;
     const double difference = measured_[taxel] - correction_.faulty_ratio[taxel];
     if (siemens[taxel] == 0.0 && difference < 0.0) continue;
     largest = std::max(largest, std::abs(difference));

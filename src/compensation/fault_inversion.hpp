@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "compensation/lumped_circuit.hpp"
+#include "compensation/missing_taxels.hpp"
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/compensation/line_fault.hpp"
 #include "dermis/core/axis.hpp"
@@ -20,16 +21,14 @@ namespace dermis::compensation {
 ///   T' = T + T_healthy(G) - T_faulty(G),   G <- invert_healthy(T')
 ///
 /// Taxels whose conductance no reading tells (on a silent line, stuck, without a reading in this frame) are estimated
-/// from their neighbours, but for the first frames, in which they stay what they were. Without faults of lines, the
-/// healthy inversion keeps those estimates. An open row still couples the columns through them: eliminating it adds -g
-/// g^T / sum(g) to their equations. Shorted crossings are in both circuits: the inversion solves them, or keeps their
-/// taxels at a large conductance. For resistive lines, switches, real amplifiers, `none` and arrays of more than 256
-/// lines there is no faulty circuit: the readings of faulty lines are replaced by those of their neighbours, and the
-/// rest is solved as if healthy.
+/// (MissingTaxels). Without faults of lines, the healthy inversion keeps those estimates. An open row still couples the
+/// columns through them: eliminating it adds -g g^T / sum(g) to their equations. Shorted crossings are in both
+/// circuits: the inversion solves them, or keeps their taxels at a large conductance. For resistive lines, switches,
+/// real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit: the readings of faulty lines
+/// are replaced by those of their neighbours, and the rest is solved as if healthy.
 class FaultInversion {
  public:
-  /// `typical_siemens`: see Compensator::create.
-  FaultInversion(const ArrayDescription& array, double tolerance_ratio, std::span<const double> typical_siemens);
+  FaultInversion(const ArrayDescription& array, double tolerance_ratio, const ReferenceConductances& references);
 
   /// `healthy` is told of shorted crossings. Allocates nothing.
   void set_faults(std::span<const LineFault> faults, CrosstalkInversion& healthy);
@@ -48,8 +47,8 @@ class FaultInversion {
   void add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept;
 
   /// The frame is solved, at these conductances.
-  void remember(std::span<const double> siemens) noexcept;
-  void forget() noexcept;
+  void remember(std::span<const double> siemens) noexcept { missing_.remember(siemens); }
+  void forget() noexcept { missing_.forget(); }
 
   /// As CrosstalkInversion::invert; `healthy` inverts the circuit without faults.
   InversionResult invert(CrosstalkInversion& healthy, std::span<const double> ratio,
@@ -66,18 +65,9 @@ class FaultInversion {
   struct Masks {
     explicit Masks(const ArrayDescription& array);
 
-    std::vector<std::uint8_t> absent;   // from the sheet
-    std::vector<std::uint8_t> masked;   // without a force to report
-    std::vector<std::uint8_t> hidden;   // by a fault
-    std::vector<std::uint8_t> unknown;  // hidden, or without a reading
-  };
-
-  /// What the taxels were [taxels].
-  struct Memory {
-    explicit Memory(std::size_t taxels);
-
-    std::vector<double> siemens;
-    std::vector<std::uint8_t> frames_ago;  // at most a few
+    std::vector<std::uint8_t> absent;  // from the sheet
+    std::vector<std::uint8_t> masked;  // without a force to report
+    std::vector<std::uint8_t> hidden;  // by a fault
   };
 
   /// Taxels whose row and column touch. Where `healthy` does not solve them they are kept at a large conductance, or,
@@ -115,21 +105,18 @@ class FaultInversion {
   void subtract_supplied_rows(std::span<const double> ratio) noexcept;
   void average_shorted_lines() noexcept;
   InversionResult keep_estimates(CrosstalkInversion& healthy, std::span<double> siemens) noexcept;
-  void hold_missing(std::span<double> siemens) noexcept;
   void keep_crossings(std::span<double> siemens) noexcept;
   double correct(bool first) noexcept;
-  void estimate_unknown(std::span<double> values) const noexcept;
   [[nodiscard]] double misfit(std::span<const double> siemens) const noexcept;
 
   ArrayDescription array_;
   double tolerance_;
-  std::vector<double> typical_siemens_;  // [taxels]
   bool any_ = false;
   bool keeps_bounds_ = true;
   bool lines_are_faulty_ = false;  // so that the circuit is another one
   std::optional<Circuits> circuits_;
   Masks is_;
-  Memory last_;
+  MissingTaxels missing_;
   Crossings crossings_;
   std::vector<std::size_t> supplied_rows_;
   std::vector<ShortedLines> shorted_;

@@ -15,13 +15,14 @@ namespace {
 
 constexpr double kAllowedShare = 0.02;  // by which resistances of the readout and the supply may be wrong
 constexpr double kAllowedSigmas = 6.0;
-constexpr double kShortOhm = 10.0;     // of taxels none has less
-constexpr double kShortOfLoad = 0.02;  // likewise
-constexpr double kShortShare = 0.005;  // as kAllowedShare; a mistake costs one taxel
-constexpr double kStillShort = 4.0;    // times as many ohm, where the last reading was not believed
-constexpr double kStillShare = 0.03;   // likewise, of the supply
-constexpr double kLittleLeft = 0.6;    // readings of a line together, over what a taxel of 0 ohm reads alone
-constexpr std::size_t kAtOnce = 4;     // sums that do not wait for each other
+constexpr double kShortOhm = 10.0;      // of taxels none has less
+constexpr double kShortOfLoad = 0.02;   // likewise
+constexpr double kShortShare = 0.005;   // as kAllowedShare; a mistake costs one taxel
+constexpr double kStillShort = 4.0;     // times as many ohm, where the last reading was not believed
+constexpr double kStillShare = 0.03;    // likewise, of the supply
+constexpr double kLeastOfShort = 0.25;  // of the supply: where up to three short one column
+constexpr double kLittleLeft = 0.6;     // readings of a line together, over what a taxel of 0 ohm reads alone
+constexpr std::size_t kAtOnce = 4;      // sums that do not wait for each other
 
 /// Of a line of so many taxels: where more of its readings are impossible, none of them tells anything.
 std::size_t most_taken(std::size_t taxels) {
@@ -188,10 +189,10 @@ void PossibleReadings::judge_sensed(std::size_t sensed, std::span<const double> 
     sum -= ratio[worst];
   }
   const Head& head = heads_[sensed];
+  const double left = 1.0 - sum + kShortShare * sum + noise;
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
     const std::size_t taxel = taxel_of(driven, sensed);
-    if (verdicts[taxel] != ReadingVerdict::possible) continue;
-    const double left = 1.0 - sum + kShortShare * sum + noise - (was_taken(taxel) ? kStillShare * sum : 0.0);
+    if (verdicts[taxel] != ReadingVerdict::possible || ratio[taxel] < kLeastOfShort) continue;
     const double short_ohm = head.short_ohm * (was_taken(taxel) ? kStillShort : 1.0);
     if (left * head.ohm < (drive_ohm_[driven] + short_ohm) * ratio[taxel]) verdicts[taxel] = ReadingVerdict::shorted;
   }

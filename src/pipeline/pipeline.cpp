@@ -75,8 +75,9 @@ Result<Pipeline> Pipeline::create(const Model& model) {
   if (model.networks.taxel_count() != model.array.taxel_count() || !is_consistent) {
     return bad_input("the model's networks do not fit its array, or hold values out of range");
   }
+  const std::vector<double> typical = typical_siemens(model.networks);
   Result<compensation::Compensator> compensator =
-      compensation::Compensator::create(model.array, typical_siemens(model.networks));
+      compensation::Compensator::create(model.array, {typical, model.networks.unloaded.offset_siemens});
   if (!compensator) return compensator.error();
   return Pipeline(model, std::move(*compensator));
 }

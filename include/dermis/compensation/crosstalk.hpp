@@ -83,14 +83,18 @@ class PossibleReadings;
 class Spikes;
 class SupplyError;
 
+/// What the taxels conduct, by the calibration; by it a taxel without a reading is estimated.
+struct ReferenceConductances {
+  std::span<const double> typical = {};   ///< Under one same force, in any unit; > 0 [rows, cols], or empty.
+  std::span<const double> unloaded = {};  ///< [S], 0 or less where it is not known [rows, cols], or empty.
+};
+
 /// Unit 3 of the paper, the Compensation Unit: it corrects data "that deviate from the actual values by a known
 /// relationship" by that relationship. Not thread-safe: one per stream.
 class Compensator {
  public:
-  /// `typical_siemens` [rows, cols], > 0, or empty: conductance of each taxel under one same force, in any unit. It
-  /// relates a masked taxel to its neighbours.
   [[nodiscard]] static Result<Compensator> create(const ArrayDescription& array,
-                                                  std::span<const double> typical_siemens = {});
+                                                  const ReferenceConductances& references = {});
   Compensator(Compensator&&) noexcept;
   Compensator& operator=(Compensator&&) noexcept;
   ~Compensator();
@@ -111,7 +115,7 @@ class Compensator {
 
  private:
   Compensator(const ArrayDescription& array, std::unique_ptr<CrosstalkInversion> inversion,
-              std::span<const double> typical_siemens);
+              const ReferenceConductances& references);
   InversionResult invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept;
   InversionResult invert_possible(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
   void mask_faulty_taxels(ConductanceFrame& conductance) const noexcept;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dermis/compensation/crosstalk.hpp"
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/axis.hpp"
+
+namespace dermis::compensation {
+
+/// Conductances of taxels whose readings tell nothing of them. For the first frames a taxel stays what it was; then its
+/// neighbours tell. In most circuits the others of its line tell, too: with g the line's load (at virtual ground, the
+/// conductance of its driver), a taxel that is taken as x where it is X makes all of them
+///
+///   s = (g + x) / (g + X)
+///
+/// times what they are. Of unloaded ones that is known, as they are in the rest of the array. Both are weighed by their
+/// standard deviations, in logarithms.
+class MissingTaxels {
+ public:
+  MissingTaxels(const ArrayDescription& array, const ReferenceConductances& references);
+
+  /// Which taxels these are [taxels].
+  [[nodiscard]] std::span<std::uint8_t> missing() noexcept { return missing_; }
+  [[nodiscard]] bool is_missing(std::size_t taxel) const noexcept { return missing_[taxel] != 0; }
+
+  /// Readings or conductances from those of their neighbours.
+  void estimate(std::span<double> values) const noexcept;
+
+  /// `siemens` are solved, with what was taken for the missing taxels; these become better. Allocates nothing.
+  void improve(std::span<double> siemens) noexcept;
+
+  /// Where it is known, what a taxel was a moment ago.
+  [[nodiscard]] std::optional<double> held(std::size_t taxel) const noexcept;
+
+  /// Relative standard deviation of a missing taxel.
+  [[nodiscard]] double doubt(std::size_t taxel) const noexcept { return doubt_[taxel]; }
+
+  /// The frame is solved, at these conductances.
+  void remember(std::span<const double> siemens) noexcept;
+  void forget() noexcept;
+  void forget(std::size_t taxel) noexcept;
+
+ private:
+  /// The middle of some values, and the standard deviation of that.
+  struct Middle {
+    double value;
+    double sigma;
+  };
+
+  [[nodiscard]] std::optional<double> logarithm(std::span<const double> values, std::size_t taxel,
+                                                double floor) const noexcept;
+  [[nodiscard]] std::optional<Middle> change_of_unloaded(std::span<const double> siemens, std::optional<Axis> axis,
+                                                         std::size_t line) noexcept;
+  void improve(std::size_t taxel, double taken, const Middle& lacking, double load_siemens,
+               std::span<double> siemens) noexcept;
+
+  const ArrayDescription& array_;
+  std::optional<Axis> telling_axis_;      // lines whose taxels take from each other
+  std::vector<double> load_siemens_;      // g [lines]
+  std::vector<double> typical_siemens_;   // [taxels]
+  std::vector<double> unloaded_siemens_;  // [taxels]; empty: unknown
+  std::vector<std::uint8_t> absent_;      // [taxels]
+  std::vector<std::uint8_t> missing_;     // [taxels]
+  std::vector<double> last_siemens_;      // [taxels]
+  std::vector<std::uint8_t> frames_ago_;  // of it, at most a few [taxels]
+  std::vector<double> doubt_;             // [taxels]
+  std::vector<double> taken_;             // [taxels]
+  std::vector<double> sorted_;            // [taxels]
+};
+
+}  // namespace dermis::compensation
