@@ -17,9 +17,8 @@ constexpr double kDoubtOfHeld = 0.15;
 constexpr double kFloorShare = 1e-3;       // of the largest conductance: where logarithms end
 constexpr double kMostRise = 1.0;          // of the logarithm above both neighbours
 constexpr double kUnloadedScatter = 0.02;  // at least, of the middle of a line
-constexpr double kMedianOverMean = 1.25;   // standard deviations of the two, of normal values
-constexpr double kSigmaOfDeviation = 1.48;
-constexpr std::size_t kFewest = 4;  // taxels that tell
+constexpr double kShiftByPressed = 1.0;    // of that middle where a third is pressed, in median deviations
+constexpr std::size_t kFewest = 4;         // taxels that tell
 constexpr int kSteps = 8;
 
 std::optional<Axis> telling_axis(const ArrayDescription& array) {
@@ -162,8 +161,7 @@ std::optional<MissingTaxels::Middle> MissingTaxels::change_of_unloaded(std::span
   if (sorted_.size() < kFewest) return std::nullopt;
   const double middle = median_of(sorted_);
   for (double& value : sorted_) value = std::abs(value - middle);
-  const double sigma = kMedianOverMean * kSigmaOfDeviation * median_of(sorted_);
-  return Middle{middle, std::hypot(kUnloadedScatter, sigma / std::sqrt(static_cast<double>(sorted_.size())))};
+  return Middle{middle, std::hypot(kUnloadedScatter, kShiftByPressed * median_of(sorted_))};
 }
 
 /// The x that is most likely after both, by Gauss and Newton in ln x.

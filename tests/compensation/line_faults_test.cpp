@@ -51,7 +51,7 @@ class Rig {
       unloaded.push_back(calibrated * unit * simulator_->rubber().conductance_from_force(taxel, 0.0, kCelsius));
       typical.push_back(unit * simulator_->rubber().conductance_from_force(taxel, 10.0, kCelsius));
     }
-    compensator_ = std::make_unique<Compensator>(Compensator::create(array, typical).value());
+    compensator_ = std::make_unique<Compensator>(Compensator::create(array, {typical, unloaded}).value());
     monitor_ = std::make_unique<LineFaultMonitor>(array, unloaded);
   }
 

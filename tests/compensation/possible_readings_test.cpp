@@ -25,6 +25,12 @@ struct Checked {
     return static_cast<std::size_t>(std::count(taxels.begin(), taxels.end(), TaxelStatus::invalid));
   }
 
+  ReadingVerdict verdict(std::size_t taxel) const {
+    std::vector<ReadingVerdict> verdicts(ratio.size());
+    possible.judge(ratio, kSigma, taxels, verdicts);
+    return verdicts[taxel];
+  }
+
   PossibleReadings possible;
   std::vector<double> ratio;
   std::vector<TaxelStatus> taxels;
@@ -37,7 +43,8 @@ TEST(PossibleReadings, what_a_taxel_of_any_resistance_reads_is_possible_in_every
     SCOPED_TRACE(testing::Message() << circuit << ", seed " << kSeed);
     const ArrayDescription array = support::random_array(circuit, 6, 5, random);
     Checked checked(array);
-    for (const double least_ohm : {15.0, 200.0, 1e4}) {
+    const double largest_load = *std::max_element(array.readout.load_ohm.begin(), array.readout.load_ohm.end());
+    for (const double least_ohm : {std::max(15.0, 0.03 * largest_load), 200.0, 1e4}) {
       const auto siemens = support::random_siemens(array, random, least_ohm, 1e5);
       simulation::ReadoutCircuit::create(array).value().ratios(siemens, checked.ratio);
       EXPECT_EQ(checked.invalid(), 0U) << "from " << least_ohm << " ohm";
@@ -49,10 +56,9 @@ TEST(PossibleReadings, more_than_a_taxel_of_0_ohm_reads_is_impossible) {
   const ArrayDescription array = support::reference_circuit();
   Checked checked(array);
   checked.ratio[array.index(2, 5)] = 0.95;  // 200 / 220 at most
+  EXPECT_EQ(checked.verdict(array.index(2, 5)), ReadingVerdict::impossible);
   EXPECT_EQ(checked.invalid(), 1U);
   EXPECT_EQ(checked.taxels[array.index(2, 5)], TaxelStatus::invalid);
-  EXPECT_EQ(checked.possible.judge(array.index(2, 5), checked.ratio, kSigma, checked.taxels),
-            ReadingVerdict::impossible);
 }
 
 TEST(PossibleReadings, the_current_of_a_row_leaves_less_for_each_of_its_taxels) {
@@ -80,8 +86,42 @@ TEST(PossibleReadings, a_reading_that_leaves_a_few_ohm_is_a_short) {
   const std::size_t taxel = array.index(2, 5);
   for (const auto& [ohm, verdict] : {std::pair{2.0, ReadingVerdict::shorted}, {15.0, ReadingVerdict::possible}}) {
     checked.ratio[taxel] = 200.0 / (220.0 + ohm);
-    EXPECT_EQ(checked.possible.judge(taxel, checked.ratio, kSigma, checked.taxels), verdict) << ohm;
+    EXPECT_EQ(checked.verdict(taxel), verdict) << ohm;
   }
+}
+
+TEST(PossibleReadings, two_rows_that_touch_one_column_are_shorts_though_neither_reads_much) {
+  const ArrayDescription array = support::reference_circuit();
+  Checked checked(array);
+  for (const std::size_t row : {3U, 8U}) checked.ratio[array.index(row, 5)] = 1.0 / (2.0 + 20.0 / 200.0);
+  checked.ratio[array.index(1, 5)] = 0.01;
+  EXPECT_EQ(checked.verdict(array.index(3, 5)), ReadingVerdict::shorted);
+  EXPECT_EQ(checked.verdict(array.index(8, 5)), ReadingVerdict::shorted);
+  EXPECT_EQ(checked.verdict(array.index(1, 5)), ReadingVerdict::possible);
+}
+
+TEST(PossibleReadings, two_columns_that_touch_one_row_are_shorts_though_the_row_has_fallen) {
+  const ArrayDescription array = support::reference_circuit();
+  Checked checked(array);
+  for (const std::size_t col : {2U, 9U}) checked.ratio[array.index(4, col)] = 1.0 / (1.0 + 2.0 * 20.0 / 200.0);
+  EXPECT_EQ(checked.verdict(array.index(4, 2)), ReadingVerdict::shorted);
+  EXPECT_EQ(checked.verdict(array.index(4, 9)), ReadingVerdict::shorted);
+}
+
+TEST(PossibleReadings, a_reading_that_was_taken_away_comes_back_only_clearly_below_its_limit) {
+  const ArrayDescription array = support::reference_circuit();
+  Checked checked(array);
+  const std::size_t taxel = array.index(2, 5);
+  const auto is_taken_with = [&](double ohm) {
+    std::fill(checked.taxels.begin(), checked.taxels.end(), TaxelStatus::ok);
+    checked.ratio[taxel] = 200.0 / (220.0 + ohm);
+    return checked.invalid() == 1U;
+  };
+  EXPECT_FALSE(is_taken_with(15.0));
+  EXPECT_TRUE(is_taken_with(2.0));
+  EXPECT_TRUE(is_taken_with(15.0));
+  EXPECT_FALSE(is_taken_with(60.0));
+  EXPECT_FALSE(is_taken_with(15.0));
 }
 
 TEST(PossibleReadings, the_largest_of_each_line_with_little_left_is_taken_or_the_largest_of_all) {
@@ -96,6 +136,18 @@ TEST(PossibleReadings, the_largest_of_each_line_with_little_left_is_taken_or_the
   checked.possible.take_largest(checked.ratio, checked.taxels);
   EXPECT_EQ(std::count(checked.taxels.begin(), checked.taxels.end(), TaxelStatus::invalid), 3);
   EXPECT_EQ(checked.taxels[array.index(5, 9)], TaxelStatus::invalid);
+}
+
+TEST(PossibleReadings, full_lines_are_taken_whole_and_the_others_not) {
+  const ArrayDescription array = support::reference_circuit();
+  Checked checked(array);
+  checked.ratio[array.index(1, 3)] = 0.7;
+  checked.ratio[array.index(5, 9)] = 0.3;
+  EXPECT_TRUE(checked.possible.take_full_lines(checked.ratio, checked.taxels));
+  EXPECT_EQ(std::count(checked.taxels.begin(), checked.taxels.end(), TaxelStatus::invalid),
+            static_cast<std::ptrdiff_t>(array.rows));
+  EXPECT_EQ(checked.taxels[array.index(1, 9)], TaxelStatus::ok);
+  EXPECT_FALSE(checked.possible.take_full_lines(checked.ratio, checked.taxels));
 }
 
 }  // namespace

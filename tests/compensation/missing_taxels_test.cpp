@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "compensation/missing_taxels.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "support/reference_array.hpp"
+
+namespace dermis::compensation {
+namespace {
+
+constexpr double kUnloaded = 1e-5;  // [S]
+constexpr double kPressed = 2e-3;   // [S]
+constexpr std::size_t kRow = 4;
+constexpr std::size_t kCol = 6;
+
+/// All taxels are unloaded and solved as if the missing one were `taken`, where it is kPressed.
+std::vector<double> solved_with(const ArrayDescription& array, double taken) {
+  const double load = 1.0 / array.readout.load_ohm[kCol];
+  std::vector<double> siemens(array.taxel_count(), kUnloaded);
+  for (std::size_t row = 0; row < array.rows; ++row) {
+    siemens[array.index(row, kCol)] = kUnloaded * (load + taken) / (load + kPressed);
+  }
+  siemens[array.index(kRow, kCol)] = taken;
+  return siemens;
+}
+
+TEST(MissingTaxels, the_unloaded_others_of_the_column_tell_what_presses_where_nothing_is_read) {
+  const ArrayDescription array = support::reference_circuit();
+  const std::vector<double> unloaded(array.taxel_count(), kUnloaded);
+  const std::size_t taxel = array.index(kRow, kCol);
+  MissingTaxels taxels(array, {unloaded, unloaded});
+  taxels.missing()[taxel] = 1;
+  for (const double taken : {0.3 * kPressed, 3.0 * kPressed}) {
+    std::vector<double> siemens = solved_with(array, taken);
+    siemens[taxel - 1] = siemens[taxel + 1] = 0.5 * kPressed;  // the neighbours are pressed, too
+    taxels.improve(siemens);
+    EXPECT_NEAR(siemens[taxel], kPressed, 0.1 * kPressed) << taken;
+    EXPECT_LT(taxels.doubt(taxel), 0.15);
+  }
+}
+
+TEST(MissingTaxels, where_rows_float_only_the_neighbours_tell) {
+  ArrayDescription array = support::reference_circuit();
+  array.readout.idle_rows = IdleRows::floating;
+  const std::vector<double> unloaded(array.taxel_count(), kUnloaded);
+  const std::size_t taxel = array.index(kRow, kCol);
+  MissingTaxels taxels(array, {unloaded, unloaded});
+  taxels.missing()[taxel] = 1;
+  std::vector<double> siemens = solved_with(array, 0.3 * kPressed);
+  std::vector<double> from_neighbours = siemens;
+  taxels.estimate(from_neighbours);
+  taxels.improve(siemens);
+  EXPECT_EQ(siemens, from_neighbours);
+}
+
+TEST(MissingTaxels, a_taxel_stays_what_it_was_for_three_frames) {
+  const ArrayDescription array = support::reference_circuit();
+  MissingTaxels taxels(array, {});
+  std::vector<double> siemens(array.taxel_count(), kUnloaded);
+  siemens[0] = kPressed;
+  EXPECT_FALSE(taxels.held(0));
+  taxels.remember(siemens);
+  taxels.missing()[0] = 1;
+  for (int frame = 0; frame < 3; ++frame) {
+    EXPECT_EQ(taxels.held(0), kPressed) << frame;
+    taxels.remember(siemens);
+  }
+  taxels.remember(siemens);
+  EXPECT_FALSE(taxels.held(0));
+  taxels.missing()[0] = 0;
+  taxels.remember(siemens);
+  EXPECT_TRUE(taxels.held(0));
+  taxels.forget(0);
+  EXPECT_FALSE(taxels.held(0));
+}
+
+}  // namespace
+}  // namespace dermis::compensation
