@@ -25,7 +25,7 @@ constexpr double kLittleLeft = 0.6;     // readings of a line together, over wha
 constexpr std::size_t kAtOnce = 4;      // sums that do not wait for each other
 
 /// Of a line of so many taxels: where more of its readings are impossible, none of them tells anything.
-std::size_t most_taken(std::size_t taxels) {
+std::size_t most_bad(std::size_t taxels) {
   return std::max<std::size_t>(2, taxels / 4);
 }
 
@@ -66,7 +66,12 @@ void PossibleReadings::check(std::span<const double> ratio, double sigma_ratio,
   const bool is_wary = std::exchange(any_taken_, false);
   if (!is_wary && !any_may_exceed(ratio)) return;
   judge(ratio, sigma_ratio, taxels, verdicts_);
-  take_bad(taxels);
+  for (std::size_t taxel = 0; taxel < taxels.size(); ++taxel) {
+    if (taxels[taxel] == TaxelStatus::invalid || verdicts_[taxel] == ReadingVerdict::possible) continue;
+    taxels[taxel] = TaxelStatus::invalid;
+    taken_[taxel] = 1;
+    any_taken_ = true;
+  }
 }
 
 bool PossibleReadings::any_may_exceed(std::span<const double> ratio) noexcept {
@@ -99,29 +104,18 @@ bool PossibleReadings::driven_may_exceed(std::size_t driven, std::span<const dou
   return drive_ohm_[driven] * total + *std::max_element(most, most + kAtOnce) > 1.0;
 }
 
-/// Of lines with many bad readings none tells anything.
-void PossibleReadings::take_bad(std::span<TaxelStatus> taxels) noexcept {
-  const auto take_line = [&](std::size_t size, const auto& taxel_at) {
-    const auto is_bad = [&](std::size_t k) { return verdicts_[taxel_at(k)] >= ReadingVerdict::shorted; };
+void PossibleReadings::doubt_bad_lines(std::span<ReadingVerdict> verdicts) const noexcept {
+  const auto doubt = [&](std::size_t size, const auto& taxel_at) {
     std::size_t bad = 0;
-    for (std::size_t k = 0; k < size; ++k) bad += is_bad(k) ? 1 : 0;
-    for (std::size_t k = 0; k < size && bad > 0; ++k) {
-      if (bad > most_taken(size) || is_bad(k)) take(taxel_at(k), taxels);
-    }
+    for (std::size_t k = 0; k < size; ++k) bad += verdicts[taxel_at(k)] >= ReadingVerdict::shorted ? 1 : 0;
+    for (std::size_t k = 0; k < size && bad > most_bad(size); ++k) verdicts[taxel_at(k)] = ReadingVerdict::unknown;
   };
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
-    take_line(heads_.size(), [&](std::size_t sensed) { return taxel_of(driven, sensed); });
+    doubt(heads_.size(), [&](std::size_t sensed) { return taxel_of(driven, sensed); });
   }
   for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
-    take_line(drive_ohm_.size(), [&](std::size_t driven) { return taxel_of(driven, sensed); });
+    doubt(drive_ohm_.size(), [&](std::size_t driven) { return taxel_of(driven, sensed); });
   }
-}
-
-void PossibleReadings::take(std::size_t taxel, std::span<TaxelStatus> taxels) noexcept {
-  if (taxels[taxel] == TaxelStatus::invalid) return;
-  taxels[taxel] = TaxelStatus::invalid;
-  taken_[taxel] = 1;
-  any_taken_ = true;
 }
 
 void PossibleReadings::forget() noexcept {
@@ -140,6 +134,7 @@ void PossibleReadings::judge(std::span<const double> ratio, double sigma_ratio, 
   for (std::size_t sensed = 0; sensed < heads_.size() && sums_are_bounded_; ++sensed) {
     judge_sensed(sensed, ratio, sigma_ratio, verdicts);
   }
+  doubt_bad_lines(verdicts);
 }
 
 void PossibleReadings::judge_driven(std::size_t driven, std::span<const double> ratio, double sigma_ratio,
@@ -149,7 +144,7 @@ void PossibleReadings::judge_driven(std::size_t driven, std::span<const double> 
     const std::size_t taxel = taxel_of(driven, sensed);
     if (verdicts[taxel] != ReadingVerdict::unknown) total += current(sensed, ratio[taxel]);
   }
-  while (true) {
+  for (std::size_t bad = 0; bad <= most_bad(heads_.size()); ++bad) {
     std::size_t worst = heads_.size();
     Margins least{0.0, 0.0};
     for (std::size_t sensed = 0; sensed < heads_.size(); ++sensed) {
@@ -179,7 +174,7 @@ void PossibleReadings::judge_sensed(std::size_t sensed, std::span<const double> 
     const std::size_t taxel = taxel_of(driven, sensed);
     if (is_there(taxel)) sum += ratio[taxel];
   }
-  while (sum > 1.0 + kAllowedShare + noise) {
+  for (std::size_t bad = 0; sum > 1.0 + kAllowedShare + noise && bad <= most_bad(drive_ohm_.size()); ++bad) {
     std::size_t worst = ratio.size();
     for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
       const std::size_t taxel = taxel_of(driven, sensed);

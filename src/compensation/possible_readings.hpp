@@ -33,8 +33,9 @@ class PossibleReadings {
   /// line first; all of a line where they are many. `sigma_ratio` is the noise of a reading. Allocates nothing.
   void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
 
-  /// Of each reading, `unknown` where it is invalid. The worst of a line is judged first: the current of an impossible
-  /// reading is not there, that of a short is. `verdicts` [taxels]. Allocates nothing.
+  /// Of each reading; `unknown` where it is invalid, and on a line with many bad ones, of which none tells anything.
+  /// The worst of a line is judged first: the current of an impossible reading is not there, that of a short is.
+  /// `verdicts` [taxels]. Allocates nothing.
   void judge(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels,
              std::span<ReadingVerdict> verdicts) const noexcept;
 
@@ -76,8 +77,7 @@ class PossibleReadings {
                     std::span<ReadingVerdict> verdicts) const noexcept;
   void judge_sensed(std::size_t sensed, std::span<const double> ratio, double sigma_ratio,
                     std::span<ReadingVerdict> verdicts) const noexcept;
-  void take_bad(std::span<TaxelStatus> taxels) noexcept;
-  void take(std::size_t taxel, std::span<TaxelStatus> taxels) noexcept;
+  void doubt_bad_lines(std::span<ReadingVerdict> verdicts) const noexcept;
 
   /// What is left of the slack, negative where the verdict is not `possible`.
   struct Margins {

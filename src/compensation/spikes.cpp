@@ -17,7 +17,7 @@ constexpr double kMostChanged = 0.4;  // of the loads; else the frame is not com
 constexpr std::size_t kNear = 2;      // places: a press reaches them
 constexpr double kLeastFall = 0.05;   // of the others' readings
 constexpr double kSeenSigmas = 6.0;   // of a fall of one reading, or of all small ones together
-constexpr double kSeenTogether = 4.0;
+constexpr double kSeenTogether = 5.0;
 constexpr double kMoreStay = 2.0;    // than fall
 constexpr double kNewShare = 0.125;  // of a reading in its mean
 constexpr double kLeastLeft = 0.01;  // of the supply
@@ -148,9 +148,9 @@ bool Spikes::others_answer(std::size_t line, std::size_t jumping, double fall, s
       small_count += 1.0;
     }
   }
-  if (small > kSeenTogether * sigma_ratio * std::sqrt(small_count)) {
-    (small_fallen > 0.5 * small ? answer : stay) += small;
-  }
+  const double noise = kSeenTogether * sigma_ratio * std::sqrt(small_count);
+  if (small - small_fallen > noise && small_fallen < 0.5 * small) stay += small;
+  if (small_fallen > noise && small_fallen >= 0.5 * small) answer += small;
   return stay <= kMoreStay * answer;
 }
 

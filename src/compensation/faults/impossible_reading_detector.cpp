@@ -135,6 +135,7 @@ ReadingVerdict ImpossibleReadingDetector::verdict(const Observation& seen, std::
     return ReadingVerdict::shorted;
   }
   const ReadingVerdict own = verdicts_[taxel];
+  if (own == ReadingVerdict::unknown) return own;
   if (!columns_tell_ || own == ReadingVerdict::impossible) return own;
   const ReadingVerdict column = verdict_of_column(seen, taxel);
   return column == ReadingVerdict::impossible || own == ReadingVerdict::possible ? column : own;
