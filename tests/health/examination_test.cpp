@@ -257,7 +257,7 @@ TEST(Examination, a_reading_that_the_circuit_cannot_give_is_named) {
 
 TEST(Examination, a_saturated_line_and_a_saturated_array_are_one_finding_each) {
   std::vector<std::size_t> row;
-  for (std::size_t col = 0; col < 8; ++col) row.push_back(3 * 8 + col);
+  for (std::size_t taxel = 24; taxel < 32; ++taxel) row.push_back(taxel);  // row 3 of 8
   const Diagnosis of_row = examine_saturated(row);
   EXPECT_EQ(findings_with(of_row, "row 3 has no force in any of 100 frames"), 1U);
   EXPECT_EQ(findings_with(of_row, "taxel"), 0U);

@@ -87,7 +87,7 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultLi
 }
 
 void ImpossibleReadingDetector::watch_columns(const Observation& seen, const FaultList& faults) noexcept {
-  std::array<std::size_t, kMostFound> found;
+  std::array<std::size_t, kMostFound> found{};
   std::size_t count = 0;
   for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {
     if (seen.conditioned.ratio[taxel] < kHigh || verdict(seen, taxel) != ReadingVerdict::impossible) continue;
