@@ -226,7 +226,8 @@ class FramesFile(SmallArray):
 
 
 class WhatCannotBe(SmallArray):
-    """Frames of another unit, and of an array that is not there: `run` names the mend in its last line, with status 1."""
+    """Frames of another unit, and of an array that is not there: `run` names the mend in its last line, with status 1.
+    Loads that exchange rows and columns: `calibrate` refuses them."""
 
     def assert_named(self, change, words):
         header, *rows = [line.split(",") for line in (self.contacts / "frames.csv").read_text().splitlines()]
@@ -254,6 +255,16 @@ class WhatCannotBe(SmallArray):
         def change(row, columns):
             row[columns["r0c0"]:] = ["0"] * 20
         self.assert_named(change, ["all readings 0", "is the array connected and powered?"])
+
+
+    def test_rows_and_columns_of_the_loads_exchanged(self):
+        square = self.written("square.toml", ARRAY.replace("cols = 5", "cols = 4"))
+        self.succeed("simulate", "--array", square, "--scene", "calibration", "--out", self.work / "square")
+        exchanged = re.sub(r"r(\d)c(\d)", r"r\2c\1", (self.work / "square/loads.csv").read_text())
+        self.refuse(self.calibrate_arguments(self.work / "m.safetensors", array=square,
+                                             frames=self.work / "square/frames.csv",
+                                             loads=self.written("loads.csv", exchanged)),
+                    ["exchange rows and columns", "r1c0 answers where they name r0c1", "12 of 12 taxels"])
 
 
 class EveryCommand(SmallArray):
