@@ -47,7 +47,8 @@ bool is_result(std::string_view first_bytes) {
 bool is_same(const std::string& one, const std::string& other) {
   std::error_code error;
   if (fs::equivalent(one, other, error)) return true;
-  return fs::weakly_canonical(one, error) == fs::weakly_canonical(other, error);
+  const fs::path whole = fs::weakly_canonical(one, error);
+  return !whole.empty() && whole == fs::weakly_canonical(other, error);
 }
 
 bool would_be_lost(const std::string& path) {
@@ -96,7 +97,8 @@ void FilePlaces::add_output_folder(const std::string& option, const std::string&
                                    std::vector<std::string> files) {
   outputs_.push_back({option, [&folder, files = std::move(files)] {
                         std::vector<std::string> paths;
-                        if (fs::exists(fs::path(folder) / "origin.toml")) return paths;
+                        std::error_code error;
+                        if (fs::exists(fs::path(folder) / "origin.toml", error)) return paths;
                         for (const std::string& file : files) paths.push_back((fs::path(folder) / file).string());
                         return paths;
                       }});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <filesystem>
+#include <system_error>
 
 #include "bindings.hpp"
 #include "dermis/core/version.hpp"
@@ -72,7 +73,8 @@ std::string path_of(const py::object& object) {
 
 std::string new_path(const py::object& object, bool is_forced) {
   std::string path = path_of(object);
-  if (!is_forced && std::filesystem::is_regular_file(path)) {
+  std::error_code error;
+  if (!is_forced && std::filesystem::is_regular_file(path, error)) {
     raise(bad_input("'" + path + "' exists; name another, or replace it with force=True"));
   }
   return path;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "dermis/files/kept_copy.hpp"
@@ -19,7 +20,8 @@ std::string ServiceArray::new_name(std::string_view content) const {
   if (!content.empty()) new_name.append(content).append("-");
   new_name += files::time_stamp(std::chrono::system_clock::now());
   std::string unused = new_name;
-  for (int number = 2; std::filesystem::exists(path_of(unused + ".frames.csv")); ++number) {
+  std::error_code error;
+  for (int number = 2; std::filesystem::exists(path_of(unused + ".frames.csv"), error); ++number) {
     unused = new_name + "-" + std::to_string(number);
   }
   return unused;

@@ -87,6 +87,16 @@ class NothingIsOverwritten(SmallArray):
             self.assertEqual((result.returncode, result.stderr), (2, "dermis: --out: is the file of --in; name another\n"))
             self.assertEqual(frames.read_bytes(), before)
 
+    def test_names_that_no_file_can_have_are_told(self):
+        long = self.work / ("a" * 300)
+        for arguments in (("simulate", "--array", self.array, "--scene", "idle", "--frames", 3, "--out", long),
+                          ("record", "--from", "sim:idle?rate=100&frames=3", "--out", f"{long}.mcap"),
+                          ("convert", f"{long}.csv", f"{long}.mcap")):
+            with self.subTest(arguments[0]):
+                result = dermis(*arguments)
+                self.assertIn(result.returncode, (1, 2))
+                self.assertRegex(result.stderr, r"^dermis: .*a': File name too long|^dermis: .*File name too long\n$")
+
     def test_two_outputs_are_two_files(self):
         result = dermis(*self.run_arguments(self.work / "f.csv"), "--contacts", self.work / "." / "f.csv")
         self.assertEqual((result.returncode, result.stderr), (2, "dermis: --contacts: is the file of --out; name another\n"))
