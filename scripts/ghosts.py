@@ -67,7 +67,7 @@ adc_reference_v = "supply"
 """)
     rows = (frame[row * COLS:(row + 1) * COLS] for frame in frames for row in range(ROWS))
     readings.write_text("".join(",".join(repr(v * scale / FULL_SCALE_COUNTS) for v in row) + "\n" for row in rows))
-    subprocess.run([DERMIS, "circuit", "invert", "--array", array, "--readings", readings, "--out", out],
+    subprocess.run([DERMIS, "circuit", "invert", "--array", array, "--readings", readings, "--out", out, "--force"],
                    stderr=subprocess.DEVNULL, check=False)
     values = [float(value) for line in out.read_text().split() for value in line.split(",")]
     size = ROWS * COLS

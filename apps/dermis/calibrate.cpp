@@ -20,6 +20,7 @@
 #include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "interruption.hpp"
+#include "kept_model.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
@@ -186,6 +187,7 @@ Result<BankTrainingReport> train_bank(const CalibrateOptions& options, const cal
   Result<paper::TrainedBank> trained = paper::train_paper_bank(database, paper::kBankSteps, kBankSeed,
                                                                [&](double share) { progress.show("bank", share); });
   if (!trained) return trained.error();
+  if (Status kept = keep_earlier_model(options.bank); !kept) return kept.error();
   if (Status written = paper::write_paper_bank(options.bank, trained->bank); !written) return written.error();
   return std::move(trained->report);
 }
@@ -230,6 +232,7 @@ Status calibrate(const CalibrateOptions& options) {
   std::vector<calibration::StageTime>& stages = calibration->report.stages;
   stages.insert(stages.begin(), {{"reading", read_s}, {"circuit", circuit_s}});
   if (Status hashed = add_hashes(options, calibration->model.provenance); !hashed) return hashed;
+  if (Status kept = keep_earlier_model(options.out); !kept) return kept;
   if (Status written = pipeline::write_model(options.out, calibration->model); !written) return written;
   std::optional<BankTrainingReport> bank;
   if (!options.bank.empty()) {
@@ -250,13 +253,13 @@ Status calibrate(const CalibrateOptions& options) {
 
 void add_calibrate(Command& command) {
   auto options = std::make_shared<CalibrateOptions>();
-  command.option("--array", options->array, "array.toml: size, pitch and readout circuit").required();
-  command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
+  command.input("--array", options->array, "array.toml: size, pitch and readout circuit").required();
+  command.input("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
       .required();
-  command.option("--loads", options->loads, "loads.csv: which load pressed where in which frame").required();
-  command.option("--out", options->out, "Model file to write (safetensors)").required();
-  command.option("--bank", options->bank,
-                 "Also train the paper's bank of N-N-N-1 networks and write it here (16x16: minutes, 135 MB)");
+  command.input("--loads", options->loads, "loads.csv: which load pressed where in which frame").required();
+  command.output_model("--out", options->out, "Model file to write (safetensors)").required();
+  command.output_model("--bank", options->bank,
+                       "Also train the paper's bank of N-N-N-1 networks and write it here (16x16: minutes, 135 MB)");
   command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag("--json", options->json, "Print the report as JSON");
   command.action([options] {

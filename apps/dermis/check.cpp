@@ -53,9 +53,9 @@ Result<int> check(const CheckOptions& options) {
 
 void add_check(Command& command) {
   auto options = std::make_shared<CheckOptions>();
-  command.option("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
+  command.input("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
       .required();
-  command.option("--in", options->in, "Raw counts while the object is put on: frames.csv, a recording or a device")
+  command.input("--in", options->in, "Raw counts while the object is put on: frames.csv, a recording or a device")
       .required();
   command.option("--weight", options->weight_n, "What the object presses with [N]; 100 g are 0.981 N").required();
   command.action_with_exit_status([options] { return check(*options); });

@@ -93,7 +93,6 @@ Status circuit_forward(const ForwardOptions& options) {
 }
 
 Status circuit_invert(const InvertOptions& options) {
-  if (options.sigma == options.out) return bad_input("--sigma: is the file of --out; name another");
   const Result<ArrayDescription> array = read_known_circuit(options.array);
   if (!array) return array.error();
   const Result<double> noise = noise_ratio(options, *array);
@@ -179,24 +178,24 @@ Status circuit_advise(const AdviseOptions& options) {
 void add_circuit(Command& command) {
   auto forward_options = std::make_shared<ForwardOptions>();
   Command forward = command.subcommand("forward", "Compute readings over the supply from conductances (siemens)");
-  forward.option("--array", forward_options->array, "array.toml: size and readout circuit").required();
-  forward.option("--conductance", forward_options->conductance, "CSV of siemens, rows x columns").required();
-  forward.option("--out", forward_options->out, "CSV of readings to write").required();
+  forward.input("--array", forward_options->array, "array.toml: size and readout circuit").required();
+  forward.input("--conductance", forward_options->conductance, "CSV of siemens, rows x columns").required();
+  forward.output("--out", forward_options->out, "CSV of readings to write").required();
   forward.action([forward_options] { return circuit_forward(*forward_options); });
 
   auto invert_options = std::make_shared<InvertOptions>();
   Command invert = command.subcommand("invert", "Compute conductances (siemens) from readings over the supply");
-  invert.option("--array", invert_options->array, "array.toml: size and readout circuit").required();
-  invert.option("--readings", invert_options->readings, "CSV of readings, rows x columns").required();
-  invert.option("--out", invert_options->out, "CSV of siemens to write").required();
-  invert.option("--sigma", invert_options->sigma, "CSV of the 1-sigma of each conductance to write [S]");
+  invert.input("--array", invert_options->array, "array.toml: size and readout circuit").required();
+  invert.input("--readings", invert_options->readings, "CSV of readings, rows x columns").required();
+  invert.output("--out", invert_options->out, "CSV of siemens to write").required();
+  invert.output("--sigma", invert_options->sigma, "CSV of the 1-sigma of each conductance to write [S]");
   invert.option("--noise", invert_options->noise_ratio,
                 "Standard deviation of a reading over the supply (default: that of the array's ADC)");
   invert.action([invert_options] { return circuit_invert(*invert_options); });
 
   auto advise_options = std::make_shared<AdviseOptions>();
   Command advise = command.subcommand("advise", "Find the load and drive resistances with the smallest error");
-  advise.option("--array", advise_options->array, "array.toml: size, readout circuit and ADC").required();
+  advise.input("--array", advise_options->array, "array.toml: size, readout circuit and ADC").required();
   advise.option("--range", advise_options->range_ohm, "Least and greatest resistance of a taxel [ohm]")
       .takes(2)
       .required();

@@ -182,6 +182,39 @@ Option Command::flag(const std::string& name, bool& value, const std::string& he
   return Option(app_.add_flag(name, value, help));
 }
 
+template <typename Value>
+Option Command::input(const std::string& name, Value& value, const std::string& help) {
+  places_->files.add_input(name, value);
+  return option(name, value, help);
+}
+
+template Option Command::input(const std::string&, std::string&, const std::string&);
+template Option Command::input(const std::string&, std::vector<std::string>&, const std::string&);
+
+void Command::add_force() {
+  if (places_->files.has_outputs()) return;
+  flag("--force", places_->is_forced, "Replace a recording, model, description or dataset that exists");
+}
+
+Option Command::output(const std::string& name, std::string& path, const std::string& help) {
+  add_force();
+  places_->files.add_output(name, path);
+  return option(name, path, help);
+}
+
+Option Command::output_model(const std::string& name, std::string& path, const std::string& help) {
+  add_force();
+  places_->files.add_model_output(name, path);
+  return option(name, path, help);
+}
+
+Option Command::output_folder(const std::string& name, std::string& folder, const std::vector<std::string>& files,
+                              const std::string& help) {
+  add_force();
+  places_->files.add_output_folder(name, folder, files);
+  return option(name, folder, help);
+}
+
 Command Command::subcommand(const std::string& name, const std::string& summary) {
   app_.require_subcommand(1);
   return {*app_.add_subcommand(name, summary), chosen_};
@@ -196,9 +229,12 @@ void Command::action(std::function<Status()> action) {
 }
 
 void Command::action_with_exit_status(Action action) {
-  app_.callback([&chosen = chosen_, &command = app_, action = std::move(action)] {
+  app_.callback([&chosen = chosen_, &command = app_, places = places_, action = std::move(action)] {
     tell_missing_checksums(command);
-    chosen = action;
+    chosen = [places, action]() -> Result<int> {
+      if (Status kept = places->files.check(places->is_forced); !kept) return kept.error();
+      return action();
+    };
   });
 }
 

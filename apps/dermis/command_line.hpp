@@ -3,11 +3,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "dermis/core/result.hpp"
+#include "file_places.hpp"
 
 // All of CLI11 that the commands see: its headers cost seconds in every file that includes them.
 namespace CLI {  // NOLINT(readability-identifier-naming): its name
@@ -48,6 +50,17 @@ class Command {
   Option option(const std::string& name, Value& value, const std::string& help);
   Option flag(const std::string& name, bool& value, const std::string& help);
 
+  /// An option that names a file or a source to read. `Value`: std::string, or a std::vector of them.
+  template <typename Value>
+  Option input(const std::string& name, Value& value, const std::string& help);
+  /// An option that names a file to write. The action is not called where that would overwrite what is not to be.
+  Option output(const std::string& name, std::string& path, const std::string& help);
+  /// The same for a model or classes. The action keeps earlier ones by keep_earlier_model(), so they are no reason.
+  Option output_model(const std::string& name, std::string& path, const std::string& help);
+  /// The same for these files in a folder.
+  Option output_folder(const std::string& name, std::string& folder, const std::vector<std::string>& files,
+                       const std::string& help);
+
   /// A command of this command, of which the user must name one.
   Command subcommand(const std::string& name, const std::string& summary);
 
@@ -56,8 +69,16 @@ class Command {
   void action_with_exit_status(Action action);
 
  private:
+  void add_force();
+
+  struct Places {
+    FilePlaces files;
+    bool is_forced = false;
+  };
+
   CLI::App& app_;
   Action& chosen_;
+  std::shared_ptr<Places> places_ = std::make_shared<Places>();
 };
 
 struct CommandEntry {

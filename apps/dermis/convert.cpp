@@ -83,10 +83,10 @@ Status convert(const ConvertOptions& options) {
 
 void add_convert(Command& command) {
   auto options = std::make_shared<ConvertOptions>();
-  command.option("in", options->in, ".csv, .mcap, .h5, .hdf5, .npy, or a file of another system (docs/file-formats.md)")
+  command.input("in", options->in, ".csv, .mcap, .h5, .hdf5, .npy, or a file of another system (docs/file-formats.md)")
       .required();
-  command.option("out", options->out, ".csv, .mcap, .h5, .hdf5, .npy or .wiresens.hdf5").required();
-  command.option("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");
+  command.output("out", options->out, ".csv, .mcap, .h5, .hdf5, .npy or .wiresens.hdf5").required();
+  command.input("--array", options->array, "array.toml, to keep with the frames (.mcap, .h5)");
   command.option("--rate", options->rate_hz,
                  "Frames a second of a file without times (.npy, .npz, .txt, .png, .packed10) [Hz]");
   options->shape.add(command);

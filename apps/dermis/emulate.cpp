@@ -77,7 +77,7 @@ void add_emulate(Command& command) {
   std::vector<std::string> protocols = acquisition::protocol_names();
   std::erase(protocols, "auto");
   command.option("--protocol", options->protocol, "What the device speaks").one_of(protocols).required();
-  command.option("--in", options->in, "Frames to send: a recording, another file of frames, or sim:SCENE").required();
+  command.input("--in", options->in, "Frames to send: a recording, another file of frames, or sim:SCENE").required();
   command.option("--to", options->to, "pty: | tcp-listen://HOST:PORT | tcp:// | udp:// | serial:// | stdout:")
       .shows_default();
   command.option("--rate", options->rate_hz, "Frames a second instead of the recorded pace");

@@ -113,14 +113,13 @@ Status evaluate(const EvaluateOptions& options) {
 
 void add_evaluate(Command& command) {
   auto options = std::make_shared<EvaluateOptions>();
-  command.option("--model", options->model,
-                 "Model file of 'dermis calibrate', or array.toml where readings are forces");
-  command.option("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames");
-  command.option("--loads", options->loads, "loads.csv: the true loads");
-  command.option("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
+  command.input("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces");
+  command.input("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames");
+  command.input("--loads", options->loads, "loads.csv: the true loads");
+  command.input("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
   command.flag("--json", options->json, "Print the result as JSON");
-  command.option("--report", options->report, "Folder for an HTML report with pictures");
-  command.option(
+  command.output_folder("--report", options->report, {"index.html"}, "Folder for an HTML report with pictures");
+  command.input(
       "--classes", options->classes,
       "Judge the classes of 'dermis learn', not forces, on labelled examples: --in, or --frames of tared frames.npy");
   add_example_options(command, options->examples);

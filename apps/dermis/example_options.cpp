@@ -6,13 +6,13 @@ namespace dermis::app {
 
 Option add_example_options(Command& command, recognising::ExampleOptions& examples) {
   recognition::DatasetFiles& data = examples.data;
-  command.option("--in", examples.in, "Recordings, or other files of frames, whose frames the labels count");
+  command.input("--in", examples.in, "Recordings, or other files of frames, whose frames the labels count");
   command.flag("--tare", examples.tare, "Take the first second of each --in as zero load: nothing may touch then");
-  command.option("--arrays", data.arrays, "arrays.csv: where the readings of each array of --frames are");
-  command.option("--extra", data.extras,
-                 "Further readings, such as joint angles: extra.npy beside --frames, CSV with time_s beside --in");
+  command.input("--arrays", data.arrays, "arrays.csv: where the readings of each array of --frames are");
+  command.input("--extra", data.extras,
+                "Further readings, such as joint angles: extra.npy beside --frames, CSV with time_s beside --in");
   command.option("--label", data.label, "Column of labels.csv that names the class").shows_default();
-  return command.option("--labels", data.labels, "labels.csv: which frames are an example of which class");
+  return command.input("--labels", data.labels, "labels.csv: which frames are an example of which class");
 }
 
 }  // namespace dermis::app

@@ -22,6 +22,7 @@
 #include "dermis/report/recognition_report.hpp"
 #include "example_options.hpp"
 #include "interruption.hpp"
+#include "kept_model.hpp"
 #include "source_options.hpp"
 #include "status_line.hpp"
 #include "touch_finding.hpp"
@@ -109,6 +110,7 @@ Status write_model(const LearnOptions& options, const LabelledFrames& data, cons
   Result<Learned> learned = set.learn(all);
   if (!learned) return learned.error();
   learned->classes.touches = recognition::learn_touches(data);
+  if (Status kept = keep_earlier_model(options.out); !kept) return kept;
   if (Status written = recognition::write_classes(options.out, learned->classes); !written) return written;
   print_report(*learned, std::chrono::duration<double>(Clock::now() - start).count());
   if (const auto& touches = learned->classes.touches) {
@@ -160,20 +162,20 @@ Status learn(const LearnOptions& options) {
 void add_learn(Command& command) {
   auto options = std::make_shared<LearnOptions>();
   add_example_options(command, options->examples).required();
-  command.option("--model", options->examples.model,
-                 "Learn from the forces [N] of --in by this model of its array, or suit.toml of several");
-  command.option("--frames", options->examples.data.frames,
-                 "frames.npy: tared frames, the readings of all arrays side by side");
+  command.input("--model", options->examples.model,
+                "Learn from the forces [N] of --in by this model of its array, or suit.toml of several");
+  command.input("--frames", options->examples.data.frames,
+                "frames.npy: tared frames, the readings of all arrays side by side");
   command.option("--rate", options->examples.data.rate_hz,
                  "Frames a second [Hz]; default with --in: by the times of its frames");
-  command.option("--out", options->out, "Classes to write (safetensors)");
-  command.option("--splits", options->splits,
-                 "splits.csv: for each split, learn from all labels that it does not name");
-  command.option("--predictions", options->predictions, "File to write: the answers for the labels of --splits");
-  command.option("--open", options->open, "open.csv: splits with classes that are not learned");
-  command.option("--open-predictions", options->open_predictions,
+  command.output_model("--out", options->out, "Classes to write (safetensors)");
+  command.input("--splits", options->splits, "splits.csv: for each split, learn from all labels that it does not name");
+  command.output("--predictions", options->predictions, "File to write: the answers for the labels of --splits");
+  command.input("--open", options->open, "open.csv: splits with classes that are not learned");
+  command.output("--open-predictions", options->open_predictions,
                  "File to write: the answers for the labels of --open");
-  command.option("--report", options->report, "Folder for an HTML report with pictures and a comparison of estimators");
+  command.output_folder("--report", options->report, {"index.html"},
+                        "Folder for an HTML report with pictures and a comparison of estimators");
   command.action([options] {
     end_when_interrupted();
     return learn(*options);

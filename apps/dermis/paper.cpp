@@ -142,7 +142,7 @@ Status paper(const PaperOptions& options) {
 
 void add_paper(Command& command) {
   auto options = std::make_shared<PaperOptions>();
-  command.option("--report", options->report, "Folder for an HTML report with pictures");
+  command.output_folder("--report", options->report, {"index.html"}, "Folder for an HTML report with pictures");
   command.flag("--json", options->json, "Print the result as JSON");
   command.flag("--quick", options->quick,
                "A 4x4 array and few steps: it shows that everything works, not what the paper says");

@@ -92,16 +92,16 @@ Status recognise(const RecogniseOptions& options) {
 
 void add_recognise(Command& command) {
   auto options = std::make_shared<RecogniseOptions>();
-  command.option("--classes", options->in.classes, "Classes of 'dermis learn'").required();
-  command.option("--in", options->in.loads.from, "A file of frames, a recording or the URI of a device").required();
-  command.option("--model", options->in.loads.model,
-                 "Model for classes that were learned from forces, or suit.toml of several arrays");
+  command.input("--classes", options->in.classes, "Classes of 'dermis learn'").required();
+  command.input("--in", options->in.loads.from, "A file of frames, a recording or the URI of a device").required();
+  command.input("--model", options->in.loads.model,
+                "Model for classes that were learned from forces, or suit.toml of several arrays");
   command.flag(
       "--tare", options->in.loads.tare,
       "Take the first second (at least 10 frames) as unloaded; without it and --model, readings must be tared");
-  command.option("--extra", options->in.loads.extra,
-                 "CSV of further readings beside the frames, where the classes were learned with some");
-  command.option("--out", options->out, "File to write the answers to").shows_default();
+  command.input("--extra", options->in.loads.extra,
+                "CSV of further readings beside the frames, where the classes were learned with some");
+  command.output("--out", options->out, "File to write the answers to").shows_default();
   command.option("--rate", options->in.rate_hz, "Frames a second, if they differ from those of the examples [Hz]");
   command.flag("--json", options->json,
                "Write one line of JSON for each answer, with the probabilities of all classes");

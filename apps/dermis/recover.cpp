@@ -46,8 +46,8 @@ Status recover(const RecoverOptions& options) {
 
 void add_recover(Command& command) {
   auto options = std::make_shared<RecoverOptions>();
-  command.option("in", options->in, "Recording (.mcap); it is not changed").required();
-  command.option("--out", options->out, "Recording to write (.mcap)").required();
+  command.input("in", options->in, "Recording (.mcap); it is not changed").required();
+  command.output("--out", options->out, "Recording to write (.mcap)").required();
   command.action([options] { return recover(*options); });
 }
 

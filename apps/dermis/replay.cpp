@@ -87,10 +87,10 @@ Status replay(const ReplayOptions& options) {
 
 void add_replay(Command& command) {
   auto options = std::make_shared<ReplayOptions>();
-  command.option("recording", options->recording, "Recording (.mcap) or another file of frames").required();
+  command.input("recording", options->recording, "Recording (.mcap) or another file of frames").required();
   command.option("--speed", options->speed, "Factor on the recorded pace; 0: as fast as possible").shows_default();
-  command.option("--model", options->model, "Model file, or array.toml where readings are forces: replays the forces");
-  command.option("--out", options->out, "frames.csv, or forces.csv with --model; or .mcap").shows_default();
+  command.input("--model", options->model, "Model file, or array.toml where readings are forces: replays the forces");
+  command.output("--out", options->out, "frames.csv, or forces.csv with --model; or .mcap").shows_default();
   command.action([options] { return replay(*options); });
 }
 

@@ -39,10 +39,6 @@ Status check_outputs(const operation::ForceTablePaths& tables) {
   if (tables.forces.empty() && tables.sigmas.empty() && tables.contacts.empty()) {
     return bad_input("name a file to write: --out FILE for the forces, --contacts FILE for the contacts");
   }
-  const auto same = [](const std::string& a, const std::string& b) { return !a.empty() && a == b; };
-  if (same(tables.sigmas, tables.forces)) return bad_input("--sigma: is the file of --out; name another");
-  if (same(tables.contacts, tables.forces)) return bad_input("--contacts: is the file of --out; name another");
-  if (same(tables.contacts, tables.sigmas)) return bad_input("--contacts: is the file of --sigma; name another");
   return Done{};
 }
 
@@ -105,15 +101,15 @@ Status run(const RunOptions& options) {
 
 void add_run(Command& command) {
   auto options = std::make_shared<RunOptions>();
-  command.option("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
+  command.input("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
       .required();
   command
-      .option("--in", options->in,
-              "Raw counts: frames.csv, a recording or another file of frames, or the URI of a device")
+      .input("--in", options->in,
+             "Raw counts: frames.csv, a recording or another file of frames, or the URI of a device")
       .required();
-  command.option("--out", options->tables.forces, "forces.csv to write");
-  command.option("--sigma", options->tables.sigmas, "Also write the standard deviation of every force [N] to this CSV");
-  command.option("--contacts", options->tables.contacts,
+  command.output("--out", options->tables.forces, "forces.csv to write");
+  command.output("--sigma", options->tables.sigmas, "Also write the standard deviation of every force [N] to this CSV");
+  command.output("--contacts", options->tables.contacts,
                  "contacts.csv to write: what touches the array, where and how hard");
   command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
   command.flag("--tare", options->tare,

@@ -131,11 +131,14 @@ Status simulate(const SimulateOptions& options) {
 
 void add_simulate(Command& command) {
   auto options = std::make_shared<SimulateOptions>();
-  command.option("--array", options->array, "array.toml: size, pitch and readout circuit").required();
+  command.input("--array", options->array, "array.toml: size, pitch and readout circuit").required();
   std::vector<std::string> scenes;
   for (const simulation::SceneKind& scene : simulation::scene_kinds()) scenes.emplace_back(scene.name);
   command.option("--scene", options->scene, "What happens to the array").one_of(scenes).required();
-  command.option("--out", options->out, "Folder for frames.csv, loads.csv, contacts.csv and origin.toml").required();
+  command
+      .output_folder("--out", options->out, {"frames.csv", "loads.csv", "contacts.csv"},
+                     "Folder for frames.csv, loads.csv, contacts.csv and origin.toml")
+      .required();
   command.option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise").shows_default();
   command.option("--frames", options->frames, "Length of the scenes multitouch, contacts, idle and touches");
   command.option("--rate", options->rate_hz, "Frames a second of the scenes touches and two_weights, 10 to 1000");
@@ -145,7 +148,7 @@ void add_simulate(Command& command) {
   command.option("--creep-per-decade", options->creep_per_decade,
                  "rubber: growth of a held reading in ten times the time, 0.02 to 0.30");
   command.option("--touch-gain", options->touch_gain, "rubber: standard deviation from touch to touch, 0 to 0.3");
-  command.option("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
+  command.input("--physics", options->physics, "physics.toml: material and surroundings (docs/simulation.md)");
   command.action([options] {
     end_when_interrupted();
     return simulate(*options);

@@ -24,7 +24,7 @@ def main(folder: str) -> None:
     model, report = dermis.calibrate(array, recording, loads)
     print(report.choice)
     print(f"loads of {report.lightest_newtons:.2f} to {report.heaviest_newtons:.2f} N, fit {report.median_fit_error:.2%}")
-    model.write(place / "model.safetensors")
+    model.write(place / "model.safetensors", force=True)  # that of an earlier run is replaced
 
     # How good it is on frames that it has not seen, beside plain tables.
     for estimator in dermis.evaluate(model, place / "test.csv", place / "test_loads.csv")["estimators"]:

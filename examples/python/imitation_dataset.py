@@ -7,6 +7,7 @@
 joints.csv: time_s, then one column a joint. Each frame gets the angles between the two lines around it.
 """
 import csv
+import os
 import sys
 from typing import Any
 
@@ -52,6 +53,8 @@ def make_dataset(session: str, model_path: str, joints: str) -> dict[str, NDArra
 
 
 def main(session: str, model_path: str, joints: str, out: str) -> None:
+    if os.path.exists(out):
+        sys.exit(f"{out} exists; name another")
     dataset = make_dataset(session, model_path, joints)
     if out.endswith(".npz"):
         np.savez_compressed(out, **dataset)

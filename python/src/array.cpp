@@ -60,10 +60,10 @@ void bind_array(py::module_& module) {
       .def_readonly("provenance", &pipeline::Model::provenance)
       .def(
           "write",
-          [](const pipeline::Model& model, const py::object& path) {
-            raise_where_failed(pipeline::write_model(path_of(path), model));
+          [](const pipeline::Model& model, const py::object& path, bool force) {
+            raise_where_failed(pipeline::write_model(new_path(path, force), model));
           },
-          py::arg("path"))
+          py::arg("path"), py::kw_only(), py::arg("force") = false)
       .def("__repr__", [](const pipeline::Model& model) {
         return "<dermis.Model of '" + model.array.name + "' " + std::to_string(model.array.rows) + "x" +
                std::to_string(model.array.cols) + ">";

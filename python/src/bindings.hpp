@@ -61,6 +61,8 @@ py::array_t<T> numbers(const py::object& object, const char* name, const std::ve
 /// A path: str or os.PathLike.
 std::string path_of(const py::object& object);
 bool is_path(const py::object& object);
+/// The path of a file to write. Raises where one exists, unless it `is_forced`.
+std::string new_path(const py::object& object, bool is_forced);
 
 /// An ArrayDescription, or the path of its array.toml.
 ArrayDescription array_of(const py::object& object);

@@ -227,8 +227,10 @@ void bind_many_frames(py::module_& module) {
           py::arg("path"), py::kw_only(), py::arg("rate_hz") = py::none())
       .def(
           "write",
-          [](const Recording& recording, const py::object& path) { write_recording(recording, path_of(path)); },
-          py::arg("path"))
+          [](const Recording& recording, const py::object& path, bool force) {
+            write_recording(recording, new_path(path, force));
+          },
+          py::arg("path"), py::kw_only(), py::arg("force") = false)
       .def("__len__", &Recording::size)
       .def("__getitem__",
            [](const Recording& recording, py::ssize_t index) {

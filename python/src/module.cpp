@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+#include <filesystem>
+#include <system_error>
+
 #include "bindings.hpp"
 #include "dermis/core/version.hpp"
 #include "dermis/files/array_toml.hpp"
@@ -66,6 +69,15 @@ bool is_path(const py::object& object) {
 std::string path_of(const py::object& object) {
   if (!is_path(object)) throw py::type_error("a path is a str or an os.PathLike");
   return py::str(py::hasattr(object, "__fspath__") ? object.attr("__fspath__")() : object).cast<std::string>();
+}
+
+std::string new_path(const py::object& object, bool is_forced) {
+  std::string path = path_of(object);
+  std::error_code error;
+  if (!is_forced && std::filesystem::is_regular_file(path, error)) {
+    raise(bad_input("'" + path + "' exists; name another, or replace it with force=True"));
+  }
+  return path;
 }
 
 ArrayDescription array_of(const py::object& object) {

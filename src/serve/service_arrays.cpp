@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "dermis/files/kept_copy.hpp"
@@ -17,7 +18,13 @@ std::string ServiceArray::folder() const {
 std::string ServiceArray::new_name(std::string_view content) const {
   std::string new_name = name + "-";
   if (!content.empty()) new_name.append(content).append("-");
-  return new_name + files::time_stamp(std::chrono::system_clock::now());
+  new_name += files::time_stamp(std::chrono::system_clock::now());
+  std::string unused = new_name;
+  std::error_code error;
+  for (int number = 2; std::filesystem::exists(path_of(unused + ".frames.csv"), error); ++number) {
+    unused = new_name + "-" + std::to_string(number);
+  }
+  return unused;
 }
 
 std::string ServiceArray::path_of(const std::string& name) const {

@@ -20,7 +20,8 @@ struct ServiceArray {
   std::string model;             ///< Path of its model or array.toml: new files go into that folder.
 
   [[nodiscard]] std::string folder() const;
-  /// A new name in the folder with the time in it, "skin-20261122-101500" or "skin-touches-20261122-101500".
+  /// A new name in the folder with the time in it, "skin-20261122-101500" or "skin-touches-20261122-101500", with "-2"
+  /// and so on where frames have that name.
   [[nodiscard]] std::string new_name(std::string_view content = {}) const;
   /// In the folder.
   [[nodiscard]] std::string path_of(const std::string& name) const;

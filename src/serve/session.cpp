@@ -240,7 +240,9 @@ Status Session::Implementation::start(const SessionOptions& options) {
   show_suit();
   show_body();
   server_->start(handlers(), services());
-  return options.record.empty() ? Status(Done{}) : recorder_.begin();
+  Status begun = options.record.empty() ? Status(Done{}) : recorder_.begin();
+  if (begun && recorder_.path() != options.record) log("the recording is '" + recorder_.path() + "'");
+  return begun;
 }
 
 stream::Handlers Session::Implementation::handlers() {

@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "dermis/files/kept_copy.hpp"
@@ -12,7 +13,8 @@
 namespace dermis::serve {
 
 std::string recording_name(const std::string& wanted, bool is_first, std::chrono::system_clock::time_point now) {
-  if (is_first && !wanted.empty()) return wanted;
+  std::error_code error;
+  if (is_first && !wanted.empty() && !std::filesystem::is_regular_file(wanted, error)) return wanted;
   const std::filesystem::path pattern(wanted.empty() ? "dermis.mcap" : wanted);
   const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch());
   const std::string name = fmt::format("{}-{}-{:03}{}", pattern.stem().string(), files::time_stamp(now),

@@ -21,8 +21,8 @@
 
 namespace dermis::serve {
 
-/// The name of a recording: the first has the one that is wanted; the next, and all where none is wanted, the time in
-/// it, as "rec-20261122-101500-123.mcap", so that nothing is overwritten.
+/// The name of a recording: the first has the one that is wanted; the next, and all where none is wanted or the wanted
+/// one exists, the time in it, as "rec-20261122-101500-123.mcap", so that nothing is overwritten.
 [[nodiscard]] std::string recording_name(const std::string& wanted, bool is_first,
                                          std::chrono::system_clock::time_point now);
 

@@ -131,7 +131,7 @@ class Devices(SmallArray):
 
     def replayed(self, recording):
         out = self.work / "replayed.csv"
-        result = dermis("replay", recording, "--speed", 0, "--out", out)
+        result = dermis("replay", recording, "--speed", 0, "--out", out, "--force")
         self.assertEqual(result.returncode, 0, result.stderr)
         return table(out)
 
@@ -238,7 +238,7 @@ class Interrupted(Devices):
         for number in (signal.SIGINT, signal.SIGTERM):
             with self.subTest(number):
                 frames, data = self.encoded("dermis", 6, 10, 30)
-                link, recording = self.work / "tty", self.work / "r.mcap"
+                link, recording = self.work / "tty", self.work / f"{number.name}.mcap"
                 terminal = Terminal(link)
                 process = self.start("record", "--from", f"serial://{link}?protocol=dermis", "--out", recording)
                 terminal.send(data)
@@ -269,7 +269,7 @@ class Interrupted(Devices):
         for redirection in ("2>/dev/full", "2>&-"):
             with self.subTest(redirection):
                 recording = self.work / "r.mcap"
-                command = f"'{support.BINARY}' record --from 'sim:multitouch?rows=4&cols=4&rate=100' --seconds 6 --out '{recording}'"
+                command = f"'{support.BINARY}' record --from 'sim:multitouch?rows=4&cols=4&rate=100' --seconds 6 --out '{recording}' --force"
                 result = subprocess.run(["sh", "-c", f"{command} {redirection}"], timeout=PATIENCE)
                 self.assertEqual(result.returncode, 0)
                 self.assertGreater(len(self.replayed(recording)), 100)
@@ -387,7 +387,7 @@ class Refused(Devices):
 
     def test_what_was_there_stays_where_nothing_comes(self):
         recording = self.written("r.mcap", "what was there")
-        self.refuse(self.record("file:/dev/null?protocol=m1616"), ["not a single byte"])
+        self.refuse(self.record("file:/dev/null?protocol=m1616", "--force"), ["not a single byte"])
         self.assertEqual(recording.read_text(), "what was there")
 
     def test_a_full_disk(self):
@@ -453,7 +453,7 @@ class Replay(Devices):
                 out = self.work / "replayed.csv"
                 self.succeed("replay", recording, "--model", self.model, "--speed", speed, "--out", out)
                 self.assertEqual(out.read_bytes(), live.read_bytes())
-                again = self.work / "again.mcap"
+                again = self.work / f"again_{speed}.mcap"
                 self.succeed("replay", recording, "--speed", 0, "--out", again)
                 self.succeed("run", "--model", self.model, "--in", again, "--out", out)
                 self.assertEqual(out.read_bytes(), live.read_bytes())

@@ -225,6 +225,48 @@ class FramesFile(SmallArray):
         self.refuse_frames(change, [":7", "the header 23", "decimals with a point"])
 
 
+class WhatCannotBe(SmallArray):
+    """Frames of another unit, and of an array that is not there: `run` names the mend in its last line, with status 1.
+    Loads that exchange rows and columns: `calibrate` refuses them."""
+
+    def assert_named(self, change, words):
+        header, *rows = [line.split(",") for line in (self.contacts / "frames.csv").read_text().splitlines()]
+        columns = {name: column for column, name in enumerate(header)}
+        for row in rows:
+            change(row, columns)
+        frames = self.written("frames.csv", "".join(",".join(row) + "\n" for row in [header, *rows]))
+        result = support.dermis(*self.run_arguments(self.work / "forces.csv", **{"in": frames}))
+        self.assertEqual(result.returncode, 1, result.stderr)
+        [line] = result.stderr.splitlines()
+        for word in (f"dermis: {frames}: 200 of 200 frames ", *words):
+            self.assertIn(word, line)
+
+    def test_temperature_in_kelvin(self):
+        def change(row, columns):
+            row[columns["temperature_celsius"]] = str(float(row[columns["temperature_celsius"]]) + 273.15)
+        self.assert_named(change, ["it looks like kelvin, give degrees Celsius"])
+
+    def test_supply_in_millivolts(self):
+        def change(row, columns):
+            row[columns["supply_v"]] = str(float(row[columns["supply_v"]]) * 1000)
+        self.assert_named(change, ["it looks like millivolts, give volts"])
+
+    def test_nothing_but_zeros(self):
+        def change(row, columns):
+            row[columns["r0c0"]:] = ["0"] * 20
+        self.assert_named(change, ["all readings 0", "is the array connected and powered?"])
+
+
+    def test_rows_and_columns_of_the_loads_exchanged(self):
+        square = self.written("square.toml", ARRAY.replace("cols = 5", "cols = 4"))
+        self.succeed("simulate", "--array", square, "--scene", "calibration", "--out", self.work / "square")
+        exchanged = re.sub(r"r(\d)c(\d)", r"r\2c\1", (self.work / "square/loads.csv").read_text())
+        self.refuse(self.calibrate_arguments(self.work / "m.safetensors", array=square,
+                                             frames=self.work / "square/frames.csv",
+                                             loads=self.written("loads.csv", exchanged)),
+                    ["exchange rows and columns", "r1c0 answers where they name r0c1", "12 of 12 taxels"])
+
+
 class EveryCommand(SmallArray):
     """All that read frames, on frames that are missing, cut or beyond the ADC."""
 

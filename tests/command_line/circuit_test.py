@@ -60,11 +60,11 @@ class Circuit(SmallArray):
 
     def forward_arguments(self, **replaced):
         files = {"array": self.array, "conductance": self.siemens, "out": self.readings, **replaced}
-        return ["circuit", "forward", *(part for name, value in files.items() for part in (f"--{name}", value))]
+        return ["circuit", "forward", "--force", *(part for name, value in files.items() for part in (f"--{name}", value))]
 
     def invert_arguments(self, **replaced):
         files = {"array": self.array, "readings": self.readings, "out": self.back, **replaced}
-        return ["circuit", "invert", *(part for name, value in files.items() for part in (f"--{name}", value))]
+        return ["circuit", "invert", "--force", *(part for name, value in files.items() for part in (f"--{name}", value))]
 
 
 class ForwardAndBack(Circuit):

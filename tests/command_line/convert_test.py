@@ -60,7 +60,7 @@ class FrameFiles(SmallArray):
     def convert(self, source, name, *options):
         """Converts within the working folder; returns the path and what was said to be left out."""
         out = self.work / name
-        result = dermis("convert", source, out, *options)
+        result = dermis("convert", source, out, "--force", *options)
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(result.stdout, "")
         lines = error_lines(result)
@@ -476,10 +476,10 @@ class Recover(FrameFiles):
             left = self.told("cut.mcap", (1, 2))  # 2 where no frame is left
             self.assertFalse(left["complete"])
             if left["frames"] == 0:
-                self.refuse(("recover", cut, "--out", self.work / "out.mcap"), ["cut.mcap: nothing can be recovered"],
+                self.refuse(("recover", cut, "--out", self.work / "out.mcap", "--force"), ["cut.mcap: nothing can be recovered"],
                             status=1)
                 continue
-            text = self.succeed("recover", cut, "--out", self.work / "out.mcap")
+            text = self.succeed("recover", cut, "--out", self.work / "out.mcap", "--force")
             info = self.recovered("out.mcap")
             self.assertTrue(info["complete"])
             self.assertIn(f"{info['frames']} frames", text)
@@ -509,7 +509,7 @@ class Recover(FrameFiles):
     def test_errors_name_the_mend(self):
         copy = self.work / "a.mcap"
         copy.write_bytes(self.recording.read_bytes())
-        self.refuse(("recover", copy, "--out", copy), ["a.mcap", "name another"])
+        self.refuse(("recover", copy, "--out", copy), ["--out", "name another"])
         self.refuse(("recover", self.contacts / "frames.csv", "--out", self.work / "b.mcap"), ["frames.csv", ".mcap"])
         self.refuse(("recover", copy, "--out", self.work / "b.h5"), ["b.h5", ".mcap"])
         self.refuse(("recover", self.work / "none.mcap", "--out", self.work / "b.mcap"), ["none.mcap", "No such file"])

@@ -23,7 +23,7 @@ class FullDisk(SmallArray):
 
     def test_run_keeps_the_file_that_was_there(self):
         out = self.written("f.csv", "what was there\n")
-        self.refuse(self.run_arguments(out), ["f.csv"], status=1, **files_limited_to(1000))
+        self.refuse((*self.run_arguments(out), "--force"), ["f.csv"], status=1, **files_limited_to(1000))
         self.assertEqual(out.read_text(), "what was there\n")
 
     def test_calibrate(self):

@@ -45,7 +45,7 @@ class Imports(support.SmallArray):
             with self.subTest(name):
                 out = self.work / "out.csv"
                 untimed = ("--rate", RATE, "--rows", ROWS, "--cols", COLS) if name in UNTIMED else ()
-                result = support.dermis("convert", self.root / name, out, *untimed)
+                result = support.dermis("convert", self.root / name, out, "--force", *untimed)
                 self.assertEqual(result.returncode, 0, result.stderr)
                 header, rows = self.rows(out)
                 values = numpy.array([[float(cell or "nan") for cell in row] for row in rows])
@@ -70,7 +70,7 @@ class Imports(support.SmallArray):
                 self.succeed("image", "--in", source, "--model", self.mat, "--frame", 40, "--out", self.work / "a.svg")
                 self.succeed("image", "--in", source, "--frame", 40, "--out", self.work / "b.png")
                 recording = self.work / "rec.mcap"
-                result = support.dermis("record", "--from", source, "--model", self.mat, "--out", recording)
+                result = support.dermis("record", "--from", source, "--model", self.mat, "--out", recording, "--force")
                 self.assertEqual(result.returncode, 0, result.stderr)
                 info = json.loads(self.succeed("info", recording, "--json"))
                 self.assertEqual((info["frames"], info["rows"], info["cols"]), (FRAMES, ROWS, COLS))
@@ -128,7 +128,7 @@ class Imports(support.SmallArray):
         for source, place in ((cut, "cut.csv:51"), (self.written("cut.asf", (self.root / "a.asf").read_text()[:2000]),
                                                     "cut.asf:")):
             out = self.work / "out.npy"
-            result = support.dermis("convert", source, out)
+            result = support.dermis("convert", source, out, "--force")
             self.assertEqual(result.returncode, 1, result.stderr)
             self.assertIn(place, result.stderr)
             self.assertIn("is cut off", result.stderr)

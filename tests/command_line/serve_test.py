@@ -58,7 +58,7 @@ class Serve(SmallArray):
             return gzip.decompress(body) if answer.headers["Content-Encoding"] == "gzip" else body
 
     def recorded_frames(self, recording):
-        result = dermis("convert", recording, self.work / "recorded.csv")
+        result = dermis("convert", recording, self.work / "recorded.csv", "--force")
         self.assertEqual(result.returncode, 0, result.stderr)
         return len((self.work / "recorded.csv").read_text().splitlines()) - 1
 
@@ -152,6 +152,17 @@ class Serve(SmallArray):
         self.end(process)
         process, address = self.serve("--from", f"{recording}#right", "--model", self.model)
         self.end(process)
+
+    def test_a_recording_that_exists_stays(self):
+        recording = self.work / "day.mcap"
+        recording.write_bytes(b"an earlier session")
+        process, _ = self.serve("--from", LIVE, "--model", self.model, "--record", recording)
+        time.sleep(0.5)
+        self.end(process)
+        [fresh] = self.work.glob("day-*.mcap")
+        self.assertIn(f"the recording is '{fresh}'\n", process.notices)
+        self.assertEqual(recording.read_bytes(), b"an earlier session")
+        self.assertGreater(self.recorded_frames(fresh), 10)
 
     def test_what_cannot_be_served(self):
         serve = ["serve", "--port", "0"]

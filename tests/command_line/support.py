@@ -17,6 +17,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 BINARY = None
 NOBODY = 65534
+REPLACED = re.compile(r"'.+' (exists and will be replaced|as it was: '.+')")
 PROGRESS = re.compile(r"(.+, )?\w+: \d+ %(, \d+ s left)?")  # "chest, networks: 25 %, 3 s left"
 
 ARRAY = """[array]
@@ -63,8 +64,8 @@ def as_nobody(test):
 
 
 def error_lines(result):
-    """What stderr says besides the progress of long work."""
-    return [line for line in result.stderr.splitlines() if not PROGRESS.fullmatch(line)]
+    """What stderr says besides the progress of long work and the files that were replaced."""
+    return [line for line in result.stderr.splitlines() if not PROGRESS.fullmatch(line) and not REPLACED.fullmatch(line)]
 
 
 def files_below(folder):

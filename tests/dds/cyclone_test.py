@@ -127,7 +127,7 @@ class Cyclone(SmallArray):
 
     def test_counts_are_those_of_the_recording(self):
         for array in ("left", "right"):
-            converted = self.work / "frames.csv"
+            converted = self.work / f"{array}.csv"
             self.assertEqual(dermis("convert", f"{self.recording}#{array}", converted).returncode, 0)
             frames = rows_of(converted)
             times = self.tables[array]["out"].times

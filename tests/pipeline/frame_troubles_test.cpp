@@ -89,6 +89,46 @@ TEST(FrameTroubles, says_how_many_frames_have_a_supply_outside_of_the_calibratio
           "2 of 4 frames with a supply outside of the calibration, the first: 6.5 V, where 4 to 6 V are trusted"}));
 }
 
+FrameTroubles troubles_of_hand_made(const std::vector<RawFrame>& frames) {
+  const Model model = support::hand_made_model(4, 4);
+  Result<Pipeline> pipeline = Pipeline::create(model);
+  EXPECT_TRUE(pipeline);
+  FrameTroubles troubles(model.array, "f.csv");
+  ForceFrame force;
+  for (const RawFrame& frame : frames) {
+    pipeline->process(frame, force);
+    troubles.add(frame, force, *pipeline);
+  }
+  return troubles;
+}
+
+TEST(FrameTroubles, fails_where_temperatures_are_in_kelvin) {
+  std::vector<RawFrame> frames = frames_of(std::vector<std::vector<float>>(3, std::vector<float>(16, 20000.0F)));
+  for (RawFrame& frame : frames) frame.temperature_celsius = 298.15;
+  EXPECT_EQ(troubles_of_hand_made(frames).verdict().error().message,
+            "f.csv: 3 of 3 frames with a temperature that no sheet has, the first: 298.1 C: it looks like kelvin, give "
+            "degrees Celsius");
+  for (RawFrame& frame : frames) frame.temperature_celsius = 60.0;
+  EXPECT_TRUE(troubles_of_hand_made(frames).verdict()) << "hot, but it can be";
+}
+
+TEST(FrameTroubles, fails_where_all_readings_are_0_and_untouched_taxels_read_more) {
+  const std::vector<float> silence(16, 0.0F);
+  const std::vector<float> readings(16, 20000.0F);
+  const std::string line = "with all readings 0, where untouched taxels read more: is the array connected and powered?";
+  EXPECT_EQ(troubles_of_hand_made(frames_of({silence, readings, silence, silence})).verdict().error().message,
+            "f.csv: 3 of 4 frames " + line);
+  const FrameTroubles few = troubles_of_hand_made(frames_of({readings, silence, readings}));
+  EXPECT_TRUE(few.verdict());
+  EXPECT_EQ(few.describe().back(), "1 of 3 frames " + line);
+}
+
+TEST(FrameTroubles, takes_zeros_of_an_array_that_reads_nothing_where_nothing_presses) {
+  const FrameTroubles troubles = troubles_of(pair_of(Quantity::counts), frames_of({{0.0F, 0.0F}, {0.0F, 0.0F}}));
+  EXPECT_TRUE(troubles.verdict());
+  EXPECT_TRUE(troubles.describe().empty());
+}
+
 TEST(FrameTroubles, says_how_many_frames_were_rejected_and_where_the_first_stands) {
   std::vector<RawFrame> frames = frames_of({{1.0F, 1.0F}, {1.0F, 1.0F}, {1.0F, 1.0F}, {1.0F, 1.0F}});
   frames[2].time = frames[0].time;

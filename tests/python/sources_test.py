@@ -73,6 +73,17 @@ class Recordings(workspace.CalibratedArray):
         back = dermis.Recording.read(self.folder / "a.mcap")
         self.assertEqual((back.name, back.array.rows, back.array.circuit), ("pad", 5, "divider"))
 
+    def test_a_file_that_exists_is_not_overwritten(self):
+        recording, model = dermis.Recording.read(self.frames), dermis.read_model(self.model)
+        for written, name in ((recording, "there.mcap"), (model, "there.safetensors")):
+            path = self.folder / name
+            path.write_bytes(b"an earlier session")
+            with self.assertRaisesRegex(dermis.BadInput, "there.* exists; name another, or replace it with force=True"):
+                written.write(path)
+            self.assertEqual(path.read_bytes(), b"an earlier session")
+            written.write(path, force=True)
+            self.assertGreater(path.stat().st_size, 1000)
+
     def test_a_file_that_is_cut_is_read_as_far_as_it_goes_with_a_warning(self):
         cut = self.folder / "cut.csv"
         cut.write_text(self.frames.read_text()[:-20])

@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <regex>
+#include <set>
+#include <string>
 
 #include "support/reference_array.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -32,6 +36,18 @@ TEST(ServiceArrays, new_files_lie_beside_the_model_and_have_the_time_in_their_na
   EXPECT_TRUE(std::regex_match(kSkin.new_name("touches"), std::regex("skin-touches-[0-9]{8}-[0-9]{6}")));
   EXPECT_EQ(kSkin.path_of("a"), "models/a");
   EXPECT_EQ(kBack.path_of("a"), "a");
+}
+
+TEST(ServiceArrays, files_of_the_same_second_have_a_number_in_their_names) {
+  const support::TemporaryFolder folder;
+  ServiceArray skin = kSkin;
+  skin.model = folder.file("skin.safetensors");
+  std::set<std::string> names;
+  for (int k = 0; k < 3; ++k) {
+    const std::string name = skin.new_name();
+    std::ofstream(skin.path_of(name) + ".frames.csv") << "time_s\n";
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <thread>
 #include <vector>
@@ -57,6 +58,14 @@ TEST(RecordingName, is_the_wanted_one_first_and_then_has_the_time_in_it) {
   EXPECT_EQ(recording_name("runs/day.mcap", true, now), "runs/day.mcap");
   EXPECT_EQ(recording_name("runs/day.mcap", false, now), "runs/day-20251122-101500-123.mcap");
   EXPECT_EQ(recording_name("", true, now), "dermis-20251122-101500-123.mcap");
+}
+
+TEST(RecordingName, has_the_time_in_it_where_the_wanted_one_exists) {
+  const TemporaryFolder folder;
+  const std::string wanted = folder.file("day.mcap");
+  std::ofstream(wanted) << "an earlier session";
+  const std::chrono::system_clock::time_point now(std::chrono::milliseconds(1'763'806'500'123));
+  EXPECT_EQ(recording_name(wanted, true, now), folder.file("day-20251122-101500-123.mcap"));
 }
 
 TEST(SuitRecorder, keeps_every_frame_of_arrays_that_write_at_once) {

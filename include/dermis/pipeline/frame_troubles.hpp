@@ -32,12 +32,21 @@ class FrameTroubles {
   /// A line for each kind of trouble that there was.
   [[nodiscard]] std::vector<std::string> describe() const;
 
-  /// Failed, with what is most likely wrong, where more than half of the frames have no force at all.
+  /// Failed, with what is most likely wrong, where more than half of the frames have no force at all, a
+  /// temperature in kelvin, or nothing but zeros.
   [[nodiscard]] Status verdict() const;
 
  private:
-  void add_supply(const RawFrame& raw, const Pipeline& pipeline);
+  /// A kind of trouble that does not cost the force.
+  struct Doubt {
+    std::size_t frames = 0;
+    std::string what;  ///< "with a supply outside of the calibration, the first: 6.5 V"
+  };
+
+  void add_doubts(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline);
+  [[nodiscard]] bool is_silent(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline) const;
   [[nodiscard]] std::string cause() const;
+  [[nodiscard]] std::string describe(const Doubt& doubt) const;
 
   std::string prefix_;  ///< Of messages: "frames.csv: ", or nothing.
   preprocessing::MissingReadings missing_;
@@ -49,8 +58,10 @@ class FrameTroubles {
   std::size_t lost_ = 0;          ///< Without a force: rejected, or not solved.
   std::size_t lost_outside_ = 0;  ///< Of these, with readings that are none of the ADC.
   std::string first_rejection_;
-  std::size_t supply_clamped_ = 0;
-  std::string first_supply_;
+  std::size_t rows_;  ///< Of the array.
+  Doubt supply_;
+  Doubt kelvin_;
+  Doubt silent_;
 };
 
 }  // namespace dermis::pipeline

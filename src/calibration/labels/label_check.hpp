@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ namespace dermis::calibration {
 struct LabelCheck {
   std::vector<std::size_t> pressed_frames;  ///< Called unloaded, but pressed; rising.
   std::vector<std::string> remarks;         ///< What is wrong with the labels, a sentence each.
+  std::optional<std::string> exchange;      ///< What makes all of them useless: find_exchange().
 
   [[nodiscard]] bool is_pressed(std::size_t frame) const {
     return std::binary_search(pressed_frames.begin(), pressed_frames.end(), frame);

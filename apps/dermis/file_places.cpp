@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "file_places.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "dermis/files/file_kind.hpp"
+#include "dermis/sources/source_name.hpp"
+#include "status_line.hpp"
+
+namespace dermis::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How results begin: forces, contacts, answers, answers of splits, answers as JSON, PNG, reports.
+constexpr std::array<std::string_view, 7> kResults = {"time_s,status,",
+                                                      "time_s,id,phase,",
+                                                      "first,last,time_s,class,",
+                                                      "split,id,class,",
+                                                      "{\"first\":",
+                                                      "\x89PNG",
+                                                      "<!DOCTYPE html>\n<html lang=\"en\" xmlns="};
+
+std::string first_bytes_of(const std::string& path) {
+  std::array<char, 128> bytes{};
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), bytes.size());
+  return {bytes.data(), static_cast<std::size_t>(file.gcount())};
+}
+
+bool is_result(std::string_view first_bytes) {
+  const auto begins = [&](std::string_view beginning) { return first_bytes.starts_with(beginning); };
+  const bool is_drawing = first_bytes.find("<svg") != std::string_view::npos;
+  return is_drawing || std::ranges::any_of(kResults, begins);
+}
+
+/// Whether both names are of one file, also through links and where it does not exist yet.
+bool is_same(const std::string& one, const std::string& other) {
+  std::error_code error;
+  if (fs::equivalent(one, other, error)) return true;
+  const fs::path whole = fs::weakly_canonical(one, error);
+  return !whole.empty() && whole == fs::weakly_canonical(other, error);
+}
+
+bool would_be_lost(const std::string& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) && fs::file_size(path, error) > 0;
+}
+
+/// The file of a path or of a source; empty where there is none.
+std::string file_of(const std::string& name) {
+  const Result<sources::SourceName> source = sources::SourceName::parse(name);
+  return source ? source->file : std::string();
+}
+
+std::vector<std::string> files_of(const std::vector<std::string>& names) {
+  std::vector<std::string> files;
+  for (const std::string& name : names) {
+    if (std::string file = file_of(name); !file.empty()) files.push_back(std::move(file));
+  }
+  return files;
+}
+
+std::vector<std::string> written_at(const std::string& path) {
+  const bool is_file = !path.empty() && path != "/dev/stdout";
+  return is_file ? std::vector{path} : std::vector<std::string>();
+}
+
+}  // namespace
+
+void FilePlaces::add_input(const std::string& option, const std::string& name) {
+  inputs_.push_back({option, [&name] { return files_of({name}); }});
+}
+
+void FilePlaces::add_input(const std::string& option, const std::vector<std::string>& names) {
+  inputs_.push_back({option, [&names] { return files_of(names); }});
+}
+
+void FilePlaces::add_output(const std::string& option, const std::string& path) {
+  outputs_.push_back({option, [&path] { return written_at(path); }});
+}
+
+void FilePlaces::add_model_output(const std::string& option, const std::string& path) {
+  outputs_.push_back({option, [&path] { return written_at(path); }, true});
+}
+
+void FilePlaces::add_output_folder(const std::string& option, const std::string& folder,
+                                   std::vector<std::string> files) {
+  outputs_.push_back({option, [&folder, files = std::move(files)] {
+                        std::vector<std::string> paths;
+                        std::error_code error;
+                        if (fs::exists(fs::path(folder) / "origin.toml", error)) return paths;
+                        for (const std::string& file : files) paths.push_back((fs::path(folder) / file).string());
+                        return paths;
+                      }});
+}
+
+Status FilePlaces::check_distinct() const {
+  std::vector<Place> others = inputs_;
+  for (const Place& output : outputs_) {
+    for (const std::string& path : output.paths()) {
+      for (const Place& other : others) {
+        if (std::ranges::any_of(other.paths(), [&](const std::string& taken) { return is_same(path, taken); })) {
+          return bad_input(fmt::format("{}: is the file of {}; name another", output.option, other.option));
+        }
+      }
+    }
+    others.push_back(output);
+  }
+  return Done{};
+}
+
+Status FilePlaces::check(bool is_forced) const {
+  if (Status distinct = check_distinct(); !distinct) return distinct;
+  std::vector<std::string> replaced;
+  for (const Place& output : outputs_) {
+    for (const std::string& path : output.paths()) {
+      if (!would_be_lost(path)) continue;
+      const std::string first_bytes = first_bytes_of(path);
+      if (output.is_model && files::kind_of(first_bytes) == files::kSafetensorsKind) continue;
+      if (!is_forced && !is_result(first_bytes)) {
+        return bad_input(fmt::format("{}: '{}' exists; name another, or replace it with --force", output.option, path));
+      }
+      replaced.push_back(path);
+    }
+  }
+  for (const std::string& path : replaced) say(fmt::format("'{}' exists and will be replaced", path));
+  return Done{};
+}
+
+}  // namespace dermis::app

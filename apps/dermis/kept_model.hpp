@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+
+#include "dermis/core/result.hpp"
+#include "dermis/files/kept_copy.hpp"
+#include "status_line.hpp"
+
+namespace dermis::app {
+
+/// Keeps a copy of what is there, and says where, before a new model or new classes take its name.
+inline Status keep_earlier_model(const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return Done{};
+  const Result<std::string> copy = files::keep_copy(path, std::chrono::system_clock::now());
+  if (!copy) return copy.error();
+  say("'" + path + "' as it was: '" + *copy + "'");
+  return Done{};
+}
+
+}  // namespace dermis::app

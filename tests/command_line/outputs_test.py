@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: 2026 The dermis authors
+"""No command writes onto a file that it reads, by any name of it, and none overwrites what cannot be made again."""
+import os
+import re
+
+import support
+from support import SmallArray, dermis
+
+# What each command reads and writes: options, or arguments by their place.
+COMMANDS = {
+    "calibrate": (("--array", "--frames", "--loads"), ("--out", "--bank")),
+    "circuit forward": (("--array", "--conductance"), ("--out",)),
+    "circuit invert": (("--array", "--readings"), ("--out", "--sigma")),
+    "convert": (("in", "--array"), ("out",)),
+    "image": (("--in", "--model"), ("--out",)),
+    "learn": (("--labels", "--in", "--model", "--splits", "--open"), ("--out", "--predictions", "--open-predictions")),
+    "recalibrate": (("--model", "--frames", "--loads"), ("--out",)),
+    "recognise": (("--classes", "--in", "--model", "--extra"), ("--out",)),
+    "record": (("--from", "--array", "--model"), ("--out",)),
+    "recover": (("in",), ("--out",)),
+    "replay": (("recording", "--model"), ("--out",)),
+    "run": (("--model", "--in"), ("--out", "--sigma", "--contacts")),
+}
+MODELS = {("calibrate", "--out"), ("calibrate", "--bank"), ("learn", "--out"), ("recalibrate", "--out")}
+PROTECTED = {
+    "a recording": b"\x89MCAP0\r\n", "a model": b"\x10\0\0\0\0\0\0\0{}              ", "a description": b"[array]\nrows = 4\n",
+    "frames": b"time_s,r0c0,r0c1\n0,1,2\n", "loads": b"frame,kind,where,value\n", "an array of NumPy": b"\x93NUMPY",
+    "something else": b"notes\n",
+}
+
+
+def path_of(folder, option):
+    return folder / option.strip("-")
+
+
+def aliases(path, folder):
+    """Other names of the same file, and its own."""
+    link, hard_link = folder / "link", folder / "hard_link"
+    link.symlink_to(path)
+    os.link(path, hard_link)
+    return {"itself": path, "a detour": path.parent / "." / ".." / path.parent.name / path.name, "a link": link,
+            "a hard link": hard_link}
+
+
+class NothingIsOverwritten(SmallArray):
+    def command(self, command, paths):
+        inputs, outputs = COMMANDS[command]
+        words = command.split()
+        for option in inputs + outputs:
+            path = paths.get(option, self.work / ("new_" + option.strip("-")))
+            words += [option, path] if option.startswith("--") else [path]
+        return dermis(*words)
+
+    def inputs(self, command):
+        paths = {}
+        for option in COMMANDS[command][0]:
+            paths[option] = path_of(self.work, option)
+            paths[option].write_bytes(b"valuable " + option.encode())
+        return paths
+
+    def test_every_command_that_writes_is_named_here(self):
+        commands = re.findall(r"^  (\w+) {2,}", dermis("--help").stdout.split("Subcommands:")[1], re.MULTILINE)
+        names = [*(set(commands) - {"circuit"}), "circuit forward", "circuit invert"]
+        writing = {name for name in names if "--force" in dermis(*name.split(), "--help").stdout}
+        self.assertEqual(writing, {*COMMANDS, "simulate", "evaluate", "paper"})
+
+    def test_an_output_is_no_input(self):
+        for command, (inputs, outputs) in COMMANDS.items():
+            for read in inputs:
+                for written in outputs:
+                    paths = self.inputs(command)
+                    for name, alias in aliases(paths[read], self.work).items():
+                        with self.subTest(command=command, read=read, written=written, name=name):
+                            result = self.command(command, {**paths, written: alias})
+                            self.assertEqual(result.returncode, 2, result)
+                            self.assertEqual(result.stderr, f"dermis: {written}: is the file of {read}; name another\n")
+                            self.assertEqual(paths[read].read_bytes(), b"valuable " + read.encode())
+                    for path in self.work.iterdir():
+                        path.unlink()
+
+    def test_an_output_is_no_source_that_reads_a_file(self):
+        frames = self.written("frames.csv", (self.contacts / "frames.csv").read_text())
+        before = frames.read_bytes()
+        for source in (f"file:{frames}?rate=100", f"{frames}#small"):
+            result = dermis(*self.run_arguments(frames, **{"in": source}), "--force")
+            self.assertEqual((result.returncode, result.stderr), (2, "dermis: --out: is the file of --in; name another\n"))
+            self.assertEqual(frames.read_bytes(), before)
+
+    def test_names_that_no_file_can_have_are_told(self):
+        long = self.work / ("a" * 300)
+        for arguments in (("simulate", "--array", self.array, "--scene", "idle", "--frames", 3, "--out", long),
+                          ("record", "--from", "sim:idle?rate=100&frames=3", "--out", f"{long}.mcap"),
+                          ("convert", f"{long}.csv", f"{long}.mcap")):
+            with self.subTest(arguments[0]):
+                result = dermis(*arguments)
+                self.assertIn(result.returncode, (1, 2))
+                self.assertRegex(result.stderr, r"^dermis: .*a': File name too long|^dermis: .*File name too long\n$")
+
+    def test_two_outputs_are_two_files(self):
+        result = dermis(*self.run_arguments(self.work / "f.csv"), "--contacts", self.work / "." / "f.csv")
+        self.assertEqual((result.returncode, result.stderr), (2, "dermis: --contacts: is the file of --out; name another\n"))
+
+    def test_what_cannot_be_made_again_stays(self):
+        for command, (_, outputs) in COMMANDS.items():
+            paths = self.inputs(command)
+            for written in outputs:
+                for name, content in PROTECTED.items():
+                    if name == "a model" and (command, written) in MODELS:
+                        continue  # test_an_earlier_model_stays
+                    with self.subTest(command=command, written=written, name=name):
+                        path = self.work / "there"
+                        path.write_bytes(content)
+                        result = self.command(command, {**paths, written: path})
+                        self.assertEqual(result.returncode, 2, result)
+                        self.assertEqual(result.stderr,
+                                         f"dermis: {written}: '{path}' exists; name another, or replace it with --force\n")
+                        self.assertEqual(path.read_bytes(), content)
+
+    def test_force_replaces_it(self):
+        frames, recording = self.contacts / "frames.csv", self.work / "session.mcap"
+        self.succeed("convert", frames, recording)
+        for command in (("record", "--from", frames, "--out"), ("convert", frames), ("recover", recording, "--out"),
+                        self.calibrate_arguments("")[:-1]):
+            with self.subTest(command[0]):
+                path = self.work / "there.mcap"
+                path.write_bytes(b"\x89MCAP0")
+                self.assertEqual(dermis(*command, path).returncode, 2)
+                result = dermis(*command, path, "--force")
+                self.assertEqual(result.returncode, 0, result.stderr)
+                self.assertIn(f"'{path}' exists and will be replaced\n", result.stderr)
+                self.assertGreater(path.stat().st_size, 100)
+
+    def test_an_earlier_model_stays(self):
+        model = self.work / "model.safetensors"
+        self.succeed(*self.calibrate_arguments(model))
+        earlier = model.read_bytes()
+        frames = self.written("f.csv", (self.calibration / "frames.csv").read_text() + "\n")
+        result = dermis(*self.calibrate_arguments(model, frames=frames))
+        self.assertEqual(result.returncode, 0, result.stderr)
+        kept = next(self.work.glob("model-before-*.safetensors"))
+        self.assertIn(f"'{model}' as it was: '{kept}'\n", result.stderr)
+        self.assertEqual(kept.read_bytes(), earlier)
+        self.assertNotEqual(model.read_bytes(), earlier)
+
+    def test_tables_and_pictures_are_replaced_and_it_says_so(self):
+        forces, contacts, picture = (self.work / name for name in ("forces.csv", "contacts.csv", "map.png"))
+        for arguments, paths in (((*self.run_arguments(forces), "--contacts", contacts), (forces, contacts)),
+                                 (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,))):
+            self.succeed(*arguments)
+            result = dermis(*arguments)
+            self.assertEqual((result.returncode, result.stderr),
+                             (0, "".join(f"'{path}' exists and will be replaced\n" for path in paths)))
+
+    def test_a_report_is_replaced_and_a_page_of_something_else_is_not(self):
+        report = self.work / "report"
+        arguments = (*self.evaluate_arguments(), "--report", report)
+        self.succeed(*arguments)
+        result = dermis(*arguments)
+        self.assertEqual((result.returncode, result.stderr), (0, f"'{report}/index.html' exists and will be replaced\n"))
+        (report / "index.html").write_text("notes")
+        self.assertEqual(dermis(*arguments).returncode, 2)
+        self.assertEqual((report / "index.html").read_text(), "notes")
+
+    def test_a_simulation_can_be_made_again_but_not_over_frames_of_a_device(self):
+        folder = self.work / "data"
+        arguments = ("simulate", "--array", self.array, "--scene", "idle", "--frames", 3, "--out", folder)
+        self.succeed(*arguments)
+        self.succeed(*arguments)
+        (folder / "origin.toml").unlink()
+        result = dermis(*arguments)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("/frames.csv' exists; name another, or replace it with --force", result.stderr)
+        self.assertEqual(dermis(*arguments, "--force").returncode, 0)
+
+
+if __name__ == "__main__":
+    support.main()
