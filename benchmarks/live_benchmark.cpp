@@ -3,7 +3,7 @@
 
 // A suit of 40 arrays of 16x16 taxels at 1,000 frames a second each: how long a frame takes from its arrival to its
 // contacts, with and without a recording of all, and how many cores that keeps busy. Frames are those of the
-// simulator's scene contacts.
+// simulator's scene contacts; in the last run a row of them is saturated.
 //
 // usage: live_benchmark [--arrays 40] [--rate 1000] [--seconds 10]
 #include <fmt/core.h>
@@ -83,6 +83,13 @@ Frames simulate(const ArrayDescription& array, std::uint64_t seed) {
     if (!(*simulator)->next(frame)) std::abort();
   }
   return std::make_shared<const std::vector<RawFrame>>(std::move(frames));
+}
+
+/// Row 3 of all frames at the end of the ADC.
+Frames with_saturated_row(const Frames& frames) {
+  std::vector<RawFrame> spoiled = *frames;
+  for (RawFrame& frame : spoiled) std::fill_n(frame.counts.begin() + 3 * kLines, kLines, 4095.0F);
+  return std::make_shared<const std::vector<RawFrame>>(std::move(spoiled));
 }
 
 /// A device that sends at a rate; what is not fetched in time is lost.
@@ -257,6 +264,8 @@ bool measure(const Settings& settings) {
       (std::filesystem::temp_directory_path() / fmt::format("live_benchmark_{}.mcap", getpid())).string();
   report("the same, recorded", settings, run(settings, scenes, recording), rows);
   std::filesystem::remove(recording);
+  std::transform(scenes.begin(), scenes.end(), scenes.begin(), with_saturated_row);
+  report("one saturated row", settings, run(settings, scenes, {}), rows);
   return benchmarks::write_rows("live", rows);
 }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr double kAllowedShare = 0.02;  // by which resistances of the readout and the supply may be wrong
 constexpr double kAllowedSigmas = 6.0;
 constexpr double kShortOhm = 10.0;      // of taxels none has less
-constexpr double kShortOfLoad = 0.02;   // likewise
+constexpr double kShortOfLoad = 0.015;  // likewise
 constexpr double kShortShare = 0.005;   // as kAllowedShare; a mistake costs one taxel
 constexpr double kStillShort = 4.0;     // times as many ohm, where the last reading was not believed
 constexpr double kStillShare = 0.03;    // likewise, of the supply
@@ -184,7 +184,7 @@ void PossibleReadings::judge_sensed(std::size_t sensed, std::span<const double> 
     sum -= ratio[worst];
   }
   const Head& head = heads_[sensed];
-  const double left = 1.0 - sum + kShortShare * sum + noise;
+  const double left = 1.0 - sum + kShortShare * sum + 0.5 * noise;
   for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {
     const std::size_t taxel = taxel_of(driven, sensed);
     if (verdicts[taxel] != ReadingVerdict::possible || ratio[taxel] < kLeastOfShort) continue;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <optional>
 
+#include "compensation/readout_parts.hpp"
+
 namespace dermis::compensation {
 namespace {
 
@@ -22,8 +24,9 @@ constexpr double kMostOfColumn = 0.6;     // taxels that read no more than unloa
 constexpr double kUnloadedSigmas = 3.0;
 constexpr double kColumnSigmas = 4.0;
 constexpr double kPerFrameOfColumn = 0.5 * kPerFrame;
-constexpr double kSilentShare = 0.5;  // of what the taxels of a row read unloaded
+constexpr double kSilentShare = 0.2;  // of what the taxels of a row read unloaded
 constexpr double kSilentSigmas = 3.0;
+constexpr std::size_t kFewestSilent = 3;  // taxels
 
 bool is_of_faulty_line(const FaultList& faults, std::size_t taxel) {
   return (faults.causes(taxel) & (kRowCause | kColumnCause | kPairCause)) != 0;
@@ -42,6 +45,7 @@ ImpossibleReadingDetector::ImpossibleReadingDetector(const ArrayDescription& arr
     : array_(array),
       possible_(array),
       columns_tell_(array.readout.circuit == Circuit::divider && array.readout.idle_rows == IdleRows::grounded),
+      rows_tell_(array.readout.circuit == Circuit::transimpedance && !has_resistive_lines(array.readout)),
       verdicts_(array.taxel_count(), ReadingVerdict::possible) {
   watched_.reserve(kMostFound);
 }
@@ -69,11 +73,10 @@ void ImpossibleReadingDetector::watch_new(const Observation& seen, const FaultLi
   const auto& before = seen.conditioned.taxels;
   const auto& after = seen.conductance.taxels;
   const auto is_bad = [&](std::size_t taxel) { return verdict(seen, taxel) >= ReadingVerdict::shorted; };
-  const bool rails = array_.readout.circuit == Circuit::transimpedance;
   bool is_suspicious = !watched_.empty();
   for (std::size_t taxel = 0; taxel < before.size(); ++taxel) {
     const bool is_taken = after[taxel] == TaxelStatus::invalid && before[taxel] != TaxelStatus::invalid;
-    is_suspicious = is_suspicious || is_taken || (rails && before[taxel] == TaxelStatus::saturated);
+    is_suspicious = is_suspicious || is_taken || (rows_tell_ && before[taxel] == TaxelStatus::saturated);
   }
   std::fill(verdicts_.begin(), verdicts_.end(), ReadingVerdict::possible);
   if (!is_suspicious) return;
@@ -131,7 +134,7 @@ void ImpossibleReadingDetector::watch(std::size_t taxel, const FaultList& faults
 ReadingVerdict ImpossibleReadingDetector::verdict(const Observation& seen, std::size_t taxel) const noexcept {
   if (seen.conditioned.taxels[taxel] == TaxelStatus::invalid) return ReadingVerdict::possible;
   const bool is_saturated = seen.conditioned.taxels[taxel] == TaxelStatus::saturated;
-  if (array_.readout.circuit == Circuit::transimpedance && is_saturated && row_is_silent(seen, taxel)) {
+  if (rows_tell_ && is_saturated && row_is_silent(seen, taxel)) {
     return ReadingVerdict::shorted;
   }
   const ReadingVerdict own = verdicts_[taxel];
@@ -141,16 +144,19 @@ ReadingVerdict ImpossibleReadingDetector::verdict(const Observation& seen, std::
   return column == ReadingVerdict::impossible || own == ReadingVerdict::possible ? column : own;
 }
 
-/// But for those that touch it.
+/// But for those at the end of the ADC, which must be few: where they are many, their currents take the row's voltage.
 bool ImpossibleReadingDetector::row_is_silent(const Observation& seen, std::size_t taxel) const noexcept {
   const std::size_t row = taxel / array_.cols;
   double lacking = 0.0;
+  std::size_t count = 0;
   for (std::size_t col = 0; col < array_.cols; ++col) {
     const std::size_t other = array_.index(row, col);
-    if (seen.conditioned.taxels[other] != TaxelStatus::saturated)
-      lacking += kSilentShare * seen.unloaded.ratio()[other] - seen.conditioned.ratio[other];
+    if (seen.conditioned.taxels[other] == TaxelStatus::saturated) continue;
+    lacking += kSilentShare * seen.unloaded.ratio()[other] - seen.conditioned.ratio[other];
+    ++count;
   }
-  return lacking > kSilentSigmas * seen.conditioned.sigma_ratio * std::sqrt(static_cast<double>(array_.cols));
+  const bool are_enough = count >= kFewestSilent && 2 * count >= array_.cols;
+  return are_enough && lacking > kSilentSigmas * seen.conditioned.sigma_ratio * std::sqrt(static_cast<double>(count));
 }
 
 void ImpossibleReadingDetector::find(const Observation& seen, ReadingVerdict verdict, Watched& watched,
