@@ -120,15 +120,16 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.siemens.resize(conditioned.ratio.size());
   conductance.sigma_siemens.resize(conditioned.ratio.size());
   conductance.residual_sigma = 0.0;
-  if (has(conditioned.status, FrameStatus::rejected)) {
-    std::fill(conductance.siemens.begin(), conductance.siemens.end(), 0.0);
-    std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
-    return;
-  }
+  std::fill(conductance.siemens.begin(), conductance.siemens.end(), 0.0);
+  std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
+  if (has(conditioned.status, FrameStatus::rejected)) return;
+  faults_->start_frame(conditioned.time);
   const InversionResult result = invert_possible(conditioned, conductance);
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
-  if (result.solved) inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
-  if (faults_->concerns(conductance.taxels)) faults_->add_doubt(conductance.siemens, conductance.sigma_siemens);
+  if (result.solved) {
+    inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+    if (faults_->concerns(conductance.taxels)) faults_->add_doubt(conductance.siemens, conductance.sigma_siemens);
+  }
   supply_error_->add(conductance.siemens, conditioned.supply_doubt, conductance.sigma_siemens);
   if (result.solved) {
     faults_->remember(conductance.siemens);
@@ -146,6 +147,9 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
   if (faults_->keeps_bounds()) {
     possible_->check(conditioned.ratio, conditioned.sigma_ratio, conductance.taxels);
     spikes_->check(conditioned, conductance.taxels);
+  } else {
+    possible_->forget();
+    spikes_->forget();
   }
   InversionResult result;
   for (int attempt = 0; attempt < kMostAttempts && !result.solved; ++attempt) {

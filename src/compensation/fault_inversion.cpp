@@ -151,7 +151,8 @@ void FaultInversion::mask_pair(Axis axis, std::size_t first, std::size_t second)
     for (const std::size_t line : {first, second}) is_.masked[taxel_on_line(array_, axis, line, k)] = 1;
     const std::size_t taxel = taxel_on_line(array_, axis, second, k);
     const bool is_solved = !crossings_.are_kept && !crossings_.are_corrected;
-    if (!is_solved && !is_in(crossings_.taxels, taxel)) crossings_.in_first.push_back(taxel);
+    const bool is_known = is_in(crossings_.taxels, taxel) || is_in(crossings_.in_first, taxel);
+    if (!is_solved && !is_known) crossings_.in_first.push_back(taxel);
   }
 }
 

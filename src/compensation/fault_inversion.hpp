@@ -43,6 +43,9 @@ class FaultInversion {
   /// Learns which taxels of the next frame have no reading; whether that frame needs invert().
   [[nodiscard]] bool concerns(std::span<const TaxelStatus> taxels) noexcept;
 
+  /// Frames that follow each other in time tell what taxels were.
+  void start_frame(Nanos time) noexcept { missing_.start_frame(time); }
+
   /// Adds to the standard deviations what the others of a line owe to a taxel whose conductance is only estimated.
   void add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept;
 

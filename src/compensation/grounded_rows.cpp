@@ -92,7 +92,7 @@ InversionResult GroundedRows::invert(std::span<const double> ratio, std::span<do
   if (!(certificate <= std::max(tolerance_, kRounded))) certificate = iterate_with_mixing(certificate, kDampedSteps);
   const bool solved = certificate <= std::max(tolerance_, kRounded);
   if (solved) budget_.learn();
-  if (!solved) forget();
+  if (!solved) start_anew();
   has_last_ = solved;
   for (std::size_t row = 0; row < state_.rows; ++row) {
     std::copy_n(&state_.siemens[row * state_.stride], state_.cols, &siemens[row * state_.cols]);
@@ -118,8 +118,9 @@ bool GroundedRows::set_shorted(std::span<const std::size_t> taxels) noexcept {
   return taxels.empty();
 }
 
-/// false: it closes a chain of lines.
+/// false: it closes a chain of lines, or the driver holds the column at its voltage.
 bool GroundedRows::add_shorted(std::size_t row, std::size_t col) noexcept {
+  if (joined_.drive_ohm[row] == 0.0) return false;
   const auto in_row = [&](const auto& crossing) { return crossing.row == row; };
   const auto in_col = [&](const auto& crossing) { return crossing.col == col; };
   const auto is_joined = [&](const JoinedRows::Pair& pair) { return pair.other == row; };
@@ -131,13 +132,18 @@ bool GroundedRows::add_shorted(std::size_t row, std::size_t col) noexcept {
     return true;
   }
   double& first_ohm = state_.drive_ohm[column->row];
-  if (row_is_shorted || first_ohm == 0.0 || joined_.drive_ohm[row] == 0.0) return false;
+  if (row_is_shorted) return false;
   joined_.pairs.push_back({column->row, row});
   first_ohm = 1.0 / (1.0 / first_ohm + 1.0 / joined_.drive_ohm[row]);
   return true;
 }
 
 void GroundedRows::forget() noexcept {
+  start_anew();
+  budget_.forget();
+}
+
+void GroundedRows::start_anew() noexcept {
   has_last_ = false;
   std::fill(sources_.siemens.begin(), sources_.siemens.end(), 0.0);
   std::fill(sources_.column_ratio.begin(), sources_.column_ratio.end(), 0.0);
@@ -157,15 +163,22 @@ void GroundedRows::load(std::span<const double> ratio, std::span<const double> s
   if (!state_.shorted.empty()) load_shorted();
 }
 
-/// Joined rows are driven together; of the second of them nothing is left.
+/// Joined rows are driven together; of the second of them nothing is left. Where one has no reading, both are kept.
 void GroundedRows::load_shorted() noexcept {
+  const auto is_kept = [&](std::size_t row, std::size_t col) {
+    return std::any_of(state_.kept.begin(), state_.kept.end(),
+                       [&](const auto& taxel) { return taxel.row == row && taxel.col == col; });
+  };
   for (const auto& [first, other] : joined_.pairs) {
+    for (auto& taxel : state_.kept) {
+      if (taxel.row == other && !is_kept(first, taxel.col)) taxel.row = first;
+    }
+    std::erase_if(state_.kept, [row = other](const auto& taxel) { return taxel.row == row; });
     for (std::size_t col = 0; col < state_.cols; ++col) {
       double& reading = state_.measured[other * state_.stride + col];
       state_.measured[first * state_.stride + col] += reading;
       reading = 0.0;
     }
-    std::erase_if(state_.kept, [row = other](const auto& taxel) { return taxel.row == row; });
   }
   take_loads_away(state_);
 }

@@ -102,6 +102,7 @@ class GroundedRows final : public CrosstalkInversion {
   [[nodiscard]] bool add_shorted(std::size_t row, std::size_t col) noexcept;
   void load(std::span<const double> ratio, std::span<const double> siemens) noexcept;
   void load_shorted() noexcept;
+  void start_anew() noexcept;
   [[nodiscard]] double certify() noexcept;
   [[nodiscard]] bool follow_sources() noexcept;
   void find_row_currents() noexcept;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 
 #include "compensation/sensed_line.hpp"
@@ -11,8 +12,9 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr std::uint8_t kLong = 4;         // frames without a reading, after which the last conductance tells nothing
-constexpr double kDoubtOfEstimate = 0.7;  // relative
+constexpr std::uint8_t kLong = 4;  // frames without a reading, from which on the last conductance tells nothing
+constexpr Nanos kLongestGap = std::chrono::milliseconds(50);  // likewise, since the last frame
+constexpr double kDoubtOfEstimate = 0.7;                      // relative
 constexpr double kDoubtOfHeld = 0.15;
 constexpr double kFloorShare = 1e-3;       // of the largest conductance: where logarithms end
 constexpr double kMostRise = 1.0;          // of the logarithm above both neighbours
@@ -87,11 +89,19 @@ void MissingTaxels::forget(std::size_t taxel) noexcept {
 }
 
 void MissingTaxels::remember(std::span<const double> siemens) noexcept {
-  std::copy(siemens.begin(), siemens.end(), last_siemens_.begin());
   for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
-    const int frames = frames_ago_[taxel] + (frames_ago_[taxel] < kLong ? 1 : 0);
-    frames_ago_[taxel] = static_cast<std::uint8_t>(is_missing(taxel) ? frames : 0);
+    if (is_missing(taxel)) continue;
+    last_siemens_[taxel] = siemens[taxel];
+    frames_ago_[taxel] = 0;
   }
+}
+
+void MissingTaxels::start_frame(Nanos time) noexcept {
+  const Nanos since_last = time - last_time_;
+  if (since_last == Nanos{}) return;  // the same frame again, with other faults
+  last_time_ = time;
+  if (since_last > kLongestGap || since_last < Nanos{}) forget();
+  for (std::uint8_t& frames : frames_ago_) frames = static_cast<std::uint8_t>(std::min<int>(frames + 1, kLong));
 }
 
 std::optional<double> MissingTaxels::held(std::size_t taxel) const noexcept {

@@ -10,10 +10,11 @@
 #include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/axis.hpp"
+#include "dermis/core/frames.hpp"
 
 namespace dermis::compensation {
 
-/// Conductances of taxels whose readings tell nothing of them. For the first frames a taxel stays what it was; then its
+/// Conductances of taxels whose readings tell nothing of them. For three frames a taxel stays what it was; then its
 /// neighbours tell. In most circuits the others of its line tell, too: with g the line's load (at virtual ground, the
 /// conductance of its driver), a taxel that is taken as x where it is X makes all of them
 ///
@@ -28,6 +29,9 @@ class MissingTaxels {
   /// Which taxels these are [taxels].
   [[nodiscard]] std::span<std::uint8_t> missing() noexcept { return missing_; }
   [[nodiscard]] bool is_missing(std::size_t taxel) const noexcept { return missing_[taxel] != 0; }
+
+  /// A frame is one older than the last, which tells nothing any more if it is 50 ms ago.
+  void start_frame(Nanos time) noexcept;
 
   /// Readings or conductances from those of their neighbours.
   void estimate(std::span<double> values) const noexcept;
@@ -69,9 +73,10 @@ class MissingTaxels {
   std::vector<std::uint8_t> missing_;     // [taxels]
   std::vector<double> last_siemens_;      // [taxels]
   std::vector<std::uint8_t> frames_ago_;  // of it, at most a few [taxels]
-  std::vector<double> doubt_;             // [taxels]
-  std::vector<double> taken_;             // [taxels]
-  std::vector<double> sorted_;            // [taxels]
+  Nanos last_time_{};
+  std::vector<double> doubt_;   // [taxels]
+  std::vector<double> taken_;   // [taxels]
+  std::vector<double> sorted_;  // [taxels]
 };
 
 }  // namespace dermis::compensation

@@ -96,6 +96,7 @@ bool NewtonInversion::solve(std::span<const double> ratio, std::span<const doubl
 
 void NewtonInversion::forget() noexcept {
   has_last_frame_ = false;
+  budget_.forget();
   if (floating_rows_) floating_rows_->forget();
 }
 

@@ -16,6 +16,7 @@ namespace {
 constexpr double kAllowedShare = 0.02;  // by which resistances of the readout and the supply may be wrong
 constexpr double kAllowedSigmas = 6.0;
 constexpr double kShortOhm = 10.0;      // of taxels none has less
+constexpr double kMostShortOhm = 30.0;  // a wide press where rows float, or a supply wrong by 3 %, looks like more
 constexpr double kShortOfLoad = 0.015;  // likewise
 constexpr double kShortShare = 0.005;   // as kAllowedShare; a mistake costs one taxel
 constexpr double kStillShort = 4.0;     // times as many ohm, where the last reading was not believed
@@ -47,7 +48,7 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
   const double weakest_driver = *std::max_element(drive_ohm_.begin(), drive_ohm_.end());
   for (std::size_t line = 0; line < array.sensed_lines(); ++line) {
     const SensedLine sensed = sensed_line(array.readout, line);
-    const double short_ohm = std::max(kShortOhm, kShortOfLoad * sensed.rho);
+    const double short_ohm = std::clamp(kShortOfLoad * sensed.rho, kShortOhm, kMostShortOhm);
     heads_.push_back({1.0 / sensed.gain, -sensed.offset / sensed.gain, sensed.rho, sensed.emf, short_ohm,
                       sensed.rho / (sensed.rho + weakest_driver + short_ohm)});
     for (std::size_t driven = 0; driven < drive_ohm_.size(); ++driven) {

@@ -19,12 +19,15 @@ enum class ReadingVerdict { possible, unknown, shorted, impossible };
 ///
 ///   slack_kj = 1 - Rd_k sum_j' I_kj' - V_kj        (one loaded column: - Rd_k I_kj)
 ///
-/// and its resistance at most slack / I. Where idle rows are grounded, the readings of a column are less than the
-/// supply together, as they are when all rows are driven at once, and what they leave bounds the resistances, too:
+/// and its resistance at most slack / I, if no other taxel carries current to the line. Where idle rows float others
+/// do; then slack / I is that of them all, and low only under a wide press. Where idle rows are grounded, the readings
+/// of a column are less than the supply together, as they are when all rows are driven at once. Of one column alone,
+/// what they leave tells the resistances,
 ///
-///   Rd_k + 1 / G_kj  >=  RL_j (1 - sum_k' r_k'j) / r_kj
+///   Rd_k + 1 / G_kj  =  RL_j (1 - sum_k' r_k'j) / r_kj
 ///
-/// A reading that was taken away in the last frame must stay further from its limits.
+/// and with others it is near that while drivers are strong. A reading that was taken away in the last frame must stay
+/// further from its limits.
 class PossibleReadings {
  public:
   explicit PossibleReadings(const ArrayDescription& array);

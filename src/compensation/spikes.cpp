@@ -41,7 +41,8 @@ Spikes::Spikes(const ArrayDescription& array)
       places_(line_length(array, axis_)),
       last_(array.taxel_count()),
       jumped_(array.taxel_count()),
-      frames_(array.taxel_count()) {
+      frames_(array.taxel_count()),
+      stale_(array.taxel_count()) {
   if (!sharing_axis(array)) return;
   taken_.assign(array.taxel_count(), 1.0);
   if (array.readout.circuit != Circuit::transimpedance) return;
@@ -57,12 +58,25 @@ void Spikes::check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels)
   last_time_ = frame.time;
   if (!has_last_ || since_last > kLongestGap || since_last < Nanos{0}) {
     std::copy(ratio.begin(), ratio.end(), last_.begin());
+    for (std::vector<std::uint8_t>* const of_last : {&jumped_, &frames_, &stale_}) {
+      std::fill(of_last->begin(), of_last->end(), std::uint8_t{0});
+    }
     has_last_ = true;
     return;
   }
+  renew(ratio, taxels);
   const bool is_checked = any_jump(ratio) && follows_last(ratio, frame.sigma_ratio);
   for (std::size_t line = 0; line < lines_ && is_checked; ++line) check_line(line, ratio, frame.sigma_ratio, taxels);
   follow(ratio, frame.sigma_ratio, taxels);
+}
+
+/// What had no reading in the last frame is not compared with one from before: others have changed since.
+void Spikes::renew(std::span<const double> ratio, std::span<const TaxelStatus> taxels) noexcept {
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    const bool is_reading = taxels[taxel] != TaxelStatus::invalid;
+    if (is_reading && stale_[taxel] != 0) last_[taxel] = ratio[taxel];
+    stale_[taxel] = is_reading ? 0 : 1;
+  }
 }
 
 /// The mean of readings that change by no more than noise, without those that are not believed.

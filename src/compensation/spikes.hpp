@@ -33,6 +33,7 @@ class Spikes {
  private:
   [[nodiscard]] bool any_jump(std::span<const double> ratio) const noexcept;
   [[nodiscard]] bool follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept;
+  void renew(std::span<const double> ratio, std::span<const TaxelStatus> taxels) noexcept;
   void follow(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels) noexcept;
   void check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,
                   std::span<TaxelStatus> taxels) noexcept;
@@ -52,6 +53,7 @@ class Spikes {
   std::vector<double> last_;          // readings; the mean of those that stay [taxels]
   std::vector<std::uint8_t> jumped_;  // in the last frame, and it was believed [taxels]
   std::vector<std::uint8_t> frames_;  // for which it has not been believed [taxels]
+  std::vector<std::uint8_t> stale_;   // last_ is older than the last frame [taxels]
 };
 
 }  // namespace dermis::compensation

@@ -8,29 +8,35 @@
 
 namespace dermis::compensation {
 
-/// Work that one frame may take: some times what the solved frames before took, so that the worst is not much slower
-/// than the others. There is no bound until one is solved, or until the first frames are over.
+/// Work that one frame may take. Nothing bounds it as long as frames are solved. After some in a row that are not, a
+/// frame may take some times what the solved ones took; now and then one is tried without a bound again.
 class StepBudget {
  public:
-  /// `least`: of any frame; 0: nothing is bounded.
+  /// `least`: of any frame; 0: nothing is ever bounded.
   explicit StepBudget(double least) : least_(least) {}
 
-  /// `share`: of what a frame may take; infinite: nothing is bounded, and this frame is no example.
+  /// `share` of what a frame may take; below 1 it is another attempt at the same frame, infinite: nothing is bounded,
+  /// and this frame is no example.
   void start_frame(double share = 1.0) noexcept {
+    const bool is_retry = share < 1.0;
+    if (!is_retry) unsolved_ = is_solved_ ? 0 : unsolved_ + 1;
+    is_solved_ = is_retry && is_solved_;
     used_ = 0.0;
     is_example_ = std::isfinite(share);
-    left_ = std::numeric_limits<double>::infinity();
-    if (least_ == 0.0 || !is_example_) return;
-    const bool is_known = typical_ > 0.0 || frames_ == kFirstFrames;
-    frames_ += is_known ? 0 : 1;
-    if (is_known) left_ = share * (least_ + kTimes * typical_);
+    const bool is_tried_again = unsolved_ % kTrial == 0 && !is_retry;
+    const bool is_bounded = least_ > 0.0 && is_example_ && (is_retry || unsolved_ > kTrusted) && !is_tried_again;
+    left_ = is_bounded ? share * (least_ + kTimes * typical_) : std::numeric_limits<double>::infinity();
   }
 
-  /// The work of this frame is an example of what frames take.
+  /// The frame is solved; its work is an example of what frames take.
   void learn() noexcept {
+    is_solved_ = true;
     if (!is_example_) return;
     typical_ = typical_ == 0.0 ? used_ : typical_ + kShare * (std::min(used_, kMostRise * typical_) - typical_);
   }
+
+  /// The next frame does not depend on those before.
+  void forget() noexcept { *this = StepBudget(least_); }
 
   /// false: so much is not left.
   [[nodiscard]] bool take(double work) noexcept {
@@ -45,14 +51,16 @@ class StepBudget {
   static constexpr double kTimes = 2.5;
   static constexpr double kShare = 1.0 / 32.0;
   static constexpr double kMostRise = 2.0;
-  static constexpr int kFirstFrames = 8;
+  static constexpr int kTrusted = 3;  // unsolved frames in a row
+  static constexpr int kTrial = 64;   // of so many unsolved frames one is tried without a bound
 
   double least_;
   double typical_ = 0.0;
   double used_ = 0.0;
-  bool is_example_ = true;
   double left_ = std::numeric_limits<double>::infinity();
-  int frames_ = 0;
+  int unsolved_ = 0;
+  bool is_solved_ = true;  // the last frame
+  bool is_example_ = true;
 };
 
 }  // namespace dermis::compensation

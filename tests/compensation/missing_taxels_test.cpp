@@ -56,25 +56,39 @@ TEST(MissingTaxels, where_rows_float_only_the_neighbours_tell) {
   EXPECT_EQ(siemens, from_neighbours);
 }
 
-TEST(MissingTaxels, a_taxel_stays_what_it_was_for_three_frames) {
-  const ArrayDescription array = support::reference_circuit();
-  MissingTaxels taxels(array, {});
-  std::vector<double> siemens(array.taxel_count(), kUnloaded);
-  siemens[0] = kPressed;
-  EXPECT_FALSE(taxels.held(0));
-  taxels.remember(siemens);
-  taxels.missing()[0] = 1;
-  for (int frame = 0; frame < 3; ++frame) {
-    EXPECT_EQ(taxels.held(0), kPressed) << frame;
-    taxels.remember(siemens);
+class HeldTaxel : public testing::Test {
+ protected:
+  HeldTaxel() {
+    siemens_[0] = kPressed;
+    taxels_.remember(siemens_);
+    taxels_.missing()[0] = 1;
   }
-  taxels.remember(siemens);
-  EXPECT_FALSE(taxels.held(0));
-  taxels.missing()[0] = 0;
-  taxels.remember(siemens);
-  EXPECT_TRUE(taxels.held(0));
-  taxels.forget(0);
-  EXPECT_FALSE(taxels.held(0));
+  void start_frame(Nanos later) { taxels_.start_frame(time_ += later); }
+
+  ArrayDescription array_ = support::reference_circuit();
+  std::vector<double> siemens_ = std::vector<double>(array_.taxel_count(), kUnloaded);
+  MissingTaxels taxels_{array_, {}};
+  Nanos time_{};
+};
+
+TEST_F(HeldTaxel, stays_what_it_was_for_three_frames) {
+  for (int frame = 0; frame < 3; ++frame) {
+    start_frame(std::chrono::milliseconds(10));
+    EXPECT_EQ(taxels_.held(0), kPressed) << frame;
+  }
+  start_frame(std::chrono::milliseconds(10));
+  EXPECT_FALSE(taxels_.held(0));
+}
+
+TEST_F(HeldTaxel, is_not_held_after_a_gap_or_a_fault) {
+  start_frame(std::chrono::milliseconds(60));
+  EXPECT_FALSE(taxels_.held(0));
+  taxels_.missing()[0] = 0;
+  taxels_.remember(siemens_);
+  start_frame(std::chrono::milliseconds(10));
+  EXPECT_TRUE(taxels_.held(0));
+  taxels_.forget(0);
+  EXPECT_FALSE(taxels_.held(0));
 }
 
 }  // namespace

@@ -124,6 +124,25 @@ TEST(PossibleReadings, a_reading_that_was_taken_away_comes_back_only_clearly_bel
   EXPECT_FALSE(is_taken_with(15.0));
 }
 
+TEST(PossibleReadings, a_wide_press_is_no_short_in_any_circuit_and_load) {
+  for (const support::NamedCircuit& circuit : support::all_circuits()) {
+    for (const double load_ohm : {200.0, 1500.0, 2700.0, 10e3}) {
+      SCOPED_TRACE(testing::Message() << circuit << ", " << load_ohm << " ohm");
+      Random random(1);
+      ArrayDescription array = support::random_array(circuit, 12, 10, random);
+      std::fill(array.readout.drive_ohm.begin(), array.readout.drive_ohm.end(), 20.0);
+      std::fill(array.readout.load_ohm.begin(), array.readout.load_ohm.end(), load_ohm);
+      std::vector<double> siemens(array.taxel_count(), 1e-5);
+      for (std::size_t row = 1; row < 10; ++row) {
+        for (std::size_t col = 1; col < 9; ++col) siemens[array.index(row, col)] = 1.0 / 500.0;
+      }
+      Checked checked(array);
+      simulation::ReadoutCircuit::create(array).value().ratios(siemens, checked.ratio);
+      EXPECT_EQ(checked.invalid(), 0U);
+    }
+  }
+}
+
 TEST(PossibleReadings, the_largest_of_each_line_with_little_left_is_taken_or_the_largest_of_all) {
   const ArrayDescription array = support::reference_circuit();
   Checked checked(array);

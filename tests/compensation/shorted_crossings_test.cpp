@@ -12,6 +12,7 @@
 #include "dermis/simulation/line_faults.hpp"
 #include "support/allocation_guard.hpp"
 #include "support/circuits.hpp"
+#include "support/reference_array.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -107,6 +108,43 @@ TEST(ShortedCrossings, two_columns_on_one_row_or_two_rows_on_one_column_are_lost
     const ArrayDescription array = small_array(circuit);
     EXPECT_EQ(expect_right(solve(array, {array.index(2, 4), array.index(2, 1)}), 2e-3), 2 * array.rows);
     EXPECT_EQ(expect_right(solve(array, {array.index(2, 4), array.index(6, 4)}), 2e-3), 2 * array.cols);
+  }
+}
+
+TEST(ShortedCrossings, on_a_driver_of_no_resistance_the_others_are_solved) {
+  for (const support::NamedCircuit& circuit : circuits_with_faults()) {
+    if (!merges_lines(circuit)) continue;
+    SCOPED_TRACE(testing::Message() << circuit << ", seed " << kSeed);
+    ArrayDescription array = small_array(circuit);
+    std::fill(array.readout.drive_ohm.begin(), array.readout.drive_ohm.end(), 0.0);
+    const std::size_t sensed_line = circuit.circuit == Circuit::flexitac ? array.cols : array.rows;
+    EXPECT_EQ(expect_right(solve(array, {array.index(2, 4)}), 0.05), sensed_line);
+  }
+}
+
+TEST(ShortedCrossings, a_reading_that_is_missing_on_a_joined_row_costs_no_other) {
+  for (const std::size_t row : {2U, 6U}) {
+    const ArrayDescription array = support::reference_circuit(7, 6);
+    std::vector<double> siemens(array.taxel_count(), 1e-4);
+    simulation::LineFaults faults;
+    std::vector<LineFault> known;
+    for (const std::size_t taxel : {array.index(2, 4), array.index(6, 4)}) {
+      faults.shorted_taxels.push_back(array.taxel_name(taxel));
+      known.push_back({.kind = LineFaultKind::shorted_crossing, .place = taxel});
+    }
+    ConditionedFrame frame;
+    frame.sigma_ratio = 1e-4;
+    frame.ratio.resize(array.taxel_count());
+    frame.taxels.resize(array.taxel_count());
+    simulation::FaultyCircuit::create(array, faults).value().ratios(siemens, 0, frame.ratio);
+    frame.ratio[array.index(row, 2)] = 0.0;
+    frame.taxels[array.index(row, 2)] = TaxelStatus::invalid;
+    auto compensator = Compensator::create(array).value();
+    compensator.set_faults(known);
+    ConductanceFrame conductance;
+    compensator.process(frame, conductance);
+    EXPECT_FALSE(has(conductance.status, FrameStatus::not_converged)) << row;
+    EXPECT_NEAR(conductance.siemens[array.index(0, 1)], 1e-4, 1e-6) << row;
   }
 }
 

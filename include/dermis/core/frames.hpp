@@ -34,7 +34,7 @@ enum class FrameStatus : std::uint16_t {
   dead_taxels = 1U << 3U,  ///< The array has dead taxels.
   temperature_unknown = 1U << 4U,  ///< The frame has no temperature: the middle of the calibration is used.
   temperature_clamped = 1U << 5U,  ///< More than 1 C outside the calibrated temperatures: clamped to the nearest.
-  not_converged = 1U << 6U,        ///< The crosstalk inversion did not reach its tolerance.
+  not_converged = 1U << 6U,        ///< The crosstalk inversion found no solution within the noise.
   line_fault = 1U << 7U,      ///< A line or taxel is faulty: masked, the rest is solved with the fault in the model.
   supply_clamped = 1U << 8U,  ///< Outside the supplies of the calibration: the nearest is used, sigma grows.
   supply_implausible = 1U << 9U,  ///< More than 20 % from nominal, too: the nominal supply is used, sigma grows.

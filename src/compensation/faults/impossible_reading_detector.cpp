@@ -22,9 +22,10 @@ constexpr double kSame = 1e-3;            // standard deviations
 constexpr double kHigh = 0.5;             // of the supply: a reading that columns are asked about
 constexpr double kMostOfColumn = 0.6;     // taxels that read no more than unloaded ones
 constexpr double kUnloadedSigmas = 3.0;
+constexpr double kMostOfWhole = 0.15;  // by which unloaded taxels of other columns may have changed
 constexpr double kColumnSigmas = 4.0;
 constexpr double kPerFrameOfColumn = 0.5 * kPerFrame;
-constexpr double kSilentShare = 0.2;  // of what the taxels of a row read unloaded
+constexpr double kSilentShare = 0.5;  // of what the taxels of a row read unloaded
 constexpr double kSilentSigmas = 3.0;
 constexpr std::size_t kFewestSilent = 3;  // taxels
 
@@ -116,10 +117,29 @@ ReadingVerdict ImpossibleReadingDetector::verdict_of_column(const Observation& s
     count += 1.0;
   }
   const double fall = 0.5 * ratio * unloaded;
-  const bool can_tell = count >= kMostOfColumn * static_cast<double>(array_.rows - 1) &&
+  const bool can_tell = others_are_unloaded(seen, taxel % array_.cols) &&
+                        count >= kMostOfColumn * static_cast<double>(array_.rows - 1) &&
                         fall > kColumnSigmas * seen.conditioned.sigma_ratio * std::sqrt(count);
   if (!can_tell) return ReadingVerdict::unknown;
   return read > unloaded - fall ? ReadingVerdict::impossible : ReadingVerdict::possible;
+}
+
+/// Most taxels of the other columns read what the calibration says, and those together, too: else the whole has
+/// changed.
+bool ImpossibleReadingDetector::others_are_unloaded(const Observation& seen, std::size_t col) const noexcept {
+  double unloaded = 0.0;
+  double read = 0.0;
+  std::size_t count = 0;
+  for (std::size_t taxel = 0; taxel < array_.taxel_count(); ++taxel) {
+    const double expected = seen.unloaded.ratio()[taxel];
+    const double change = std::abs(seen.conditioned.ratio[taxel] - expected);
+    if (taxel % array_.cols == col || change > kUnloadedSigmas * seen.conditioned.sigma_ratio) continue;
+    unloaded += expected;
+    read += seen.conditioned.ratio[taxel];
+    ++count;
+  }
+  const bool are_most = 2 * count > array_.taxel_count() - array_.rows;
+  return are_most && std::abs(read - unloaded) < kMostOfWhole * unloaded;
 }
 
 /// Unless its line explains it.

@@ -42,6 +42,7 @@ class ImpossibleReadingDetector {
   [[nodiscard]] ReadingVerdict verdict(const Observation& seen, std::size_t taxel) const noexcept;
   void watch_columns(const Observation& seen, const FaultList& faults) noexcept;
   [[nodiscard]] ReadingVerdict verdict_of_column(const Observation& seen, std::size_t taxel) const noexcept;
+  [[nodiscard]] bool others_are_unloaded(const Observation& seen, std::size_t col) const noexcept;
   [[nodiscard]] bool row_is_silent(const Observation& seen, std::size_t taxel) const noexcept;
   void find(const Observation& seen, ReadingVerdict verdict, Watched& watched, FaultList& faults) const noexcept;
   [[nodiscard]] double evidence_of_impossible(const Observation& seen, ReadingVerdict verdict,
