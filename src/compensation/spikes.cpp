@@ -100,17 +100,21 @@ bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
   return jumps != 0;
 }
 
-/// Most of the loads are about what they were, those that have just jumped aside: they may fall back.
+/// Most of the loads are about what they were, those that have just jumped aside: they may fall back. Where there are
+/// no others, nothing tells.
 bool Spikes::follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept {
   double loads = 0.0;
   double changed = 0.0;
+  double jumped = 0.0;
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
     const double last = last_[taxel];
-    const double load = last > kLoadedSigmas * sigma_ratio && jumped_[taxel] == 0 ? last : 0.0;
-    loads += load;
-    changed += std::abs(ratio[taxel] - last) > kMostChange * last ? load : 0.0;
+    const double load = last > kLoadedSigmas * sigma_ratio ? last : 0.0;
+    const double stays = jumped_[taxel] == 0 ? load : 0.0;
+    jumped += load - stays;
+    loads += stays;
+    changed += std::abs(ratio[taxel] - last) > kMostChange * last ? stays : 0.0;
   }
-  return changed <= kMostChanged * loads;
+  return changed <= kMostChanged * loads && (loads > 0.0 || jumped == 0.0);
 }
 
 void Spikes::check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,

@@ -8,11 +8,11 @@
 
 namespace dermis::compensation {
 
-/// Work that one frame may take. Nothing bounds it as long as frames are solved. After some in a row that are not, a
-/// frame may take some times what the solved ones took; now and then one is tried without a bound again.
+/// Work that one frame may take: much as long as frames are solved. After some in a row that are not, a frame may take
+/// some times what the solved ones took; now and then one may take much again.
 class StepBudget {
  public:
-  /// `least`: of any frame; 0: nothing is ever bounded.
+  /// `least`: of any frame, much is 8 times that; 0: nothing is ever bounded.
   explicit StepBudget(double least) : least_(least) {}
 
   /// `share` of what a frame may take; below 1 it is another attempt at the same frame, infinite: nothing is bounded,
@@ -24,8 +24,9 @@ class StepBudget {
     used_ = 0.0;
     is_example_ = std::isfinite(share);
     const bool is_tried_again = unsolved_ % kTrial == 0 && !is_retry;
-    const bool is_bounded = least_ > 0.0 && is_example_ && (is_retry || unsolved_ > kTrusted) && !is_tried_again;
-    left_ = is_bounded ? share * (least_ + kTimes * typical_) : std::numeric_limits<double>::infinity();
+    const bool is_little = (is_retry || unsolved_ > kTrusted) && !is_tried_again;
+    const double allowed = is_little ? share * (least_ + kTimes * typical_) : kMuch * least_;
+    left_ = least_ > 0.0 && is_example_ ? allowed : std::numeric_limits<double>::infinity();
   }
 
   /// The frame is solved; its work is an example of what frames take.
@@ -48,11 +49,12 @@ class StepBudget {
   [[nodiscard]] bool is_used_up() const noexcept { return left_ <= 0.0; }
 
  private:
+  static constexpr double kMuch = 8.0;
   static constexpr double kTimes = 2.5;
   static constexpr double kShare = 1.0 / 32.0;
   static constexpr double kMostRise = 2.0;
   static constexpr int kTrusted = 3;  // unsolved frames in a row
-  static constexpr int kTrial = 64;   // of so many unsolved frames one is tried without a bound
+  static constexpr int kTrial = 64;   // of so many unsolved frames one may take much
 
   double least_;
   double typical_ = 0.0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "dermis/compensation/crosstalk.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 #include "support/circuits.hpp"
@@ -140,6 +141,31 @@ TEST(PossibleReadings, a_wide_press_is_no_short_in_any_circuit_and_load) {
       simulation::ReadoutCircuit::create(array).value().ratios(siemens, checked.ratio);
       EXPECT_EQ(checked.invalid(), 0U);
     }
+  }
+}
+
+TEST(Compensator, solves_a_hard_frame_after_easy_ones) {
+  constexpr std::uint64_t kSeed = 5;
+  Random random(kSeed);
+  ArrayDescription array = support::reference_array(12, 10);
+  std::fill(array.readout.drive_ohm.begin(), array.readout.drive_ohm.end(), 100.0);
+  std::fill(array.readout.load_ohm.begin(), array.readout.load_ohm.end(), 1500.0);
+  auto circuit = simulation::ReadoutCircuit::create(array).value();
+  auto compensator = Compensator::create(array).value();
+  ConditionedFrame frame;
+  ConductanceFrame conductance;
+  frame.sigma_ratio = 1.0 / 4095.0;
+  frame.ratio.resize(array.taxel_count());
+  frame.taxels.resize(array.taxel_count());
+  std::vector<double> siemens(array.taxel_count(), 1e-5);
+  for (int number = 0; number < 80; ++number) {
+    for (std::size_t row = 2; row < 10 && number >= 50; ++row) {
+      for (std::size_t col = 1; col < 9; ++col) siemens[array.index(row, col)] = 1.0 / random.uniform(270.0, 390.0);
+    }
+    circuit.ratios(siemens, frame.ratio);
+    frame.time += std::chrono::milliseconds(10);
+    compensator.process(frame, conductance);
+    ASSERT_FALSE(has(conductance.status, FrameStatus::not_converged)) << "frame " << number << ", seed " << kSeed;
   }
 }
 
