@@ -89,6 +89,11 @@ void MissingTaxels::forget(std::size_t taxel) noexcept {
 }
 
 void MissingTaxels::remember(std::span<const double> siemens) noexcept {
+  if (std::find(missing_.begin(), missing_.end(), std::uint8_t{1}) == missing_.end()) {
+    std::copy(siemens.begin(), siemens.end(), last_siemens_.begin());
+    std::fill(frames_ago_.begin(), frames_ago_.end(), std::uint8_t{0});
+    return;
+  }
   for (std::size_t taxel = 0; taxel < missing_.size(); ++taxel) {
     if (is_missing(taxel)) continue;
     last_siemens_[taxel] = siemens[taxel];

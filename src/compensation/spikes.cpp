@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 namespace dermis::compensation {
 namespace {
@@ -22,6 +23,7 @@ constexpr double kMoreStay = 2.0;    // than fall
 constexpr double kNewShare = 0.125;  // of a reading in its mean
 constexpr double kLeastLeft = 0.01;  // of the supply
 constexpr std::uint8_t kMostFrames = 3;
+constexpr std::size_t kAtOnce = 4;  // sums that do not wait for each other
 
 /// The lines along which one taxel takes from the others, or nothing.
 std::optional<Axis> sharing_axis(const ArrayDescription& array) {
@@ -40,6 +42,7 @@ Spikes::Spikes(const ArrayDescription& array)
       lines_(line_count(array, axis_)),
       places_(line_length(array, axis_)),
       last_(array.taxel_count()),
+      change_(array.taxel_count()),
       jumped_(array.taxel_count()),
       frames_(array.taxel_count()),
       stale_(array.taxel_count()) {
@@ -62,6 +65,7 @@ void Spikes::check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels)
       std::fill(of_last->begin(), of_last->end(), std::uint8_t{0});
     }
     has_last_ = true;
+    any_stale_ = any_suspect_ = false;
     return;
   }
   renew(ratio, taxels);
@@ -72,24 +76,34 @@ void Spikes::check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels)
 
 /// What had no reading in the last frame is not compared with one from before: others have changed since.
 void Spikes::renew(std::span<const double> ratio, std::span<const TaxelStatus> taxels) noexcept {
+  const bool all_are_read = std::find(taxels.begin(), taxels.end(), TaxelStatus::invalid) == taxels.end();
+  if (all_are_read && !std::exchange(any_stale_, false)) return;
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
     const bool is_reading = taxels[taxel] != TaxelStatus::invalid;
     if (is_reading && stale_[taxel] != 0) last_[taxel] = ratio[taxel];
     stale_[taxel] = is_reading ? 0 : 1;
   }
+  any_stale_ = !all_are_read;
 }
 
 /// The mean of readings that change by no more than noise, without those that are not believed.
 void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels) noexcept {
   const double noise = kSeenSigmas * sigma_ratio;
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-    const double change = ratio[taxel] - last_[taxel];
-    const double followed = std::abs(change) > noise ? change : kNewShare * change;
-    const bool is_reading = taxels[taxel] != TaxelStatus::invalid;
-    last_[taxel] += is_reading ? followed : 0.0;
-    jumped_[taxel] = is_reading && change > kLeastJump ? 1 : 0;
-    frames_[taxel] = is_reading ? 0 : frames_[taxel];
+  const auto is_reading = [&](std::size_t taxel) { return taxels[taxel] != TaxelStatus::invalid; };
+  const bool all_are_read = std::find(taxels.begin(), taxels.end(), TaxelStatus::invalid) == taxels.end();
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) change_[taxel] = ratio[taxel] - last_[taxel];
+  for (std::size_t taxel = 0; taxel < ratio.size() && !all_are_read; ++taxel) {
+    if (!is_reading(taxel)) change_[taxel] = 0.0;
   }
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+    const double change = change_[taxel];
+    last_[taxel] += std::abs(change) > noise ? change : kNewShare * change;
+  }
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) jumped_[taxel] = change_[taxel] > kLeastJump ? 1 : 0;
+  for (std::size_t taxel = 0; taxel < ratio.size() && any_suspect_; ++taxel) {
+    if (is_reading(taxel)) frames_[taxel] = 0;
+  }
+  any_suspect_ = std::find_if(frames_.begin(), frames_.end(), [](std::uint8_t n) { return n != 0; }) != frames_.end();
 }
 
 bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
@@ -103,18 +117,20 @@ bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
 /// Most of the loads are about what they were, those that have just jumped aside: they may fall back. Where there are
 /// no others, nothing tells.
 bool Spikes::follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept {
-  double loads = 0.0;
-  double changed = 0.0;
-  double jumped = 0.0;
+  double loads[kAtOnce] = {};
+  double changed[kAtOnce] = {};
+  double jumped[kAtOnce] = {};
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
     const double last = last_[taxel];
     const double load = last > kLoadedSigmas * sigma_ratio ? last : 0.0;
-    const double stays = jumped_[taxel] == 0 ? load : 0.0;
-    jumped += load - stays;
-    loads += stays;
-    changed += std::abs(ratio[taxel] - last) > kMostChange * last ? stays : 0.0;
+    const double falls = jumped_[taxel] * load;
+    const double stays = load - falls;
+    jumped[taxel % kAtOnce] += falls;
+    loads[taxel % kAtOnce] += stays;
+    changed[taxel % kAtOnce] += std::abs(ratio[taxel] - last) > kMostChange * last ? stays : 0.0;
   }
-  return changed <= kMostChanged * loads && (loads > 0.0 || jumped == 0.0);
+  const auto sum = [](const double(&parts)[kAtOnce]) { return (parts[0] + parts[1]) + (parts[2] + parts[3]); };
+  return sum(changed) <= kMostChanged * sum(loads) && (sum(loads) > 0.0 || sum(jumped) == 0.0);
 }
 
 void Spikes::check_line(std::size_t line, std::span<const double> ratio, double sigma_ratio,
@@ -140,6 +156,7 @@ void Spikes::check_line(std::size_t line, std::span<const double> ratio, double 
     return;
   }
   ++frames_[taxel];
+  any_suspect_ = true;
   taxels[taxel] = TaxelStatus::invalid;
   check_line(line, ratio, sigma_ratio, taxels);
 }
