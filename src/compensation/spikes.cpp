@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -23,7 +24,7 @@ constexpr double kMoreStay = 2.0;    // than fall
 constexpr double kNewShare = 0.125;  // of a reading in its mean
 constexpr double kLeastLeft = 0.01;  // of the supply
 constexpr std::uint8_t kMostFrames = 3;
-constexpr std::size_t kAtOnce = 4;  // sums that do not wait for each other
+constexpr std::size_t kAtOnce = 8;  // sums that do not wait for each other
 
 /// The lines along which one taxel takes from the others, or nothing.
 std::optional<Axis> sharing_axis(const ArrayDescription& array) {
@@ -61,7 +62,8 @@ void Spikes::check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels)
   last_time_ = frame.time;
   if (!has_last_ || since_last > kLongestGap || since_last < Nanos{0}) {
     std::copy(ratio.begin(), ratio.end(), last_.begin());
-    for (std::vector<std::uint8_t>* const of_last : {&jumped_, &frames_, &stale_}) {
+    std::fill(jumped_.begin(), jumped_.end(), 0.0);
+    for (std::vector<std::uint8_t>* const of_last : {&frames_, &stale_}) {
       std::fill(of_last->begin(), of_last->end(), std::uint8_t{0});
     }
     has_last_ = true;
@@ -97,9 +99,10 @@ void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span
   }
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
     const double change = change_[taxel];
-    last_[taxel] += std::abs(change) > noise ? change : kNewShare * change;
+    const double little = kNewShare * change;
+    last_[taxel] += std::abs(change) > noise ? change : little;
   }
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) jumped_[taxel] = change_[taxel] > kLeastJump ? 1 : 0;
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) jumped_[taxel] = change_[taxel] > kLeastJump ? 1.0 : 0.0;
   for (std::size_t taxel = 0; taxel < ratio.size() && any_suspect_; ++taxel) {
     if (is_reading(taxel)) frames_[taxel] = 0;
   }
@@ -107,11 +110,16 @@ void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span
 }
 
 bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
-  std::uint32_t jumps = 0;
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
-    jumps |= ratio[taxel] - last_[taxel] > kLeastJump ? 1U : 0U;
+  double most[kAtOnce] = {};
+  std::size_t taxel = 0;
+  for (; taxel + kAtOnce <= ratio.size(); taxel += kAtOnce) {
+    for (std::size_t k = 0; k < kAtOnce; ++k) {
+      const double change = ratio[taxel + k] - last_[taxel + k];
+      most[k] = change > most[k] ? change : most[k];
+    }
   }
-  return jumps != 0;
+  for (; taxel < ratio.size(); ++taxel) most[0] = std::max(most[0], ratio[taxel] - last_[taxel]);
+  return *std::max_element(most, most + kAtOnce) > kLeastJump;
 }
 
 /// Most of the loads are about what they were, those that have just jumped aside: they may fall back. Where there are
@@ -120,16 +128,22 @@ bool Spikes::follows_last(std::span<const double> ratio, double sigma_ratio) con
   double loads[kAtOnce] = {};
   double changed[kAtOnce] = {};
   double jumped[kAtOnce] = {};
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) {
+  const double least = kLoadedSigmas * sigma_ratio;
+  const auto add = [&](std::size_t taxel, std::size_t k) {
     const double last = last_[taxel];
-    const double load = last > kLoadedSigmas * sigma_ratio ? last : 0.0;
+    const double load = last > least ? last : 0.0;
     const double falls = jumped_[taxel] * load;
     const double stays = load - falls;
-    jumped[taxel % kAtOnce] += falls;
-    loads[taxel % kAtOnce] += stays;
-    changed[taxel % kAtOnce] += std::abs(ratio[taxel] - last) > kMostChange * last ? stays : 0.0;
+    jumped[k] += falls;
+    loads[k] += stays;
+    changed[k] += std::abs(ratio[taxel] - last) > kMostChange * last ? stays : 0.0;
+  };
+  std::size_t taxel = 0;
+  for (; taxel + kAtOnce <= ratio.size(); taxel += kAtOnce) {
+    for (std::size_t k = 0; k < kAtOnce; ++k) add(taxel + k, k);
   }
-  const auto sum = [](const double(&parts)[kAtOnce]) { return (parts[0] + parts[1]) + (parts[2] + parts[3]); };
+  for (std::size_t k = 0; taxel + k < ratio.size(); ++k) add(taxel + k, k);
+  const auto sum = [](const double(&parts)[kAtOnce]) { return std::accumulate(parts, parts + kAtOnce, 0.0); };
   return sum(changed) <= kMostChanged * sum(loads) && (sum(loads) > 0.0 || sum(jumped) == 0.0);
 }
 

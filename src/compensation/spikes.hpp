@@ -54,7 +54,7 @@ class Spikes {
   bool any_suspect_ = false;          // is not believed
   std::vector<double> last_;          // readings; the mean of those that stay [taxels]
   std::vector<double> change_;        // since then [taxels]
-  std::vector<std::uint8_t> jumped_;  // in the last frame, and it was believed [taxels]
+  std::vector<double> jumped_;        // 1: in the last frame, and it was believed [taxels]
   std::vector<std::uint8_t> frames_;  // for which it has not been believed [taxels]
   std::vector<std::uint8_t> stale_;   // last_ is older than the last frame [taxels]
 };
