@@ -128,7 +128,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   if (result.solved) {
     inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
-    if (faults_->concerns(conductance.taxels)) faults_->add_doubt(conductance.siemens, conductance.sigma_siemens);
+    faults_->add_doubt(conductance.siemens, conductance.sigma_siemens);
   }
   supply_error_->add(conductance.siemens, conditioned.supply_doubt, conductance.sigma_siemens);
   if (result.solved) {

@@ -23,12 +23,6 @@ constexpr double kOpenSiemens = 1e-9;   // of a taxel that is counted elsewhere
 constexpr double kMostStretch = 5.0;
 constexpr std::size_t kMostLines = 256;  // rows and columns together: beyond, the dense equations are too slow
 
-bool has_grounded_idle_lines(const ArrayDescription& array) {
-  const Readout& readout = array.readout;
-  return readout.circuit == Circuit::flexitac ||
-         (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded);
-}
-
 bool is_in(const std::vector<std::size_t>& taxels, std::size_t taxel) {
   return std::find(taxels.begin(), taxels.end(), taxel) != taxels.end();
 }
@@ -114,7 +108,7 @@ void FaultInversion::add(const LineFault& fault) {
 /// tells.
 void FaultInversion::add_crossings(CrosstalkInversion& healthy) {
   const bool are_solved = healthy.set_shorted(crossings_.taxels);
-  crossings_.are_corrected = !are_solved && circuits_ && has_grounded_idle_lines(array_);
+  crossings_.are_corrected = !are_solved && circuits_ && has_grounded_idle_lines(array_.readout);
   crossings_.are_kept = !are_solved && !crossings_.are_corrected;
   crossings_.in_first.clear();
   lines_are_faulty_ = lines_are_faulty_ || crossings_.are_corrected;
@@ -131,7 +125,7 @@ void FaultInversion::add_crossings(CrosstalkInversion& healthy) {
 /// Beside a driver next to nothing is read of the others of the line.
 void FaultInversion::hide_sensed_line(std::size_t taxel) noexcept {
   const Axis sensed = crossing(driven_axis(array_));
-  const std::size_t line = sensed == Axis::row ? taxel / array_.cols : taxel % array_.cols;
+  const std::size_t line = line_of(array_, sensed, taxel);
   for (std::size_t k = 0; k < line_length(array_, sensed); ++k) {
     is_.masked[taxel_on_line(array_, sensed, line, k)] = is_.hidden[taxel_on_line(array_, sensed, line, k)] = 1;
   }
@@ -187,7 +181,7 @@ void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double
     if (!missing_.is_missing(taxel)) continue;
     const double error = missing_.doubt(taxel) * siemens[taxel];
     for (const Axis axis : kAxes) {
-      const std::size_t line = axis == Axis::row ? taxel / array_.cols : taxel % array_.cols;
+      const std::size_t line = line_of(array_, axis, taxel);
       const double ohm = axis == driven ? array_.readout.drive_ohm[line] : sensed_line(array_.readout, line).rho;
       for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
         const std::size_t other = taxel_on_line(array_, axis, line, k);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "compensation/readout_parts.hpp"
 #include "compensation/sensed_line.hpp"
 
 namespace dermis::compensation {
@@ -22,14 +23,6 @@ constexpr double kUnloadedScatter = 0.02;  // at least, of the middle of a line
 constexpr double kShiftByPressed = 1.0;    // of that middle where a third is pressed, in median deviations
 constexpr std::size_t kFewest = 4;         // taxels that tell
 constexpr int kSteps = 8;
-
-std::optional<Axis> telling_axis(const ArrayDescription& array) {
-  const Readout& readout = array.readout;
-  if (readout.circuit == Circuit::transimpedance) return Axis::row;
-  if (readout.circuit == Circuit::flexitac) return Axis::row;
-  if (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded) return Axis::column;
-  return std::nullopt;
-}
 
 /// The value between four of which some are known: on a parabola, as the logarithm of a Gaussian contact is. Beyond the
 /// last known taxel a contact falls on as it comes, and never rises.
@@ -61,7 +54,7 @@ double median_of(std::span<double> values) {
 
 MissingTaxels::MissingTaxels(const ArrayDescription& array, const ReferenceConductances& references)
     : array_(array),
-      telling_axis_(telling_axis(array)),
+      sharing_axis_(sharing_axis(array)),
       typical_siemens_(references.typical.begin(), references.typical.end()),
       unloaded_siemens_(references.unloaded.begin(), references.unloaded.end()),
       absent_(array.taxel_count()),
@@ -73,8 +66,8 @@ MissingTaxels::MissingTaxels(const ArrayDescription& array, const ReferenceCondu
   typical_siemens_.resize(array.taxel_count(), 1.0);
   sorted_.reserve(array.taxel_count());
   for (const std::size_t taxel : array.absent) absent_[taxel] = 1;
-  for (std::size_t line = 0; telling_axis_ && line < line_count(array, *telling_axis_); ++line) {
-    const bool is_driven = *telling_axis_ == driven_axis(array);
+  for (std::size_t line = 0; sharing_axis_ && line < line_count(array, *sharing_axis_); ++line) {
+    const bool is_driven = *sharing_axis_ == driven_axis(array);
     const double ohm = is_driven ? array.readout.drive_ohm[line] : sensed_line(array.readout, line).rho;
     load_siemens_.push_back(ohm > 0.0 ? 1.0 / ohm : 0.0);
   }
@@ -152,10 +145,10 @@ void MissingTaxels::improve(std::span<double> siemens) noexcept {
     const std::optional<double> before = held(taxel);
     siemens[taxel] = before.value_or(siemens[taxel]);
     doubt_[taxel] = before ? kDoubtOfHeld : kDoubtOfEstimate;
-    if (!telling_axis_ || unloaded_siemens_.empty()) continue;
-    const std::size_t line = *telling_axis_ == Axis::row ? taxel / array_.cols : taxel % array_.cols;
+    if (!sharing_axis_ || unloaded_siemens_.empty()) continue;
+    const std::size_t line = line_of(array_, *sharing_axis_, taxel);
     if (!whole) whole = change_of_unloaded(taken_, std::nullopt, 0);
-    const std::optional<Middle> of_line = change_of_unloaded(taken_, telling_axis_, line);
+    const std::optional<Middle> of_line = change_of_unloaded(taken_, sharing_axis_, line);
     if (!whole || !of_line || load_siemens_[line] == 0.0) continue;
     const Middle lacking{of_line->value - whole->value, std::hypot(of_line->sigma, whole->sigma)};
     improve(taxel, taken_[taxel], lacking, load_siemens_[line], siemens);

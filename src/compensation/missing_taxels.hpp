@@ -65,7 +65,7 @@ class MissingTaxels {
                std::span<double> siemens) noexcept;
 
   const ArrayDescription& array_;
-  std::optional<Axis> telling_axis_;      // lines whose taxels take from each other
+  std::optional<Axis> sharing_axis_;      // lines whose taxels take from each other
   std::vector<double> load_siemens_;      // g [lines]
   std::vector<double> typical_siemens_;   // [taxels]
   std::vector<double> unloaded_siemens_;  // [taxels]; empty: unknown

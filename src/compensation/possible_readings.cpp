@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "compensation/readout_parts.hpp"
 #include "compensation/sensed_line.hpp"
 #include "dermis/core/axis.hpp"
 
@@ -36,8 +37,7 @@ PossibleReadings::PossibleReadings(const ArrayDescription& array)
     : cols_(array.cols),
       rows_are_driven_(driven_axis(array) == Axis::row),
       one_loaded_(!rows_are_driven_ || array.readout.idle_columns == IdleColumns::floating),
-      sums_are_bounded_(array.readout.circuit != Circuit::transimpedance &&
-                        (!rows_are_driven_ || array.readout.idle_rows == IdleRows::grounded)),
+      sums_are_bounded_(has_grounded_idle_lines(array.readout)),
       most_ratio_(array.taxel_count(), std::numeric_limits<double>::infinity()) {
   if (array.readout.circuit == Circuit::none) return;
   drive_ohm_ = array.readout.drive_ohm;

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "dermis/core/array_description.hpp"
+#include "dermis/core/axis.hpp"
 
 namespace dermis::compensation {
 
@@ -20,6 +22,20 @@ inline bool has_resistive_lines(const Readout& readout) noexcept {
 
 inline bool has_ideal_amplifiers(const Readout& readout) noexcept {
   return is_absent(readout.column_switch_ohm) && is_absent(readout.amplifier_offset_v) && !readout.amplifier_gain;
+}
+
+/// While a line is driven, the others of its kind stand at 0 V through their drivers.
+inline bool has_grounded_idle_lines(const Readout& readout) noexcept {
+  return readout.circuit == Circuit::flexitac ||
+         (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded);
+}
+
+/// The lines along which one taxel takes from the readings of the others: the sensed ones where idle lines are
+/// grounded, the rows at virtual ground; of other circuits none.
+inline std::optional<Axis> sharing_axis(const ArrayDescription& array) noexcept {
+  if (array.readout.circuit == Circuit::transimpedance) return Axis::row;
+  if (!has_grounded_idle_lines(array.readout)) return std::nullopt;
+  return crossing(driven_axis(array));
 }
 
 }  // namespace dermis::compensation

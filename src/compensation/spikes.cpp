@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <utility>
+
+#include "compensation/readout_parts.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -25,15 +26,6 @@ constexpr double kNewShare = 0.125;  // of a reading in its mean
 constexpr double kLeastLeft = 0.01;  // of the supply
 constexpr std::uint8_t kMostFrames = 3;
 constexpr std::size_t kAtOnce = 8;  // sums that do not wait for each other
-
-/// The lines along which one taxel takes from the others, or nothing.
-std::optional<Axis> sharing_axis(const ArrayDescription& array) {
-  const Readout& readout = array.readout;
-  if (readout.circuit == Circuit::transimpedance) return Axis::row;
-  if (readout.circuit == Circuit::flexitac) return Axis::row;  // its sensed lines
-  if (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded) return Axis::column;
-  return std::nullopt;
-}
 
 }  // namespace
 
@@ -67,7 +59,7 @@ void Spikes::check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels)
       std::fill(of_last->begin(), of_last->end(), std::uint8_t{0});
     }
     has_last_ = true;
-    any_stale_ = any_suspect_ = false;
+    any_stale_ = false;
     return;
   }
   renew(ratio, taxels);
@@ -103,10 +95,7 @@ void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span
     last_[taxel] += std::abs(change) > noise ? change : little;
   }
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) jumped_[taxel] = change_[taxel] > kLeastJump ? 1.0 : 0.0;
-  for (std::size_t taxel = 0; taxel < ratio.size() && any_suspect_; ++taxel) {
-    if (is_reading(taxel)) frames_[taxel] = 0;
-  }
-  any_suspect_ = std::find_if(frames_.begin(), frames_.end(), [](std::uint8_t n) { return n != 0; }) != frames_.end();
+  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) frames_[taxel] = is_reading(taxel) ? 0 : frames_[taxel];
 }
 
 bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
@@ -170,7 +159,6 @@ void Spikes::check_line(std::size_t line, std::span<const double> ratio, double 
     return;
   }
   ++frames_[taxel];
-  any_suspect_ = true;
   taxels[taxel] = TaxelStatus::invalid;
   check_line(line, ratio, sigma_ratio, taxels);
 }

@@ -51,7 +51,6 @@ class Spikes {
   bool has_last_ = false;
   Nanos last_time_{};
   bool any_stale_ = false;
-  bool any_suspect_ = false;          // is not believed
   std::vector<double> last_;          // readings; the mean of those that stay [taxels]
   std::vector<double> change_;        // since then [taxels]
   std::vector<double> jumped_;        // 1: in the last frame, and it was believed [taxels]

@@ -24,22 +24,34 @@ struct Solved {
   ConductanceFrame conductance;
 };
 
-/// Without noise, an array of 7 x 6 taxels with these shorted crossings, that the compensator knows of.
+/// Without noise, what an array of these conductances reads with these shorted crossings.
+ConditionedFrame frame_with(const ArrayDescription& array, const std::vector<std::size_t>& shorted,
+                            const std::vector<double>& siemens, double sigma_ratio) {
+  simulation::LineFaults faults;
+  for (const std::size_t taxel : shorted) faults.shorted_taxels.push_back(array.taxel_name(taxel));
+  ConditionedFrame frame;
+  frame.sigma_ratio = sigma_ratio;
+  frame.ratio.resize(array.taxel_count());
+  frame.taxels.resize(array.taxel_count());
+  simulation::FaultyCircuit::create(array, faults).value().ratios(siemens, 0, frame.ratio);
+  return frame;
+}
+
+std::vector<LineFault> faults_at(const std::vector<std::size_t>& shorted) {
+  std::vector<LineFault> faults;
+  for (const std::size_t taxel : shorted) {
+    faults.push_back({.kind = LineFaultKind::shorted_crossing, .place = taxel});
+  }
+  return faults;
+}
+
+/// An array of 7 x 6 taxels with these shorted crossings, that the compensator knows of.
 Solved solve(const ArrayDescription& array, const std::vector<std::size_t>& shorted) {
   Random random(kSeed);
   Solved solved;
   solved.siemens = support::random_siemens(array, random, 1e3, 1e5);
-  simulation::LineFaults faults;
-  std::vector<LineFault> known;
-  for (const std::size_t taxel : shorted) {
-    faults.shorted_taxels.push_back(array.taxel_name(taxel));
-    known.push_back({.kind = LineFaultKind::shorted_crossing, .place = taxel});
-  }
-  ConditionedFrame frame;
-  frame.sigma_ratio = 1e-6;
-  frame.ratio.resize(array.taxel_count());
-  frame.taxels.resize(array.taxel_count());
-  simulation::FaultyCircuit::create(array, faults).value().ratios(solved.siemens, 0, frame.ratio);
+  const std::vector<LineFault> known = faults_at(shorted);
+  const ConditionedFrame frame = frame_with(array, shorted, solved.siemens, 1e-6);
   auto compensator = Compensator::create(array).value();
   compensator.set_faults(known);
   compensator.process(frame, solved.conductance);
@@ -125,22 +137,12 @@ TEST(ShortedCrossings, on_a_driver_of_no_resistance_the_others_are_solved) {
 TEST(ShortedCrossings, a_reading_that_is_missing_on_a_joined_row_costs_no_other) {
   for (const std::size_t row : {2U, 6U}) {
     const ArrayDescription array = support::reference_circuit(7, 6);
-    std::vector<double> siemens(array.taxel_count(), 1e-4);
-    simulation::LineFaults faults;
-    std::vector<LineFault> known;
-    for (const std::size_t taxel : {array.index(2, 4), array.index(6, 4)}) {
-      faults.shorted_taxels.push_back(array.taxel_name(taxel));
-      known.push_back({.kind = LineFaultKind::shorted_crossing, .place = taxel});
-    }
-    ConditionedFrame frame;
-    frame.sigma_ratio = 1e-4;
-    frame.ratio.resize(array.taxel_count());
-    frame.taxels.resize(array.taxel_count());
-    simulation::FaultyCircuit::create(array, faults).value().ratios(siemens, 0, frame.ratio);
+    const std::vector<std::size_t> shorted = {array.index(2, 4), array.index(6, 4)};
+    ConditionedFrame frame = frame_with(array, shorted, std::vector<double>(array.taxel_count(), 1e-4), 1e-4);
     frame.ratio[array.index(row, 2)] = 0.0;
     frame.taxels[array.index(row, 2)] = TaxelStatus::invalid;
     auto compensator = Compensator::create(array).value();
-    compensator.set_faults(known);
+    compensator.set_faults(faults_at(shorted));
     ConductanceFrame conductance;
     compensator.process(frame, conductance);
     EXPECT_FALSE(has(conductance.status, FrameStatus::not_converged)) << row;

@@ -183,14 +183,18 @@ TEST(LineFaults, shorted_rows_stand_between_their_drivers) {
   }
 }
 
-TEST(LineFaults, a_shorted_crossing_is_the_limit_of_a_taxel_of_0_ohm) {
+std::vector<ArrayDescription> arrays_of_every_circuit() {
   std::vector<ArrayDescription> arrays = {
       make_array(Circuit::divider), make_array(Circuit::divider, IdleRows::floating),
       make_array(Circuit::transimpedance), make_array(Circuit::transimpedance, IdleRows::floating),
       make_array(Circuit::flexitac)};
   arrays.push_back(make_array(Circuit::divider));
   arrays.back().readout.idle_columns = IdleColumns::floating;
-  for (const ArrayDescription& array : arrays) {
+  return arrays;
+}
+
+TEST(LineFaults, a_shorted_crossing_is_the_limit_of_a_taxel_of_0_ohm) {
+  for (const ArrayDescription& array : arrays_of_every_circuit()) {
     SCOPED_TRACE(testing::Message() << to_string(array.readout.circuit));
     auto siemens = random_siemens(array, 11);
     LineFaults faults;
@@ -202,12 +206,7 @@ TEST(LineFaults, a_shorted_crossing_is_the_limit_of_a_taxel_of_0_ohm) {
 }
 
 TEST(LineFaults, every_circuit_reads_finite_numbers_with_every_fault) {
-  std::vector<ArrayDescription> arrays = {
-      make_array(Circuit::divider), make_array(Circuit::divider, IdleRows::floating),
-      make_array(Circuit::transimpedance), make_array(Circuit::transimpedance, IdleRows::floating),
-      make_array(Circuit::flexitac)};
-  arrays.push_back(make_array(Circuit::divider));
-  arrays.back().readout.idle_columns = IdleColumns::floating;
+  std::vector<ArrayDescription> arrays = arrays_of_every_circuit();
   arrays.push_back(make_array(Circuit::divider));
   arrays.back().readout.drive_ohm.assign(arrays.back().rows, 0.0);
   std::vector<LineFaults> all(12);

@@ -53,6 +53,11 @@ struct PerAxis {
   return axis == Axis::row ? array.index(line, place) : array.index(place, line);
 }
 
+/// The row or column on which a taxel is.
+[[nodiscard]] inline std::size_t line_of(const ArrayDescription& array, Axis axis, std::size_t taxel) noexcept {
+  return axis == Axis::row ? taxel / array.cols : taxel % array.cols;
+}
+
 /// The lines with a driver: rows, or columns for `flexitac`.
 [[nodiscard]] inline Axis driven_axis(const ArrayDescription& array) noexcept {
   return array.readout.circuit == Circuit::flexitac ? Axis::column : Axis::row;

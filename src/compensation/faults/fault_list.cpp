@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "compensation/faults/masked_taxels.hpp"
+#include "compensation/readout_parts.hpp"
 
 namespace dermis::compensation {
 namespace {
@@ -69,10 +70,9 @@ void FaultList::mask_taxels() noexcept {
     }
   }
   // A column that a row holds reads next to nothing of its other taxels; at virtual ground the row does.
-  const bool is_row = array_.readout.circuit == Circuit::transimpedance || array_.readout.circuit == Circuit::flexitac;
-  const Axis axis = is_row ? Axis::row : Axis::column;
+  const Axis axis = sharing_axis(array_).value_or(Axis::column);
   for (const std::size_t taxel : suspected_) {
-    const std::size_t line = is_row ? taxel / array_.cols : taxel % array_.cols;
+    const std::size_t line = line_of(array_, axis, taxel);
     for (std::size_t k = 0; k < line_length(array_, axis); ++k) {
       for (const Axis witnessed : kAxes) witnesses_[witnessed][taxel_on_line(array_, axis, line, k)] = 0.0F;
     }
