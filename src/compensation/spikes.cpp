@@ -95,7 +95,10 @@ void Spikes::follow(std::span<const double> ratio, double sigma_ratio, std::span
     last_[taxel] += std::abs(change) > noise ? change : little;
   }
   for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) jumped_[taxel] = change_[taxel] > kLeastJump ? 1.0 : 0.0;
-  for (std::size_t taxel = 0; taxel < ratio.size(); ++taxel) frames_[taxel] = is_reading(taxel) ? 0 : frames_[taxel];
+  std::transform(frames_.begin(), frames_.end(), taxels.begin(), frames_.begin(),
+                 [](std::uint8_t frames, TaxelStatus status) -> std::uint8_t {
+                   return status == TaxelStatus::invalid ? frames : 0;
+                 });
 }
 
 bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
