@@ -28,8 +28,10 @@ struct dermis_model {
 
 struct dermis_pipeline {
   dermis::pipeline::Pipeline pipeline;
+  dermis::ArrayDescription array;
   dermis::RawFrame raw;
   dermis::ForceFrame force;
+  std::string refusal;
 };
 
 struct dermis_tracker {
@@ -140,7 +142,8 @@ dermis_status dermis_pipeline_create(const dermis_model* model, dermis_pipeline*
   return guarded([&] {
     Result<dermis::pipeline::Pipeline> created = dermis::pipeline::Pipeline::create(model->model);
     if (!created) return report(created.error());
-    *pipeline = new dermis_pipeline{.pipeline = *std::move(created), .raw = {}, .force = {}};
+    *pipeline = new dermis_pipeline{
+        .pipeline = *std::move(created), .array = model->model.array, .raw = {}, .force = {}, .refusal = {}};
     return DERMIS_OK;
   });
 }
@@ -177,7 +180,30 @@ dermis_status dermis_pipeline_process(dermis_pipeline* pipeline, const dermis_ra
 
 dermis_status dermis_pipeline_tare(dermis_pipeline* pipeline) {
   if (pipeline == nullptr) return null_argument("pipeline");
-  pipeline->pipeline.drift().tare();
+  pipeline->pipeline.tare();
+  return DERMIS_OK;
+}
+
+dermis_status dermis_pipeline_tare_force(dermis_pipeline* pipeline) {
+  if (pipeline == nullptr) return null_argument("pipeline");
+  pipeline->pipeline.tare(dermis::pipeline::TareOver::any_load);
+  return DERMIS_OK;
+}
+
+const char* dermis_pipeline_tare_refused(dermis_pipeline* pipeline) {
+  if (pipeline == nullptr) return "";
+  static_cast<void>(guarded([&] {
+    const dermis::pipeline::Tare& tare = pipeline->pipeline.last_tare();
+    const bool is_refused = tare.state == dermis::pipeline::Tare::State::refused;
+    pipeline->refusal = is_refused ? dermis::pipeline::describe(tare, pipeline->array) : "";
+    return DERMIS_OK;
+  }));
+  return pipeline->refusal.c_str();
+}
+
+dermis_status dermis_pipeline_undo_tare(dermis_pipeline* pipeline) {
+  if (pipeline == nullptr) return null_argument("pipeline");
+  pipeline->pipeline.undo_tare();
   return DERMIS_OK;
 }
 

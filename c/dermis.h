@@ -104,8 +104,18 @@ void dermis_pipeline_free(dermis_pipeline* pipeline);
  * the first frame. */
 dermis_status dermis_pipeline_process(dermis_pipeline* pipeline, const dermis_raw_frame* raw, dermis_force_frame* force);
 
-/* Takes the next second, at least 10 frames, for unloaded. */
+/* Takes the next second, at least 10 frames, for unloaded. Refused where a load stands on the array: zero is as it was, and
+ * dermis_pipeline_tare_refused() says why. */
 dermis_status dermis_pipeline_tare(dermis_pipeline* pipeline);
+
+/* The same, whatever stands there: it reads 0 N from then on. */
+dermis_status dermis_pipeline_tare_force(dermis_pipeline* pipeline);
+
+/* Of the last tare: "r3c4 to r5c6 read 48 N: take it off and tare again"; "" where it was not refused, or goes on. */
+const char* dermis_pipeline_tare_refused(dermis_pipeline* pipeline);
+
+/* Back to the zero before the last tare. */
+dermis_status dermis_pipeline_undo_tare(dermis_pipeline* pipeline);
 
 /* Follows the offsets of idle taxels slowly, or stops to; off at first. */
 dermis_status dermis_pipeline_follow_drift(dermis_pipeline* pipeline, int follow);

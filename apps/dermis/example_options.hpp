@@ -7,7 +7,7 @@
 
 namespace dermis::app {
 
-/// Declares --in, --tare, --arrays, --extra, --label and --labels, which it returns; `examples` must live as long as
+/// Declares --in, --tare, --tare-force, --arrays, --extra, --label and --labels, which it returns; `examples` must live as long as
 /// the action.
 Option add_example_options(Command& command, recognising::ExampleOptions& examples);
 

@@ -76,6 +76,7 @@ Status recognise_all(SourceRecogniser& recogniser, bool json, files::AtomicFile&
 Status recognise(const RecogniseOptions& options) {
   RecognitionInput input = options.in;
   input.loads.source = source_options();
+  input.loads.tare = input.loads.tare || input.loads.tare_force;
   Result<SourceRecogniser> recogniser = SourceRecogniser::open(input);
   if (!recogniser) return recogniser.error();
   Result<files::AtomicFile> out = files::AtomicFile::create(options.out);
@@ -99,6 +100,7 @@ void add_recognise(Command& command) {
   command.flag(
       "--tare", options->in.loads.tare,
       "Take the first second (at least 10 frames) as unloaded; without it and --model, readings must be tared");
+  command.flag("--tare-force", options->in.loads.tare_force, "The same, whatever load stands on the array");
   command.input("--extra", options->in.loads.extra,
                 "CSV of further readings beside the frames, where the classes were learned with some");
   command.output("--out", options->out, "File to write the answers to").shows_default();

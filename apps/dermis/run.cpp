@@ -11,6 +11,8 @@
 #include "dermis/operation/force_tables.hpp"
 #include "dermis/operation/operation.hpp"
 #include "dermis/pipeline/frame_troubles.hpp"
+#include "dermis/pipeline/standing_load.hpp"
+#include "dermis/pipeline/tare.hpp"
 #include "dermis/preprocessing/phase.hpp"
 #include "seconds.hpp"
 #include "source_options.hpp"
@@ -32,6 +34,7 @@ struct RunOptions {
   operation::ForceTablePaths tables;
   double settle_s = 0.0;
   bool tare = false;
+  bool tare_force = false;
   bool follow_drift = false;
 };
 
@@ -42,8 +45,24 @@ Status check_outputs(const operation::ForceTablePaths& tables) {
   return Done{};
 }
 
+/// What is told of the frames at the end.
+struct Watches {
+  FrameTroubles troubles;
+  pipeline::StandingLoadWatch standing;
+
+  explicit Watches(const Operation& operation)
+      : troubles(operation.model.array, operation.from), standing(operation.model) {}
+};
+
+Status check_tare(const Operation& operation) {
+  const pipeline::Tare& tare = operation.pipeline.last_tare();
+  if (tare.state != pipeline::Tare::State::refused) return Done{};
+  return failed(fmt::format("{}: not tared: {}, or say --tare-force if that is zero; nothing is written",
+                            operation.from, pipeline::describe(tare, operation.model.array)));
+}
+
 /// An error of the source comes in `source_status`, one of the tables is returned.
-Status solve(Operation& operation, preprocessing::PhaseSelector& phase, ForceTables& tables, FrameTroubles& troubles,
+Status solve(Operation& operation, preprocessing::PhaseSelector& phase, ForceTables& tables, Watches& watches,
              Status& source_status) {
   const bool is_live = operation.frames->is_live();
   std::optional<LiveLine> line;
@@ -55,14 +74,16 @@ Status solve(Operation& operation, preprocessing::PhaseSelector& phase, ForceTab
     if (!more) source_status = more.error();
     if (!more || !*more) break;
     if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) {
-      troubles.skip();
+      watches.troubles.skip();
       continue;
     }
     operation.pipeline.process(raw, force);
+    if (Status tared = check_tare(operation); !tared) return tared;
     if (Status written = tables.write(force); !written) return written;
-    troubles.add(raw, force, operation.pipeline, operation.frames.get());
-    if (line && troubles.frames() % kFramesPerLook == 0) {
-      line->show(summary(troubles.frames(), operation.frames->statistics()));
+    watches.troubles.add(raw, force, operation.pipeline, operation.frames.get());
+    watches.standing.add(operation.pipeline.conductance(), force);
+    if (line && watches.troubles.frames() % kFramesPerLook == 0) {
+      line->show(summary(watches.troubles.frames(), operation.frames->statistics()));
     }
   }
   return Done{};
@@ -79,11 +100,13 @@ Status run(const RunOptions& options) {
 
   compensation::OffsetDrift& drift = (*operation)->pipeline.drift();
   drift.set_options({.track = options.follow_drift});
-  if (options.tare) drift.tare();
+  if (options.tare) (*operation)->pipeline.tare();
+  if (options.tare_force) (*operation)->pipeline.tare(pipeline::TareOver::any_load);
   preprocessing::PhaseSelector phase(*settle, preprocessing::Phase::operate);
-  FrameTroubles troubles((*operation)->model.array, (*operation)->from);
+  Watches watches(**operation);
+  const FrameTroubles& troubles = watches.troubles;
   Status status = Done{};
-  if (Status solved = solve(**operation, phase, *tables, troubles, status); !solved) return solved;
+  if (Status solved = solve(**operation, phase, *tables, watches, status); !solved) return solved;
   // What a device gave until it failed is worth having; a file that is wrong is to be mended.
   if (!status && !(*operation)->frames->is_live()) return status;
   if (status && troubles.frames() == 0) {
@@ -93,6 +116,9 @@ Status run(const RunOptions& options) {
   if (Status committed = tables->commit(); !committed) return committed;
   if (status) status = troubles.verdict();
   if (!status) return status;
+  const std::string tared = pipeline::describe((*operation)->pipeline.last_tare(), (*operation)->model.array);
+  if (!tared.empty()) say(tared);
+  if (const auto load = watches.standing.load()) say(describe_never_released(*load, (*operation)->model.array));
   for (const std::string& line : troubles.describe()) say(line);
   return status;
 }
@@ -112,8 +138,11 @@ void add_run(Command& command) {
   command.output("--contacts", options->tables.contacts,
                  "contacts.csv to write: what touches the array, where and how hard");
   command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();
-  command.flag("--tare", options->tare,
-               "Take the first second (at least 10 frames) as unloaded, like the tare of 'dermis serve'");
+  command.flag(
+      "--tare", options->tare,
+      "Take the first second (at least 10 frames) as unloaded, like the tare of 'dermis serve'; refused under a "
+      "load");
+  command.flag("--tare-force", options->tare_force, "The same, whatever load stands there: it reads 0 N from then on");
   command.flag("--follow-drift", options->follow_drift,
                "Follow the offsets of idle taxels slowly, as in 'dermis serve'");
   command.action([options] { return run(*options); });

@@ -191,8 +191,14 @@ class Pipeline:
     @property
     def why_rejected(self) -> str:
         """Of the last frame: what was wrong, and what is expected; '' where it was not rejected."""
-    def tare(self) -> None:
-        """Takes the next second, at least 10 frames, for unloaded."""
+    def tare(self, *, force: bool = False) -> None:
+        """Takes the next second, at least 10 frames, for unloaded. Under a load the tare is refused, with a UserWarning;
+        force takes whatever load stands there as zero."""
+    def undo_tare(self) -> None:
+        """Back to the zero before the last tare."""
+    @property
+    def taring(self) -> bool:
+        """The second is not over yet."""
     def follow_drift(self, follow: bool = True) -> None:
         """Follows the offsets of idle taxels slowly (docs/tare-and-drift.md). Off at first."""
 

@@ -22,7 +22,9 @@ Nanos steady_now() {
 class SharedPipeline {
  public:
   explicit SharedPipeline(const pipeline::Model& model)
-      : shape_{model.array.rows, model.array.cols}, pipeline_(value_or_raise(pipeline::Pipeline::create(model))) {}
+      : shape_{model.array.rows, model.array.cols},
+        array_(model.array),
+        pipeline_(value_or_raise(pipeline::Pipeline::create(model))) {}
 
   ShapedForce process(const py::object& counts, std::optional<double> temperature, std::optional<double> supply,
                       std::optional<std::int64_t> time_ns) {
@@ -34,6 +36,7 @@ class SharedPipeline {
     raw_.counts.assign(values.data(), values.data() + values.size());
     ShapedForce force{shape_, {}};
     pipeline_.process(raw_, force.frame);
+    warn_of_tare();
     return force;
   }
 
@@ -42,20 +45,16 @@ class SharedPipeline {
     if (raw.shape != shape_) throw py::value_error("the frame has another shape than the array of the model");
     ShapedForce force{shape_, {}};
     pipeline_.process(raw.frame, force.frame);
+    warn_of_tare();
     return force;
   }
 
   Forces run(const Recording& recording) {
     const std::unique_lock lock = exclusively();
     if (recording.shape != shape_) throw py::value_error("the frames have another shape than the array of the model");
-    const py::gil_scoped_release release;
     Forces forces(shape_, recording.size());
-    ForceFrame force;
-    for (std::size_t k = 0; k < recording.size(); ++k) {
-      recording.read(k, raw_);
-      pipeline_.process(raw_, force);
-      forces.set(k, force);
-    }
+    process_all(recording, forces);
+    warn_of_tare();
     return forces;
   }
 
@@ -64,10 +63,17 @@ class SharedPipeline {
     return pipeline_.why_rejected();
   }
 
-  void tare() {
+  void tare(bool force) {
     const std::unique_lock lock = exclusively();
-    pipeline_.drift().tare();
+    pipeline_.tare(force ? pipeline::TareOver::any_load : pipeline::TareOver::drift);
   }
+
+  void undo_tare() {
+    const std::unique_lock lock = exclusively();
+    pipeline_.undo_tare();
+  }
+
+  [[nodiscard]] bool taring() const { return pipeline_.last_tare().state == pipeline::Tare::State::taking; }
 
   void follow_drift(bool follow) {
     const std::unique_lock lock = exclusively();
@@ -77,6 +83,26 @@ class SharedPipeline {
   }
 
  private:
+  void process_all(const Recording& recording, Forces& forces) {
+    const py::gil_scoped_release release;
+    ForceFrame force;
+    for (std::size_t k = 0; k < recording.size(); ++k) {
+      recording.read(k, raw_);
+      pipeline_.process(raw_, force);
+      forces.set(k, force);
+    }
+  }
+
+  /// Once for each tare that was refused or has taken a load.
+  void warn_of_tare() {
+    const pipeline::Tare& tare = pipeline_.last_tare();
+    const bool has_ended = tare.state == pipeline::Tare::State::taken || tare.state == pipeline::Tare::State::refused;
+    if (!has_ended || std::exchange(told_tare_, tare.number) == tare.number) return;
+    std::string text = pipeline::describe(tare, array_);
+    if (tare.state == pipeline::Tare::State::refused) text = "not tared: " + text + ", or tare(force=True)";
+    if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+  }
+
   [[nodiscard]] std::unique_lock<std::mutex> exclusively() {
     std::unique_lock lock(mutex_, std::try_to_lock);
     if (!lock) throw std::runtime_error("the pipeline is at work in another thread: make one for each thread");
@@ -88,7 +114,9 @@ class SharedPipeline {
   }
 
   FrameShape shape_;
+  ArrayDescription array_;
   pipeline::Pipeline pipeline_;
+  std::uint64_t told_tare_ = 0;
   RawFrame raw_;
   std::mutex mutex_;
 };
@@ -110,7 +138,9 @@ void bind_pipeline(py::module_& module) {
           },
           py::arg("frames"))
       .def_property_readonly("why_rejected", &SharedPipeline::why_rejected)
-      .def("tare", &SharedPipeline::tare)
+      .def("tare", &SharedPipeline::tare, py::kw_only(), py::arg("force") = false)
+      .def("undo_tare", &SharedPipeline::undo_tare)
+      .def_property_readonly("taring", &SharedPipeline::taring)
       .def("follow_drift", &SharedPipeline::follow_drift, py::arg("follow") = true);
 }
 

@@ -41,14 +41,17 @@ class OffsetDrift::Implementation {
  public:
   Implementation(const FrameShape& shape, UnloadedConductance unloaded, const OffsetDriftOptions& options);
 
-  void process(ConductanceFrame& frame) noexcept;
+  [[nodiscard]] bool observe(const ConductanceFrame& frame) noexcept;
+  void correct(ConductanceFrame& frame) const noexcept;
   void tare() noexcept;
+  void undo_tare() noexcept;
   void reset() noexcept;
   void set_options(const OffsetDriftOptions& options) noexcept;
 
   [[nodiscard]] bool taring() const noexcept { return taring_; }
   [[nodiscard]] const OffsetDriftOptions& options() const noexcept { return options_; }
   [[nodiscard]] std::span<const double> offsets() const noexcept { return offset_; }
+  [[nodiscard]] const TareStep& tare_step() const noexcept { return step_; }
 
  private:
   /// Frames that are averaged.
@@ -64,6 +67,7 @@ class OffsetDrift::Implementation {
     std::vector<std::uint8_t> trouble;  // Not 0: some frame had a status other than ok.
   };
 
+  [[nodiscard]] bool fits(const ConductanceFrame& frame) const noexcept;
   void begin_block(Nanos time) noexcept;
   void forget_history() noexcept;
   void accumulate(const ConductanceFrame& frame) noexcept;
@@ -71,6 +75,8 @@ class OffsetDrift::Implementation {
   void finish_block(double block_s) noexcept;
   void average_block() noexcept;
   void take_block_as_zero() noexcept;
+  void begin_at_zero() noexcept;
+  void measure_step(std::size_t taxel, double step) noexcept;
   void find_pressed() noexcept;
   void hold_pressed(double block_s) noexcept;
   [[nodiscard]] bool pressed_nearby(std::size_t taxel) const noexcept;
@@ -78,6 +84,7 @@ class OffsetDrift::Implementation {
   void follow(std::size_t taxel, double block_s) noexcept;
   [[nodiscard]] double unloaded_siemens(std::size_t taxel) const noexcept;
   [[nodiscard]] double band(std::size_t taxel) const noexcept;
+  [[nodiscard]] double noise_of_mean(std::size_t taxel) const noexcept;
   [[nodiscard]] bool is_below_any_load(std::size_t taxel) const noexcept;
   [[nodiscard]] bool is_idle(std::size_t taxel) const noexcept;
 
@@ -87,8 +94,11 @@ class OffsetDrift::Implementation {
   bool taring_ = false;
   bool corrects_ = false;  // An offset may be other than 0.
 
-  std::vector<double> offset_;  // Subtracted; beside the calibration [S].
-  std::vector<double> tared_;   // The same after the last tare, from which following may only go so far [S].
+  std::vector<double> offset_;         // Subtracted; beside the calibration [S].
+  std::vector<double> tared_;          // The same after the last tare, from which following may only go so far [S].
+  std::vector<double> former_offset_;  // Both before the last tare [S].
+  std::vector<double> former_tared_;
+  TareStep step_;
 
   Block block_;
   std::vector<std::uint8_t> pressed_;  // In this block.
@@ -105,6 +115,9 @@ OffsetDrift::Implementation::Implementation(const FrameShape& shape, UnloadedCon
       options_(options),
       offset_(shape.taxel_count()),
       tared_(shape.taxel_count()),
+      former_offset_(shape.taxel_count()),
+      former_tared_(shape.taxel_count()),
+      step_{std::vector<double>(shape.taxel_count()), std::vector<std::uint8_t>(shape.taxel_count())},
       block_(shape.taxel_count()),
       pressed_(shape.taxel_count()),
       hold_s_(shape.taxel_count()),
@@ -116,27 +129,32 @@ OffsetDrift::Implementation::Implementation(const FrameShape& shape, UnloadedCon
   assert(unloaded_.sigma_siemens.size() == shape.taxel_count());
 }
 
-void OffsetDrift::Implementation::process(ConductanceFrame& frame) noexcept {
-  const bool observes = options_.track || taring_;
-  if (!observes && !corrects_) return;
+bool OffsetDrift::Implementation::fits(const ConductanceFrame& frame) const noexcept {
   const std::size_t taxels = offset_.size();
-  const bool fits =
-      frame.siemens.size() == taxels && frame.sigma_siemens.size() == taxels && frame.taxels.size() == taxels;
-  if (has(frame.status, FrameStatus::rejected) || !fits) return;
-  if (observes && !has(frame.status, kTellsNoOffset)) {
-    const double since_last_s = seconds(frame.time - block_.last_time);
-    const double block_s = seconds(frame.time - block_.begin);
-    if (block_.frames > 0 && (since_last_s < 0.0 || since_last_s > kLongestGapS)) {
-      forget_history();
-    } else if (block_.frames > 0 && block_is_complete(block_s)) {
-      finish_block(block_s);
-    }
-    if (block_.frames == 0) begin_block(frame.time);
-    accumulate(frame);
+  return frame.siemens.size() == taxels && frame.sigma_siemens.size() == taxels && frame.taxels.size() == taxels &&
+         !has(frame.status, FrameStatus::rejected);
+}
+
+bool OffsetDrift::Implementation::observe(const ConductanceFrame& frame) noexcept {
+  const bool was_taring = taring_;
+  if (!(options_.track || taring_) || !fits(frame) || has(frame.status, kTellsNoOffset)) return false;
+  const double since_last_s = seconds(frame.time - block_.last_time);
+  const double block_s = seconds(frame.time - block_.begin);
+  if (block_.frames > 0 && (since_last_s < 0.0 || since_last_s > kLongestGapS)) {
+    forget_history();
+  } else if (block_.frames > 0 && block_is_complete(block_s)) {
+    finish_block(block_s);
   }
+  if (block_.frames == 0) begin_block(frame.time);
+  accumulate(frame);
+  return was_taring && !taring_;
+}
+
+void OffsetDrift::Implementation::correct(ConductanceFrame& frame) const noexcept {
+  if (!corrects_ || !fits(frame)) return;
   double* const siemens = frame.siemens.data();
   const double* const offset = offset_.data();
-  for (std::size_t k = 0; k < taxels; ++k) {
+  for (std::size_t k = 0; k < offset_.size(); ++k) {
     const double corrected = siemens[k] - offset[k];
     siemens[k] = corrected < 0.0 ? 0.0 : corrected;  // NaN stays
   }
@@ -147,14 +165,27 @@ void OffsetDrift::Implementation::tare() noexcept {
   forget_history();
 }
 
+void OffsetDrift::Implementation::undo_tare() noexcept {
+  taring_ = false;
+  offset_ = former_offset_;
+  tared_ = former_tared_;
+  begin_at_zero();
+  forget_history();
+}
+
 void OffsetDrift::Implementation::reset() noexcept {
   taring_ = false;
   corrects_ = false;
   std::fill(offset_.begin(), offset_.end(), 0.0);
   std::fill(tared_.begin(), tared_.end(), 0.0);
+  begin_at_zero();
+  forget_history();
+}
+
+/// All that is known of the zero is its offsets.
+void OffsetDrift::Implementation::begin_at_zero() noexcept {
   std::fill(hold_s_.begin(), hold_s_.end(), 0.0F);
   std::fill(followed_blocks_.begin(), followed_blocks_.end(), 0.0F);
-  forget_history();
 }
 
 void OffsetDrift::Implementation::set_options(const OffsetDriftOptions& options) noexcept {
@@ -215,27 +246,39 @@ void OffsetDrift::Implementation::average_block() noexcept {
 
 /// Shrinks the step by the share of its square that the noise of the mean may be (James and Stein 1961).
 void OffsetDrift::Implementation::take_block_as_zero() noexcept {
+  former_offset_ = offset_;
+  former_tared_ = tared_;
   for (std::size_t k = 0; k < offset_.size(); ++k) {
     const double step = block_.sum[k] - offset_[k];
     const double variance = block_.sigma[k] * block_.sigma[k] / static_cast<double>(block_.frames);
     const double shrunk = step * std::max(0.0, 1.0 - variance / (step * step));
+    measure_step(k, step);
     if (std::isfinite(shrunk)) offset_[k] += shrunk;
   }
   tared_ = offset_;
-  std::fill(hold_s_.begin(), hold_s_.end(), 0.0F);
-  std::fill(followed_blocks_.begin(), followed_blocks_.end(), 0.0F);
+  begin_at_zero();
   taring_ = false;
   corrects_ = true;
+}
+
+void OffsetDrift::Implementation::measure_step(std::size_t taxel, double step) noexcept {
+  const double noise = noise_of_mean(taxel);
+  step_.siemens[taxel] = step > noise ? step : 0.0;
+  step_.is_beyond_drift[taxel] = step > kRangeOfUnloaded * unloaded_siemens(taxel) + noise ? 1 : 0;
 }
 
 double OffsetDrift::Implementation::unloaded_siemens(std::size_t taxel) const noexcept {
   return std::max(0.0, unloaded_.law.offset_siemens[taxel] + tared_[taxel]);
 }
 
-double OffsetDrift::Implementation::band(std::size_t taxel) const noexcept {
+/// And of the calibrated offset: no mean of an unloaded taxel differs by more.
+double OffsetDrift::Implementation::noise_of_mean(std::size_t taxel) const noexcept {
   const double averaged = std::min(static_cast<double>(block_.frames), kMostAveraged);
-  return kBandOfUnloaded * unloaded_siemens(taxel) + kRangeSigmas * unloaded_.sigma_siemens[taxel] +
-         kBandSigmas * block_.sigma[taxel] / std::sqrt(averaged);
+  return kRangeSigmas * unloaded_.sigma_siemens[taxel] + kBandSigmas * block_.sigma[taxel] / std::sqrt(averaged);
+}
+
+double OffsetDrift::Implementation::band(std::size_t taxel) const noexcept {
+  return kBandOfUnloaded * unloaded_siemens(taxel) + noise_of_mean(taxel);
 }
 
 void OffsetDrift::Implementation::find_pressed() noexcept {
@@ -297,11 +340,28 @@ OffsetDrift& OffsetDrift::operator=(OffsetDrift&&) noexcept = default;
 OffsetDrift::~OffsetDrift() = default;
 
 void OffsetDrift::process(ConductanceFrame& frame) noexcept {
-  implementation_->process(frame);
+  static_cast<void>(observe(frame));
+  correct(frame);
+}
+
+bool OffsetDrift::observe(const ConductanceFrame& frame) noexcept {
+  return implementation_->observe(frame);
+}
+
+void OffsetDrift::correct(ConductanceFrame& frame) const noexcept {
+  implementation_->correct(frame);
 }
 
 void OffsetDrift::tare() noexcept {
   implementation_->tare();
+}
+
+void OffsetDrift::undo_tare() noexcept {
+  implementation_->undo_tare();
+}
+
+const TareStep& OffsetDrift::tare_step() const noexcept {
+  return implementation_->tare_step();
 }
 
 bool OffsetDrift::taring() const noexcept {

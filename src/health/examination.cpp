@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dermis/health/ageing_monitor.hpp"
+#include "dermis/pipeline/standing_load.hpp"
 #include "dermis/preprocessing/missing_readings.hpp"
 #include "health/findings.hpp"
 #include "health/mute_taxels.hpp"
@@ -84,6 +85,7 @@ class Examination::Implementation {
         unloaded_(model),
         offsets_(model.array.taxel_count()),
         ageing_(model),
+        standing_(model),
         deviation_(model.array.taxel_count()) {}
 
   void add(const RawFrame& raw, const ForceFrame& force, const pipeline::Pipeline& pipeline) {
@@ -109,6 +111,7 @@ class Examination::Implementation {
     }
     counted_.worst_misfit_sigma = std::max(counted_.worst_misfit_sigma, conductance.residual_sigma);
     mute_.add(raw, pipeline.conditioned(), force);
+    standing_.add(conductance, force);
     unloaded_.expect(conductance);
     follow_noise(conductance);
     follow_offsets(conductance);
@@ -130,6 +133,9 @@ class Examination::Implementation {
     diagnosis.blind_lines = blind_lines(pipeline.line_faults(), model_.array);
     diagnosis.findings = findings_of(diagnosis, model_);
     for (const std::string& finding : mute_.findings()) diagnosis.findings.push_back(finding);
+    if (const auto load = standing_.load()) {
+      diagnosis.findings.push_back(pipeline::describe_never_released(*load, model_.array));
+    }
     diagnosis.remarks = remarks_on(pipeline.line_faults().suspicions(), model_.array);
     return diagnosis;
   }
@@ -188,6 +194,7 @@ class Examination::Implementation {
   NoiseMeter noise_;
   OffsetMeter offsets_;
   AgeingMonitor ageing_;
+  pipeline::StandingLoadWatch standing_;
   std::vector<double> deviation_;  // from the unloaded conductance, in standard deviations [taxels]
 };
 

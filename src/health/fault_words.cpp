@@ -52,9 +52,10 @@ std::string describe(const FaultHistory& history, const ArrayDescription& array)
   const auto [what, mend] = diagnosis(fault, array);
   const std::size_t masked = masked_taxel_count(fault, array);
   std::string text = what;
+  if (history.times > 1) text += fmt::format(" {} times", history.times);
   text += history.until ? fmt::format(" from frame {} to {}: {}", fault.frame, *history.until - 1, mend)
                         : fmt::format(" since frame {}: {}", fault.frame, mend);
-  if (history.until) return text + "; it comes and goes, as a loose contact does";
+  if (history.until || history.times > 1) return text + "; it comes and goes, as a loose contact does";
   if (masked == 0) return text + ", or calibrate again; until then heavy loads on the line read too little";
   return text + fmt::format("; {} masked, the rest is still good",
                             masked == 1 ? "the taxel is" : fmt::format("its {} taxels are", masked));

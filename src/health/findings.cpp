@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "dermis/fusion/force_fusion.hpp"
@@ -29,12 +30,32 @@ bool leaves_trusted_range(const preprocessing::SupplyRange& supply, const pipeli
   return !trusted.contains(supply.least_v) || !trusted.contains(supply.most_v);
 }
 
+bool is_same(const FaultHistory& a, const FaultHistory& b) {
+  return a.fault.kind == b.fault.kind && a.fault.place == b.fault.place;
+}
+
+/// A fault that comes and goes is one, which was found several times.
+std::vector<FaultHistory> joined(const std::vector<FaultHistory>& faults) {
+  std::vector<FaultHistory> joined;
+  for (const FaultHistory& next : faults) {
+    const auto known =
+        std::find_if(joined.begin(), joined.end(), [&](const FaultHistory& other) { return is_same(other, next); });
+    if (known == joined.end()) {
+      joined.push_back(next);
+    } else {
+      known->until = next.until;
+      ++known->times;
+    }
+  }
+  return joined;
+}
+
 }  // namespace
 
 std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline::Model& model) {
   const ArrayDescription& array = model.array;
   std::vector<std::string> found;
-  for (const FaultHistory& history : diagnosis.faults) {
+  for (const FaultHistory& history : joined(diagnosis.faults)) {
     found.push_back(place_name(history.fault, array) + " " + describe(history, array));
   }
   if (diagnosis.frames == diagnosis.frames_rejected) found.emplace_back("no frame could be used");

@@ -14,7 +14,8 @@ namespace {
 constexpr Nanos kPublishInterval = std::chrono::milliseconds(100);
 constexpr Nanos kLate = std::chrono::milliseconds(500);
 constexpr Nanos kSilence = std::chrono::seconds(2);  // without a frame, the rate is 0
-constexpr double kSilentIntervals = 3.0;             // of slow sources
+constexpr Nanos kStandingForLong = std::chrono::minutes(1);
+constexpr double kSilentIntervals = 3.0;  // of slow sources
 
 Nanos steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
@@ -61,7 +62,8 @@ ArrayWorker::ArrayWorker(std::size_t index, LiveArray array, std::unique_ptr<pip
       options_(options),
       pipeline_(std::move(pipeline)),
       settings_(options.settings),
-      tracker_(array_.model->array, settings_.contacts, array_.model->strip) {
+      tracker_(array_.model->array, settings_.contacts, array_.model->strip),
+      standing_{.watch = pipeline::StandingLoadWatch(*array_.model)} {
   pipeline_->drift().set_options(settings_.drift);
 }
 
@@ -97,7 +99,11 @@ Status ArrayWorker::set_model(const pipeline::Model& model) {
   }
   Result<std::unique_ptr<pipeline::Pipeline>> pipeline = make_pipeline(model);
   if (!pipeline) return bad_input(fmt::format("array '{}': {}", array_.name, pipeline.error().message));
-  request([&](Changes& changes) { changes.pipeline = *std::move(pipeline); });
+  pipeline::StandingLoadWatch standing(model);
+  request([&](Changes& changes) {
+    changes.pipeline = *std::move(pipeline);
+    changes.standing = std::move(standing);
+  });
   return Done{};
 }
 
@@ -110,11 +116,21 @@ void ArrayWorker::take_requests() {
     requests_.is_any.store(false, std::memory_order_relaxed);
   }
   if (asked.pipeline) pipeline_ = std::move(asked.pipeline);
+  if (asked.standing) standing_ = {.watch = *std::move(asked.standing)};
   settings_ = asked.settings.value_or(settings_);
   tracker_.set_options(settings_.contacts);
   pipeline_->drift().set_options(settings_.drift);
-  if (asked.zero == ZeroRequest::tare) pipeline_->drift().tare();
-  if (asked.zero == ZeroRequest::reset) pipeline_->drift().reset();
+  set_zero_now(asked.zero);
+}
+
+void ArrayWorker::set_zero_now(ZeroRequest zero) {
+  switch (zero) {
+    case ZeroRequest::keep: break;
+    case ZeroRequest::tare: pipeline_->tare(); break;
+    case ZeroRequest::tare_over_load: pipeline_->tare(pipeline::TareOver::any_load); break;
+    case ZeroRequest::undo: pipeline_->undo_tare(); break;
+    case ZeroRequest::reset: pipeline_->drift().reset(); break;
+  }
 }
 
 void ArrayWorker::run() {
@@ -132,6 +148,7 @@ Result<bool> ArrayWorker::step() {
   last_time_ = frame_.raw.time;
   tracker_.process(frame_.force, frame_.report);
   place_contacts();
+  follow_standing();
   meter(steady_now());
   if (options_.on_result) {
     options_.on_result({index_, frame_.raw, pipeline_->conductance(), frame_.force, frame_.report, frame_.contacts});
@@ -159,6 +176,19 @@ void ArrayWorker::place_contacts() {
   }
 }
 
+/// What is put there later counts from when nothing stood there.
+void ArrayWorker::follow_standing() {
+  standing_.watch.add(pipeline_->conductance(), frame_.force);
+  if (standing_.watch.is_any_loaded()) return;
+  standing_.watch.begin_anew();
+  standing_.since_first = false;
+}
+
+std::optional<pipeline::StandingLoad> ArrayWorker::standing_load() const {
+  if (!standing_.since_first && standing_.watch.lasted() < kStandingForLong) return std::nullopt;
+  return standing_.watch.load();
+}
+
 void ArrayWorker::meter(Nanos now) {
   ++counts_.frames;
   if (has(frame_.force.status, FrameStatus::rejected)) ++counts_.rejected;
@@ -179,6 +209,8 @@ void ArrayWorker::publish(Nanos now) {
   published_.statistics.latency_p99 = counts_.latencies.quantile(now, 0.99);
   const auto faults = pipeline_->line_faults().faults();
   published_.statistics.faults.assign(faults.begin(), faults.end());
+  published_.statistics.tare = pipeline_->last_tare();
+  published_.statistics.standing = standing_load();
   published_.statistics.temperature_celsius = frame_.raw.temperature_celsius;
   published_.statistics.supply_v = frame_.raw.supply_v;
 }

@@ -12,12 +12,13 @@
 
 #include "dermis/live/live_suit.hpp"
 #include "dermis/pipeline/pipeline.hpp"
+#include "dermis/pipeline/standing_load.hpp"
 #include "live/latency_meter.hpp"
 
 namespace dermis::live {
 
 /// What becomes of the zero of an array.
-enum class ZeroRequest { keep, tare, reset };
+enum class ZeroRequest { keep, tare, tare_over_load, undo, reset };
 
 /// One array at work on a thread of its own. Thread-safe.
 class ArrayWorker {
@@ -42,6 +43,7 @@ class ArrayWorker {
     std::optional<LiveSettings> settings;
     ZeroRequest zero = ZeroRequest::keep;
     std::unique_ptr<pipeline::Pipeline> pipeline;
+    std::optional<pipeline::StandingLoadWatch> standing;  // with the pipeline
   };
 
   /// The worker takes the changes between two frames.
@@ -65,6 +67,12 @@ class ArrayWorker {
     std::uint64_t rejected = 0;
   };
 
+  /// What rests on the array.
+  struct Standing {
+    pipeline::StandingLoadWatch watch;
+    bool since_first = true;  // frame
+  };
+
   /// What other threads see.
   struct Published {
     mutable std::mutex mutex;
@@ -79,9 +87,12 @@ class ArrayWorker {
   void run();
   [[nodiscard]] Result<bool> step();
   void take_requests();
+  void set_zero_now(ZeroRequest zero);
   [[nodiscard]] bool was_sought_back() const noexcept;
   void begin_anew();
   void place_contacts();
+  void follow_standing();
+  [[nodiscard]] std::optional<pipeline::StandingLoad> standing_load() const;
   void meter(Nanos now);
   void publish(Nanos now);
   void finish(const Status& outcome);
@@ -102,6 +113,7 @@ class ArrayWorker {
   Nanos last_time_{};
   Frame frame_;
   Counts counts_;
+  Standing standing_;
 
   Published published_;
 };

@@ -95,8 +95,12 @@ LiveSettings LiveSuit::settings() const {
   return implementation_->settings();
 }
 
-void LiveSuit::tare(std::optional<std::size_t> array) {
-  implementation_->set_zero(array, ZeroRequest::tare);
+void LiveSuit::tare(std::optional<std::size_t> array, pipeline::TareOver over) {
+  implementation_->set_zero(array, over == pipeline::TareOver::drift ? ZeroRequest::tare : ZeroRequest::tare_over_load);
+}
+
+void LiveSuit::undo_tare(std::optional<std::size_t> array) {
+  implementation_->set_zero(array, ZeroRequest::undo);
 }
 
 void LiveSuit::reset_tare(std::optional<std::size_t> array) {

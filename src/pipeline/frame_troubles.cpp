@@ -32,7 +32,7 @@ void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipe
   const bool is_outside = missing_.add(raw, pipeline.conditioned());
   const bool is_rejected = has(force.status, FrameStatus::rejected);
   const bool is_unsolved = has(force.status, FrameStatus::not_converged);
-  if (is_unsolved) ++unsolved_;
+  if (is_unsolved && unsolved_++ == 0) first_unsolved_ = place_of(prefix_, source, number_);
   if (is_rejected || is_unsolved) ++lost_;
   if ((is_rejected || is_unsolved) && is_outside) ++lost_outside_;
   if (has(force.status, FrameStatus::line_fault)) ++faulty_;
@@ -73,7 +73,7 @@ bool FrameTroubles::is_silent(const RawFrame& raw, const ForceFrame& force, cons
 std::string FrameTroubles::cause() const {
   if (2 * lost_outside_ > lost_) return *missing_.describe_range();
   if (rejected_ > unsolved_) return "the first is rejected, " + first_rejection_;
-  return fmt::format("their readings {}", kMisfit);
+  return fmt::format("their readings {}, the first at {}", kMisfit, first_unsolved_);
 }
 
 std::vector<std::string> FrameTroubles::describe() const {
@@ -84,8 +84,8 @@ std::vector<std::string> FrameTroubles::describe() const {
   if (missing_.any()) lines.push_back(missing_.describe());
   if (const auto range = missing_.describe_range()) lines.push_back(*range);
   if (unsolved_ > 0) {
-    lines.push_back(fmt::format("{} of {} frames without forces: their readings {}", unsolved_, frames_,
-                                2 * lost_outside_ > lost_ ? "lie outside of the ADC" : kMisfit));
+    lines.push_back(fmt::format("{} of {} frames without forces: their readings {}, the first at {}", unsolved_, frames_,
+                                2 * lost_outside_ > lost_ ? "lie outside of the ADC" : kMisfit, first_unsolved_));
   }
   if (faulty_ > 0) {
     lines.push_back(

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dermis/core/quantile.hpp"
+#include "pipeline/tare_judge.hpp"
 
 namespace dermis::pipeline {
 
@@ -87,6 +88,7 @@ Pipeline::Pipeline(const Model& model, compensation::Compensator compensator)
       compensator_(std::move(compensator)),
       monitor_(model.array, model.networks.unloaded.offset_siemens),
       drift_({model.array.rows, model.array.cols}, unloaded(model.networks)),
+      tare_judge_(std::make_unique<TareJudge>(model.networks.unloaded)),
       fusion_(model.networks) {
   if (model.memory) memory_.emplace(*model.memory, model.networks.taxel_count());
 }
@@ -98,9 +100,27 @@ void Pipeline::process(const RawFrame& raw, ForceFrame& force) noexcept {
     compensator_.set_faults(monitor_.faults());
     compensator_.process(conditioned_, conductance_);
   }
-  drift_.process(conductance_);                                   // zero kept at zero
+  if (drift_.observe(conductance_)) tare_judge_->end(drift_, conductance_, fusion_, force);
+  drift_.correct(conductance_);                                   // zero kept at zero
   fusion_.process(conductance_, force);                           // unit 4: material and temperature fused to newtons
   if (memory_) memory_->process(force, fusion_.noise_newtons());  // and what the material remembers
+}
+
+Pipeline::Pipeline(Pipeline&&) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
+Pipeline::~Pipeline() = default;
+
+void Pipeline::tare(TareOver over) noexcept {
+  tare_judge_->begin(over);
+  drift_.tare();
+}
+
+void Pipeline::undo_tare() noexcept {
+  tare_judge_->undo(drift_);
+}
+
+const Tare& Pipeline::last_tare() const noexcept {
+  return tare_judge_->tare();
 }
 
 }  // namespace dermis::pipeline

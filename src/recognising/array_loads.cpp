@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/recognising/array_loads.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -42,6 +44,7 @@ void UnloadedReadings::subtract_from(std::vector<float>& readings) const {
 
 Result<ArrayLoads> ArrayLoads::open(const ArrayLoadInput& input) {
   ArrayLoads source;
+  source.from_ = input.from;
   sources::SourceOptions options = input.source;
   if (!input.model.empty()) {
     Result<operation::ModelAtWork> work = operation::ModelAtWork::read(input.model);
@@ -50,7 +53,9 @@ Result<ArrayLoads> ArrayLoads::open(const ArrayLoadInput& input) {
     options.array = &source.work_->model.array;
     source.troubles_.emplace(*options.array, input.from);
     source.loss_ = options.loss;
-    if (input.tare) source.work_->pipeline.drift().tare();
+    if (input.tare) {
+      source.work_->pipeline.tare(input.tare_force ? pipeline::TareOver::any_load : pipeline::TareOver::drift);
+    }
   } else if (input.tare) {
     source.unloaded_.emplace();
   }
@@ -67,6 +72,7 @@ Result<bool> ArrayLoads::next() {
   if (more && !*more) tell_loss();
   if (!more || !*more) return more;
   work_ ? process_forces() : process_readings();
+  if (Status tared = check_tare(); !tared) return tared.error();
   for (float& load : loads_) load = !is_tare_ && std::isfinite(load) ? std::max(load, 0.0F) : 0.0F;
   return true;
 }
@@ -76,6 +82,12 @@ void ArrayLoads::process_forces() {
   troubles_->add(raw_, force_, work_->pipeline, frames_.get());
   is_tare_ = work_->pipeline.drift().taring();
   loads_ = force_.newtons;
+}
+
+Status ArrayLoads::check_tare() const {
+  if (!work_ || work_->pipeline.last_tare().state != pipeline::Tare::State::refused) return Done{};
+  return failed(fmt::format("{}: not tared: {}, or say --tare-force if that is zero", from_,
+                            pipeline::describe(work_->pipeline.last_tare(), work_->model.array)));
 }
 
 void ArrayLoads::process_readings() {

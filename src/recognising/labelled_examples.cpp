@@ -54,7 +54,8 @@ Result<ReadRecording> read_recording(const ExampleOptions& options, const std::s
                                      const std::vector<std::string>& arrays, const sources::SourceOptions& how) {
   Result<LoadSource> source = LoadSource::open({.from = from,
                                                 .model = options.model,
-                                                .tare = options.tare,
+                                                .tare = options.tare || options.tare_force,
+                                                .tare_force = options.tare_force,
                                                 .source = how,
                                                 .arrays = arrays,
                                                 .extra = options.data.extras});
@@ -160,7 +161,7 @@ Result<LabelledFrames> read_examples(const ExampleOptions& options, const source
   if (!recognition::is_rate(options.data.rate_hz)) return bad_field("rate", "must be 0.001 to 1e6");
   const bool has_plain = !options.data.frames.empty() || !options.data.arrays.empty();
   if (options.in.empty()) {
-    if (!options.model.empty() || options.tare) {
+    if (!options.model.empty() || options.tare || options.tare_force) {
       return bad_field("frames", "are loads already; a model and tare are for recordings");
     }
     if (!options.data.frames.empty() && !options.data.arrays.empty()) return recognition::read_dataset(options.data);

@@ -38,7 +38,9 @@ Result<std::vector<ArrayLoadInput>> arrays_of_suit(const LoadInput& input, const
 
 /// What is to be opened: what `from` names, or each array of a recording that holds several.
 Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input, const sources::SourceName& from) {
-  std::vector<ArrayLoadInput> arrays = {ArrayLoadInput{input.from, input.model, input.tare, input.source, {}}};
+  std::vector<ArrayLoadInput> arrays = {{.from = input.from, .model = input.model, .source = input.source}};
+  arrays.front().tare = input.tare;
+  arrays.front().tare_force = input.tare_force;
   if (input.arrays.size() == 1) return arrays;
   const Result<std::vector<std::string>> held = sources::several_arrays(from);
   if (!held) return held.error();
@@ -55,6 +57,7 @@ Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input, const sour
   }
   for (ArrayLoadInput& array : arrays) {
     array.tare = input.tare;
+    array.tare_force = input.tare_force;
     array.source = input.source;
     array.source.array = nullptr;
   }

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
-#include <atomic>
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,7 +11,7 @@
 #include "dermis/stream/server.hpp"
 #include "serve/broadcaster.hpp"
 #include "serve/suit_recorder.hpp"
-#include "serve/tare_log.hpp"
+#include "serve/tares.hpp"
 
 namespace dermis::serve {
 
@@ -26,25 +24,19 @@ class LiveParameters {
   [[nodiscard]] std::vector<stream::Parameter> all() const;
 
   /// Errors: an unknown name, a value that it cannot have; those of a recording.
-  [[nodiscard]] Status set(const stream::Parameter& parameter);
-  /// Says who has set a tare; returns the line for others.
-  std::string log_tare(const stream::Parameter& tare, const std::string& who);
+  [[nodiscard]] Status set(const stream::Parameter& parameter, const std::string& client);
 
-  /// The array has another model, which begins at its own zero.
-  void forget_tare(std::size_t array) { tared_[array] = false; }
+  [[nodiscard]] Tares& tares() noexcept { return tares_; }
 
  private:
   [[nodiscard]] Status set_number(const std::string& name, double value);
-  [[nodiscard]] Status set_switch(const std::string& name, bool value);
-  [[nodiscard]] Status set_tare(const std::string& name, bool value);
+  [[nodiscard]] Status set_switch(const std::string& name, bool value, const std::string& client);
   [[nodiscard]] Status switch_recording(bool on);
 
-  const ServedSuit& suit_;
   live::LiveSuit& live_;
   Broadcaster& broadcaster_;
   SuitRecorder& recorder_;
-  std::vector<std::atomic<bool>> tared_;  // Of each array.
-  TareLog tare_log_;
+  Tares tares_;
 };
 
 }  // namespace dermis::serve

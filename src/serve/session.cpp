@@ -144,6 +144,7 @@ class Session::Implementation {
   void show_body();
   void report_failed_recording(const std::string& why);
   void report_left_out();
+  void report_tares();
   void publish_to_dds(std::int64_t tick);
   void log(const std::string& line) const;
   void tell(const std::string& line, int level = kErrorLevel);
@@ -303,8 +304,7 @@ void Session::Implementation::show_body() {
 }
 
 Status Session::Implementation::set_parameter(const stream::Parameter& parameter, const std::string& client) {
-  Status set = parameters_.set(parameter);
-  if (set && parameter.name.ends_with("/tare")) tell(parameters_.log_tare(parameter, client), kInfoLevel);
+  Status set = parameters_.set(parameter, client);
   // Others change with it: the file of a recording, the tare of each array.
   if (set && std::holds_alternative<bool>(parameter.value)) server_->parameters_changed();
   return set;
@@ -314,7 +314,7 @@ Status Session::Implementation::use_model(std::size_t array, const std::shared_p
   if (Status used = live_->set_model(array, model); !used) return used;
   models_.replace(array, model);
   ageing_.begin_anew(array, *model);
-  parameters_.forget_tare(array);
+  parameters_.tares().forget(array);
   show_suit();
   server_->parameters_changed();
   return Done{};
@@ -355,6 +355,12 @@ void Session::Implementation::report_left_out() {
   }
 }
 
+void Session::Implementation::report_tares() {
+  const std::vector<std::string> news = parameters_.tares().follow();
+  for (const std::string& line : news) tell(line, kInfoLevel);
+  if (!news.empty()) server_->parameters_changed();
+}
+
 void Session::Implementation::publish_to_dds(std::int64_t tick) {
   dds_->publish_suit();
   if (tick % StatusPublisher::kTicksPerSecond == 0) dds_->publish_health(status_.diagnoses(), status_.now());
@@ -367,6 +373,7 @@ Status Session::Implementation::run(const std::atomic<bool>& stop) {
   for (std::int64_t tick = 0; !stop; ++tick) {
     broadcaster_.publish_points();
     status_.publish(tick);
+    report_tares();
     if (dds_) publish_to_dds(tick);
     if (tick % kTicksToReport == 0) report_left_out();
     std::this_thread::sleep_until(begin + Nanos((tick + 1) * 1'000'000'000 / StatusPublisher::kTicksPerSecond));

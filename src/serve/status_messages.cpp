@@ -56,8 +56,13 @@ messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::M
     diagnosis.message = "not calibrated yet: calibrate";
     diagnosis.values.clear();
   } else {
-    if (!statistics.faults.empty() || ageing.has_aged()) diagnosis.level = messages::Diagnosis::Level::warning;
+    const bool is_healthy = statistics.faults.empty() && !ageing.has_aged();
+    if (!is_healthy || statistics.standing) diagnosis.level = messages::Diagnosis::Level::warning;
     diagnosis.message = std::move(condition.message);
+    if (statistics.standing) {
+      if (is_healthy) diagnosis.message = "lies on something, or was put on: tare";
+      diagnosis.values.emplace_back("standing load", describe_never_released(*statistics.standing, model.array));
+    }
   }
   return diagnosis;
 }

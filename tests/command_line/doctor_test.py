@@ -73,6 +73,37 @@ class Doctor(SmallArray):
         self.assertLessEqual(report["faults"][0]["until_frame"], 120)
         self.assertIn("loose contact", report["problems"][0])
 
+    def held(self, name, frame, count):
+        """The same frame of the calibration, 20 times a second."""
+        header, *lines = (self.calibration / "frames.csv").read_text().splitlines()
+        _, readings = lines[frame].split(",", 1)
+        return self.written(name, "\n".join([header] + [f"{0.05 * i:.2f},{readings}" for i in range(count)]) + "\n")
+
+    def test_a_load_that_was_never_released(self):
+        pressed = self.held("pressed.csv", self.pressed_frame(), 150)
+        [problem] = self.unhealthy(pressed)["problems"]
+        self.assertRegex(problem, r"^r\dc\d (was|.*were) never released and reads? [\d.]+ N: take off what lies there, or tare")
+        result = dermis(*self.run_arguments(self.work / "forces.csv", **{"in": pressed}))
+        self.assertEqual((result.returncode, result.stderr), (0, problem + "\n"))
+
+    def test_a_tare_under_a_load_is_refused_until_it_is_forced(self):
+        pressed = self.held("pressed.csv", self.pressed_frame(), 60)
+        out = self.work / "forces.csv"
+        self.refuse((*self.run_arguments(out, **{"in": pressed}), "--tare"),
+                    ["pressed.csv", "not tared", " N: take it off and tare again", "--tare-force", "nothing is written"], 1)
+        self.assertFalse(out.exists())
+        result = dermis(*self.run_arguments(out, **{"in": pressed}), "--tare-force")
+        self.assertEqual(result.returncode, 0)
+        self.assertRegex(result.stderr, r"^the tare takes [\d.]+ N on \S+ as zero\n$")
+        idle = self.held("idle.csv", 0, 60)
+        self.assertEqual(dermis(*self.run_arguments(out, "--force", **{"in": idle}), "--tare").returncode, 0)
+
+    def pressed_frame(self):
+        """The first of the calibration in which a force of 5 N or more is said."""
+        lines = (self.calibration / "loads.csv").read_text().splitlines()[1:]
+        loads = [line.split(",") for line in lines]
+        return next(int(frame) for frame, kind, _, value in loads if kind == "force" and float(value) >= 5)
+
     def test_forces_are_masked_and_run_says_so(self):
         frames = self.recording("open_rows = [2]\n")
         result = dermis(*self.run_arguments(self.work / "forces.csv", **{"in": frames}))

@@ -304,9 +304,12 @@ TEST(LiveSuit, tare_takes_what_an_array_shows_for_nothing_until_it_is_reset) {
                                options_with(collector));
   wait_for([&] { return collector.of(0).force_sum > 11.0 && collector.of(1).force_sum > 11.0; });
   suit->tare(0);
+  wait_for([&] { return suit->statistics(0).tare.state == pipeline::Tare::State::refused; });
+  EXPECT_GT(collector.of(0).force_sum, 11.0);
+  suit->tare(0, pipeline::TareOver::any_load);
   wait_for([&] { return collector.of(0).force_sum < 0.1; });
   EXPECT_GT(collector.of(1).force_sum, 11.0);
-  suit->tare();
+  suit->tare({}, pipeline::TareOver::any_load);
   wait_for([&] { return collector.of(1).force_sum < 0.1; });
   suit->reset_tare();
   wait_for([&] { return collector.of(0).force_sum > 11.0 && collector.of(1).force_sum > 11.0; });

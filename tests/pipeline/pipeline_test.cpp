@@ -619,7 +619,7 @@ TEST(Pipeline, a_tare_moves_zero_and_health_still_sees_the_array_as_it_is) {
   const Model model = hand_made_model(4, 5);
   const auto pipeline = make_pipeline(model);
   std::vector<double> newtons(20, 0.5);
-  pipeline->drift().tare();
+  pipeline->tare(TareOver::any_load);
   live(*pipeline, model, newtons, 2.0, 25.0, 25.0);
   ASSERT_FALSE(pipeline->drift().taring());
   for (const double force_n : live(*pipeline, model, newtons, 1.0, 25.0, 25.0)) EXPECT_NEAR(force_n, 0.0, 1e-3);

@@ -96,6 +96,27 @@ class Pipeline(workspace.CalibratedArray):
         self.assertIn(dermis.FrameStatus.REJECTED, pipeline.process(counts, supply=5000.0).status)
         self.assertRegex(pipeline.why_rejected, r"^a supply of 5000 V .*millivolts")
 
+    def test_a_tare_under_a_load_is_refused_with_a_warning_until_it_is_forced(self):
+        counts = self.recording.counts[0]
+        pipeline = dermis.Pipeline(self.loaded)
+
+        def second(begin_s):
+            for k in range(25):
+                force = pipeline.process(counts, temperature=25.0, supply=5.0, time_ns=int((begin_s + 0.05 * k) * 1e9))
+            return force.newtons.sum()
+
+        pressed_n = second(0)
+        self.assertGreater(pressed_n, 0.5)
+        pipeline.tare()
+        self.assertTrue(pipeline.taring)
+        with self.assertWarnsRegex(UserWarning, r"not tared: .* reads? .* N: take it off and tare again"):
+            self.assertAlmostEqual(second(2), pressed_n, delta=1e-3)
+        pipeline.tare(force=True)
+        with self.assertWarnsRegex(UserWarning, r"the tare takes .* N on .* as zero"):
+            self.assertLess(second(4), 0.02 * pressed_n)
+        pipeline.undo_tare()
+        self.assertAlmostEqual(second(6), pressed_n, delta=1e-3)
+
     def test_two_threads_in_one_pipeline_are_refused_and_others_run_meanwhile(self):
         pipeline = dermis.Pipeline(self.loaded)
         many = dermis.Recording(np.tile(self.recording.counts, (400, 1, 1)), rate_hz=100.0, supply_v=5.0)

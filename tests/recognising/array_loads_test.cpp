@@ -78,7 +78,17 @@ TEST(ArrayLoads, tares_the_forces_of_a_model) {
   const MatFiles mat;
   std::vector<float> readings(110, 2.0F);
   readings.insert(readings.end(), 5, 7.0F);
-  const auto loads = loads_of({.from = mat.write("frames.csv", pressed(readings)), .model = mat.model(), .tare = true});
+  ArrayLoadInput input = {.from = mat.write("frames.csv", pressed(readings)), .model = mat.model(), .tare = true};
+  Result<ArrayLoads> refused = ArrayLoads::open(input);
+  ASSERT_TRUE(refused);
+  Result<bool> more = true;
+  while (more && *more) more = refused->next();
+  ASSERT_FALSE(more);
+  EXPECT_EQ(more.error().message, input.from +
+                                      ": not tared: r1c1 reads 2 N: take it off and tare again, or say "
+                                      "--tare-force if that is zero");
+  input.tare_force = true;
+  const auto loads = loads_of(input);
   ASSERT_EQ(loads.size(), 115U);
   EXPECT_EQ(loads.front(), (std::pair(0.0F, true)));
   EXPECT_FALSE(loads.back().second);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
 #include <map>
@@ -45,7 +46,7 @@ class Parameters : public testing::Test {
 
   /// The line of the error; empty where there is none.
   std::string set(const std::string& name, const ParameterValue& value) {
-    const Status set = parameters_->set({name, value});
+    const Status set = parameters_->set({name, value}, "1.2.3.4:5");
     return set ? "" : set.error().message;
   }
 
@@ -75,7 +76,10 @@ TEST_F(Parameters, begin_with_the_defaults) {
                                                           {"/right/tare", false},
                                                           {"/stream/rate_hz", 60.0},
                                                           {"/tare", false},
-                                                          {"/tare/log", std::string()}};
+                                                          {"/tare/force", false},
+                                                          {"/tare/log", std::string()},
+                                                          {"/tare/refused", std::string()},
+                                                          {"/tare/undo", false}};
   EXPECT_EQ(all(), expected);
 }
 
@@ -130,17 +134,24 @@ TEST_F(Parameters, the_tare_of_the_suit_is_that_of_all_its_arrays) {
   EXPECT_EQ(all().at("/left/tare"), ParameterValue(false));
 }
 
-TEST_F(Parameters, say_who_has_tared) {
-  EXPECT_NE(parameters_->log_tare({"/left/tare", true}, "1.2.3.4:5").find("left was tared by 1.2.3.4:5"),
-            std::string::npos);
-  parameters_->log_tare({"/tare", false}, "1.2.3.4:6");
+TEST_F(Parameters, say_who_has_reset_a_tare) {
+  EXPECT_EQ(set("/left/tare", false), "");
+  const std::vector<std::string> news = parameters_->tares().follow();
+  ASSERT_EQ(news.size(), 1U);
+  EXPECT_TRUE(news[0].ends_with(" UTC: left got back the zero of its calibration by 1.2.3.4:5")) << news[0];
+  EXPECT_EQ(all().at("/tare/log"), ParameterValue(news[0]));
+  EXPECT_TRUE(parameters_->tares().follow().empty()) << "each line is told once";
+}
+
+TEST_F(Parameters, keep_the_last_twenty_lines_of_the_log) {
+  for (int i = 0; i < 30; ++i) set("/left/tare", false);
   const auto text = std::get<std::string>(all().at("/tare/log"));
-  EXPECT_NE(text.find("the suit got back the zero of its calibration by 1.2.3.4:6\n"), std::string::npos) << text;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')), Tares::kMostLines - 1);
 }
 
 TEST_F(Parameters, an_array_with_another_model_is_not_tared) {
   EXPECT_EQ(set("/tare", true), "");
-  parameters_->forget_tare(1);
+  parameters_->tares().forget(1);
   EXPECT_EQ(all().at("/left/tare"), ParameterValue(true));
   EXPECT_EQ(all().at("/right/tare"), ParameterValue(false));
 }

@@ -12,6 +12,7 @@ import { TakeDialog } from "./take/take_dialog";
 import { Theme } from "./theme";
 import { Bar } from "./ui/bar";
 import { makeHelp } from "./ui/help";
+import { makeTareBanner } from "./ui/tare_banner";
 import { makeThreatBanner } from "./ui/threat_banner";
 import { makeThresholds } from "./ui/thresholds";
 import { makeTokenForm } from "./ui/token_form";
@@ -65,7 +66,7 @@ export class App implements ViewContext {
   }
 
   begin(): void {
-    document.body.append(this.#bar.element, makeTokenForm(this.stream), ...makeArraySetup(this.stream, this.suit), this.#notice, makeThreatBanner(this.live.threats, this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds, this.#take.element);
+    document.body.append(this.#bar.element, makeTokenForm(this.stream), ...makeArraySetup(this.stream, this.suit), this.#notice, makeThreatBanner(this.live.threats, this.stream), makeTareBanner(this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds, this.#take.element);
     window.addEventListener("hashchange", () => this.#route());
     window.addEventListener("keydown", (event) => this.#key(event));
     this.suit.selected.follow((array) => array !== undefined && this.#shown !== undefined && this.open(this.#shown.name));

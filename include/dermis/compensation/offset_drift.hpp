@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
@@ -20,6 +21,12 @@ struct UnloadedConductance {
 
 struct OffsetDriftOptions {
   bool track = false;  ///< Follow the idle taxels; off: only tare() moves the offsets.
+};
+
+/// What a tare found above the zero before it [taxels].
+struct TareStep {
+  std::vector<double> siemens;                ///< As far as it is more than noise [S], >= 0.
+  std::vector<std::uint8_t> is_beyond_drift;  ///< 1: more than drift explains, 0.5 u beside the noise.
 };
 
 /// Keeps zero at zero. It subtracts from each conductance the change of the unloaded taxel since calibration, by an
@@ -45,13 +52,21 @@ class OffsetDrift {
   OffsetDrift& operator=(OffsetDrift&&) noexcept;
   ~OffsetDrift();
 
-  /// Corrects `frame.siemens` in place; rejected frames pass. Allocates nothing.
+  /// observe() and correct(). Allocates nothing, as they.
   void process(ConductanceFrame& frame) noexcept;
+  /// Learns of zero from a frame that is not corrected yet. True where this ends a tare.
+  [[nodiscard]] bool observe(const ConductanceFrame& frame) noexcept;
+  /// Corrects `frame.siemens` in place; rejected frames pass.
+  void correct(ConductanceFrame& frame) const noexcept;
 
   /// Takes the mean of every taxel over the next second as its zero, whatever it is. If 10 frames take longer, it waits
   /// for them, at most 10 s. A taxel that has not changed beyond the noise of that mean keeps its offset.
   void tare() noexcept;
   [[nodiscard]] bool taring() const noexcept;
+  /// Of the last tare that has ended.
+  [[nodiscard]] const TareStep& tare_step() const noexcept;
+  /// Back to the offsets before the last tare that has ended; also ends a tare in progress.
+  void undo_tare() noexcept;
   /// Back to the offsets of the calibration; also ends a tare in progress.
   void reset() noexcept;
 

@@ -37,7 +37,7 @@ struct Diagnosis {
   std::optional<preprocessing::SupplyRange> supply;  ///< Empty: no frame carried one, or it has no part in the forces.
   double worst_misfit_sigma = 0.0;                   ///< Of a solved reading [standard deviations].
   std::vector<std::string> blind_lines;              ///< Read too little unloaded for a break to be seen: "row 3".
-  std::vector<FaultHistory> faults;                  ///< In the order in which they were found.
+  std::vector<FaultHistory> faults;                  ///< In the order in which they were found, each time anew.
   std::vector<std::string> findings;                 ///< What is wrong, a sentence each, worst first.
   std::vector<std::string> remarks;                  ///< What may be wrong or not, a sentence each.
 

@@ -20,6 +20,8 @@
 #include "dermis/core/surface.hpp"
 #include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/pipeline/standing_load.hpp"
+#include "dermis/pipeline/tare.hpp"
 
 /// A suit at work: every array on its own thread, one clock, one stream of results.
 namespace dermis::live {
@@ -52,6 +54,9 @@ struct ArrayStatistics {
   bool ended = false;          ///< The source has no more, or failed:
   std::string error;           ///< why; empty where it just ended.
   std::vector<compensation::LineFault> faults;
+  pipeline::Tare tare;  ///< The last one.
+  /// Has stood there since the first frame, or for a minute.
+  std::optional<pipeline::StandingLoad> standing;
   std::optional<double> temperature_celsius;  ///< Of the last frame,
   std::optional<double> supply_v;             ///< as measured.
 };
@@ -95,8 +100,10 @@ class LiveSuit {
   /// `settings` must be valid.
   void set_settings(const LiveSettings& settings);
   [[nodiscard]] LiveSettings settings() const;
-  /// For one array or all: takes their state from now on as zero (compensation::OffsetDrift::tare).
-  void tare(std::optional<std::size_t> array = {});
+  /// For one array or all: takes their state from now on as zero (pipeline::Pipeline::tare).
+  void tare(std::optional<std::size_t> array = {}, pipeline::TareOver over = pipeline::TareOver::drift);
+  /// Back to the zero before the last tare.
+  void undo_tare(std::optional<std::size_t> array = {});
   /// Back to the zero of the calibration.
   void reset_tare(std::optional<std::size_t> array = {});
   /// Another model for an array that is at work, of the same size and pitch: after a calibration. Contacts keep their

@@ -58,6 +58,7 @@ class FrameTroubles {
   std::size_t lost_ = 0;          ///< Without a force: rejected, or not solved.
   std::size_t lost_outside_ = 0;  ///< Of these, with readings that are none of the ADC.
   std::string first_rejection_;
+  std::string first_unsolved_;  ///< Its place.
   std::size_t rows_;  ///< Of the array.
   Doubt supply_;
   Doubt kelvin_;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -13,14 +14,20 @@
 #include "dermis/fusion/force_fusion.hpp"
 #include "dermis/fusion/material_memory.hpp"
 #include "dermis/pipeline/model.hpp"
+#include "dermis/pipeline/tare.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 
 namespace dermis::pipeline {
+
+class TareJudge;
 
 /// The paper's Fig. 4: counts in, newtons out. Not thread-safe: one per stream of frames.
 class Pipeline {
  public:
   [[nodiscard]] static Result<Pipeline> create(const Model& model);
+  Pipeline(Pipeline&&) noexcept;
+  Pipeline& operator=(Pipeline&&) noexcept;
+  ~Pipeline();
 
   /// Never fails: what is wrong with a frame is in its status. Line faults are found from the frames, masked, and the
   /// rest is solved with them in the circuit. Allocates nothing after the first frame.
@@ -39,6 +46,12 @@ class Pipeline {
   /// Zero is that of the calibration until the drift is followed (set_options) or tared.
   [[nodiscard]] compensation::OffsetDrift& drift() noexcept { return drift_; }
 
+  /// Takes what the array shows over the next second as zero, as OffsetDrift::tare() does, where `over` allows it.
+  void tare(TareOver over = TareOver::drift) noexcept;
+  /// Back to the zero before the last tare.
+  void undo_tare() noexcept;
+  [[nodiscard]] const Tare& last_tare() const noexcept;
+
  private:
   Pipeline(const Model& model, compensation::Compensator compensator);
 
@@ -46,6 +59,7 @@ class Pipeline {
   compensation::Compensator compensator_;
   compensation::LineFaultMonitor monitor_;
   compensation::OffsetDrift drift_;
+  std::unique_ptr<TareJudge> tare_judge_;
   fusion::ForceFusion fusion_;
   std::optional<fusion::MaterialMemory> memory_;
   ConditionedFrame conditioned_;

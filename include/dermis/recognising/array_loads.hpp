@@ -24,6 +24,7 @@ struct ArrayLoadInput {
   std::string from;                 ///< As for sources::open_source().
   std::string model{};              ///< As for pipeline::read_model(); empty: the readings are the loads.
   bool tare = false;                ///< The first second is unloaded.
+  bool tare_force = false;          ///< With `tare` and a model: whatever load stands there.
   sources::SourceOptions source{};  ///< With a model, the array is that of the model.
   std::string name{};               ///< What the array is called; empty: as its model says, or "array".
 };
@@ -50,7 +51,7 @@ class ArrayLoads {
   [[nodiscard]] static Result<ArrayLoads> open(const ArrayLoadInput& input);
 
   /// Takes the next frame; false at the end of the source, after telling its options' `loss` where most frames had no
-  /// force.
+  /// force. Fails where a load stands on the array that is to be tared.
   [[nodiscard]] Result<bool> next();
 
   /// Whether the frame belongs to the tare; its loads are 0.
@@ -69,12 +70,14 @@ class ArrayLoads {
   void process_forces();
   void process_readings();
   void tell_loss();
+  [[nodiscard]] Status check_tare() const;
 
   std::unique_ptr<FrameSource> frames_;
   std::optional<operation::ModelAtWork> work_;
   std::optional<pipeline::FrameTroubles> troubles_;  ///< Of the forces.
   std::function<void(const std::string&)> loss_;
   std::optional<UnloadedReadings> unloaded_;
+  std::string from_;
   std::string name_;
   RawFrame raw_;
   ForceFrame force_;

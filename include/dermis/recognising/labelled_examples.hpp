@@ -19,6 +19,7 @@ struct ExampleOptions {
                                 ///< as for FurtherReadings::read().
   std::string model;            ///< Of the recordings: as for LoadInput, like the next two.
   bool tare = false;
+  bool tare_force = false;
   std::vector<std::string> arrays;  ///< Empty: those of the first recording.
 };
 

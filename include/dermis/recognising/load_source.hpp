@@ -21,6 +21,7 @@ struct LoadInput {
   std::string model{};              ///< As for pipeline::read_model(); of several arrays suit.toml, which names that
                                     ///< of each. Empty: the readings are the loads.
   bool tare = false;                ///< The first second is unloaded.
+  bool tare_force = false;          ///< With `tare` and a model: whatever load stands there.
   sources::SourceOptions source{};  ///< The array, which is that of the model where there is one, counts of one alone.
   std::vector<std::string> arrays{};  ///< Which of several are taken, in this order; one: as `from` names it. Empty:
                                       ///< all of suit.toml, else of the recording.

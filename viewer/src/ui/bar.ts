@@ -3,6 +3,7 @@
 import { element, setHidden, setText } from "../dom";
 import type { View, ViewContext } from "../view";
 import { ConnectionPill } from "./connection_pill";
+import { makeUndoTare } from "./tare_banner";
 
 export interface BarActions {
   toggleRecording(): void;
@@ -36,6 +37,7 @@ export class Bar {
       makeRecord(context, actions),
       makePause(context, actions),
       makeTare(context, actions),
+      makeUndoTare(context.stream),
       element("button", { class: "button", "data-role": "show-take", title: "Recordings, the last minute, pictures (S)", onclick: () => actions.showTake() }, "Save"),
       element("button", { class: "button", "data-role": "show-thresholds", onclick: () => actions.showThresholds() }, "Thresholds"),
       element("button", { class: "button icon", "data-role": "theme", "aria-label": "Light or dark", title: "Light or dark (D)", onclick: () => context.theme.toggle() }, "\u25d0"),

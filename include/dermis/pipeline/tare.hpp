@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/pipeline/standing_load.hpp"
+
+namespace dermis::pipeline {
+
+/// What a tare may take as zero.
+enum class TareOver : std::uint8_t {
+  drift,     ///< What drift explains, 0.5 times the unloaded conductance; or loads below 0.1 N.
+  any_load,  ///< Whatever stands there: an array that is worn.
+};
+
+/// The last tare of a pipeline.
+struct Tare {
+  enum class State : std::uint8_t {
+    none,
+    taking,   ///< The second is not over.
+    taken,    ///< Zero is what the array showed; `load`: what read as a force before, 0 N where that is below 0.1 N.
+    refused,  ///< Zero is as it was; `load`: stands on the array.
+  };
+
+  State state = State::none;
+  std::uint64_t number = 0;  ///< Of the tares that were begun.
+  StandingLoad load;
+};
+
+/// Of a tare that was refused: "r3c4 to r5c6 read 48 N: take it off and tare again"; of one that has taken a load: "the
+/// tare takes what r3c4 reads, 1.2 N, as zero"; else "".
+[[nodiscard]] std::string describe(const Tare& tare, const ArrayDescription& array);
+
+}  // namespace dermis::pipeline

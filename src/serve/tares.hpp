@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/live/live_suit.hpp"
+#include "dermis/serve/served_suit.hpp"
+#include "dermis/stream/server.hpp"
+
+namespace dermis::serve {
+
+/// The zeros of the arrays, as clients set them by the parameters of docs/stream.md. set() and follow() by one thread
+/// each, the rest by any.
+class Tares {
+ public:
+  static constexpr std::size_t kMostLines = 20;
+
+  /// Both must outlive it.
+  Tares(const ServedSuit& suit, live::LiveSuit& live);
+
+  [[nodiscard]] std::vector<stream::Parameter> parameters() const;
+  /// False: no parameter of a tare is called so.
+  [[nodiscard]] bool set(const std::string& name, bool value, const std::string& client);
+
+  /// What clients have done to zeros, as far as it is done, a line each: "2026-11-22 10:15:00 UTC: chest was tared by
+  /// 127.0.0.1:53412". To be called again and again.
+  [[nodiscard]] std::vector<std::string> follow();
+
+  /// The array has another model, which begins at its own zero.
+  void forget(std::size_t array);
+
+ private:
+  using Clock = std::chrono::system_clock;
+
+  struct Zero {
+    bool is_tared = false;                   // or is to be
+    bool was_tared = false;                  // before the last tare was asked for
+    std::uint64_t seen = 0;                  // Tare::number of the last that has ended, 0 while one is taken
+    std::string client;                      // who asked for the last; empty: it has ended
+    std::string refusal;                     // of the last; empty: it was not refused
+    std::optional<Clock::time_point> taken;  // by the last, which was not undone
+  };
+
+  [[nodiscard]] std::vector<std::size_t> arrays_of(const std::string& prefix) const;
+  void tare(std::size_t array, pipeline::TareOver over, const std::string& client);
+  void force(const std::string& client);
+  void reset(std::size_t array, const std::string& client);
+  void undo(const std::string& client);
+  void end(std::size_t array, const pipeline::Tare& tare);
+  void log(const std::string& what);
+  [[nodiscard]] static bool can_be_undone(const Zero& zero);
+
+  const ServedSuit& suit_;
+  live::LiveSuit& live_;
+  mutable std::mutex mutex_;       // of the following
+  std::vector<Zero> zeros_;        // of each array
+  std::deque<std::string> log_;    // the newest first
+  std::vector<std::string> news_;  // that follow() has not told
+};
+
+}  // namespace dermis::serve
