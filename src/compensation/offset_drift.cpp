@@ -50,7 +50,7 @@ class OffsetDrift::Implementation {
 
   [[nodiscard]] bool taring() const noexcept { return taring_; }
   [[nodiscard]] const OffsetDriftOptions& options() const noexcept { return options_; }
-  [[nodiscard]] std::span<const double> offsets() const noexcept { return offset_; }
+  [[nodiscard]] std::span<const double> offsets() const noexcept { return zero_.offset; }
   [[nodiscard]] const TareStep& tare_step() const noexcept { return step_; }
 
  private:
@@ -65,6 +65,14 @@ class OffsetDrift::Implementation {
     std::vector<double> sum;            // Of the frames; then their mean beside the calibration [S].
     std::vector<double> sigma;          // Of one reading, in the last frame [S].
     std::vector<std::uint8_t> trouble;  // Not 0: some frame had a status other than ok.
+  };
+
+  /// Beside the calibration [taxels] [S].
+  struct Zero {
+    explicit Zero(std::size_t taxels) : offset(taxels), tared(taxels) {}
+
+    std::vector<double> offset;  // what is subtracted
+    std::vector<double> tared;   // the same after the last tare, from which following may only go so far
   };
 
   [[nodiscard]] bool fits(const ConductanceFrame& frame) const noexcept;
@@ -94,10 +102,8 @@ class OffsetDrift::Implementation {
   bool taring_ = false;
   bool corrects_ = false;  // An offset may be other than 0.
 
-  std::vector<double> offset_;         // Subtracted; beside the calibration [S].
-  std::vector<double> tared_;          // The same after the last tare, from which following may only go so far [S].
-  std::vector<double> former_offset_;  // Both before the last tare [S].
-  std::vector<double> former_tared_;
+  Zero zero_;
+  Zero former_;  // before the last tare
   TareStep step_;
 
   Block block_;
@@ -113,10 +119,8 @@ OffsetDrift::Implementation::Implementation(const FrameShape& shape, UnloadedCon
     : shape_(shape),
       unloaded_(std::move(unloaded)),
       options_(options),
-      offset_(shape.taxel_count()),
-      tared_(shape.taxel_count()),
-      former_offset_(shape.taxel_count()),
-      former_tared_(shape.taxel_count()),
+      zero_(shape.taxel_count()),
+      former_(shape.taxel_count()),
       step_{std::vector<double>(shape.taxel_count()), std::vector<std::uint8_t>(shape.taxel_count())},
       block_(shape.taxel_count()),
       pressed_(shape.taxel_count()),
@@ -130,7 +134,7 @@ OffsetDrift::Implementation::Implementation(const FrameShape& shape, UnloadedCon
 }
 
 bool OffsetDrift::Implementation::fits(const ConductanceFrame& frame) const noexcept {
-  const std::size_t taxels = offset_.size();
+  const std::size_t taxels = zero_.offset.size();
   return frame.siemens.size() == taxels && frame.sigma_siemens.size() == taxels && frame.taxels.size() == taxels &&
          !has(frame.status, FrameStatus::rejected);
 }
@@ -153,8 +157,8 @@ bool OffsetDrift::Implementation::observe(const ConductanceFrame& frame) noexcep
 void OffsetDrift::Implementation::correct(ConductanceFrame& frame) const noexcept {
   if (!corrects_ || !fits(frame)) return;
   double* const siemens = frame.siemens.data();
-  const double* const offset = offset_.data();
-  for (std::size_t k = 0; k < offset_.size(); ++k) {
+  const double* const offset = zero_.offset.data();
+  for (std::size_t k = 0; k < zero_.offset.size(); ++k) {
     const double corrected = siemens[k] - offset[k];
     siemens[k] = corrected < 0.0 ? 0.0 : corrected;  // NaN stays
   }
@@ -167,8 +171,7 @@ void OffsetDrift::Implementation::tare() noexcept {
 
 void OffsetDrift::Implementation::undo_tare() noexcept {
   taring_ = false;
-  offset_ = former_offset_;
-  tared_ = former_tared_;
+  zero_ = former_;
   begin_at_zero();
   forget_history();
 }
@@ -176,8 +179,8 @@ void OffsetDrift::Implementation::undo_tare() noexcept {
 void OffsetDrift::Implementation::reset() noexcept {
   taring_ = false;
   corrects_ = false;
-  std::fill(offset_.begin(), offset_.end(), 0.0);
-  std::fill(tared_.begin(), tared_.end(), 0.0);
+  std::fill(zero_.offset.begin(), zero_.offset.end(), 0.0);
+  std::fill(zero_.tared.begin(), zero_.tared.end(), 0.0);
   begin_at_zero();
   forget_history();
 }
@@ -246,16 +249,15 @@ void OffsetDrift::Implementation::average_block() noexcept {
 
 /// Shrinks the step by the share of its square that the noise of the mean may be (James and Stein 1961).
 void OffsetDrift::Implementation::take_block_as_zero() noexcept {
-  former_offset_ = offset_;
-  former_tared_ = tared_;
-  for (std::size_t k = 0; k < offset_.size(); ++k) {
-    const double step = block_.sum[k] - offset_[k];
+  former_ = zero_;
+  for (std::size_t k = 0; k < zero_.offset.size(); ++k) {
+    const double step = block_.sum[k] - zero_.offset[k];
     const double variance = block_.sigma[k] * block_.sigma[k] / static_cast<double>(block_.frames);
     const double shrunk = step * std::max(0.0, 1.0 - variance / (step * step));
     measure_step(k, step);
-    if (std::isfinite(shrunk)) offset_[k] += shrunk;
+    if (std::isfinite(shrunk)) zero_.offset[k] += shrunk;
   }
-  tared_ = offset_;
+  zero_.tared = zero_.offset;
   begin_at_zero();
   taring_ = false;
   corrects_ = true;
@@ -268,7 +270,7 @@ void OffsetDrift::Implementation::measure_step(std::size_t taxel, double step) n
 }
 
 double OffsetDrift::Implementation::unloaded_siemens(std::size_t taxel) const noexcept {
-  return std::max(0.0, unloaded_.law.offset_siemens[taxel] + tared_[taxel]);
+  return std::max(0.0, unloaded_.law.offset_siemens[taxel] + zero_.tared[taxel]);
 }
 
 /// And of the calibrated offset: no mean of an unloaded taxel differs by more.
@@ -282,7 +284,7 @@ double OffsetDrift::Implementation::band(std::size_t taxel) const noexcept {
 }
 
 void OffsetDrift::Implementation::find_pressed() noexcept {
-  for (std::size_t k = 0; k < pressed_.size(); ++k) pressed_[k] = block_.sum[k] - offset_[k] > band(k) ? 1 : 0;
+  for (std::size_t k = 0; k < pressed_.size(); ++k) pressed_[k] = block_.sum[k] - zero_.offset[k] > band(k) ? 1 : 0;
 }
 
 void OffsetDrift::Implementation::hold_pressed(double block_s) noexcept {
@@ -300,16 +302,16 @@ bool OffsetDrift::Implementation::pressed_nearby(std::size_t taxel) const noexce
 
 /// False for NaN, as is_idle().
 bool OffsetDrift::Implementation::is_below_any_load(std::size_t taxel) const noexcept {
-  return block_.sum[taxel] < offset_[taxel] && block_.sum[taxel] < -band(taxel);
+  return block_.sum[taxel] < zero_.offset[taxel] && block_.sum[taxel] < -band(taxel);
 }
 
 bool OffsetDrift::Implementation::is_idle(std::size_t taxel) const noexcept {
   if (block_.trouble[taxel] != 0 || hold_s_[taxel] > 0.0F) return false;
-  return std::abs(block_.sum[taxel] - offset_[taxel]) <= band(taxel) || is_below_any_load(taxel);
+  return std::abs(block_.sum[taxel] - zero_.offset[taxel]) <= band(taxel) || is_below_any_load(taxel);
 }
 
 void OffsetDrift::Implementation::follow_idle(double block_s) noexcept {
-  for (std::size_t k = 0; k < offset_.size(); ++k) {
+  for (std::size_t k = 0; k < zero_.offset.size(); ++k) {
     const bool idle = is_idle(k);
     if (idle && has_candidate_[k] != 0) follow(k, block_s);
     has_candidate_[k] = idle ? 1 : 0;
@@ -322,14 +324,14 @@ void OffsetDrift::Implementation::follow(std::size_t taxel, double block_s) noex
   const double unloaded = unloaded_siemens(taxel);
   float& blocks = followed_blocks_[taxel];
   const double gain = std::max(std::min(1.0, block_s / kFollowS), 1.0 / (kPriorBlocks + static_cast<double>(blocks)));
-  double step = gain * (candidate_[taxel] - offset_[taxel]);
+  double step = gain * (candidate_[taxel] - zero_.offset[taxel]);
   if (blocks >= kSettlingBlocks && !is_below_any_load(taxel)) {
     const double largest = block_s * (kUnloadedPerSecond * unloaded + kSigmasPerSecond * block_.sigma[taxel]);
     step = std::clamp(step, -largest, largest);
   }
-  const double most = tared_[taxel] + kRangeOfUnloaded * unloaded +
+  const double most = zero_.tared[taxel] + kRangeOfUnloaded * unloaded +
                       kRangeSigmas * (block_.sigma[taxel] + unloaded_.sigma_siemens[taxel]);
-  offset_[taxel] = std::min(offset_[taxel] + step, most);
+  zero_.offset[taxel] = std::min(zero_.offset[taxel] + step, most);
   blocks = std::min(blocks + 1.0F, kSettlingBlocks);
 }
 

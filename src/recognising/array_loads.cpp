@@ -86,7 +86,7 @@ void ArrayLoads::process_forces() {
 
 Status ArrayLoads::check_tare() const {
   if (!work_ || work_->pipeline.last_tare().state != pipeline::Tare::State::refused) return Done{};
-  return failed(fmt::format("{}: not tared: {}, or say --tare-force if that is zero", from_,
+  return failed(fmt::format("{}: not tared: {}, or force the tare", from_,
                             pipeline::describe(work_->pipeline.last_tare(), work_->model.array)));
 }
 

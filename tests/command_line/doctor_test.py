@@ -2,6 +2,7 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """`dermis doctor`: a healthy array is called healthy, and each fault by its name, its place and its first frame."""
 import json
+import random
 
 import support
 from support import SmallArray, dermis, error_lines
@@ -74,10 +75,15 @@ class Doctor(SmallArray):
         self.assertIn("loose contact", report["problems"][0])
 
     def held(self, name, frame, count):
-        """The same frame of the calibration, 20 times a second."""
+        """The same frame of the calibration, 20 times a second, with a count of noise."""
         header, *lines = (self.calibration / "frames.csv").read_text().splitlines()
-        _, readings = lines[frame].split(",", 1)
-        return self.written(name, "\n".join([header] + [f"{0.05 * i:.2f},{readings}" for i in range(count)]) + "\n")
+        first = next(k for k, column in enumerate(header.split(",")) if column == "r0c0")
+        _, *cells = lines[frame].split(",")
+        noise = random.Random(7)
+        for i in range(count):
+            readings = [str(max(0, int(cell) + noise.choice((-1, 0, 1)))) for cell in cells[first - 1:]]
+            lines[i:] = [",".join([f"{0.05 * i:.2f}", *cells[:first - 1], *readings])]
+        return self.written(name, "\n".join([header, *lines]) + "\n")
 
     def test_a_load_that_was_never_released(self):
         pressed = self.held("pressed.csv", self.pressed_frame(), 150)
@@ -96,7 +102,7 @@ class Doctor(SmallArray):
         self.assertEqual(result.returncode, 0)
         self.assertRegex(result.stderr, r"^the tare takes [\d.]+ N on \S+ as zero\n$")
         idle = self.held("idle.csv", 0, 60)
-        self.assertEqual(dermis(*self.run_arguments(out, "--force", **{"in": idle}), "--tare").returncode, 0)
+        self.assertEqual(dermis(*self.run_arguments(out, **{"in": idle}), "--tare").returncode, 0)
 
     def pressed_frame(self):
         """The first of the calibration in which a force of 5 N or more is said."""

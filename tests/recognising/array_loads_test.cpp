@@ -84,9 +84,8 @@ TEST(ArrayLoads, tares_the_forces_of_a_model) {
   Result<bool> more = true;
   while (more && *more) more = refused->next();
   ASSERT_FALSE(more);
-  EXPECT_EQ(more.error().message, input.from +
-                                      ": not tared: r1c1 reads 2 N: take it off and tare again, or say "
-                                      "--tare-force if that is zero");
+  EXPECT_EQ(more.error().message,
+            input.from + ": not tared: r1c1 reads 2 N: take it off and tare again, or force the tare");
   input.tare_force = true;
   const auto loads = loads_of(input);
   ASSERT_EQ(loads.size(), 115U);

@@ -4,9 +4,9 @@
 // What a user takes along from the page, and what pages tell that come later or look on.
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { readFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { it } from "node:test";
-import { assertUnhurt, becomes, bench, browser, openPage, readCsv, shown, useBench, WAIT_MS } from "./harness.mjs";
+import { assertUnhurt, becomes, bench, browser, eventually, openPage, readCsv, shown, useBench, WAIT_MS } from "./harness.mjs";
 
 const LIVE = ["--from", "sim:contacts?rate=100&frames=300"];
 
@@ -109,8 +109,37 @@ it("opens a playback that is paused on its frame, and says so", async () => {
   });
 });
 
+/** A minute of the first frame of the contacts, 50 times a second. */
+function heldFrames() {
+  const [head, first] = readFileSync(bench.path("contacts/frames.csv"), "utf8").split("\n");
+  const readings = first.slice(first.indexOf(","));
+  const lines = Array.from({ length: 3000 }, (_, index) => `${0.02 * index}${readings}`);
+  writeFileSync(bench.path("held.csv"), [head, ...lines, ""].join("\n"));
+  bench.run("convert", bench.path("held.csv"), bench.path("held.mcap"), "--array", bench.path("array.toml"));
+  return bench.path("held.mcap");
+}
+
+it("refuses a tare under a load, takes it where that is said again, and takes it back", async () => {
+  await served(["--from", heldFrames()], async (page) => {
+    const force = async () => parseFloat(await part(page, "total-force").innerText());
+    await eventually(page, () => parseFloat(document.querySelector("[data-role=total-force]").textContent) > 1);
+    const before = await force();
+    await part(page, "tare").click();
+    await words(page, "tare-refused", /^Not tared\. small: .* reads? .* N: take it off and tare again$/);
+    await page.locator("[data-role=tare][aria-pressed=false]").waitFor();
+    assert.ok(Math.abs((await force()) - before) < 0.05 * before);
+    await part(page, "tare-force").click();
+    await words(page, "notice", /small was tared by .*: the tare takes .* N on .* as zero/);
+    await part(page, "tare-banner").waitFor({ state: "hidden" });
+    await eventually(page, (most) => parseFloat(document.querySelector("[data-role=total-force]").textContent) < most, 0.1 * before);
+    await part(page, "undo-tare").click();
+    await eventually(page, (least) => parseFloat(document.querySelector("[data-role=total-force]").textContent) > least, 0.9 * before);
+    await part(page, "undo-tare").waitFor({ state: "hidden" });
+  });
+});
+
 it("tells everybody who has tared", async () => {
-  await served(LIVE, async (page, server) => {
+  await served(["--from", "sim:idle?rate=100&frames=300"], async (page, server) => {
     const other = await openPage(browser, server.url);
     await becomes(other, "live");
     await page.keyboard.press("t");
