@@ -50,8 +50,8 @@ class MaterialMemory {
   /// `law` must be consistent.
   MaterialMemory(const MemoryLaw& law, std::size_t taxels);
 
-  /// newtons and sigma_newtons of a frame of the array's size. `noise_newtons`: ForceFusion::noise_newtons() of the
-  /// same frame. Allocates nothing.
+  /// newtons, sigma_newtons and sums of a frame of the array's size. `noise_newtons`: ForceFusion::noise_newtons() of
+  /// the same frame. Allocates nothing.
   void process(ForceFrame& force, std::span<const float> noise_newtons) noexcept;
 
  private:
