@@ -18,10 +18,10 @@ from pathlib import Path
 import numpy
 
 ROOT = Path(__file__).resolve().parent.parent
-PRESSES = 8  # a taxel
-IDLE_FRAMES = 60
+PRESSES = 10  # a taxel
+IDLE_FRAMES = 200
 JUDGED_FRAMES = 400
-LEAST_NEWTONS, MOST_NEWTONS = 0.3, 50.0
+LEAST_NEWTONS, MOST_NEWTONS = 0.1, 50.0
 
 
 @dataclass
@@ -86,15 +86,21 @@ def single_presses(size, random):
     return newtons.reshape(-1, size, size)
 
 
+def hertz(size, centre, radius):
+    """The pressure of a ball on an elastic sheet over each taxel, of which 8 x 8 points are asked, in all 1."""
+    place = (numpy.arange(8 * size) + 0.5) / 8.0 - 0.5
+    square = (place[:, None] - centre[0]) ** 2 + (place[None, :] - centre[1]) ** 2
+    pressure = numpy.sqrt(numpy.clip(1.0 - square / radius**2, 0.0, None)).reshape(size, 8, size, 8).sum(axis=(1, 3))
+    return pressure / pressure.sum()
+
+
 def touches(size, random):
-    """Forces of one to four round contacts a frame."""
-    row, col = numpy.mgrid[:size, :size]
+    """Forces of one to four balls a frame."""
     newtons = numpy.zeros((JUDGED_FRAMES, size, size))
     for frame in newtons:
         for _ in range(random.integers(1, 5)):
-            centre, radius = random.uniform(0.0, size - 1.0, 2), random.uniform(0.7, 2.0)
-            patch = numpy.exp(-((row - centre[0]) ** 2 + (col - centre[1]) ** 2) / (2.0 * radius**2))
-            frame += numpy.exp(random.uniform(numpy.log(1.0), numpy.log(MOST_NEWTONS))) * patch / patch.sum()
+            force = numpy.exp(random.uniform(numpy.log(1.0), numpy.log(MOST_NEWTONS)))
+            frame += force * hertz(size, random.uniform(0.0, size - 1.0, 2), random.uniform(1.0, 3.0))
     return newtons
 
 
