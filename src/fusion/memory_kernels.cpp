@@ -31,6 +31,13 @@ void free_sums(D d, ForceSums& sums, std::size_t first, hn::Vec<D> late, hn::Vec
   scale(sums.newtons_per_celsius, growth);
 }
 
+/// Below zero where nothing presses, so that the states do not add up its noise.
+template <class D>
+hn::Vec<D> signed_felt(D d, const MemoryStep& step, std::size_t first, hn::Vec<D> felt) {
+  if (step.sums == nullptr) return felt;
+  return hn::IfThenElse(hn::Gt(felt, hn::Zero(d)), felt, hn::LoadU(d, step.sums->newtons.data() + first));
+}
+
 template <class D>
 void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, float* sigma_newtons) {
   const std::size_t taxels = step.newtons.size();
@@ -44,14 +51,16 @@ void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, 
     of_load -= step.late[k];
   }
   const auto gain = hn::Set(d, 1.0F / of_load);
-  const auto told = hn::Mul(hn::Max(hn::Sub(felt, late), hn::Zero(d)), gain);
+  const auto most = hn::Set(d, kMostNewtons);
+  const auto told = hn::Mul(hn::Sub(signed_felt(d, step, first, felt), late), gain);
   const auto last = hn::LoadU(d, step.newtons.data() + first);
-  const auto load = hn::IfThenElse(is_known, hn::Min(told, hn::Set(d, kMostNewtons)), last);
+  const auto signed_load = hn::IfThenElse(is_known, hn::Clamp(told, hn::Neg(most), most), last);
+  const auto load = hn::Max(signed_load, hn::Zero(d));
   hn::StoreU(load, d, step.newtons.data() + first);
   for (std::size_t k = 0; k < step.approach.size(); ++k) {
     float* const at = step.late_newtons.data() + k * taxels + first;
     const auto state = hn::LoadU(d, at);
-    hn::StoreU(hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(load, state), state), d, at);
+    hn::StoreU(hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(signed_load, state), state), d, at);
   }
   const auto logarithm = hn::Log1p(d, load);
   const auto change = hn::Sub(logarithm, hn::LoadU(d, step.logarithm.data() + first));
