@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <filesystem>
 #include <system_error>
+#include <type_traits>
 
 #include "bindings.hpp"
 #include "dermis/core/version.hpp"

@@ -21,7 +21,7 @@ struct ForceTablePaths {
   std::string forces;
   std::string sigmas;  ///< Of the forces, their standard deviations.
   std::string contacts;
-  std::string totals;  ///< The force on the whole array.
+  std::string totals{};  ///< The force on the whole array.
 };
 
 /// The forces of a model frame by frame as tables. Each appears complete with commit(), or not at all. Not thread-safe.
