@@ -157,6 +157,23 @@ class World:
         return (numpy.array([float(row[column]) for row in rows]) for column in ("total_n", "sigma_total_n"))
 
 
+@dataclass
+class Figures:
+    """What was found: newtons, shares of frames, and the bias relative to the forces."""
+
+    untouched_newtons: float
+    untouched_within_2: float
+    bias: float
+    within_1: float
+    within_2: float
+    sigma_newtons: float
+
+    def __str__(self):
+        return (f"untouched {self.untouched_newtons:+.4f} N, within 2 sigma {100 * self.untouched_within_2:.1f} %; touched "
+                f"bias {100 * self.bias:+.3f} %, within 1 and 2 sigma {100 * self.within_1:.0f} / "
+                f"{100 * self.within_2:.0f} %, sigma {self.sigma_newtons:.3f} N")
+
+
 def judge(binary, size, seed):
     random = numpy.random.default_rng([seed, size])
     with tempfile.TemporaryDirectory() as folder:
@@ -166,11 +183,8 @@ def judge(binary, size, seed):
         total, sigma = world.totals(newtons)
     truth = newtons.sum(axis=(1, 2))
     error = total - truth
-    within = [100.0 * numpy.mean(numpy.abs(error) <= k * sigma) for k in (1, 2)]
-    print(f"{size:2}x{size:<2}  untouched {idle.mean():+.4f} N, within 2 sigma "
-          f"{100.0 * numpy.mean(numpy.abs(idle) <= 2.0 * idle_sigma):5.1f} %;  touched bias "
-          f"{100.0 * error.sum() / truth.sum():+.3f} %, within 1 and 2 sigma {within[0]:.0f} / {within[1]:.0f} %, "
-          f"sigma {sigma.mean():.3f} N", flush=True)
+    return Figures(idle.mean(), numpy.mean(abs(idle) <= 2 * idle_sigma), error.sum() / truth.sum(),
+                   numpy.mean(abs(error) <= sigma), numpy.mean(abs(error) <= 2 * sigma), sigma.mean())
 
 
 def main():
@@ -180,7 +194,7 @@ def main():
     parser.add_argument("--sizes", type=int, nargs="+", default=[8, 16, 32])
     arguments = parser.parse_args()
     for size in arguments.sizes:
-        judge(arguments.binary, size, arguments.seed)
+        print(f"{size:2}x{size:<2} {judge(arguments.binary, size, arguments.seed)}", flush=True)
 
 
 if __name__ == "__main__":
