@@ -178,6 +178,26 @@ dermis_status dermis_pipeline_process(dermis_pipeline* pipeline, const dermis_ra
   });
 }
 
+dermis_status dermis_pipeline_total(const dermis_pipeline* pipeline, const std::uint8_t* mask, size_t count,
+                                    dermis_total* total) {
+  if (pipeline == nullptr) return null_argument("pipeline");
+  if (total == nullptr) return null_argument("total");
+  return guarded([&] {
+    const std::size_t taxels = pipeline->force.newtons.size();
+    if (mask != nullptr && count != taxels) {
+      return report(dermis::bad_input("mask: has " + std::to_string(count) + " taxels, the last frame " +
+                                      std::to_string(taxels)));
+    }
+    std::vector<std::size_t> region;
+    for (std::size_t taxel = 0; mask != nullptr && taxel < count; ++taxel) {
+      if (mask[taxel] != 0) region.push_back(taxel);
+    }
+    const dermis::TotalForce sum = mask == nullptr ? pipeline->force.total() : pipeline->force.total(region);
+    *total = {.newtons = sum.newtons, .sigma_newtons = sum.sigma_newtons, .left_out = sum.left_out};
+    return DERMIS_OK;
+  });
+}
+
 dermis_status dermis_pipeline_tare(dermis_pipeline* pipeline) {
   if (pipeline == nullptr) return null_argument("pipeline");
   pipeline->pipeline.tare();

@@ -104,6 +104,18 @@ void dermis_pipeline_free(dermis_pipeline* pipeline);
  * the first frame. */
 dermis_status dermis_pipeline_process(dermis_pipeline* pipeline, const dermis_raw_frame* raw, dermis_force_frame* force);
 
+/* A sum of forces. */
+typedef struct dermis_total {
+  double newtons;       /* NaN where all taxels are left out; noise takes it below 0 where nothing presses */
+  double sigma_newtons; /* Its standard deviation, with the errors that taxels share; infinite for a lower bound */
+  size_t left_out;      /* Taxels without a force, which are not in the sum */
+} dermis_total;
+
+/* The force of the last frame on the taxels whose byte in `mask` [rows, cols] is not 0, or on all where it is NULL. To be
+ * used in place of a sum of newtons, which are cut at zero: in that, noise does not cancel. `count`: rows * cols. */
+dermis_status dermis_pipeline_total(const dermis_pipeline* pipeline, const uint8_t* mask, size_t count,
+                                    dermis_total* total);
+
 /* Takes the next second, at least 10 frames, for unloaded. Refused where a load stands on the array: zero is as it was, and
  * dermis_pipeline_tare_refused() says why. */
 dermis_status dermis_pipeline_tare(dermis_pipeline* pipeline);

@@ -4,7 +4,6 @@
 // Raw counts in, newtons out: prints the total force and the strongest taxel of every frame.
 #include <algorithm>
 #include <cstdio>
-#include <numeric>
 
 #include "dermis/files/frames_csv.hpp"
 #include "dermis/pipeline/model.hpp"
@@ -40,7 +39,7 @@ int main(int argc, char** argv) {
     const auto taxel = static_cast<std::size_t>(strongest);
     std::printf("%.3f s  %-12s total %7.2f N  strongest %s %6.2f N\n",
                 std::chrono::duration<double>(force.time).count(), dermis::to_string(force.status).c_str(),
-                std::accumulate(force.newtons.begin(), force.newtons.end(), 0.0),
-                model->array.taxel_name(taxel).c_str(), static_cast<double>(force.newtons[taxel]));
+                force.total().newtons, model->array.taxel_name(taxel).c_str(),
+                static_cast<double>(force.newtons[taxel]));
   }
 }

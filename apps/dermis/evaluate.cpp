@@ -41,6 +41,19 @@ std::string newtons(const std::optional<double>& value) {
   return std::isfinite(*value) ? fmt::format("{:.3f} N", *value) : "no force";
 }
 
+void print_sums(const calibration::SumErrors& sums) {
+  if (sums.untouched > 0) {
+    fmt::print("sums of {} untouched frames: mean {:+.4f} N, {:.1f} % within 2 sigma\n", sums.untouched,
+               *sums.untouched_mean_n, 100.0 * *sums.untouched_within_2_sigma);
+  }
+  if (sums.touched > 0) {
+    fmt::print(
+        "sums of {} touched frames: bias {:+.3f} %, within the 68 % interval in {:.1f} %, the 95 % interval in {:.1f} "
+        "%\n",
+        sums.touched, 100.0 * *sums.relative_bias, 100.0 * *sums.share_68, 100.0 * *sums.share_95);
+  }
+}
+
 void print_text(const Evaluation& evaluation) {
   const auto& first = evaluation.estimators.front();
   fmt::print("{} labelled frames ({} rejected), {} taxels of at least {:.3g} N, {} unloaded, {} totals\n\n",
@@ -59,6 +72,7 @@ void print_text(const Evaluation& evaluation) {
         "%\n",
         evaluation.coverage.count, 100.0 * *evaluation.coverage.share_68, 100.0 * *evaluation.coverage.share_95);
   }
+  print_sums(evaluation.sums);
   const calibration::BoundComparison& bound = evaluation.bound;
   if (bound.frames > 0) {
     fmt::print("Cramer-Rao bound of the ADC noise: {:.2f} % of the force (median of {} taxels); dermis {:.2f} %\n",

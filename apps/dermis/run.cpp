@@ -39,8 +39,10 @@ struct RunOptions {
 };
 
 Status check_outputs(const operation::ForceTablePaths& tables) {
-  if (tables.forces.empty() && tables.sigmas.empty() && tables.contacts.empty()) {
-    return bad_input("name a file to write: --out FILE for the forces, --contacts FILE for the contacts");
+  if (tables.forces.empty() && tables.sigmas.empty() && tables.contacts.empty() && tables.totals.empty()) {
+    return bad_input(
+        "name a file to write: --out FILE for the forces, --totals FILE for their sum, --contacts FILE for the "
+        "contacts");
   }
   return Done{};
 }
@@ -135,6 +137,8 @@ void add_run(Command& command) {
       .required();
   command.output("--out", options->tables.forces, "forces.csv to write");
   command.output("--sigma", options->tables.sigmas, "Also write the standard deviation of every force [N] to this CSV");
+  command.output("--totals", options->tables.totals,
+                 "totals.csv to write: the force on the whole array and its standard deviation [N]");
   command.output("--contacts", options->tables.contacts,
                  "contacts.csv to write: what touches the array, where and how hard");
   command.option("--settle", options->settle_s, "Skip the first seconds, while the array warms up [s]").shows_default();

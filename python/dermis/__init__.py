@@ -5,7 +5,7 @@
     import dermis
     pipeline = dermis.Pipeline(dermis.read_model("chest.safetensors"))
     for frame in dermis.open("serial:///dev/ttyACM0"):
-        print(pipeline.process(frame).newtons.sum())
+        print(pipeline.process(frame).total)
 
 Arrays are (rows, cols), row-major; row = driven line, col = sensed line. Units are SI; temperatures are in Celsius, times
 in nanoseconds. The stub __init__.pyi says of every argument and result what it is; docs/python.md shows how they go together.

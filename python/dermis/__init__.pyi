@@ -115,6 +115,15 @@ class ForceFrame:
     def signal_to_noise(self) -> NDArray[np.float32]: ...
     @property
     def taxels(self) -> NDArray[np.uint8]: ...
+    @property
+    def total(self) -> float:
+        """Force on the whole array [N], in place of newtons.sum(), in which noise does not cancel. It leaves out taxels
+        without a force, and is NaN without any."""
+    @property
+    def total_sigma(self) -> float:
+        """Its standard deviation, with the errors that taxels share."""
+    def total_of(self, mask: ArrayLike) -> tuple[float, float]:
+        """The same of the taxels where mask (rows, cols) is true: newtons, standard deviation."""
 
 class Recording:
     """Frames of one array in memory, from and to any file of frames: .mcap, .csv, .h5, .npy and more.
@@ -170,6 +179,11 @@ class Forces:
     def sigma_newtons(self) -> NDArray[np.float32]: ...
     @property
     def taxels(self) -> NDArray[np.uint8]: ...
+    @property
+    def total(self) -> NDArray[np.float64]:
+        """Force on the whole array in each frame [N] (frames,); see ForceFrame.total."""
+    @property
+    def total_sigma(self) -> NDArray[np.float64]: ...
 
 class Pipeline:
     """Counts in, newtons out. One for each stream of frames, in their order; raises where two threads use it at once."""

@@ -126,6 +126,27 @@ py::bytes bytes_of(const std::vector<TaxelStatus>& taxels) {
   return bytes;
 }
 
+/// Errors that taxels share are not kept: the standard deviation of each then counts alone.
+ForceSums sums_of(const ForceFrame& frame, std::vector<float> signed_newtons) {
+  ForceSums sums;
+  sums.newtons = std::move(signed_newtons);
+  for (const float sigma : frame.sigma_newtons) sums.own_variance.push_back(sigma * sigma);
+  sums.newtons_per_siemens.resize(sums.newtons.size());
+  sums.newtons_per_celsius.resize(sums.newtons.size());
+  return sums;
+}
+
+/// (newtons, standard deviation) of the taxels in a mask.
+py::tuple total_of(const ShapedForce& force, const py::object& mask) {
+  const py::array_t<bool> wanted = numbers<bool>(mask, "mask", extents(force.shape));
+  std::vector<std::size_t> taxels;
+  for (std::size_t taxel = 0; taxel < force.frame.newtons.size(); ++taxel) {
+    if (wanted.data()[taxel]) taxels.push_back(taxel);
+  }
+  const TotalForce total = force.frame.total(taxels);
+  return py::make_tuple(total.newtons, total.sigma_newtons);
+}
+
 std::vector<TaxelStatus> taxels_of(const std::string& bytes) {
   std::vector<TaxelStatus> taxels;
   for (const char byte : bytes) taxels.push_back(static_cast<TaxelStatus>(byte));
@@ -181,11 +202,15 @@ void bind_single_frames(py::module_& module) {
                                const auto* first = reinterpret_cast<const std::uint8_t*>(force.frame.taxels.data());
                                return py::array_t<std::uint8_t>(extents(force.shape), first, self);
                              })
+      .def_property_readonly("total", [](const ShapedForce& force) { return force.frame.total().newtons; })
+      .def_property_readonly("total_sigma", [](const ShapedForce& force) { return force.frame.total().sigma_newtons; })
+      .def("total_of", &total_of, py::arg("mask"))
       .def(py::pickle(
           [](const ShapedForce& force) {
             return py::make_tuple(force.shape.rows, force.shape.cols, force.frame.time.count(),
                                   static_cast<unsigned>(force.frame.status), force.frame.newtons,
-                                  force.frame.sigma_newtons, force.frame.signal_to_noise, bytes_of(force.frame.taxels));
+                                  force.frame.sigma_newtons, force.frame.signal_to_noise, bytes_of(force.frame.taxels),
+                                  force.frame.sums.newtons);
           },
           [](const py::tuple& state) {
             ShapedForce force;
@@ -196,6 +221,7 @@ void bind_single_frames(py::module_& module) {
             force.frame.sigma_newtons = state[5].cast<std::vector<float>>();
             force.frame.signal_to_noise = state[6].cast<std::vector<float>>();
             force.frame.taxels = taxels_of(state[7].cast<std::string>());
+            force.frame.sums = sums_of(force.frame, state[8].cast<std::vector<float>>());
             return force;
           }));
 }
@@ -277,10 +303,12 @@ void bind_many_frames(py::module_& module) {
       .def_property_readonly("newtons", per_taxel(&Forces::newtons))
       .def_property_readonly("sigma_newtons", per_taxel(&Forces::sigma_newtons))
       .def_property_readonly("taxels", per_taxel(&Forces::taxels))
+      .def_property_readonly("total", per_frame(&Forces::total))
+      .def_property_readonly("total_sigma", per_frame(&Forces::total_sigma))
       .def(py::pickle(
           [](const Forces& forces) {
             return py::make_tuple(forces.shape.rows, forces.shape.cols, forces.time_ns, forces.status, forces.newtons,
-                                  forces.sigma_newtons, forces.taxels);
+                                  forces.sigma_newtons, forces.taxels, forces.total, forces.total_sigma);
           },
           [](const py::tuple& state) {
             Forces forces({state[0].cast<std::size_t>(), state[1].cast<std::size_t>()}, 0);
@@ -289,6 +317,8 @@ void bind_many_frames(py::module_& module) {
             forces.newtons = state[4].cast<std::vector<float>>();
             forces.sigma_newtons = state[5].cast<std::vector<float>>();
             forces.taxels = state[6].cast<std::vector<std::uint8_t>>();
+            forces.total = state[7].cast<std::vector<double>>();
+            forces.total_sigma = state[8].cast<std::vector<double>>();
             return forces;
           }));
 }
@@ -330,12 +360,17 @@ Forces::Forces(const FrameShape& array_shape, std::size_t frames)
       status(frames),
       newtons(frames * array_shape.taxel_count()),
       sigma_newtons(newtons.size()),
-      taxels(newtons.size()) {}
+      taxels(newtons.size()),
+      total(frames),
+      total_sigma(frames) {}
 
 void Forces::set(std::size_t index, const ForceFrame& frame) {
   const auto first = static_cast<std::ptrdiff_t>(index * shape.taxel_count());
   time_ns[index] = frame.time.count();
   status[index] = static_cast<std::uint16_t>(frame.status);
+  const TotalForce sum = frame.total();
+  total[index] = sum.newtons;
+  total_sigma[index] = sum.sigma_newtons;
   std::copy(frame.newtons.begin(), frame.newtons.end(), newtons.begin() + first);
   std::copy(frame.sigma_newtons.begin(), frame.sigma_newtons.end(), sigma_newtons.begin() + first);
   std::transform(frame.taxels.begin(), frame.taxels.end(), taxels.begin() + first,

@@ -53,6 +53,8 @@ struct Forces {
   std::vector<float> newtons;         // [frames, rows, cols]
   std::vector<float> sigma_newtons;   // [frames, rows, cols]
   std::vector<std::uint8_t> taxels;   // [frames, rows, cols], TaxelStatus
+  std::vector<double> total;          // [frames]
+  std::vector<double> total_sigma;    // [frames]
 };
 
 }  // namespace dermis::python

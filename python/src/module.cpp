@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <filesystem>
 #include <system_error>
+#include <type_traits>
 
 #include "bindings.hpp"
 #include "dermis/core/version.hpp"
@@ -47,9 +48,11 @@ py::array_t<T> numbers(const py::object& object, const char* name, const std::ve
     throw py::type_error(std::string(name) + ": is no array of numbers");
   }
   const char kind = array.dtype().kind();
-  if (kind != 'u' && kind != 'i' && kind != 'f') {
+  const bool is_wanted = std::is_same_v<T, bool> ? kind == 'b' : kind == 'u' || kind == 'i' || kind == 'f';
+  if (!is_wanted) {
     const auto type = py::str(array.dtype()).cast<std::string>();
-    throw py::type_error(std::string(name) + ": has the dtype " + type + ", not integers or floating point numbers");
+    const char* const wanted = std::is_same_v<T, bool> ? "bool" : "integers or floating point numbers";
+    throw py::type_error(std::string(name) + ": has the dtype " + type + ", not " + wanted);
   }
   if (!fits(array, shape)) {
     throw py::value_error(std::string(name) + ": has the shape " + shape_text(array) + ", expected is " +
@@ -60,6 +63,7 @@ py::array_t<T> numbers(const py::object& object, const char* name, const std::ve
 
 template py::array_t<float> numbers(const py::object&, const char*, const std::vector<py::ssize_t>&);
 template py::array_t<double> numbers(const py::object&, const char*, const std::vector<py::ssize_t>&);
+template py::array_t<bool> numbers(const py::object&, const char*, const std::vector<py::ssize_t>&);
 template py::array_t<std::int64_t> numbers(const py::object&, const char*, const std::vector<py::ssize_t>&);
 
 bool is_path(const py::object& object) {

@@ -11,6 +11,7 @@
 #include "compensation/possible_readings.hpp"
 #include "compensation/proportional.hpp"
 #include "compensation/readout_parts.hpp"
+#include "compensation/shared_errors.hpp"
 #include "compensation/spikes.hpp"
 #include "compensation/supply_error.hpp"
 #include "compensation/transposed.hpp"
@@ -95,6 +96,7 @@ Compensator::Compensator(const ArrayDescription& array, std::unique_ptr<Crosstal
       possible_(std::make_unique<PossibleReadings>(array)),
       spikes_(std::make_unique<Spikes>(array)),
       supply_error_(std::make_unique<SupplyError>(array)),
+      shared_errors_(std::make_shared<const SharedErrors>(array)),
       faults_(std::make_unique<FaultInversion>(array, kFaultToleranceCounts / array.readout.full_scale_counts(),
                                                references)) {}
 Compensator::Compensator(Compensator&&) noexcept = default;
@@ -128,6 +130,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   if (result.solved) {
     inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+    note_errors(conditioned, conductance);
     faults_->add_doubt(conductance.siemens, conductance.sigma_siemens);
   }
   supply_error_->add(conductance.siemens, conditioned.supply_doubt, conductance.sigma_siemens);
@@ -167,6 +170,20 @@ InversionResult Compensator::invert_possible(const ConditionedFrame& conditioned
 InversionResult Compensator::invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept {
   return faults_->concerns(conductance.taxels) ? faults_->invert(*inversion_, ratio, conductance.siemens)
                                                : inversion_->invert(ratio, conductance.siemens);
+}
+
+/// Before anything but noise is in the standard deviations.
+void Compensator::note_errors(const ConditionedFrame& conditioned, ConductanceFrame& conductance) const noexcept {
+  ConductanceErrors& errors = conductance.errors;
+  errors.siemens.assign(conductance.siemens.begin(), conductance.siemens.end());
+  if (!shared_errors_->tells_noise()) {
+    errors.noise_siemens.assign(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end());
+  }
+  errors.doubt_siemens.resize(conductance.siemens.size());
+  faults_->find_doubt(conductance.siemens, errors.doubt_siemens);
+  errors.sigma_ratio = conditioned.sigma_ratio;
+  errors.supply_doubt = conditioned.supply_doubt;
+  if (errors.circuit != shared_errors_) errors.circuit = shared_errors_;
 }
 
 void Compensator::mask_faulty_taxels(ConductanceFrame& conductance) const noexcept {

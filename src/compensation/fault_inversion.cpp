@@ -191,6 +191,14 @@ void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double
   }
 }
 
+void FaultInversion::find_doubt(std::span<const double> siemens, std::span<float> doubt_siemens) const noexcept {
+  std::fill(doubt_siemens.begin(), doubt_siemens.end(), 0.0F);
+  if (array_.readout.circuit == Circuit::none || lines_are_faulty_) return;
+  for (std::size_t taxel = 0; taxel < siemens.size(); ++taxel) {
+    if (missing_.is_missing(taxel)) doubt_siemens[taxel] = static_cast<float>(missing_.doubt(taxel) * siemens[taxel]);
+  }
+}
+
 bool FaultInversion::concerns(std::span<const TaxelStatus> taxels) noexcept {
   const std::uint8_t* const absent = is_.absent.data();
   const std::uint8_t* const hidden = is_.hidden.data();

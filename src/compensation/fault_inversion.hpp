@@ -49,6 +49,9 @@ class FaultInversion {
   /// Adds to the standard deviations what the others of a line owe to a taxel whose conductance is only estimated.
   void add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept;
 
+  /// The standard deviation of taxels that are only estimated, 0 of the others [taxels] [S].
+  void find_doubt(std::span<const double> siemens, std::span<float> doubt_siemens) const noexcept;
+
   /// The frame is solved, at these conductances.
   void remember(std::span<const double> siemens) noexcept { missing_.remember(siemens); }
   void forget() noexcept { missing_.forget(); }

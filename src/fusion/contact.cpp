@@ -50,6 +50,7 @@ class ContactTracker::Implementation {
     found_.reserve(array.taxel_count());
     expected_.reserve(kMostContacts);
     held_.reserve(kMostContacts);
+    touched_.reserve(array.taxel_count());
   }
 
   void process(const ForceFrame& force, ContactReport& report) noexcept {
@@ -61,10 +62,15 @@ class ContactTracker::Implementation {
     find_held_taxels(force.time);
     areas_.find(force, pressed_sigma(), held_);
     found_.clear();
+    touched_.clear();
     for (const std::span<std::uint32_t> taxels : areas_.areas()) add(force, taxels);
     keep_strongest();
     tracks_.update(force, found_, report.contacts);
     add_up(report);
+    // What contacts have in common adds up; what they have not, does so in squares.
+    if (report.centre_of_pressure) {
+      report.sigma_total_n = std::max(report.sigma_total_n, force.total(touched_).sigma_newtons);
+    }
   }
 
   void forget() noexcept { tracks_.forget(); }
@@ -102,6 +108,14 @@ class ContactTracker::Implementation {
     }
     if (!can_go_on(force, taxels)) return;
     found_.push_back({measured.contact, measured.peak, measured.profile(), is_strong(force, taxels, 1.0)});
+    found_.back().contact.sigma_force_n = sigma_of_sum(force, taxels);
+  }
+
+  /// With what the taxels' errors have in common.
+  [[nodiscard]] double sigma_of_sum(const ForceFrame& force, std::span<const std::uint32_t> taxels) {
+    const std::size_t before = touched_.size();
+    touched_.insert(touched_.end(), taxels.begin(), taxels.end());
+    return force.total(std::span<const std::size_t>(touched_).subspan(before)).sigma_newtons;
   }
 
   struct Parting {
@@ -229,6 +243,7 @@ class ContactTracker::Implementation {
   // [expected]: the taxel it is on
   std::vector<std::uint32_t> held_;
   std::vector<FoundContact> found_;
+  std::vector<std::size_t> touched_;  // taxels of all that were found
 };
 
 ContactTracker::ContactTracker(const ArrayDescription& array, const ContactOptions& options,

@@ -46,6 +46,22 @@ bool rises_with_conductance(const network::PerceptronShape& shape, const std::ve
   return true;
 }
 
+void resize(ForceSums& sums, std::size_t taxels) {
+  sums.newtons.resize(taxels);
+  sums.own_variance.resize(taxels);
+  sums.newtons_per_siemens.resize(taxels);
+  sums.newtons_per_celsius.resize(taxels);
+}
+
+/// The taxel counts in sums as it does alone.
+void count_alone(std::size_t taxel, ForceFrame& force) {
+  const float sigma = force.sigma_newtons[taxel];
+  force.sums.newtons[taxel] = force.newtons[taxel];
+  force.sums.own_variance[taxel] = sigma * sigma;
+  force.sums.newtons_per_siemens[taxel] = 0.0F;
+  force.sums.newtons_per_celsius[taxel] = 0.0F;
+}
+
 }  // namespace
 
 bool ForceNetworks::is_consistent() const noexcept {
@@ -105,6 +121,7 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
   force.newtons.resize(taxels);
   force.sigma_newtons.resize(taxels);
   force.signal_to_noise.resize(taxels);
+  resize(force.sums, taxels);
   const bool fits = conductance.siemens.size() == taxels && conductance.sigma_siemens.size() == taxels;
   if (has(conductance.status, FrameStatus::rejected) || !fits) {
     force.status |= FrameStatus::rejected;
@@ -112,6 +129,7 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
     std::fill(force.newtons.begin(), force.newtons.end(), kNoForce);
     std::fill(force.sigma_newtons.begin(), force.sigma_newtons.end(), kNoForce);
     std::fill(force.signal_to_noise.begin(), force.signal_to_noise.end(), kNoForce);
+    std::fill(force.sums.newtons.begin(), force.sums.newtons.end(), kNoForce);
     return;
   }
   const Temperature temperature = this->temperature(conductance, force);
@@ -119,6 +137,10 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
   bank_.evaluate(inputs_, outputs_, gradient_);
   look_up(temperature.offset);
   compute_forces(temperature, force);
+  force.sums.conductances = conductance.errors;
+  if (!conductance.errors.circuit) {
+    force.sums.conductances.noise_siemens.assign(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end());
+  }
   compute_signals(temperature.sigma, force);
   apply_status(force);
 }
@@ -187,6 +209,7 @@ void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& for
   sources.log_newtons = outputs_;
   sources.gradient = gradient_;
   sources.offset_per_celsius = offset_per_celsius_;
+  sources.offset_sigma = networks_.offset_sigma_siemens;
   sources.relative_variance = relative_variance_;
   sources.table_variance = table_variance_;
   sources.temperature_sigma = static_cast<float>(temperature.sigma);
@@ -197,7 +220,11 @@ void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& for
   }
   sources.log_first_knot = first;
   sources.knots_per_log = static_cast<float>(kSigmaKnots - 1) / (last - first);
-  forces(sources, {force.newtons, force.sigma_newtons, noise_newtons_});
+  ForceSums& sums = force.sums;
+  forces(sources, {force.newtons, force.sigma_newtons, noise_newtons_, sums.newtons, sums.own_variance,
+                   sums.newtons_per_siemens, sums.newtons_per_celsius});
+  sums.temperature_sigma = temperature.sigma;
+  sums.gain_sigma = std::sqrt(static_cast<double>(sources.unlearned_variance));
 }
 
 void ForceFusion::compute_signals(double temperature_sigma, ForceFrame& force) const noexcept {
@@ -215,7 +242,9 @@ void ForceFusion::apply_status(ForceFrame& force) const noexcept {
   for (std::size_t from = 0; from < taxels; from += kBlock) {
     const std::size_t to = std::min(from + kBlock, taxels);
     if (are_plain(from, to, force)) continue;
-    for (std::size_t taxel = from; taxel < to; ++taxel) apply_status(taxel, force);
+    for (std::size_t taxel = from; taxel < to; ++taxel) {
+      if (apply_status(taxel, force)) count_alone(taxel, force);
+    }
   }
 }
 
@@ -239,7 +268,8 @@ bool ForceFusion::are_plain(std::size_t from, std::size_t to, const ForceFrame& 
   return beyond == 0 && marked == 0;
 }
 
-void ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexcept {
+/// Whether it changed the force or its standard deviation.
+bool ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexcept {
   TaxelStatus& status = force.taxels[taxel];
   float& newtons = force.newtons[taxel];
   float& sigma = force.sigma_newtons[taxel];
@@ -253,7 +283,7 @@ void ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexc
     newtons = kNoForce;
     sigma = kNoForce;
     force.signal_to_noise[taxel] = kNoForce;
-    return;
+    return true;
   }
   const bool is_saturated = status == TaxelStatus::saturated;
   if (is_saturated) {
@@ -261,15 +291,16 @@ void ForceFusion::apply_status(std::size_t taxel, ForceFrame& force) const noexc
     force.signal_to_noise[taxel] = kNoUpperBound;
   }
   if (excess_siemens_[taxel] <= networks_.heaviest_siemens[taxel] && newtons <= networks_.heaviest_newtons[taxel]) {
-    return;
+    return is_saturated;
   }
   force.status |= FrameStatus::above_range;
   if (is_saturated) {
     newtons = std::min(newtons, networks_.heaviest_newtons[taxel]);  // the force is at least the one given
-    return;
+    return true;
   }
   if (status == TaxelStatus::ok) status = TaxelStatus::above_range;
   extrapolate(taxel, newtons, sigma);
+  return true;
 }
 
 /// From the force and standard deviation at the end of what was calibrated, along the law that holds there.

@@ -34,8 +34,8 @@ void compute_inputs(const ExcessConductance& excess, float* inputs) {
   for_all_lanes(taxels, [&](auto d, std::size_t first) {
     const auto load = [&](std::span<const float> values) { return hn::LoadU(d, values.data() + first); };
     const auto siemens = load(excess.siemens);
-    const auto is_loaded = hn::Gt(siemens, hn::Zero(d));
-    const auto asked = hn::IfThenElse(is_loaded, siemens, load(excess.sigma_siemens));
+    const auto is_zero = hn::Eq(siemens, hn::Zero(d));
+    const auto asked = hn::IfThenElse(is_zero, load(excess.sigma_siemens), hn::Abs(siemens));
     const auto calibrated = hn::Min(asked, load(excess.heaviest_siemens));
     const auto share = hn::Max(hn::Div(calibrated, load(excess.reference_siemens)), hn::Set(d, kLeastShare));
     hn::StoreU(hn::Log(d, share), d, inputs + first);
@@ -76,33 +76,50 @@ void compute_forces(const ForceSources& sources, const FusedForces& fused) {
     const auto exponent = hn::MulAdd(load(sources.gradient, 1), share, load(sources.gradient));  // p
     const auto log_newtons =
         hn::Min(hn::Add(load(sources.log_newtons), load(sources.log_gain)), hn::Set(d, kLargestLog));
-    const auto is_loaded = hn::Gt(load(sources.excess.siemens), hn::Zero(d));
-    hn::StoreU(hn::IfThenElseZero(is_loaded, hn::Exp(d, log_newtons)), d, fused.newtons.data() + first);
+    const auto excess = load(sources.excess.siemens);
+    const auto is_loaded = hn::Gt(excess, hn::Zero(d));
+    const auto is_zero = hn::Eq(excess, hn::Zero(d));
+    const auto magnitude = hn::Exp(d, log_newtons);
+    hn::StoreU(hn::IfThenElseZero(is_loaded, magnitude), d, fused.newtons.data() + first);
 
     // Where the standard deviation is taken: at e, or at one standard deviation of e where that is more.
     const auto noise_share = hn::Div(load(sources.excess.sigma_siemens), reference);
-    const auto reached = hn::Max(share, noise_share);
+    const auto reached = hn::Max(hn::IfThenElse(is_loaded, share, noise_share), noise_share);
     const auto log_reached = hn::MulAdd(exponent, hn::Sub(hn::Log(d, reached), log_share), log_newtons);
 
     const auto noise = hn::Div(hn::Mul(exponent, noise_share), reached);
     const auto offset_drift = hn::Div(hn::Mul(exponent, load(sources.offset_per_celsius)), hn::Mul(reached, reference));
-    auto per_celsius = hn::Neg(offset_drift);  // q
+    auto of_temperature = hn::Zero(d);
     if (sources.temperature_per_celsius > 0.0F) {
-      per_celsius = hn::MulAdd(load(sources.gradient, 2), hn::Set(d, sources.temperature_per_celsius), per_celsius);
+      of_temperature = hn::Mul(load(sources.gradient, 2), hn::Set(d, sources.temperature_per_celsius));
     }
+    const auto per_celsius = hn::Sub(of_temperature, offset_drift);  // q
     const auto drift = hn::Mul(per_celsius, hn::Set(d, sources.temperature_sigma));
-    auto variance = material_variance(d, sources, log_reached, first);
     const auto below = hn::Max(hn::Sub(hn::Set(d, sources.log_first_knot), log_reached), hn::Zero(d));
     const auto law_below = hn::Mul(hn::Set(d, kExponentSigmaBelow), below);
-    variance = hn::Add(variance, hn::Set(d, sources.unlearned_variance));
-    variance = hn::Add(variance, load(sources.table_variance));
-    variance = hn::MulAdd(law_below, law_below, variance);
+    const auto of_material = hn::Add(material_variance(d, sources, log_reached, first), load(sources.table_variance));
+    const auto of_law = hn::MulAdd(law_below, law_below, of_material);
+    auto variance = hn::Add(of_law, hn::Set(d, sources.unlearned_variance));
     variance = hn::MulAdd(noise, noise, variance);
     variance = hn::MulAdd(drift, drift, variance);
     const auto at_reached = hn::Exp(d, hn::Min(log_reached, hn::Set(d, kLargestLog)));
     const auto least = hn::Set(d, std::numeric_limits<float>::min());
     hn::StoreU(hn::Max(hn::Mul(at_reached, hn::Sqrt(variance)), least), d, fused.sigma_newtons.data() + first);
     hn::StoreU(hn::Mul(at_reached, noise), d, fused.noise_newtons.data() + first);
+
+    // Noise lifts the mean of a bent law by half its second derivative times the variance, which the sums take away.
+    const auto noise_part = hn::Div(noise_share, hn::Max(share, noise_share));
+    const auto bend = hn::Mul(hn::Set(d, 0.5F), hn::Mul(exponent, hn::Sub(exponent, one)));
+    const auto kept = hn::Max(hn::NegMulAdd(bend, hn::Mul(noise_part, noise_part), one), hn::Zero(d));
+    const auto signed_newtons = hn::CopySign(hn::IfThenZeroElse(is_zero, hn::Mul(magnitude, kept)), excess);
+    const auto per_siemens = hn::Div(hn::Mul(at_reached, exponent), hn::Mul(reached, reference));
+    const auto of_zero = hn::Mul(per_siemens, load(sources.offset_sigma));
+    const auto own_variance = hn::MulAdd(hn::Mul(signed_newtons, signed_newtons), of_law, hn::Mul(of_zero, of_zero));
+    const auto of_offset = hn::Mul(per_siemens, load(sources.offset_per_celsius));
+    hn::StoreU(signed_newtons, d, fused.signed_newtons.data() + first);
+    hn::StoreU(own_variance, d, fused.own_variance.data() + first);
+    hn::StoreU(per_siemens, d, fused.newtons_per_siemens.data() + first);
+    hn::StoreU(hn::MulSub(signed_newtons, of_temperature, of_offset), d, fused.newtons_per_celsius.data() + first);
   });
 }
 

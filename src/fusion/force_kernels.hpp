@@ -16,8 +16,8 @@ struct ExcessConductance {
   std::span<const float> sigma_siemens;
 };
 
-/// ln(e / reference) and e / reference - 1 in `inputs` [2, taxels], e clamped to the heaviest load. An unloaded taxel
-/// has no force but a detection limit: the network is asked for the force of one standard deviation.
+/// ln(|e| / reference) and |e| / reference - 1 in `inputs` [2, taxels], |e| clamped to the heaviest load: the law goes
+/// on below zero. Where e = 0 the network is asked for one standard deviation, of which the detection limit is made.
 void conductance_inputs(const ExcessConductance& excess, std::span<float> inputs) noexcept;
 
 /// What forces and their standard deviations are made of; each vector [taxels] where nothing else is said.
@@ -28,6 +28,7 @@ struct ForceSources {
   std::span<const float> log_newtons;         ///< Their outputs.
   std::span<const float> gradient;            ///< d output / d input [inputs, taxels].
   std::span<const float> offset_per_celsius;  ///< [S/C]
+  std::span<const float> offset_sigma;        ///< Part of excess.sigma_siemens that stays from frame to frame [S].
   std::span<const float> relative_variance;   ///< relative_sigma^2 [kSigmaKnots, taxels]
   std::span<const float> table_variance;      ///< Relative, of the law that a table does not know.
   float temperature_sigma = 0.0F;             ///< [C]
@@ -42,6 +43,12 @@ struct FusedForces {
   std::span<float> newtons;
   std::span<float> sigma_newtons;
   std::span<float> noise_newtons;  ///< The part of sigma_newtons that comes from sigma_siemens.
+
+  // ForceSums.
+  std::span<float> signed_newtons;
+  std::span<float> own_variance;
+  std::span<float> newtons_per_siemens;
+  std::span<float> newtons_per_celsius;
 };
 
 void forces(const ForceSources& sources, const FusedForces& fused) noexcept;

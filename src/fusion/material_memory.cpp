@@ -56,6 +56,7 @@ void MaterialMemory::process(ForceFrame& force, std::span<const float> noise_new
   }
   for (std::size_t j = 0; j < law_.gap.size(); ++j) step.half_gap[j] = 0.5F * law_.gap[j];
   step.noise_newtons = noise_newtons;
+  if (!force.sums.newtons.empty()) step.sums = &force.sums;
   step_memory(step, force.newtons, force.sigma_newtons);
   time_ = force.time;
 }

@@ -18,6 +18,26 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr float kMostNewtons = 1e6F;  // that a taxel can remember: keeps the states finite
 
+/// A signed force is freed by the same creep and share, without the cut at zero.
+template <class D>
+void free_sums(D d, ForceSums& sums, std::size_t first, hn::Vec<D> late, hn::Vec<D> by_noise, hn::Vec<D> growth) {
+  const auto scale = [&](std::vector<float>& values, hn::Vec<D> factor) {
+    hn::StoreU(hn::Mul(hn::LoadU(d, values.data() + first), factor), d, values.data() + first);
+  };
+  float* const newtons = sums.newtons.data() + first;
+  hn::StoreU(hn::Mul(hn::Sub(hn::LoadU(d, newtons), late), by_noise), d, newtons);
+  scale(sums.own_variance, hn::Mul(growth, growth));
+  scale(sums.newtons_per_siemens, by_noise);
+  scale(sums.newtons_per_celsius, growth);
+}
+
+/// Below zero where nothing presses, so that the states do not add up its noise.
+template <class D>
+hn::Vec<D> signed_felt(D d, const MemoryStep& step, std::size_t first, hn::Vec<D> felt) {
+  if (step.sums == nullptr) return felt;
+  return hn::IfThenElse(hn::Gt(felt, hn::Zero(d)), felt, hn::LoadU(d, step.sums->newtons.data() + first));
+}
+
 template <class D>
 void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, float* sigma_newtons) {
   const std::size_t taxels = step.newtons.size();
@@ -31,14 +51,16 @@ void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, 
     of_load -= step.late[k];
   }
   const auto gain = hn::Set(d, 1.0F / of_load);
-  const auto told = hn::Mul(hn::Max(hn::Sub(felt, late), hn::Zero(d)), gain);
+  const auto most = hn::Set(d, kMostNewtons);
+  const auto told = hn::Mul(hn::Sub(signed_felt(d, step, first, felt), late), gain);
   const auto last = hn::LoadU(d, step.newtons.data() + first);
-  const auto load = hn::IfThenElse(is_known, hn::Min(told, hn::Set(d, kMostNewtons)), last);
+  const auto signed_load = hn::IfThenElse(is_known, hn::Clamp(told, hn::Neg(most), most), last);
+  const auto load = hn::Max(signed_load, hn::Zero(d));
   hn::StoreU(load, d, step.newtons.data() + first);
   for (std::size_t k = 0; k < step.approach.size(); ++k) {
     float* const at = step.late_newtons.data() + k * taxels + first;
     const auto state = hn::LoadU(d, at);
-    hn::StoreU(hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(load, state), state), d, at);
+    hn::StoreU(hn::MulAdd(hn::Set(d, step.approach[k]), hn::Sub(signed_load, state), state), d, at);
   }
   const auto logarithm = hn::Log1p(d, load);
   const auto change = hn::Sub(logarithm, hn::LoadU(d, step.logarithm.data() + first));
@@ -57,10 +79,12 @@ void step_lanes(D d, const MemoryStep& step, std::size_t first, float* newtons, 
   const auto noise = hn::LoadU(d, step.noise_newtons.data() + first);
   const auto lasting = hn::Max(hn::MulSub(sigma, sigma, hn::Mul(noise, noise)), hn::Zero(d));
   const auto growth = hn::Max(hn::IfThenElse(hn::Gt(felt, hn::Zero(d)), hn::Div(freed, felt), one), one);
-  const auto noise_now = hn::Mul(noise, hn::Mul(share, gain));
+  const auto by_noise = hn::Mul(share, gain);
+  const auto noise_now = hn::Mul(noise, by_noise);
   const auto variance = hn::MulAdd(hn::Mul(growth, growth), lasting, hn::Mul(noise_now, noise_now));
   const auto least = hn::Set(d, std::numeric_limits<float>::min());
   hn::StoreU(hn::IfThenElse(is_known, hn::Max(hn::Sqrt(variance), least), sigma), d, sigma_newtons + first);
+  if (step.sums != nullptr) free_sums(d, *step.sums, first, late, by_noise, growth);
 }
 
 void step_all(const MemoryStep& step, float* newtons, float* sigma_newtons) {

@@ -118,6 +118,8 @@ void encode_contacts(const ArrayContacts& contacts, std::string_view frame_id, s
   write_vector(writer, contacts.centre_of_pressure.value_or(Vector3{}));
   write_count(writer, contacts.contacts.size());
   for (const SuitContact& contact : contacts.contacts) write_contact(writer, contact);
+  writer.write(contacts.sum.newtons);
+  writer.write(contacts.sum.sigma_newtons);
 }
 
 void encode_statistics(const Statistics& statistics, std::string_view frame_id, std::vector<std::uint8_t>& message) {

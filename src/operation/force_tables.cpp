@@ -25,6 +25,11 @@ Result<ForceTables> ForceTables::create(const ForceTablePaths& paths, const pipe
   if (!forces) return forces.error();
   const Status sigmas = create_table(tables.sigmas_, paths.sigmas, array, files::ForceColumn::sigma_newtons);
   if (!sigmas) return sigmas.error();
+  if (!paths.totals.empty()) {
+    Result<files::TotalsCsvWriter> totals = files::TotalsCsvWriter::create(paths.totals);
+    if (!totals) return totals.error();
+    tables.totals_.emplace(*std::move(totals));
+  }
   if (paths.contacts.empty()) return tables;
   Result<files::ContactsCsvWriter> contacts = files::ContactsCsvWriter::create(paths.contacts);
   if (!contacts) return contacts.error();
@@ -46,6 +51,7 @@ Status ForceTables::for_each(Work work) {
   Status status = Done{};
   if (forces_) status = work(*forces_);
   if (status && sigmas_) status = work(*sigmas_);
+  if (status && totals_) status = work(*totals_);
   if (status && contacts_) status = work(*contacts_);
   return status;
 }

@@ -30,7 +30,7 @@ void ContactsInSuit::encode(const live::ArrayResult& result, std::vector<std::ui
     centre = array_.surface.at(*result.report.centre_of_pressure).position;
     if (move_ != Pose{}) centre = moved(move_, *centre);
   }
-  messages::encode_contacts({array_.name, result.report, contacts_, centre}, kSuitFrame, message);
+  messages::encode_contacts({array_.name, result.report, contacts_, centre, result.force.total()}, kSuitFrame, message);
 }
 
 }  // namespace dermis::serve

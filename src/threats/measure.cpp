@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace dermis::threats {
 namespace {
 
-constexpr float kPressedSigmas = 3.0F;  // of the additive noise: what stands out less is none of a sum
+constexpr float kPressedSigmas = 3.0F;  // of the additive noise: what stands out less is not pressed
 constexpr double kSharpShare = 0.9;     // of a contact's force, on two taxels
 
 /// So that value - 2 sigma is what the force surely exceeds. Infinite: the value is a lower bound itself. Beyond the
@@ -23,6 +24,11 @@ double sigma_of_bound(double value, double sigma, bool is_beyond_range) {
 double sigma_of_taxel(const ForceFrame& force, std::size_t taxel) {
   return sigma_of_bound(static_cast<double>(force.newtons[taxel]), static_cast<double>(force.sigma_newtons[taxel]),
                         force.taxels[taxel] == TaxelStatus::above_range);
+}
+
+/// Saturated, or beyond the calibrated range.
+bool is_bound(const ForceFrame& force, std::size_t taxel) {
+  return force.taxels[taxel] == TaxelStatus::above_range || std::isinf(force.sigma_newtons[taxel]);
 }
 
 bool is_worse(const ThreatValue& value, const ThreatValue& than) {
@@ -102,6 +108,28 @@ ThreatValue sharp_pressure(const ThreatLimit& limit, const Area& area, const Con
   return hardest.value + second >= kSharpShare * contact.force_n ? pressure(hardest, area) : ThreatValue{};
 }
 
+/// On pressed taxels alone: what a rate is taken of has little noise.
+ThreatValue pressed_force(const Area& area, const ForceFrame& force) {
+  ThreatValue total;
+  double variance = 0.0;
+  for_each_taxel(area, [&](std::size_t row, std::size_t col, std::size_t taxel) {
+    const auto newtons = static_cast<double>(force.newtons[taxel]);
+    if (!(force.signal_to_noise[taxel] > kPressedSigmas) || !std::isfinite(newtons)) return;
+    const double sigma = sigma_of_taxel(force, taxel);
+    const PlaneVector place = area.place_of(row, col);
+    total.value += newtons;
+    total.position.x += newtons * place.x;
+    total.position.y += newtons * place.y;
+    variance += sigma * sigma;
+  });
+  total.sigma = std::sqrt(variance);
+  if (total.value > 0.0) {
+    total.position.x /= total.value;
+    total.position.y /= total.value;
+  }
+  return total;
+}
+
 }  // namespace
 
 Area Area::whole(const ArrayDescription& array) {
@@ -127,25 +155,23 @@ PlaneVector Area::place_of(std::size_t row, std::size_t col) const noexcept {
   return {static_cast<double>(col) * col_pitch_m, static_cast<double>(row) * row_pitch_m};
 }
 
+/// Signed, so that noise cancels and weak forces on many taxels add up; taxels whose force is a bound count alone.
 ThreatValue total_force(const Area& area, const ForceFrame& force) noexcept {
-  ThreatValue total;
+  thread_local std::vector<std::size_t> taxels;
+  taxels.clear();
+  double newtons = 0.0;
   double variance = 0.0;
-  for_each_taxel(area, [&](std::size_t row, std::size_t col, std::size_t taxel) {
-    const auto newtons = static_cast<double>(force.newtons[taxel]);
-    if (!(force.signal_to_noise[taxel] > kPressedSigmas) || !std::isfinite(newtons)) return;
-    const double sigma = sigma_of_taxel(force, taxel);
-    const PlaneVector place = area.place_of(row, col);
-    total.value += newtons;
-    total.position.x += newtons * place.x;
-    total.position.y += newtons * place.y;
-    variance += sigma * sigma;
+  for_each_taxel(area, [&](std::size_t, std::size_t, std::size_t taxel) {
+    if (!is_bound(force, taxel)) return taxels.push_back(taxel);
+    newtons += static_cast<double>(force.newtons[taxel]);
+    variance += std::pow(sigma_of_taxel(force, taxel), 2);
   });
-  total.sigma = std::sqrt(variance);
-  if (total.value > 0.0) {
-    total.position.x /= total.value;
-    total.position.y /= total.value;
+  const TotalForce others = force.total(taxels);
+  if (others.left_out < taxels.size()) {
+    newtons += others.newtons;
+    variance += std::pow(others.sigma_newtons, 2);
   }
-  return total;
+  return {std::max(newtons, 0.0), std::sqrt(variance), pressed_force(area, force).position};
 }
 
 ThreatValue measure(const ThreatLimit& limit, const Area& area, const ForceFrame& force,
@@ -153,8 +179,8 @@ ThreatValue measure(const ThreatLimit& limit, const Area& area, const ForceFrame
   const bool is_beyond_range = has(force.status, FrameStatus::above_range);
   const auto worst = [&](auto value_of) { return worst_contact(area, report, value_of); };
   switch (limit.quantity) {
-    case ThreatQuantity::total_force:
-    case ThreatQuantity::force_rate: break;
+    case ThreatQuantity::total_force: break;
+    case ThreatQuantity::force_rate: return pressed_force(area, force);
     case ThreatQuantity::taxel_force: return taxel_force(area, force);
     case ThreatQuantity::taxel_pressure: return pressure(taxel_force(area, force), area);
     case ThreatQuantity::contact_force:

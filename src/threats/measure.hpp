@@ -35,7 +35,7 @@ struct Area {
 [[nodiscard]] ThreatValue measure(const ThreatLimit& limit, const Area& area, const ForceFrame& force,
                                   const ContactReport& report) noexcept;
 
-/// Sum over the taxels of the area that stand out of the noise.
+/// The force on the taxels of the area, at least 0; its position is that of the taxels that stand out of the noise.
 [[nodiscard]] ThreatValue total_force(const Area& area, const ForceFrame& force) noexcept;
 
 }  // namespace dermis::threats

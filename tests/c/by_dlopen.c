@@ -35,6 +35,11 @@ int main(int argc, char** argv) {
   dermis_source* source = NULL;
   dermis_raw_frame raw;
   dermis_force_frame force;
+  dermis_total total;
+  dermis_total half;
+  dermis_total rest;
+  uint8_t mask[12] = {1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0};
+  uint8_t others[12] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1};
   const dermis_contact* contacts = NULL;
   size_t count = 0;
   size_t found = 0;
@@ -49,6 +54,7 @@ int main(int argc, char** argv) {
   FUNCTION(dermis_pipeline_create)
   FUNCTION(dermis_pipeline_free)
   FUNCTION(dermis_pipeline_process)
+  FUNCTION(dermis_pipeline_total)
   FUNCTION(dermis_tracker_create)
   FUNCTION(dermis_tracker_free)
   FUNCTION(dermis_tracker_process)
@@ -80,11 +86,18 @@ int main(int argc, char** argv) {
   check(dermis_tracker_process_(tracker, pipeline, &contacts, &count) == DERMIS_OK && count == 0, "no frame, no contact");
   while (dermis_source_next_(source, &raw) == DERMIS_OK) {
     check(dermis_pipeline_process_(pipeline, &raw, &force) == DERMIS_OK, "a frame is processed");
+    check(dermis_pipeline_total_(pipeline, NULL, 0, &total) == DERMIS_OK, "forces are summed up");
+    check(total.sigma_newtons > 0.0 && total.left_out == 0, "a sum has a standard deviation");
+    check(dermis_pipeline_total_(pipeline, mask, 12, &half) == DERMIS_OK, "half of them");
+    check(dermis_pipeline_total_(pipeline, others, 12, &rest) == DERMIS_OK, "the other half");
+    check(fabs(half.newtons + rest.newtons - total.newtons) < 1e-4, "both halves are the whole");
     check(dermis_tracker_process_(tracker, pipeline, &contacts, &count) == DERMIS_OK, "contacts are found");
     found += count;
     if (count > 0) check(contacts[0].force_n >= 0.0 && contacts[0].sigma_force_n > 0.0, "a contact has a force");
   }
   check(found > 0, "there are contacts");
+  check(dermis_pipeline_total_(pipeline, mask, 3, &half) == DERMIS_BAD_INPUT, "a mask fits the array");
+  check(dermis_pipeline_total_(NULL, NULL, 0, &half) == DERMIS_BAD_INPUT, "a pipeline must be there");
   raw.count = 3;
   check(dermis_pipeline_process_(pipeline, &raw, &force) == DERMIS_OK && (force.status & DERMIS_FRAME_REJECTED) != 0,
         "a frame of another shape is rejected");

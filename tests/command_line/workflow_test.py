@@ -42,7 +42,7 @@ class Workflow(SmallArray):
 
     def test_evaluation_as_json(self):
         result = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))
-        self.assertEqual(set(result), {"frames", "frames_rejected", "judged_from_n", "estimators", *BREAKDOWNS,
+        self.assertEqual(set(result), {"frames", "frames_rejected", "judged_from_n", "estimators", "sums", *BREAKDOWNS,
                                        *OVER_TIME, "cramer_rao_bound"})
         self.assertEqual((result["frames"], result["frames_rejected"]), (200, 0))
         names = [entry["name"] for entry in result["estimators"]]
@@ -59,6 +59,18 @@ class Workflow(SmallArray):
         judged = result["estimators"][0]["taxels_judged"]
         for breakdown in BREAKDOWNS:
             self.assertEqual(sum(row["count"] for row in result[breakdown]), judged, breakdown)
+
+    def test_totals_have_a_line_for_each_frame_and_evaluate_judges_them(self):
+        totals = self.work / "totals.csv"
+        self.succeed(*self.run_arguments(self.work / "forces.csv"), "--totals", totals)
+        rows = rows_of(totals)
+        self.assertEqual(rows[0], ["time_s", "status", "total_n", "sigma_total_n", "left_out"])
+        self.assertEqual([row[:2] for row in rows[1:]], [row[:2] for row in rows_of(self.work / "forces.csv")[1:]])
+        self.assertTrue(all(float(row[3]) > 0 and row[4] == "0" for row in rows[1:]))
+        sums = json.loads(self.succeed(*self.evaluate_arguments(), "--json"))["sums"]
+        self.assertEqual(sums["untouched_frames"] + sums["touched_frames"], 200)
+        self.assertLess(abs(sums["relative_bias"]), 0.005, sums)
+        self.assertGreater(sums["coverage_95"], 0.85, sums)
 
     def test_standard_deviations_have_the_shape_of_the_forces_and_cover_the_truth(self):
         out, sigma = self.work / "forces.csv", self.work / "sigma.csv"

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -604,6 +605,116 @@ TEST(ForceNetworks, every_broken_field_is_found) {
     damage(networks);
     EXPECT_FALSE(networks.is_consistent()) << name;
   }
+}
+
+/// As many taxels of one law: F = 10 N (e / 1 mS)^exponent, without an error of its own.
+ForceNetworks equal_laws(std::size_t taxels, float exponent) {
+  ForceNetworks networks = power_law();
+  const auto repeat = [&](auto& values) { values.assign(taxels, values.front()); };
+  repeat(networks.unloaded.offset_siemens);
+  repeat(networks.unloaded.per_celsius);
+  repeat(networks.reference_siemens);
+  repeat(networks.heaviest_siemens);
+  repeat(networks.heaviest_newtons);
+  repeat(networks.gain);
+  repeat(networks.dead);
+  repeat(networks.offset_sigma_siemens);
+  networks.relative_sigma.assign(kSigmaKnots * taxels, 1e-6F);
+  networks.sigma_knots_newtons = {1e-6F, 100.0F};
+  networks.parameters.assign(3 * taxels, 0.0F);
+  std::fill_n(networks.parameters.begin(), taxels, std::log(10.0F));
+  std::fill_n(networks.parameters.begin() + static_cast<std::ptrdiff_t>(taxels), taxels, exponent);
+  return networks;
+}
+
+constexpr double kNoiseSiemens = 1e-6;  // make_frame()
+
+/// Excess conductances of a taxel with noise.
+std::vector<double> noisy(std::size_t taxels, double excess, Random& random) {
+  std::vector<double> siemens(taxels);
+  for (double& value : siemens) value = 1e-5 + excess + kNoiseSiemens * random.normal();
+  return siemens;
+}
+
+TEST(ForceSumsOfFusion, noise_of_an_unloaded_array_cancels_within_its_standard_deviation) {
+  for (const float exponent : {0.8F, 1.0F, 1.2F}) {
+    Random random(1);
+    const ForceNetworks networks = equal_laws(400, exponent);
+    double mean = 0.0;
+    double square = 0.0;
+    double cut = 0.0;
+    constexpr int kFrames = 500;
+    for (int frame = 0; frame < kFrames; ++frame) {
+      const ForceFrame force = fuse(networks, make_frame(noisy(400, 0.0, random), 20.0));
+      const TotalForce total = force.total();
+      mean += total.newtons / total.sigma_newtons / kFrames;
+      square += std::pow(total.newtons / total.sigma_newtons, 2) / kFrames;
+      cut += std::accumulate(force.newtons.begin(), force.newtons.end(), 0.0) / total.sigma_newtons / kFrames;
+    }
+    EXPECT_NEAR(mean, 0.0, 0.15) << "exponent " << exponent << ", seed 1";
+    EXPECT_NEAR(std::sqrt(square), 1.0, 0.25) << "exponent " << exponent << ", seed 1";
+    EXPECT_GT(cut, 5.0) << "what a sum of newtons would be";
+  }
+}
+
+TEST(ForceSumsOfFusion, the_law_is_odd) {
+  const ForceNetworks networks = equal_laws(2, 1.2F);
+  for (const double excess : {1e-8, 1e-7, 1e-6, 1e-5}) {
+    const ForceFrame force = fuse(networks, make_frame({1e-5 + excess, 1e-5 - excess}, 20.0));
+    EXPECT_NEAR(force.sums.newtons[0] / -force.sums.newtons[1], 1.0, 1e-3) << excess;
+    EXPECT_EQ(force.newtons[1], 0.0F);
+  }
+}
+
+TEST(ForceSumsOfFusion, noise_does_not_lift_the_mean_of_a_bent_law) {
+  for (const float exponent : {0.7F, 1.5F, 2.0F}) {
+    Random random(2);
+    constexpr double kExcess = 3.0 * kNoiseSiemens;
+    constexpr std::size_t kTaxels = 100'000;
+    const ForceFrame force = fuse(equal_laws(kTaxels, exponent), make_frame(noisy(kTaxels, kExcess, random), 20.0));
+    const double expected = 10.0 * std::pow(kExcess / 1e-3, exponent);
+    EXPECT_NEAR(force.total().newtons / (kTaxels * expected), 1.0, 0.01) << "exponent " << exponent << ", seed 2";
+  }
+}
+
+TEST(ForceSumsOfFusion, the_sum_of_one_loaded_taxel_is_its_force) {
+  const auto networks = support::random_networks(7, 3, 2, 5);
+  std::vector<double> siemens = networks.unloaded.offset_siemens;
+  for (std::size_t k = 0; k < siemens.size(); ++k)
+    siemens[k] += 0.5 * static_cast<double>(networks.heaviest_siemens[k]);
+  const ForceFrame force = fuse(networks, make_frame(siemens));
+  for (std::size_t k = 0; k < siemens.size(); ++k) {
+    const TotalForce total = force.total(std::vector<std::size_t>{k});
+    EXPECT_NEAR(total.newtons / static_cast<double>(force.newtons[k]), 1.0, 1e-4) << "taxel " << k;
+    EXPECT_NEAR(total.sigma_newtons / static_cast<double>(force.sigma_newtons[k]), 1.0, 1e-4) << "taxel " << k;
+  }
+}
+
+TEST(ForceSumsOfFusion, a_wrong_temperature_moves_all_zeros_alike) {
+  ForceNetworks networks = equal_laws(100, 1.0F);
+  networks.temperature_sigma_celsius = 0.5;
+  const ForceFrame force = fuse(networks, make_frame(std::vector<double>(100, 1e-5), 20.0));
+  const double of_zero = 100.0 * 10.0 / 1e-3 * 1e-6 * 0.5;  // taxels, N/S, S/C, C
+  EXPECT_NEAR(force.total().sigma_newtons, std::hypot(of_zero, 10.0 * 10.0 / 1e-3 * kNoiseSiemens), 0.01 * of_zero);
+}
+
+TEST(ForceSumsOfFusion, dead_and_invalid_taxels_are_left_out_and_saturated_ones_have_no_bound) {
+  ForceNetworks networks = equal_laws(4, 1.0F);
+  networks.dead[0] = 1;
+  ConductanceFrame frame = make_frame(std::vector<double>(4, 1e-4), 20.0);
+  frame.taxels[1] = TaxelStatus::invalid;
+  EXPECT_EQ(fuse(networks, frame).total().left_out, 2U);
+  EXPECT_TRUE(std::isfinite(fuse(networks, frame).total().sigma_newtons));
+  frame.taxels[2] = TaxelStatus::saturated;
+  EXPECT_TRUE(std::isinf(fuse(networks, frame).total().sigma_newtons));
+}
+
+TEST(ForceSumsOfFusion, a_rejected_frame_has_no_sum) {
+  ConductanceFrame frame = make_frame(std::vector<double>(2, 1e-4), 20.0);
+  frame.status = FrameStatus::rejected;
+  const TotalForce total = fuse(equal_laws(2, 1.0F), frame).total();
+  EXPECT_TRUE(std::isnan(total.newtons));
+  EXPECT_EQ(total.left_out, 2U);
 }
 
 }  // namespace

@@ -318,5 +318,44 @@ TEST(MemoryLaw, is_consistent_where_its_inverse_is_stable) {
   EXPECT_FALSE((MemoryLaw{{}, {0.0F, std::numeric_limits<float>::infinity(), 0.0F}}).is_consistent());
 }
 
+/// Of taxels that feel signed noise of one newton.
+ForceFrame noisy_frame(double seconds, std::size_t taxels, Random& random) {
+  std::vector<float> newtons(taxels);
+  for (float& value : newtons) value = static_cast<float>(random.normal());
+  ForceFrame frame = frame_at(seconds, newtons, 1.0F);
+  frame.sums.newtons = newtons;
+  frame.sums.own_variance.assign(taxels, 0.0F);
+  frame.sums.newtons_per_siemens.assign(taxels, 1.0F);
+  frame.sums.newtons_per_celsius.assign(taxels, 0.0F);
+  for (float& value : frame.newtons) value = std::max(value, 0.0F);
+  return frame;
+}
+
+TEST(MaterialMemory, noise_of_unloaded_taxels_cancels_in_sums) {
+  constexpr std::size_t kTaxels = 400;
+  MaterialMemory memory(creep_and_hysteresis(), kTaxels);
+  Random random(7);
+  double mean = 0.0;
+  for (int k = 0; k < 500; ++k) {
+    ForceFrame frame = noisy_frame(0.05 * k, kTaxels, random);
+    process(memory, frame);
+    if (k >= 100) mean += frame.total().newtons / (400.0 * kTaxels);
+  }
+  EXPECT_NEAR(mean, 0.0, 0.01) << "seed 7";
+}
+
+TEST(MaterialMemory, a_loaded_taxel_counts_in_sums_as_it_is_freed) {
+  MaterialMemory memory(creep_and_hysteresis(), 2);
+  for (int k = 0; k < 20; ++k) {
+    ForceFrame frame = frame_at(0.1 * k, {5.0F + static_cast<float>(k), kNan});
+    frame.sums.newtons = frame.newtons;
+    frame.sums.own_variance = {0.0F, 0.0F};
+    frame.sums.newtons_per_siemens = frame.sums.newtons_per_celsius = {0.0F, 0.0F};
+    process(memory, frame);
+    EXPECT_FLOAT_EQ(frame.sums.newtons[0], frame.newtons[0]);
+    EXPECT_EQ(frame.total().left_out, 1U);
+  }
+}
+
 }  // namespace
 }  // namespace dermis::fusion

@@ -102,7 +102,7 @@ TEST(LiveMessages, contacts_stand_in_the_plane_and_in_the_suit) {
   contact.velocity = {0.1, 0.2, 0.3};
   const std::vector<SuitContact> contacts = {contact};
   std::vector<std::uint8_t> message;
-  encode_contacts({"chest", report, contacts, Vector3{4.0, 5.0, 6.0}}, "suit", message);
+  encode_contacts({"chest", report, contacts, Vector3{4.0, 5.0, 6.0}, {-0.5, 0.25, 3}}, "suit", message);
   const json expected_contact = {{"id", 9},
                                  {"phase", 2},
                                  {"onset", stamp()},
@@ -130,7 +130,9 @@ TEST(LiveMessages, contacts_stand_in_the_plane_and_in_the_suit) {
                                                                 {"sigma_total_n", 0.1},
                                                                 {"has_centre_of_pressure", true},
                                                                 {"centre_of_pressure", vector(4.0, 5.0, 6.0)},
-                                                                {"contacts", json::array({expected_contact})}}));
+                                                                {"contacts", json::array({expected_contact})},
+                                                                {"sum_n", -0.5},
+                                                                {"sigma_sum_n", 0.25}}));
   encode_contacts({"chest", report, {}, {}}, "suit", message);
   EXPECT_EQ(read_by_definition(contacts_type(), message)["has_centre_of_pressure"], false);
 }

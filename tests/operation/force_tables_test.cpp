@@ -29,8 +29,8 @@ std::vector<ForceFrame> forces_of(const pipeline::Model& model, const std::vecto
 TEST(ForceTables, are_those_that_are_asked_for_a_line_a_frame_or_a_contact) {
   const MatFiles mat;
   const pipeline::Model model = pipeline::direct_model(force_mat());
-  Result<ForceTables> tables =
-      ForceTables::create({mat.file("forces.csv"), mat.file("sigmas.csv"), mat.file("contacts.csv")}, model);
+  Result<ForceTables> tables = ForceTables::create(
+      {mat.file("forces.csv"), mat.file("sigmas.csv"), mat.file("contacts.csv"), mat.file("totals.csv")}, model);
   ASSERT_TRUE(tables) << error_of(tables);
   for (const ForceFrame& force : forces_of(model, pressed({0.0F, 6.5F, 6.5F}))) ASSERT_TRUE(tables->write(force));
   EXPECT_EQ(mat.text_of("forces.csv"), "");
@@ -42,6 +42,7 @@ TEST(ForceTables, are_those_that_are_asked_for_a_line_a_frame_or_a_contact) {
   EXPECT_EQ(lines("forces.csv"), 4);
   EXPECT_EQ(lines("sigmas.csv"), 4);
   EXPECT_EQ(lines("contacts.csv"), 3);
+  EXPECT_EQ(lines("totals.csv"), 4);
   EXPECT_NE(mat.text_of("forces.csv").find("\n1.01,ok,0,0,0,0,0,6."), std::string::npos) << mat.text_of("forces.csv");
 }
 

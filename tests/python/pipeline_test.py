@@ -43,6 +43,28 @@ class Pipeline(workspace.CalibratedArray):
                 np.testing.assert_array_equal(result.taxels, forces.taxels[k])
                 self.assertEqual(result.status, forces.status[k])
 
+    def test_totals_are_those_of_the_command_line(self):
+        workspace.dermis("run", "--model", self.model, "--in", self.frames, "--totals", self.folder / "totals.csv")
+        table = np.genfromtxt(self.folder / "totals.csv", delimiter=",", names=True, dtype=None, encoding="ascii")
+        forces = dermis.Pipeline(self.loaded).run(self.recording)
+        np.testing.assert_allclose(forces.total, table["total_n"])
+        np.testing.assert_allclose(forces.total_sigma, table["sigma_total_n"])
+
+    def test_a_total_is_the_sum_of_its_regions(self):
+        pipeline = dermis.Pipeline(self.loaded)
+        left = np.zeros((5, 4), bool)
+        left[:, :2] = True
+        for raw in self.recording:
+            force = pipeline.process(raw)
+            newtons, sigma = force.total_of(left)
+            self.assertAlmostEqual(newtons + force.total_of(~left)[0], force.total, places=6)
+            self.assertGreater(sigma, 0.0)
+            self.assertGreaterEqual(force.newtons.sum(), force.total - 0.05 * abs(force.total))
+        with self.assertRaisesRegex(ValueError, "mask: has the shape"):
+            force.total_of(left.T)
+        with self.assertRaisesRegex(TypeError, "mask: has the dtype int64, not bool"):
+            force.total_of(left.astype(int))
+
     def test_any_array_of_numbers_will_do(self):
         raw = self.recording[5]
         expected = dermis.Pipeline(self.loaded).process(raw).newtons
@@ -147,10 +169,12 @@ class Pipeline(workspace.CalibratedArray):
         copied = pickle.loads(pickle.dumps(contacts))
         self.assertEqual(copied, contacts)
         self.assertEqual((copied[0].force_n, copied[0].position_m), (contacts[0].force_n, contacts[0].position_m))
-        for result, members in ((force, ("time_ns", "status", "newtons", "sigma_newtons", "signal_to_noise", "taxels")),
+        for result, members in ((force, ("time_ns", "status", "newtons", "sigma_newtons", "signal_to_noise", "taxels",
+                                         "total")),
                                 (self.recording[3], ("time_ns", "temperature_celsius", "supply_v", "counts")),
                                 (self.recording, ("time_ns", "temperature_celsius", "supply_v", "counts", "name")),
-                                (pipeline.run(self.recording), ("time_ns", "status", "newtons", "taxels")),
+                                (pipeline.run(self.recording), ("time_ns", "status", "newtons", "taxels", "total",
+                                                                "total_sigma")),
                                 (self.loaded.array, ("name", "rows", "cols", "circuit", "taxel_area_m2"))):
             back = pickle.loads(pickle.dumps(result))
             for member in members:

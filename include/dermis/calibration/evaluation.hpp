@@ -52,6 +52,17 @@ struct Coverage {
   std::optional<double> share_95;  ///< Within 1.96 sigma.
 };
 
+/// Forces on the whole array (ForceFrame::total) beside the loads, in frames whose loads are known throughout.
+struct SumErrors {
+  std::size_t untouched = 0;                       ///< Frames.
+  std::optional<double> untouched_mean_n;          ///< Their mean sum [N]: 0 where it is right.
+  std::optional<double> untouched_within_2_sigma;  ///< Share of them.
+  std::size_t touched = 0;                         ///< Frames.
+  std::optional<double> relative_bias;             ///< Of all their sums together.
+  std::optional<double> share_68;                  ///< As Coverage.
+  std::optional<double> share_95;
+};
+
 /// dermis beside the Cramer-Rao bound: the least standard deviation that the noise of the ADC leaves to an unbiased
 /// estimator that knows the circuit and the material. Over some of the frames, evenly, and their judged taxels.
 struct BoundComparison {
@@ -138,6 +149,7 @@ struct Evaluation {
   double judged_from_n = 0.0;        ///< True force from which on taxels are judged [N]: kJudgedShare.
   std::vector<EstimatorResult> estimators;
   Coverage coverage;  ///< Of dermis, over all judged taxels.
+  SumErrors sums;     ///< Of dermis.
   BoundComparison bound;
   std::vector<JudgedTaxel> taxels;
   std::vector<JudgedTotal> totals;

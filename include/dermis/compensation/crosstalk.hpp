@@ -80,6 +80,7 @@ class CrosstalkInversion {
 
 class FaultInversion;
 class PossibleReadings;
+class SharedErrors;
 class Spikes;
 class SupplyError;
 
@@ -118,12 +119,14 @@ class Compensator {
               const ReferenceConductances& references);
   InversionResult invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept;
   InversionResult invert_possible(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
+  void note_errors(const ConditionedFrame& conditioned, ConductanceFrame& conductance) const noexcept;
   void mask_faulty_taxels(ConductanceFrame& conductance) const noexcept;
 
   std::unique_ptr<CrosstalkInversion> inversion_;
   std::unique_ptr<PossibleReadings> possible_;
   std::unique_ptr<Spikes> spikes_;
   std::unique_ptr<SupplyError> supply_error_;
+  std::shared_ptr<const SharedErrors> shared_errors_;
   std::unique_ptr<FaultInversion> faults_;
 };
 

@@ -5,8 +5,11 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "dermis/core/force_sums.hpp"
 
 /// The stages of a tactile frame. The stage is in the type: counts cannot be passed where newtons are meant.
 /// Every per-taxel vector has the shape [rows, cols], row-major: index = row * cols + col.
@@ -98,6 +101,7 @@ struct ConductanceFrame {
   /// The reading of a taxel held at 0 is below instead.
   double residual_sigma = 0.0;
   std::vector<TaxelStatus> taxels;
+  ConductanceErrors errors{};  ///< Before any drift is taken out.
 };
 
 /// Unit 4 ->. What the robot wants.
@@ -115,6 +119,15 @@ struct ForceFrame {
   /// does not affect contact detection. Around 0 where nothing presses, infinite where a reading is saturated, NaN
   /// where `newtons` is.
   std::vector<float> signal_to_noise{};
+  ForceSums sums{};  ///< Empty where the frame was not made by unit 4; sums then are those of `newtons`.
+
+  /// The force on the whole array. To be used in place of a sum of `newtons`, in which noise does not cancel. Taxels
+  /// without a force are left out. The standard deviation counts what taxels share: noise through the circuit, supply,
+  /// drivers, temperature. Allocates nothing after the first call of a thread.
+  [[nodiscard]] TotalForce total() const noexcept;
+
+  /// The same of some taxels: their indices, each once.
+  [[nodiscard]] TotalForce total(std::span<const std::size_t> taxels) const noexcept;
 };
 
 }  // namespace dermis

@@ -89,6 +89,9 @@ struct ForceNetworks {
 /// An error of the temperature moves the zero of all taxels alike, and no sum over taxels averages it out. So two
 /// standard deviations of it count in full.
 ///
+/// ForceFrame::sums continues the law below zero, F(-e) = -F(e), so that noise of either sign cancels. A bent law lifts
+/// the mean of a noisy e: of F is taken away p (p - 1) / 2 times the square of noise over e, which is at most 1 here.
+///
 /// Not thread-safe: one per stream.
 class ForceFusion {
  public:
@@ -117,7 +120,7 @@ class ForceFusion {
   void compute_signals(double temperature_sigma, ForceFrame& force) const noexcept;
   void apply_status(ForceFrame& force) const noexcept;
   [[nodiscard]] bool are_plain(std::size_t from, std::size_t to, const ForceFrame& force) const noexcept;
-  void apply_status(std::size_t taxel, ForceFrame& force) const noexcept;
+  [[nodiscard]] bool apply_status(std::size_t taxel, ForceFrame& force) const noexcept;
   void extrapolate(std::size_t taxel, float& newtons, float& sigma) const noexcept;
 
   ForceNetworks networks_;

@@ -37,6 +37,8 @@ struct MemoryLaw {
 /// s, exactly for any intervals, where the load of a frame lies on the taxel since the frame before. The second undoes
 /// stops (Prandtl 1928): the material reads low after loading and high after unloading.
 ///
+/// Where nothing presses, u is the signed force of ForceFrame::sums, so the states do not add up its noise.
+///
 /// The states are bounded by the heaviest load that was, whatever the frames are. What lies on the array in the first
 /// frame counts as lying there for long; a frame that is earlier than the one before it is the first of a recording
 /// that begins anew. A taxel without a force counts as carrying its last one, a rejected frame as none at all.
@@ -50,8 +52,8 @@ class MaterialMemory {
   /// `law` must be consistent.
   MaterialMemory(const MemoryLaw& law, std::size_t taxels);
 
-  /// newtons and sigma_newtons of a frame of the array's size. `noise_newtons`: ForceFusion::noise_newtons() of the
-  /// same frame. Allocates nothing.
+  /// newtons, sigma_newtons and sums of a frame of the array's size. `noise_newtons`: ForceFusion::noise_newtons() of
+  /// the same frame. Allocates nothing.
   void process(ForceFrame& force, std::span<const float> noise_newtons) noexcept;
 
  private:

@@ -55,6 +55,7 @@ struct ArrayContacts {
   const ContactReport& report;
   std::span<const SuitContact> contacts;        ///< Those of the report, placed.
   std::optional<Vector3> centre_of_pressure{};  ///< In the suit's frame.
+  TotalForce sum{};                             ///< On the whole array.
 };
 void encode_contacts(const ArrayContacts& contacts, std::string_view frame_id, std::vector<std::uint8_t>& message);
 

@@ -10,6 +10,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/files/contacts_csv.hpp"
 #include "dermis/files/forces_csv.hpp"
+#include "dermis/files/totals_csv.hpp"
 #include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/model.hpp"
 
@@ -20,6 +21,7 @@ struct ForceTablePaths {
   std::string forces;
   std::string sigmas;  ///< Of the forces, their standard deviations.
   std::string contacts;
+  std::string totals{};  ///< The force on the whole array.
 };
 
 /// The forces of a model frame by frame as tables. Each appears complete with commit(), or not at all. Not thread-safe.
@@ -49,6 +51,7 @@ class ForceTables {
   std::optional<files::ForcesCsvWriter> forces_;
   std::optional<files::ForcesCsvWriter> sigmas_;
   std::optional<ContactTable> contacts_;
+  std::optional<files::TotalsCsvWriter> totals_;
 };
 
 }  // namespace dermis::operation

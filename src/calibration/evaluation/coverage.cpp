@@ -9,9 +9,6 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr double kSigmas68 = 0.99446;  // a normal error is within so many standard deviations with 68 % probability
-constexpr double kSigmas95 = 1.95996;
-
 bool has_finite_sigma(const JudgedTaxel& taxel) {
   return std::isfinite(taxel.sigma_newtons);
 }

@@ -8,6 +8,9 @@
 
 namespace dermis::calibration {
 
+inline constexpr double kSigmas68 = 0.99446;  // a normal error is within so many standard deviations
+inline constexpr double kSigmas95 = 1.95996;  // with 68 % probability, and with 95 %
+
 [[nodiscard]] Coverage coverage_of(std::span<const JudgedTaxel> taxels);
 
 }  // namespace dermis::calibration

@@ -13,6 +13,7 @@
 #include "calibration/evaluation/estimator_row.hpp"
 #include "calibration/evaluation/example_choice.hpp"
 #include "calibration/evaluation/judgement.hpp"
+#include "calibration/evaluation/sum_judgement.hpp"
 #include "calibration/labels/labels.hpp"
 #include "dermis/calibration/sample_database.hpp"
 #include "dermis/pipeline/frame_troubles.hpp"
@@ -62,6 +63,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   evaluation.judged_from_n = row.judged_from_n();
   Judgement judgement(row.names().size(), model.array.taxel_count());
   ExampleChoice examples;
+  SumJudgement sums;
   std::size_t labelled = 0;
   for (std::size_t frame = 0; frame < frames.size(); ++frame) labelled += loads_of[frame].empty() ? 0 : 1;
   BoundCollector bound(model, labelled);
@@ -79,6 +81,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
     expand_loads(model.array, loads_of[frame], truth);
     judgement.add(frame, frames[frame], truth, row);
     examples.offer(frame, truth, row);
+    sums.add(truth, row.force());
     bound.offer(truth, row);
   }
   evaluation.most_have_forces = troubles.verdict();
@@ -95,6 +98,7 @@ Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFra
   evaluation.after_release = judgement.after_release.bins();
   evaluation.bound = bound.comparison();
   evaluation.coverage = coverage_of(evaluation.taxels);
+  evaluation.sums = sums.errors();
   evaluation.examples = std::move(examples).chosen();
   break_down(evaluation);
   return evaluation;

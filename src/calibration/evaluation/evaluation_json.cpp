@@ -36,6 +36,16 @@ Json estimator_json(const EstimatorResult& result) {
           {"totals_judged", result.totals_judged}};
 }
 
+Json sums_json(const SumErrors& sums) {
+  return {{"untouched_frames", sums.untouched},
+          {"untouched_mean_n", number(sums.untouched_mean_n)},
+          {"untouched_within_2_sigma", number(sums.untouched_within_2_sigma)},
+          {"touched_frames", sums.touched},
+          {"relative_bias", number(sums.relative_bias)},
+          {"coverage_68", number(sums.share_68)},
+          {"coverage_95", number(sums.share_95)}};
+}
+
 Json breakdown_json(const Evaluation& evaluation, const std::vector<BreakdownBin>& bins) {
   Json rows = Json::array();
   for (const BreakdownBin& bin : bins) {
@@ -80,6 +90,7 @@ std::string to_json(const Evaluation& evaluation) {
                {"frames_rejected", evaluation.frames_rejected},
                {"judged_from_n", evaluation.judged_from_n},
                {"estimators", std::move(estimators)},
+               {"sums", sums_json(evaluation.sums)},
                {"by_force", breakdown_json(evaluation, evaluation.by_force)},
                {"by_temperature", breakdown_json(evaluation, evaluation.by_temperature)},
                {"by_supply", breakdown_json(evaluation, evaluation.by_supply)},

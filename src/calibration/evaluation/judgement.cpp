@@ -52,7 +52,10 @@ void add_totals(std::size_t frame, const RawFrame& raw, const Sample& truth, con
   for (const TotalForce& total : truth.totals) {
     JudgedTotal judged{frame, total.newtons, raw.temperature_celsius, {}};
     if (is_only_one) judged.touch = judgement.total_clock.touch();
-    for (const std::vector<float>& forces : row.newtons()) {
+    const auto of_dermis = row.force().total(total.taxels);
+    judged.newtons.push_back(of_dermis.left_out < total.taxels.size() ? of_dermis.newtons : 0.0);
+    for (std::size_t k = 1; k < row.newtons().size(); ++k) {
+      const std::vector<float>& forces = row.newtons()[k];
       double sum = 0.0;
       for (const std::size_t taxel : total.taxels) {
         const auto newtons = static_cast<double>(forces[taxel]);

@@ -12,7 +12,8 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr std::size_t kMostOfPlace = 4000;  // as many points as a network of its own is trained on
+constexpr std::size_t kMostOfPlace = 4000;         // as many points as a network of its own is trained on
+constexpr std::size_t kLeastShareOfUnloaded = 16;  // one of so many samples may be: each tells the zero of all taxels
 constexpr std::size_t kMostBytes = 180'000'000;
 constexpr std::size_t kBytesPerTaxel = 17;  // of a sample: ratio, siemens, sigma, status, force
 constexpr std::size_t kAllocations = 5;     // of a sample, and what each of them costs
@@ -68,6 +69,11 @@ std::vector<std::span<const Candidate>> by_place(std::span<const Candidate> cand
   return places;
 }
 
+std::size_t count_of(std::span<const Candidate> place, std::size_t quota, std::size_t most) {
+  const bool is_unloaded = place.back().load == 0.0;
+  return std::min(place.size(), is_unloaded ? std::max(quota, most / kLeastShareOfUnloaded) : quota);
+}
+
 /// The most samples of one place with which all together are at most `most`; at least 1.
 std::size_t quota_of(const std::vector<std::span<const Candidate>>& places, std::size_t most) {
   std::size_t low = 1;
@@ -75,7 +81,7 @@ std::size_t quota_of(const std::vector<std::span<const Candidate>>& places, std:
   while (low < high) {
     const std::size_t middle = (low + high + 1) / 2;
     std::size_t sum = 0;
-    for (const auto& place : places) sum += std::min(place.size(), middle);
+    for (const auto& place : places) sum += count_of(place, middle, most);
     if (sum <= most) {
       low = middle;
     } else {
@@ -102,7 +108,7 @@ std::vector<bool> choose_samples(std::size_t taxels, const LoadsOfFrames& loads)
   const std::size_t quota = candidates.size() <= most ? candidates.size() : quota_of(places, most);
   std::vector<Candidate> chosen;
   for (const auto& place : places) {
-    for_each_evenly(place, std::min(place.size(), quota), [&](const Candidate& one) { chosen.push_back(one); });
+    for_each_evenly(place, count_of(place, quota, most), [&](const Candidate& one) { chosen.push_back(one); });
   }
   std::vector<bool> is_chosen(loads.frame_count());
   for_each_evenly(chosen, std::min(chosen.size(), most), [&](const Candidate& one) { is_chosen[one.frame] = true; });

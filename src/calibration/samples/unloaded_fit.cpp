@@ -11,6 +11,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr double kLeastNoiseCounts = 1.0 / 3;  // quantisation alone gives 1 / sqrt(12)
+constexpr double kHiddenNoiseCounts = 0.75;    // whole counts may have a median deviation of 0 up to this
 constexpr std::size_t kLeastFramesForNoise = 5;
 
 /// Temperature offset and conductance of one taxel in the frames in which nothing presses.
@@ -45,6 +46,7 @@ double normalised_temperature(const Sample& sample, const SampleTemperatures& te
 UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperatures& temperatures) {
   const std::size_t taxels = database.array.taxel_count();
   const double least_noise = kLeastNoiseCounts * database.siemens_per_count;
+  const double hidden_noise = kHiddenNoiseCounts * database.siemens_per_count;
   UnloadedFit fit{{std::vector<double>(taxels), std::vector<double>(taxels), temperatures.span},
                   std::vector<double>(taxels),
                   std::vector<double>(taxels, least_noise),
@@ -53,7 +55,7 @@ UnloadedFit fit_unloaded(const SampleDatabase& database, const SampleTemperature
     const std::vector<Point> points = unloaded_points(database, taxel, temperatures);
     fit.is_stuck[taxel] = points.empty();
     if (points.empty()) continue;
-    const RobustLine line = fit_robust_line(points, spans_temperatures(points), least_noise);
+    const RobustLine line = fit_robust_line(points, spans_temperatures(points), hidden_noise);
     fit.law.offset_siemens[taxel] = line.level;
     fit.law.per_celsius[taxel] = line.slope;
     fit.noise_siemens[taxel] =

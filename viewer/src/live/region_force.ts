@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { emptyGrid, readGrid, TaxelStatus } from "../messages/grids";
+import { emptyGrid, type GridFrame, readGrid, TaxelStatus } from "../messages/grids";
 import { Signal } from "../signal";
 import type { ArrayDescription } from "../suit";
 import { ForceHistory } from "./force_history";
@@ -22,6 +22,9 @@ export function regionBetween(array: ArrayDescription, one: number, other: numbe
 export function regionName({ rows, cols }: Region): string {
   return `r${rows[0]}c${cols[0]} \u2013 r${rows[1]}c${cols[1]}`;
 }
+
+/** Of its standard deviation, from which on a taxel counts: forces are cut at zero, so that the noise of others adds up. */
+const COUNTED_SIGMAS = 3;
 
 /** The force on the region that the user has drawn, from then on, whatever is shown. Faulty taxels have none. */
 export class RegionForce {
@@ -49,10 +52,16 @@ export class RegionForce {
     let sum = 0;
     for (let row = rows[0]; row <= rows[1]; ++row) {
       for (let taxel = row * frame.cols + cols[0]; taxel <= row * frame.cols + cols[1]; ++taxel) {
-        if (frame.statuses[taxel]! < TaxelStatus.dead) sum += frame.values[taxel]!;
+        if (counts(frame, taxel)) sum += frame.values[taxel]!;
       }
     }
     this.newtons = sum;
     this.history.add(frame.stampS, sum);
   }
+}
+
+/** Saturated taxels have a standard deviation without bound, and count. */
+function counts({ values, sigmas, statuses }: GridFrame, taxel: number): boolean {
+  const isLoaded = values[taxel]! > COUNTED_SIGMAS * sigmas[taxel]! || sigmas[taxel] === Infinity;
+  return isLoaded && statuses[taxel]! < TaxelStatus.dead;
 }

@@ -37,6 +37,9 @@ export class ContactsFrame {
   readonly centreOfPressure = new Float64Array(3);
   count = 0;
   readonly contacts: Contact[] = [];
+  /** Force on the whole array, and its standard deviation. */
+  sumN = NaN;
+  sigmaSumN = NaN;
 }
 
 const MOST_CONTACTS = 4096;
@@ -64,6 +67,8 @@ export function readContacts(message: DataView, frame: ContactsFrame): void {
   while (frame.contacts.length < count) frame.contacts.push(new Contact());
   frame.count = count;
   for (let index = 0; index < count; ++index) readContact(frame.contacts[index]!);
+  frame.sumN = reader.float64();
+  frame.sigmaSumN = reader.float64();
 }
 
 function readTriple(target: Float64Array): void {

@@ -27,6 +27,8 @@ function contacts(array: string, ids: number[]): DataView {
     has_centre_of_pressure: true,
     centre_of_pressure: { x: 1, y: 2, z: 3 },
     contacts: ids.map(contact),
+    sum_n: -0.25,
+    sigma_sum_n: 0.125,
   });
 }
 
@@ -34,7 +36,7 @@ describe("contacts", () => {
   it("come with all of their fields", () => {
     const frame = new ContactsFrame();
     readContacts(contacts("left_arm", [7, 9]), frame);
-    expect(frame).toMatchObject({ stampS: 1234.5, totalForceN: 25, sigmaTotalN: 0.5, hasCentreOfPressure: true, count: 2 });
+    expect(frame).toMatchObject({ stampS: 1234.5, totalForceN: 25, sigmaTotalN: 0.5, hasCentreOfPressure: true, count: 2, sumN: -0.25, sigmaSumN: 0.125 });
     expect([...frame.centreOfPressure]).toEqual([1, 2, 3]);
     const [, second] = frame.contacts;
     const { position, normal, onset, velocity: _, ...rest } = contact(9);

@@ -282,7 +282,7 @@ class ArrayView implements View {
     const shown = live.arrays[suit.indexOf(array.name)];
     if (shown === undefined) return;
     this.#contacts.show(shown);
-    this.#summary.show(array, shown, array.calibrated ? force! : raw!, this.#choices.share.value !== "highest");
+    this.#summary.show(array, shown, array.calibrated ? force! : raw!);
     this.#summary.showRegion(live.region.region.value?.array === array.name ? live.region : undefined);
   }
 

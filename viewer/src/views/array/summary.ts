@@ -37,15 +37,15 @@ export class Summary {
     );
   }
 
-  /** `shown`: the forces, or the counts of an array without a model; their sum is shown where they are of one moment. */
-  show(array: ArrayDescription, { contacts, centre }: ArrayLive, shown: GridFrame, areOfOneMoment: boolean): void {
-    const { highest, sum, faulty, worst } = survey(shown);
+  /** `shown`: the forces, or the counts of an array without a model. */
+  show(array: ArrayDescription, { contacts, centre }: ArrayLive, shown: GridFrame): void {
+    const { highest, faulty, worst } = survey(shown);
     if (!array.calibrated) return this.#showCounts(array, shown, highest);
     setText(this.#total, fixed(contacts.totalForceN, 2));
     setText(this.#sigma, `\u00b1 ${fixed(contacts.sigmaTotalN, 2)}`);
     setText(this.#values[0]!, String(touching(contacts.contacts, contacts.count)));
     setText(this.#values[1]!, highest < 0 ? fixed(NaN, 0) : `${fixed(shown.values[highest]!, 2)} N  ${taxelName(highest, array)}`);
-    setText(this.#values[2]!, areOfOneMoment ? `${fixed(sum, 2)} N` : fixed(NaN, 0));
+    setText(this.#values[2]!, `${fixed(contacts.sumN, 2)} \u00b1 ${fixed(contacts.sigmaSumN, 2)} N`);
     setText(this.#values[3]!, faulty === 0 ? "none" : `${faulty}, ${statusWord(worst)}`);
     const last = centre.length - 1;
     setText(this.#values[4]!, last < 0 ? fixed(NaN, 0) : `${fixed(1e3 * centre.x(last), 1)}, ${fixed(1e3 * centre.y(last), 1)} mm`);
@@ -71,15 +71,14 @@ function touching(contacts: readonly Contact[], count: number): number {
   return number;
 }
 
-function survey({ values, statuses }: GridFrame): { highest: number; sum: number; faulty: number; worst: number } {
-  const found = { highest: -1, sum: 0, faulty: 0, worst: 0 };
+function survey({ values, statuses }: GridFrame): { highest: number; faulty: number; worst: number } {
+  const found = { highest: -1, faulty: 0, worst: 0 };
   for (let taxel = 0; taxel < values.length; ++taxel) {
     if (statuses[taxel]! >= TaxelStatus.dead) {
       found.faulty += 1;
       found.worst = Math.max(found.worst, statuses[taxel]!);
       continue;
     }
-    found.sum += values[taxel]!;
     if (found.highest < 0 || values[taxel]! > values[found.highest]!) found.highest = taxel;
   }
   return found;

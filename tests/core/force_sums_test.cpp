@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "dermis/core/force_sums.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "dermis/core/frames.hpp"
+
+namespace dermis {
+namespace {
+
+constexpr float kNoForce = std::numeric_limits<float>::quiet_NaN();
+
+/// Whose variance is (sum of weight * siemens)^2: one factor is wrong for all.
+class OneFactor final : public CircuitErrors {
+ public:
+  [[nodiscard]] double variance(const ConductanceErrors& errors,
+                                std::span<const double> weight) const noexcept override {
+    return std::pow(std::inner_product(weight.begin(), weight.end(), errors.siemens.begin(), 0.0), 2);
+  }
+};
+
+/// Three taxels, the middle one with noise below zero.
+ForceFrame signed_frame() {
+  ForceFrame force;
+  force.newtons = {3.0F, 0.0F, 1.0F};
+  force.sigma_newtons = {1.0F, 1.0F, 1.0F};
+  force.sums.newtons = {3.0F, -0.5F, 1.0F};
+  force.sums.own_variance = {0.09F, 0.16F, 0.0F};
+  force.sums.newtons_per_siemens = {1.0F, 2.0F, 3.0F};
+  force.sums.newtons_per_celsius = {0.0F, 0.0F, 0.0F};
+  return force;
+}
+
+TEST(ForceSums, noise_below_zero_counts) {
+  const TotalForce total = signed_frame().total();
+  EXPECT_DOUBLE_EQ(total.newtons, 3.5);
+  EXPECT_NEAR(total.sigma_newtons, 0.5, 1e-7);
+  EXPECT_EQ(total.left_out, 0U);
+}
+
+TEST(ForceSums, a_region_is_the_sum_of_its_taxels) {
+  const std::vector<std::size_t> taxels{2, 1};
+  const TotalForce total = signed_frame().total(taxels);
+  EXPECT_DOUBLE_EQ(total.newtons, 0.5);
+  EXPECT_NEAR(total.sigma_newtons, 0.4, 1e-7);
+  EXPECT_EQ(signed_frame().total(std::vector<std::size_t>{}), TotalForce{});
+}
+
+TEST(ForceSums, an_error_that_taxels_share_adds_up_before_it_is_squared) {
+  ForceFrame force = signed_frame();
+  force.sums.own_variance.assign(3, 0.0F);
+  force.sums.newtons_per_celsius = {0.1F, 0.2F, 0.3F};
+  force.sums.temperature_sigma = 0.5;
+  EXPECT_NEAR(force.total().sigma_newtons, 0.3, 1e-7);
+  force.sums.newtons_per_celsius = {0.1F, 0.2F, -0.3F};
+  EXPECT_NEAR(force.total().sigma_newtons, 0.0, 1e-7);
+  force.sums.gain_sigma = 0.02;
+  EXPECT_NEAR(force.total().sigma_newtons, 0.07, 1e-7);
+}
+
+TEST(ForceSums, the_circuit_sees_the_region_alone) {
+  ForceFrame force = signed_frame();
+  force.sums.own_variance.assign(3, 0.0F);
+  force.sums.conductances.siemens = {1.0F, 1.0F, 1.0F};
+  force.sums.conductances.circuit = std::make_shared<const OneFactor>();
+  EXPECT_NEAR(force.total().sigma_newtons, 6.0, 1e-7);
+  const std::vector<std::size_t> taxels{0, 1};
+  EXPECT_NEAR(force.total(taxels).sigma_newtons, 3.0, 1e-7);
+}
+
+TEST(ForceSums, noise_without_a_circuit_is_independent) {
+  ForceFrame force = signed_frame();
+  force.sums.own_variance.assign(3, 0.0F);
+  force.sums.conductances.noise_siemens = {0.2F, 0.2F, 0.1F};
+  EXPECT_NEAR(force.total().sigma_newtons, std::sqrt(0.04 + 0.16 + 0.09), 1e-7);
+}
+
+TEST(ForceSums, taxels_without_a_force_are_left_out_and_counted) {
+  ForceFrame force = signed_frame();
+  force.sums.newtons[0] = kNoForce;
+  const TotalForce total = force.total();
+  EXPECT_DOUBLE_EQ(total.newtons, 0.5);
+  EXPECT_EQ(total.left_out, 1U);
+  EXPECT_NEAR(total.sigma_newtons, 0.4, 1e-7);
+}
+
+TEST(ForceSums, where_all_are_left_out_there_is_no_sum) {
+  ForceFrame force = signed_frame();
+  force.sums.newtons.assign(3, kNoForce);
+  EXPECT_TRUE(std::isnan(force.total().newtons));
+  EXPECT_TRUE(std::isnan(force.total().sigma_newtons));
+  EXPECT_EQ(force.total().left_out, 3U);
+}
+
+TEST(ForceSums, a_force_without_an_upper_bound_leaves_none_to_the_sum) {
+  ForceFrame force = signed_frame();
+  force.sums.own_variance[2] = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(std::isinf(force.total().sigma_newtons));
+  EXPECT_DOUBLE_EQ(force.total().newtons, 3.5);
+}
+
+TEST(ForceSums, a_frame_without_signed_forces_sums_what_it_has) {
+  ForceFrame force;
+  force.newtons = {3.0F, kNoForce, 1.0F};
+  force.sigma_newtons = {0.3F, kNoForce, 0.4F};
+  const TotalForce total = force.total();
+  EXPECT_DOUBLE_EQ(total.newtons, 4.0);
+  EXPECT_NEAR(total.sigma_newtons, 0.5, 1e-7);
+  EXPECT_EQ(total.left_out, 1U);
+}
+
+}  // namespace
+}  // namespace dermis
