@@ -22,6 +22,8 @@ import numpy
 ROWS = COLS = 10
 DRIVE_OHM, LOAD_OHM, CONTACT_OHM = 30.0, 220.0, 60.0
 FULL, VOLTS = 4095, 5.0
+SUPPLY_OHM = 12.0  # takes 5 % of a row of four firm taxels
+TOUCHES = 24       # at once, at work
 FAULTS = ("none", "settling", "sag", "offset", "curve", "multiplexer")
 FORCES = (0.7, 1.5, 3.0, 6.0, 12.0, 20.0)
 
@@ -61,7 +63,7 @@ class World:
         sources[range(ROWS), range(ROWS)] = 1 / self.drive
         solved = numpy.linalg.solve(network, sources)
         taken = (1 - numpy.diag(solved[:ROWS])) / self.drive
-        supply_ohm = 5.0 if self.fault == "sag" else 0.0
+        supply_ohm = SUPPLY_OHM if self.fault == "sag" else 0.0
         return (solved[ROWS:] / (1 + supply_ohm * taken)).T
 
     def counts(self, force):
@@ -81,7 +83,7 @@ class World:
         if self.fault == "settling":
             return "adc_settling = 0.03\n"
         if self.fault == "sag":
-            return "supply_ohm = 5.0\n"
+            return f"supply_ohm = {SUPPLY_OHM}\n"
         if self.fault == "offset":
             return "adc_offset_counts = 10\n"
         if self.fault == "curve":
@@ -148,8 +150,8 @@ def work(world, count=300):
     fields, frames = [], []
     for _ in range(count):
         field = numpy.zeros(ROWS * COLS)
-        taxels = world.random.choice(ROWS * COLS, 8, replace=False)
-        field[taxels] = numpy.exp(world.random.uniform(0.0, numpy.log(20.0), 8))
+        taxels = world.random.choice(ROWS * COLS, TOUCHES, replace=False)
+        field[taxels] = numpy.exp(world.random.uniform(0.0, numpy.log(20.0), TOUCHES))
         fields.append(field)
         frames.append(world.counts(field.reshape(ROWS, COLS)))
     return numpy.array(fields), frames
@@ -203,7 +205,7 @@ def judge(binary, fault, mode, seed, presses, folder):
     figures = {"median": 100 * numpy.median(numpy.abs(error / fields[is_touched])),
                "bias": 100 * numpy.median(error / fields[is_touched]),
                "within 1": 100 * numpy.mean(sigmas < 1), "within 2": 100 * numpy.mean(sigmas < 2)}
-    words = r"settl|supply_ohm|sags|offset_counts|bend|drive_ohm|driver|instrument|add up"
+    words = r"settl|supply_ohm|sags|offset_counts|bent|drive_ohm|driver|instrument|add up"
     named = [line.strip() for line in (said + doctor).splitlines() if re.search(words, line)]
     return figures, "\n".join(named)
 

@@ -12,9 +12,11 @@
 #include <utility>
 
 #include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/circuit_fit/line_parameters.hpp"
 #include "calibration/instrument/instrument_parameters.hpp"
 #include "calibration/instrument/press_law.hpp"
 #include "calibration/instrument/settling.hpp"
+#include "dermis/core/quantile.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -32,6 +34,8 @@ constexpr const char* kNoPresses =
     "adc_offset_counts and supply_ohm cannot be told: press several taxels at once, such as twenty times a known "
     "weight "
     "over two to four taxels of a row";
+constexpr double kWorthAFit = 0.5;  // of that, as one step foretells it
+constexpr double kMostPressesShare = 0.9;
 constexpr double kNoticed = 2.0;  // mean square of presses that do not agree
 
 /// Parts with values that explain presses as well as they can.
@@ -39,11 +43,14 @@ struct Explanation {
   InstrumentParameters parameters;
   VectorXd values;
   VectorXd errors;     // standard errors
-  VectorXd residuals;  // of each press on several taxels, in sigmas
+  VectorXd residuals;  // of presses and idle lines, in sigmas
+
+  /// Squares of what it leaves, and of how unusual it is.
+  [[nodiscard]] double cost() const;
 };
 
 /// Sum of squares in which outliers count by their first power (Huber).
-double cost(const VectorXd& residuals) {
+double huber_cost(const VectorXd& residuals) {
   double sum = 0.0;
   for (const double residual : residuals) {
     const double size = std::abs(residual);
@@ -52,10 +59,24 @@ double cost(const VectorXd& residuals) {
   return sum;
 }
 
+double Explanation::cost() const {
+  return huber_cost(residuals) + values.cwiseQuotient(parameters.usual()).squaredNorm();
+}
+
+/// Inversions of large arrays, and by Newton's method, take long.
+std::size_t affordable_presses(const ArrayDescription& array) {
+  constexpr std::size_t kTaxels = 400'000;
+  constexpr std::size_t kFew = 100;
+  constexpr std::size_t kMany = 600;
+  const bool is_slow = is_inverted_slowly(array) || !array.readout.row_segment_ohm.empty();
+  return is_slow ? kFew : std::clamp(kTaxels / array.taxel_count(), kFew, kMany);
+}
+
 /// The presses of a calibration, and what an instrument leaves of them.
 class Judge {
  public:
-  explicit Judge(const CircuitFrames& frames) : presses_(sort_presses(frames)), frames_(frames_of(presses_)) {}
+  Judge(const ArrayDescription& array, const CircuitFrames& frames)
+      : cols_(array.cols), presses_(sort_presses(frames, affordable_presses(array))), frames_(frames_of(presses_)) {}
 
   [[nodiscard]] const Presses& presses() const { return presses_; }
 
@@ -63,16 +84,27 @@ class Judge {
   std::optional<VectorXd> residuals(const InstrumentParameters& parameters, const VectorXd& values) {
     const Result<InvertedFrames> inverted = parameters.invert(frames_, values);
     if (!inverted) return std::nullopt;
-    const std::optional<TotalMisfit> misfit = misfit_of_totals(presses_, *inverted);
+    const std::optional<InstrumentMisfit> misfit = misfit_of(presses_, *inverted, cols_);
     if (!misfit) return std::nullopt;
     if (sigmas_.size() == 0) sigmas_ = Eigen::Map<const VectorXd>(misfit->sigmas.data(), std::ssize(misfit->sigmas));
-    const Eigen::Map<const VectorXd> differences(misfit->differences.data(), std::ssize(misfit->differences));
-    return differences.cwiseQuotient(sigmas_);
+    VectorXd residuals(std::ssize(misfit->totals) + std::ssize(misfit->idle));
+    residuals << Eigen::Map<const VectorXd>(misfit->totals.data(), sigmas_.size()).cwiseQuotient(sigmas_),
+        Eigen::Map<const VectorXd>(misfit->idle.data(), std::ssize(misfit->idle));
+    return residuals;
   }
 
-  [[nodiscard]] double typical_sigma() const { return sigmas_.mean(); }
+  /// What nine of ten presses on several taxels differ by at most, relative.
+  [[nodiscard]] double largest_difference(const VectorXd& residuals) const {
+    const VectorXd sizes = residuals.head(sigmas_.size()).cwiseProduct(sigmas_).cwiseAbs();
+    return quantile(std::vector<double>(sizes.begin(), sizes.end()), kMostPressesShare);
+  }
+  /// Those of presses on several taxels come first.
+  [[nodiscard]] double square_of_totals(const VectorXd& residuals) const {
+    return residuals.head(sigmas_.size()).squaredNorm() / static_cast<double>(sigmas_.size());
+  }
 
  private:
+  std::size_t cols_;
   Presses presses_;
   std::vector<const CircuitFrame*> frames_;
   VectorXd sigmas_;
@@ -96,11 +128,10 @@ std::optional<MatrixXd> jacobian(Judge& judge, const InstrumentParameters& param
   return slopes;
 }
 
-/// A driver that no press tells stays where it is.
-MatrixXd information(const MatrixXd& slopes, const VectorXd& weights, const VectorXd& steps) {
-  constexpr double kWidest = 100.0;  // steps
+/// With what is usual as the prior.
+MatrixXd information(const MatrixXd& slopes, const VectorXd& weights, const VectorXd& usual) {
   MatrixXd normal = slopes.transpose() * weights.asDiagonal() * slopes;
-  normal.diagonal() += (kWidest * steps).cwiseAbs2().cwiseInverse();
+  normal.diagonal() += usual.cwiseAbs2().cwiseInverse();
   return normal;
 }
 
@@ -112,13 +143,16 @@ std::optional<Explanation> explain(Judge& judge, InstrumentParameters parameters
     const std::optional<MatrixXd> slopes = jacobian(judge, parameters, values, *here);
     if (!slopes) return std::nullopt;
     const VectorXd weights = huber_weights(*here);
-    const MatrixXd normal = information(*slopes, weights, parameters.steps());
+    const VectorXd usual = parameters.usual();
+    const MatrixXd normal = information(*slopes, weights, usual);
+    const VectorXd gradient =
+        slopes->transpose() * weights.cwiseProduct(*here) + values.cwiseQuotient(usual.cwiseAbs2());
     const Eigen::LDLT<MatrixXd> factors(normal);
     errors = factors.solve(MatrixXd::Identity(normal.rows(), normal.cols())).diagonal().cwiseMax(0.0).cwiseSqrt();
-    const VectorXd next =
-        parameters.possible(values - factors.solve(slopes->transpose() * weights.cwiseProduct(*here)));
+    if (step == 0 && gradient.dot(factors.solve(gradient)) < kWorthAFit * kEvidence) return std::nullopt;
+    const VectorXd next = parameters.possible(values - factors.solve(gradient));
     const std::optional<VectorXd> there = judge.residuals(parameters, next);
-    if (!there || cost(*there) > cost(*here)) break;
+    if (!there || huber_cost(*there) > huber_cost(*here)) break;
     values = next;
     here = there;
   }
@@ -128,7 +162,7 @@ std::optional<Explanation> explain(Judge& judge, InstrumentParameters parameters
 
 /// By how much it explains more than what must be asked of so many parameters, with what it leaves as the measure.
 double evidence(const Explanation& found, double before, Index parameters_before) {
-  const double left = cost(found.residuals);
+  const double left = found.cost();
   const double scale = std::max(1.0, left / static_cast<double>(found.residuals.size()));
   const auto more = static_cast<double>(found.parameters.count() - parameters_before);
   return (before - left) / scale - kEvidence - kPerParameter * (more - 1.0);
@@ -154,7 +188,7 @@ std::optional<Explanation> best_beside(Judge& judge, const ArrayDescription& arr
     parts.push_back(part);
     std::optional<Explanation> with_part = explain(judge, {array, parts});
     if (!with_part) continue;
-    const double gained = evidence(*with_part, cost(best.residuals), best.parameters.count());
+    const double gained = evidence(*with_part, best.cost(), best.parameters.count());
     if (gained <= most) continue;
     most = gained;
     found = std::move(with_part);
@@ -176,26 +210,40 @@ std::string describe(const Explanation& found, const ArrayDescription& array, st
   switch (found.parameters.parts()[place]) {
     case InstrumentPart::offset:
       return fmt::format(
-          "the ADC reads {:+.1f} (+- {:.1f}) counts too much, by presses on several taxels: taken away "
+          "the ADC reads {:+.1f} (+- {:.1f}) counts too much, by what presses tell: taken away "
           "(adc_offset_counts)",
           value, error);
     case InstrumentPart::supply:
       return fmt::format(
-          "the supply sags under load, as behind {:.2g} ohm (+- {:.1g}), by presses on several taxels: undone "
+          "the supply sags under load, as behind {:.2g} ohm (+- {:.1g}), by what presses tell: undone "
           "(supply_ohm)",
           value * mean_load(readout), error * mean_load(readout));
     case InstrumentPart::curve:
       return fmt::format(
-          "the ADC is bent by {:+.2f} % (+- {:.2f}) of its range in its middle, by presses on several taxels: undone "
+          "the ADC is bent by {:+.2f} % (+- {:.2f}) of its range in its middle, by what presses tell: undone "
           "(adc_curve)",
           100.0 * value, 100.0 * error);
     case InstrumentPart::drivers: break;
   }
   const VectorXd ohms = found.values.segment(first, found.parameters.size_of(place)) * mean_load(readout);
   return fmt::format(
-      "drive_ohm is not as given: presses on several taxels ask for {:+.0f} to {:+.0f} ohm more, line by line, as "
+      "drive_ohm is not as given: presses ask for {:+.0f} to {:+.0f} ohm more, line by line, as "
       "behind a multiplexer; write drive_ohm = \"fit\"",
       ohms.minCoeff(), ohms.maxCoeff());
+}
+
+/// What drivers that are not as described take from one of two equal presses in a row, the heaviest: relative.
+double doubt_of_drivers(const Explanation& found, const CircuitFrames& frames) {
+  const std::vector<InstrumentPart>& parts = found.parameters.parts();
+  const auto drivers = std::find(parts.begin(), parts.end(), InstrumentPart::drivers);
+  if (drivers == parts.end()) return 0.0;
+  const auto place = static_cast<std::size_t>(drivers - parts.begin());
+  const VectorXd shares = found.values.segment(found.parameters.first_of(place), found.parameters.size_of(place));
+  double highest = 0.0;
+  for (const CircuitFrame& frame : frames.frames) {
+    highest = std::max(highest, *std::max_element(frame.ratio.begin(), frame.ratio.end()));
+  }
+  return shares.cwiseAbs().mean() * highest;  // a reading over its load is about the conductance
 }
 
 /// Drivers that the description gives are not changed.
@@ -246,11 +294,9 @@ Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<co
   InstrumentFit fit{array, {}, 0.0};
   const Result<CircuitFrames> labelled = circuit_frames(array, frames, loads, settle_time);
   if (!labelled) return labelled.error();
-  Judge judge(*labelled);
-  if (judge.presses().several.size() < kLeastPresses) {
-    if (is_asked_for) fit.statements.emplace_back(kNoPresses);
-    return fit;
-  }
+  Judge judge(array, *labelled);
+  const bool has_totals = judge.presses().several.size() >= kLeastPresses;
+  if (is_asked_for && !has_totals) fit.statements.emplace_back(kNoPresses);
   std::optional<Explanation> best = explain(judge, {array, {}});
   if (!best) return fit;
   while (std::optional<Explanation> better = best_beside(judge, array, *best)) best = std::move(better);
@@ -259,9 +305,10 @@ Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<co
   }
   const Explanation applied = without_drivers(judge, array, *best);
   fit.array = applied.parameters.array_at(applied.values);
-  const double square = applied.residuals.squaredNorm() / static_cast<double>(applied.residuals.size());
+  fit.unexplained = doubt_of_drivers(*best, *labelled);
+  const double square = has_totals ? judge.square_of_totals(applied.residuals) : 0.0;
   if (square <= kNoticed) return fit;
-  fit.unexplained = std::sqrt(square - 1.0) * judge.typical_sigma();
+  fit.unexplained = std::max(fit.unexplained, judge.largest_difference(applied.residuals));
   fit.statements.push_back(fmt::format(
       "presses on several taxels do not add up: they scatter {:.1f} times as much as single ones tell, {:.1f} % of the "
       "force; circuit or ADC are not as described, and forces are said to be so much less sure",

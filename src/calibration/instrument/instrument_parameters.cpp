@@ -34,6 +34,12 @@ double bow(double share) {
   return 4.0 * share * (1.0 - share);
 }
 
+/// Of a bowed curve where readings of idle taxels are: the noise there follows it.
+double idle_slope(double height, const Readout& readout) {
+  constexpr double kSlopeOfBow = 4.0;  // at its ends
+  return std::abs(1.0 - (readout.pressure_raises_reading ? kSlopeOfBow : -kSlopeOfBow) * height);
+}
+
 std::vector<AdcPoint> bowed_curve(double height, double full_scale) {
   std::vector<AdcPoint> curve;
   for (int k = 0; k < kCurvePoints; ++k) {
@@ -77,6 +83,22 @@ VectorXd InstrumentParameters::steps() const {
   return steps;
 }
 
+VectorXd InstrumentParameters::usual() const {
+  const auto usual_of = [&](InstrumentPart part) {
+    switch (part) {
+      case InstrumentPart::offset: return 0.01 * array_.readout.full_scale_counts();
+      case InstrumentPart::supply: return 0.1;
+      case InstrumentPart::curve: return 0.005;
+      case InstrumentPart::drivers: return 0.5;
+    }
+    return 1.0;
+  };
+  VectorXd usual(count_);
+  visit_parts(
+      [&](InstrumentPart part, Index first, Index size) { usual.segment(first, size).setConstant(usual_of(part)); });
+  return usual;
+}
+
 VectorXd InstrumentParameters::possible(VectorXd values) const {
   visit_parts([&](InstrumentPart part, Index first, Index size) {
     if (part == InstrumentPart::supply) values[first] = std::max(values[first], 0.0);
@@ -112,6 +134,7 @@ CircuitFrame InstrumentParameters::corrected(const CircuitFrame& frame, const Ve
   visit_parts([&](InstrumentPart part, Index first, Index) {
     const bool is_of_adc = part == InstrumentPart::offset || part == InstrumentPart::curve;
     if (!is_of_adc) return;
+    if (part == InstrumentPart::curve) result.sigma_ratio *= idle_slope(values[first], readout);
     for (std::size_t taxel = 0; taxel < frame.ratio.size(); ++taxel) {
       const double share =
           (readout.pressure_raises_reading ? frame.ratio[taxel] : 1.0 - frame.ratio[taxel]) / full_ratio;

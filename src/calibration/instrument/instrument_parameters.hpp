@@ -27,6 +27,8 @@ class InstrumentParameters {
   /// The first parameter of a part, and how many it has.
   [[nodiscard]] Eigen::Index first_of(std::size_t place) const;
   [[nodiscard]] Eigen::Index size_of(std::size_t place) const;
+  /// Standard deviations of what instruments are like [count()].
+  [[nodiscard]] Eigen::VectorXd usual() const;
   /// Steps of finite differences [count()].
   [[nodiscard]] Eigen::VectorXd steps() const;
   /// Without what no instrument has: resistances below 0.

@@ -17,14 +17,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kMostPresses = 600;  // of a kind
 constexpr std::size_t kLeastSingles = 20;  // to learn a law from
 constexpr double kResolved = 5.0;          // a conductance over its noise
 constexpr double kSigmasOfDeviation = 1.4826;
 constexpr double kLeastScatter = 0.002;
-constexpr Index kOwnTerms = 3;           // level, exponent, temperature
-constexpr Index kSharedTerms = 6;        // z, z^2, z^3, z^4, t, t z
-constexpr double kOwnPrecision = 100.0;  // of an exponent about the common one, over the scatter of a press
+constexpr double kReadable = 2.0;       // an unloaded conductance over its noise
+constexpr Index kOwnTerms = 3;          // level, exponent, temperature
+constexpr Index kSharedTerms = 6;       // z, z^2, z^3, z^4, t, t z
+constexpr double kOwnPrecision = 0.01;  // of an exponent about the common one: a tenth, beside a scatter of 1 %
 
 /// Every taxel that is pressed, or may be.
 bool may_be_pressed(float newtons) {
@@ -46,10 +46,28 @@ std::optional<Press> press_of(const CircuitFrame& frame) {
   return press;
 }
 
-void thin_out(std::vector<Press>& presses) {
-  if (presses.size() <= kMostPresses) return;
-  for (std::size_t k = 0; k < kMostPresses; ++k) presses[k] = presses[k * presses.size() / kMostPresses];
-  presses.resize(kMostPresses);
+void thin_out(std::vector<Press>& presses, std::size_t most) {
+  if (presses.size() <= most) return;
+  for (std::size_t k = 0; k < most; ++k) presses[k] = presses[k * presses.size() / most];
+  presses.resize(most);
+}
+
+std::set<std::size_t> taxels_of(const std::vector<Press>& presses) {
+  std::set<std::size_t> taxels;
+  for (const Press& press : presses) taxels.insert(press.taxels.begin(), press.taxels.end());
+  return taxels;
+}
+
+/// First those of taxels whose laws the presses on several ask for.
+void thin_out_single(Presses& presses, std::size_t most) {
+  const std::set<std::size_t> asked = taxels_of(presses.several);
+  const auto is_asked = [&](const Press& press) { return asked.contains(press.taxels.front()); };
+  const auto others = std::stable_partition(presses.single.begin(), presses.single.end(), is_asked);
+  std::vector<Press> rest(others, presses.single.end());
+  presses.single.erase(others, presses.single.end());
+  thin_out(presses.single, most);
+  thin_out(rest, most - presses.single.size());
+  presses.single.insert(presses.single.end(), rest.begin(), rest.end());
 }
 
 /// Mean conductance of each taxel in the frames in which it is idle.
@@ -186,23 +204,107 @@ class Scale {
   bool is_there_ = false;
 };
 
+struct LearnedLaws {
+  PressLaws laws;
+  double scatter = 0.0;  // of a single press about its law
+};
+
+/// Empty: too few presses that tell.
+std::optional<LearnedLaws> learn_laws(const Presses& presses, const InvertedFrames& inverted,
+                                      const std::vector<double>& unloaded, const Scale& scale) {
+  if (!scale.is_there()) return std::nullopt;
+  std::vector<LawPoint> points;
+  std::vector<std::size_t> taxels;
+  std::vector<double> log_forces;
+  for (std::size_t k = 0; k < presses.single.size(); ++k) {
+    const Press& press = presses.single[k];
+    const std::size_t taxel = press.taxels.front();
+    const auto point = scale.point(*press.frame, *inverted[k], taxel, unloaded[taxel], kResolved);
+    if (!point) continue;
+    points.push_back(*point);
+    taxels.push_back(taxel);
+    log_forces.push_back(std::log(press.newtons));
+  }
+  if (points.size() < kLeastSingles) return std::nullopt;
+  LearnedLaws learned{PressLaws(unloaded.size())};
+  learned.laws.fit(points, taxels, log_forces);
+  std::vector<double> deviations;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    deviations.push_back(std::abs(log_forces[k] - learned.laws.log_force(taxels[k], points[k])));
+  }
+  const auto pressed = static_cast<double>(std::set<std::size_t>(taxels.begin(), taxels.end()).size());
+  const auto count = static_cast<double>(points.size());
+  const double freedom = std::max(count - 2.0 * pressed - static_cast<double>(kSharedTerms), 1.0);
+  learned.scatter =
+      std::max(kLeastScatter, kSigmasOfDeviation * quantile(deviations, 0.5) * std::sqrt(count / freedom));
+  return learned;
+}
+
+void add_total(const Press& press, const InvertedFrame& inverted, const std::vector<double>& unloaded,
+               const Scale& scale, const LearnedLaws& learned, InstrumentMisfit& misfit) {
+  double total = 0.0;
+  double variance = 0.0;
+  for (const std::size_t taxel : press.taxels) {
+    const auto point = scale.point(*press.frame, inverted, taxel, unloaded[taxel], 0.0);
+    if (!point) continue;
+    const double force = std::exp(learned.laws.log_force(taxel, *point));
+    const double of_law = learned.scatter * learned.scatter * (1.0 + learned.laws.variance(taxel));
+    total += force;
+    variance += force * force * (of_law + std::pow(learned.laws.slope(taxel, *point) * point->sigma, 2));
+  }
+  misfit.totals.push_back(total > 0.0 ? std::log(total / press.newtons) : -1.0);
+  misfit.sigmas.push_back(total > 0.0 ? std::sqrt(variance) / total : 1.0);
+}
+
+/// A mean of what taxels conduct too much, over their noise.
+struct IdleMean {
+  double sum = 0.0;
+  double weight = 0.0;
+
+  void add(double excess, double sigma) {
+    if (!(sigma > 0.0) || !std::isfinite(sigma)) return;
+    sum += excess / (sigma * sigma);
+    weight += 1.0 / (sigma * sigma);
+  }
+  [[nodiscard]] double mean() const { return weight > 0.0 ? sum / weight : 0.0; }
+  [[nodiscard]] double variance() const { return weight > 0.0 ? 1.0 / weight : 0.0; }
+};
+
+void add_idle(const Press& press, const InvertedFrame& inverted, const std::vector<double>& unloaded, std::size_t cols,
+              InstrumentMisfit& misfit) {
+  const std::size_t pressed = press.taxels.front();
+  IdleMean row;
+  IdleMean column;
+  IdleMean elsewhere;
+  for (std::size_t taxel = 0; taxel < unloaded.size(); ++taxel) {
+    if (press.frame->newtons[taxel] != 0.0F || !(unloaded[taxel] > kReadable * inverted.sigma_siemens[taxel])) continue;
+    const bool is_in_row = taxel / cols == pressed / cols;
+    IdleMean& mean = is_in_row ? row : taxel % cols == pressed % cols ? column : elsewhere;
+    mean.add(inverted.siemens[taxel] - unloaded[taxel], inverted.sigma_siemens[taxel]);
+  }
+  for (const IdleMean& line : {row, column}) {
+    const bool is_known = line.weight > 0.0 && elsewhere.weight > 0.0;
+    misfit.idle.push_back(
+        is_known ? (line.mean() - elsewhere.mean()) / std::sqrt(line.variance() + elsewhere.variance()) : 0.0);
+  }
+}
+
 }  // namespace
 
-Presses sort_presses(const CircuitFrames& frames) {
+Presses sort_presses(const CircuitFrames& frames, std::size_t most) {
   Presses presses;
-  std::set<std::size_t> alone;
   for (const CircuitFrame& frame : frames.frames) {
     std::optional<Press> press = press_of(frame);
     if (!press) continue;
-    if (press->taxels.size() == 1) alone.insert(press->taxels.front());
     (press->taxels.size() == 1 ? presses.single : presses.several).push_back(*std::move(press));
   }
+  const std::set<std::size_t> alone = taxels_of(presses.single);
   std::erase_if(presses.several, [&](const Press& press) {
     return !std::all_of(press.taxels.begin(), press.taxels.end(),
                         [&](std::size_t taxel) { return alone.contains(taxel); });
   });
-  thin_out(presses.single);
-  thin_out(presses.several);
+  thin_out(presses.several, most);
+  thin_out_single(presses, most);
   return presses;
 }
 
@@ -213,55 +315,22 @@ std::vector<const CircuitFrame*> frames_of(const Presses& presses) {
   return frames;
 }
 
-std::optional<TotalMisfit> misfit_of_totals(const Presses& presses, const InvertedFrames& inverted) {
+std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const InvertedFrames& inverted, std::size_t cols) {
   const std::vector<const CircuitFrame*> frames = frames_of(presses);
-  const bool is_whole =
-      std::all_of(inverted.begin(), inverted.end(), [](const auto& frame) { return frame.has_value(); });
-  if (presses.single.size() < kLeastSingles || presses.several.empty() || !is_whole) return std::nullopt;
+  const auto is_there = [](const auto& frame) { return frame.has_value(); };
+  if (presses.single.size() < kLeastSingles || !std::all_of(inverted.begin(), inverted.end(), is_there)) {
+    return std::nullopt;
+  }
   const std::vector<double> unloaded = unloaded_siemens(frames, inverted);
+  InstrumentMisfit misfit;
+  for (std::size_t k = 0; k < presses.single.size(); ++k)
+    add_idle(presses.single[k], *inverted[k], unloaded, cols, misfit);
+  if (presses.several.empty()) return misfit;
   const Scale scale(presses, inverted, unloaded);
-  if (!scale.is_there()) return std::nullopt;
-
-  std::vector<LawPoint> points;
-  std::vector<std::size_t> taxels;
-  std::vector<double> log_forces;
-  for (std::size_t k = 0; k < presses.single.size(); ++k) {
-    const std::size_t taxel = presses.single[k].taxels.front();
-    const auto point = scale.point(*frames[k], *inverted[k], taxel, unloaded[taxel], kResolved);
-    if (!point) continue;
-    points.push_back(*point);
-    taxels.push_back(taxel);
-    log_forces.push_back(std::log(presses.single[k].newtons));
-  }
-  if (points.size() < kLeastSingles) return std::nullopt;
-  PressLaws laws(unloaded.size());
-  laws.fit(points, taxels, log_forces);
-  std::vector<double> deviations;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    deviations.push_back(std::abs(log_forces[k] - laws.log_force(taxels[k], points[k])));
-  }
-  const auto count = static_cast<double>(points.size());
-  const auto fitted =
-      static_cast<double>(2 * std::set<std::size_t>(taxels.begin(), taxels.end()).size() + kSharedTerms);
-  TotalMisfit misfit;
-  misfit.scatter = std::max(
-      kLeastScatter, kSigmasOfDeviation * quantile(deviations, 0.5) * std::sqrt(count / std::max(count - fitted, 1.0)));
+  const std::optional<LearnedLaws> learned = learn_laws(presses, inverted, unloaded, scale);
+  if (!learned) return std::nullopt;
   for (std::size_t k = 0; k < presses.several.size(); ++k) {
-    const Press& press = presses.several[k];
-    const std::size_t frame = presses.single.size() + k;
-    double total = 0.0;
-    double variance = 0.0;
-    for (const std::size_t taxel : press.taxels) {
-      const auto point = scale.point(*frames[frame], *inverted[frame], taxel, unloaded[taxel], 0.0);
-      if (!point) continue;
-      const double force = std::exp(laws.log_force(taxel, *point));
-      total += force;
-      variance += force * force *
-                  (misfit.scatter * misfit.scatter * (1.0 + laws.variance(taxel)) +
-                   std::pow(laws.slope(taxel, *point) * point->sigma, 2));
-    }
-    misfit.differences.push_back(total > 0.0 ? std::log(total / press.newtons) : -1.0);
-    misfit.sigmas.push_back(total > 0.0 ? std::sqrt(variance) / total : 1.0);
+    add_total(presses.several[k], *inverted[presses.single.size() + k], unloaded, scale, *learned, misfit);
   }
   return misfit;
 }

@@ -24,22 +24,25 @@ struct Presses {
   std::vector<Press> several;  ///< Taxels that were all pressed alone, too.
 };
 
-/// Of each kind some, evenly chosen, where there are very many.
-[[nodiscard]] Presses sort_presses(const CircuitFrames& frames);
+/// At most so many of each kind, evenly chosen. Presses on several taxels keep the single ones of their taxels first.
+[[nodiscard]] Presses sort_presses(const CircuitFrames& frames, std::size_t most);
 
 /// The frames of all presses: the single ones, then those of several.
 [[nodiscard]] std::vector<const CircuitFrame*> frames_of(const Presses& presses);
 
-/// What presses on several taxels differ by from what single ones tell.
-struct TotalMisfit {
-  std::vector<double> differences;  ///< ln(total as the laws of single presses say / true) [several]
-  std::vector<double> sigmas;       ///< Standard deviation of each, if the circuit is right.
-  double scatter = 0.0;             ///< Of a single press about its law, relative.
+/// What an instrument leaves unexplained.
+struct InstrumentMisfit {
+  std::vector<double> totals;  ///< ln(total as the laws of single presses say / true) [several]
+  std::vector<double> sigmas;  ///< Standard deviation of each, if the circuit is right.
+  /// What the idle taxels in the row, then in the column of a single press conduct more than untouched, beside the idle
+  /// ones elsewhere, in standard deviations [2 single].
+  std::vector<double> idle;
 };
 
-/// `inverted`: of frames_of(presses), all there. Each taxel has a law ln F = a + b z + c z^2 + d z^3 + e z^4 of
-/// z = ln(conductance above the unloaded one), with c, d and e of all taxels the same; temperature shifts it. Empty:
-/// too few presses to tell, or conductances that follow no law.
-[[nodiscard]] std::optional<TotalMisfit> misfit_of_totals(const Presses& presses, const InvertedFrames& inverted);
+/// `inverted`: of frames_of(presses), all there. A press must not change what idle taxels conduct. Each taxel has a law
+/// ln F = a + b z + c z^2 + d z^3 + e z^4 of z = ln(conductance above the unloaded one), with c, d and e of all taxels
+/// the same; temperature shifts it. Empty: too few presses to tell, or conductances that follow no law.
+[[nodiscard]] std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const InvertedFrames& inverted,
+                                                        std::size_t cols);
 
 }  // namespace dermis::calibration
