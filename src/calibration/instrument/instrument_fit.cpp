@@ -13,6 +13,7 @@
 
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/line_parameters.hpp"
+#include "calibration/instrument/dead_zone.hpp"
 #include "calibration/instrument/instrument_parameters.hpp"
 #include "calibration/instrument/press_law.hpp"
 #include "calibration/instrument/settling.hpp"
@@ -36,6 +37,7 @@ constexpr const char* kNoPresses =
     "over two to four taxels of a row";
 constexpr double kWorthAFit = 0.5;  // of that, as one step foretells it
 constexpr double kMostPressesShare = 0.9;
+constexpr const char* kNothing = "adc_offset_counts and supply_ohm are nothing, as far as presses tell";
 constexpr double kNoticed = 2.0;  // mean square of presses that do not agree
 
 /// Parts with values that explain presses as well as they can.
@@ -294,6 +296,9 @@ Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<co
   InstrumentFit fit{array, {}, 0.0};
   const Result<CircuitFrames> labelled = circuit_frames(array, frames, loads, settle_time);
   if (!labelled) return labelled.error();
+  if (std::optional<std::string> dead_zone = describe_dead_zone(*labelled)) {
+    fit.statements.push_back(*std::move(dead_zone));
+  }
   Judge judge(array, *labelled);
   const bool has_totals = judge.presses().several.size() >= kLeastPresses;
   if (is_asked_for && !has_totals) fit.statements.emplace_back(kNoPresses);
@@ -303,6 +308,7 @@ Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<co
   for (std::size_t place = 0; place < best->parameters.parts().size(); ++place) {
     fit.statements.push_back(describe(*best, array, place));
   }
+  if (is_asked_for && has_totals && best->parameters.count() == 0) fit.statements.emplace_back(kNothing);
   const Explanation applied = without_drivers(judge, array, *best);
   fit.array = applied.parameters.array_at(applied.values);
   fit.unexplained = doubt_of_drivers(*best, *labelled);
