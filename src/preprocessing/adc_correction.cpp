@@ -30,7 +30,7 @@ std::vector<std::size_t> scan_of(const ArrayDescription& array) {
 
 double noise_gain(const AdcErrors& errors) noexcept {
   const double kept = errors.settling.value_or(0.0);
-  return std::hypot(1.0, kept) / (1.0 - kept);
+  return kept == 0.0 ? 1.0 : std::hypot(1.0, kept) / (1.0 - kept);
 }
 
 AdcCorrection::AdcCorrection(const ArrayDescription& array)
