@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -76,6 +77,17 @@ void print_bank(const BankTrainingReport& bank, const ArrayDescription& array) {
   for (const std::size_t taxel : bank.constant_readings) {
     fmt::print("taxel {} always reads the same: the bank learns nothing from it\n", array.taxel_name(taxel));
   }
+}
+
+/// Single presses hide what is wrong with circuit and ADC: each law takes it in.
+void ask_for_presses_on_several(const ArrayDescription& array, const std::vector<Load>& loads) {
+  if (array.readout.circuit == Circuit::none) return;
+  std::map<std::size_t, std::size_t> pressed;  // taxels in each frame
+  for (const Load& load : loads) pressed[load.frame] += load.value > 0.0 ? load.where.taxel_count() : 0;
+  if (std::any_of(pressed.begin(), pressed.end(), [](const auto& frame) { return frame.second > 1; })) return;
+  fmt::print(
+      "no press on several taxels tells whether circuit and ADC are as described: add some, such as twenty of a known "
+      "weight over two to four taxels of a row\n");
 }
 
 void print_text(const CalibrationReport& report, const std::optional<BankTrainingReport>& bank,
@@ -242,6 +254,7 @@ Status calibrate(const CalibrateOptions& options) {
   }
   options.json ? print_json(calibration->report, bank, *array, database->circuit_fit)
                : print_text(calibration->report, bank, *array);
+  if (!options.json) ask_for_presses_on_several(calibration->model.array, *loads);
   if (!options.json && calibration->model.strip) {
     fmt::print("positions along the strip: learned from {} touches, +- {:.2f} mm\n", positions->size(),
                1e3 * calibration->model.strip->sigma_m);

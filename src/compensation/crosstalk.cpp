@@ -3,6 +3,7 @@
 #include "dermis/compensation/crosstalk.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "compensation/fault_inversion.hpp"
@@ -11,6 +12,7 @@
 #include "compensation/possible_readings.hpp"
 #include "compensation/proportional.hpp"
 #include "compensation/readout_parts.hpp"
+#include "compensation/sagging_supply.hpp"
 #include "compensation/shared_errors.hpp"
 #include "compensation/spikes.hpp"
 #include "compensation/supply_error.hpp"
@@ -59,19 +61,47 @@ Inversion newton(const ArrayDescription& array, double tolerance, const Inversio
       std::make_unique<NewtonInversion>(array, std::move(*model), tolerance, options));
 }
 
+/// The noise of a conductance is mostly that of its own reading.
+void follow_slopes(const std::vector<float>& noise_gain, std::vector<double>& sigma_siemens) {
+  for (std::size_t taxel = 0; taxel < noise_gain.size(); ++taxel) {
+    sigma_siemens[taxel] *= static_cast<double>(noise_gain[taxel]);
+  }
+}
+
+/// Of all taxels, in the mean square: a sum does not tell them apart.
+double mean_noise_gain(const std::vector<float>& noise_gain) {
+  if (noise_gain.empty()) return 1.0;
+  double sum = 0.0;
+  for (const float gain : noise_gain) sum += static_cast<double>(gain) * static_cast<double>(gain);
+  return std::sqrt(sum / static_cast<double>(noise_gain.size()));
+}
+
 bool is_invalid(TaxelStatus taxel) {
   return taxel == TaxelStatus::invalid;
 }
 
+Inversion sagging_supply(const ArrayDescription& array, double tolerance, const InversionOptions& options) {
+  auto model = CircuitModel::create(array);
+  if (!model) return model.error();
+  ArrayDescription with_ideal_supply = array;
+  with_ideal_supply.readout.supply_ohm.reset();
+  Inversion ideal = make_crosstalk_inversion(with_ideal_supply, options);
+  if (!ideal) return ideal.error();
+  return std::unique_ptr<CrosstalkInversion>(
+      std::make_unique<SaggingSupply>(std::move(*ideal), std::move(*model), tolerance));
+}
+
 }  // namespace
 
-Inversion make_crosstalk_inversion(const ArrayDescription& array, const InversionOptions& options) {
+Inversion make_crosstalk_inversion(const ArrayDescription& described, const InversionOptions& options) {
+  const ArrayDescription array = with_supply_in_drivers(described);
   const Readout& readout = array.readout;
   if (array.has_unknown_circuit()) {
     return bad_input("readout: the circuit or some of its resistances are to be fitted: calibrate the array first");
   }
   const double tolerance = options.tolerance_ratio.value_or(kToleranceCounts / readout.full_scale_counts());
   if (readout.circuit == Circuit::none) return inversion<Proportional>();
+  if (readout.supply_ohm.value_or(0.0) > 0.0) return sagging_supply(array, tolerance, options);
   if (has_resistive_lines(readout)) return newton(array, tolerance, options);
   if (readout.circuit == Circuit::flexitac) return flexitac(array, tolerance, options);
   if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) {
@@ -81,7 +111,8 @@ Inversion make_crosstalk_inversion(const ArrayDescription& array, const Inversio
   return inversion<GroundedRows>(array, tolerance, options);
 }
 
-Result<Compensator> Compensator::create(const ArrayDescription& array, const ReferenceConductances& references) {
+Result<Compensator> Compensator::create(const ArrayDescription& described, const ReferenceConductances& references) {
+  const ArrayDescription array = with_supply_in_drivers(described);
   InversionOptions options;
   options.counts_driver_errors = true;
   options.is_bounded = true;
@@ -130,6 +161,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.residual_sigma = result.residual_ratio / conditioned.sigma_ratio;
   if (result.solved) {
     inversion_->propagate_noise(conditioned.sigma_ratio, conductance.sigma_siemens);
+    follow_slopes(conditioned.noise_gain, conductance.sigma_siemens);
     note_errors(conditioned, conductance);
     faults_->add_doubt(conductance.siemens, conductance.sigma_siemens);
   }
@@ -181,7 +213,7 @@ void Compensator::note_errors(const ConditionedFrame& conditioned, ConductanceFr
   }
   errors.doubt_siemens.resize(conductance.siemens.size());
   faults_->find_doubt(conductance.siemens, errors.doubt_siemens);
-  errors.sigma_ratio = conditioned.sigma_ratio;
+  errors.sigma_ratio = conditioned.sigma_ratio * mean_noise_gain(conditioned.noise_gain);
   errors.supply_doubt = conditioned.supply_doubt;
   if (errors.circuit != shared_errors_) errors.circuit = shared_errors_;
 }

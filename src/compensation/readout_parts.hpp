@@ -30,6 +30,22 @@ inline bool has_grounded_idle_lines(const Readout& readout) noexcept {
          (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded);
 }
 
+/// Only the driven line carries current of a supply, so that the supply's resistance is one more of each driver.
+inline bool has_supply_in_series(const ArrayDescription& array) noexcept {
+  const Readout& readout = array.readout;
+  if (readout.circuit == Circuit::flexitac || has_resistive_lines(readout)) return false;
+  if (readout.circuit == Circuit::transimpedance && has_ideal_amplifiers(readout)) return true;
+  return readout.idle_rows == IdleRows::floating;
+}
+
+/// The same circuit, its supply ideal if that can be.
+inline ArrayDescription with_supply_in_drivers(ArrayDescription array) {
+  if (!array.readout.supply_ohm || !has_supply_in_series(array)) return array;
+  for (double& ohm : array.readout.drive_ohm) ohm += *array.readout.supply_ohm;
+  array.readout.supply_ohm.reset();
+  return array;
+}
+
 /// The lines along which one taxel takes from the readings of the others: the sensed ones where idle lines are
 /// grounded, the rows at virtual ground; of other circuits none.
 inline std::optional<Axis> sharing_axis(const ArrayDescription& array) noexcept {

@@ -19,15 +19,15 @@ struct SensedLine {
   double gain_by_load = 1.0;  ///< d gain / d load_ohm
 };
 
-/// A load is the resistance itself. An amplifier of open-loop gain A0 and offset off (over the supply) reads
-/// r = (I RL - off) / (1 + 1/A0) and holds its input at off A0 / (1 + A0) + I RL / (1 + A0), behind the column's
-/// switch.
+/// A load is the resistance itself, behind the switch where lines share one. An amplifier of open-loop gain A0 and
+/// offset off (over the supply) reads r = (I RL - off) / (1 + 1/A0) and holds its input at off A0 / (1 + A0) + I RL /
+/// (1 + A0), behind the column's switch.
 inline SensedLine sensed_line(const Readout& readout, std::size_t line) noexcept {
   const double load = readout.load_ohm[line];
-  if (readout.circuit != Circuit::transimpedance) return {load, load};
+  const double column_switch = readout.column_switch_ohm.empty() ? 0.0 : readout.column_switch_ohm[line];
+  if (readout.circuit != Circuit::transimpedance) return {load + column_switch, load};
   const double inverse_gain = readout.amplifier_gain ? 1.0 / *readout.amplifier_gain : 0.0;
   const double off = readout.amplifier_offset_v.empty() ? 0.0 : readout.amplifier_offset_v[line] / *readout.supply_v;
-  const double column_switch = readout.column_switch_ohm.empty() ? 0.0 : readout.column_switch_ohm[line];
   SensedLine sensed;
   sensed.gain_by_load = 1.0 / (1.0 + inverse_gain);
   sensed.rho_by_load = inverse_gain * sensed.gain_by_load;

@@ -49,15 +49,25 @@ Status validate_extra_resistors(const char* field, const std::vector<double>& oh
   return validate_resistors(field, ohms, lines, true);
 }
 
-Status validate_amplifiers(const Readout& readout, std::size_t cols) {
-  const bool has_parts =
-      !readout.column_switch_ohm.empty() || !readout.amplifier_offset_v.empty() || readout.amplifier_gain;
-  if (has_parts && readout.circuit != Circuit::transimpedance) {
+bool has_column_switches(const Readout& readout) {
+  return readout.circuit == Circuit::transimpedance || readout.circuit == Circuit::flexitac ||
+         readout.idle_columns == IdleColumns::floating;
+}
+
+Status validate_switches(const ArrayDescription& array) {
+  const std::vector<double>& ohms = array.readout.column_switch_ohm;
+  if (!ohms.empty() && !has_column_switches(array.readout)) {
     return bad_input(
-        "readout.circuit: column_switch_ohm, amplifier_offset_v and amplifier_gain belong to \"transimpedance\"");
+        "readout.column_switch_ohm: carries no current where each column has its load; leave it out, or set "
+        "idle_columns = \"floating\"");
   }
-  if (Status valid = validate_extra_resistors("column_switch_ohm", readout.column_switch_ohm, cols); !valid) {
-    return valid;
+  return validate_extra_resistors("column_switch_ohm", ohms, array.sensed_lines());
+}
+
+Status validate_amplifiers(const Readout& readout, std::size_t cols) {
+  const bool has_parts = !readout.amplifier_offset_v.empty() || readout.amplifier_gain;
+  if (has_parts && readout.circuit != Circuit::transimpedance) {
+    return bad_input("readout.circuit: amplifier_offset_v and amplifier_gain belong to \"transimpedance\"");
   }
   if (readout.amplifier_gain && !(std::isfinite(*readout.amplifier_gain) && *readout.amplifier_gain >= 1.0)) {
     return bad_input("readout.amplifier_gain: must be 1 or more; leave it out for an ideal amplifier");
@@ -146,11 +156,53 @@ Status validate_calibrated(const ArrayDescription& array) {
   if (readout.quantity == Quantity::counts) return Done{};
   if (readout.circuit != Circuit::none) return bad_input("readout.circuit: readings that are forces have no circuit");
   if (readout.adc_reference_v) return bad_input("readout.adc_reference_v: belongs to counts; leave it out");
+  if (readout.adc_errors.any() || readout.adc_errors.is_unknown()) {
+    return bad_input(
+        "readout.circuit: errors of an ADC belong to counts; leave adc_settling, adc_offset_counts and "
+        "adc_curve out");
+  }
   if (!readout.pressure_raises_reading) {
     return bad_input("readout.pressure_raises_reading: belongs to counts; leave it out");
   }
   if (readout.quantity == Quantity::force || array.taxel_area_m2) return Done{};
   return bad_input("array.taxel_area_mm2: is needed where readings are pressures");
+}
+
+Status validate_curve(const std::vector<AdcPoint>& curve) {
+  if (curve.size() == 1) return bad_input("readout.adc_curve: needs at least two points");
+  const auto rises = [](const AdcPoint& a, const AdcPoint& b) {
+    return a.sent_counts < b.sent_counts && a.ideal_counts < b.ideal_counts;
+  };
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    if (!rises(curve[k - 1], curve[k])) {
+      return bad_input("readout.adc_curve: both columns must rise from point to point; point " + std::to_string(k) +
+                       " does not");
+    }
+  }
+  return Done{};
+}
+
+Status validate_adc_errors(const Readout& readout) {
+  constexpr double kMostSettling = 0.5;
+  const AdcErrors& errors = readout.adc_errors;
+  const double settling = errors.settling.value_or(0.0);
+  if (!std::isnan(settling) && !(settling >= 0.0 && settling <= kMostSettling)) {
+    return bad_input("readout.adc_settling: must be 0 to 0.5, the share that a reading keeps of the one before it");
+  }
+  const double offset = errors.offset_counts.value_or(0.0);
+  if (!std::isnan(offset) && !(std::abs(offset) < readout.full_scale_counts())) {
+    return bad_input("readout.adc_offset_counts: must be less than 2^adc_bits - 1");
+  }
+  return validate_curve(errors.curve);
+}
+
+Status validate_supply_ohm(const Readout& readout) {
+  if (!readout.supply_ohm) return Done{};
+  if (readout.circuit == Circuit::none) return bad_input("readout.supply_ohm: needs a circuit; leave it out");
+  if (!readout.amplifier_offset_v.empty()) {
+    return bad_input("readout.supply_ohm: cannot be given beside amplifier_offset_v; leave one of them out");
+  }
+  return validate_resistors("supply_ohm", {*readout.supply_ohm}, 1, true);
 }
 
 Status validate_readout(const ArrayDescription& array) {
@@ -175,10 +227,13 @@ Status validate_readout(const ArrayDescription& array) {
     return bad_input("readout.drive_error_correlation: must be 0 to 1");
   }
   if (Status valid = validate_calibrated(array); !valid) return valid;
+  if (Status valid = validate_adc_errors(readout); !valid) return valid;
+  if (Status valid = validate_supply_ohm(readout); !valid) return valid;
   if (readout.circuit == Circuit::none) return Done{};
   if (readout.idle_columns == IdleColumns::floating && readout.circuit != Circuit::divider) {
     return bad_input("readout.idle_columns: belongs to circuit = \"divider\"");
   }
+  if (Status valid = validate_switches(array); !valid) return valid;
   if (Status valid = validate_amplifiers(readout, array.cols); !valid) return valid;
   if (readout.circuit == Circuit::automatic) return validate_automatic(readout);
   if (Status drive = validate_resistors("drive_ohm", readout.drive_ohm, array.driven_lines(), true); !drive) {
@@ -199,14 +254,23 @@ double Readout::full_scale_counts() const noexcept {
   return std::ldexp(1.0, adc_bits) - 1.0;
 }
 
+bool AdcErrors::any() const noexcept {
+  return settling.value_or(0.0) != 0.0 || offset_counts.value_or(0.0) != 0.0 || !curve.empty();
+}
+
+bool AdcErrors::is_unknown() const noexcept {
+  return std::isnan(settling.value_or(0.0)) || std::isnan(offset_counts.value_or(0.0));
+}
+
 bool ArrayDescription::is_absent(std::size_t taxel) const noexcept {
   return std::binary_search(absent.begin(), absent.end(), taxel);
 }
 
 bool ArrayDescription::has_unknown_circuit() const noexcept {
+  if (readout.adc_errors.is_unknown()) return true;
   if (readout.circuit == Circuit::none) return false;
   return readout.circuit == Circuit::automatic || is_to_be_fitted(readout.drive_ohm) ||
-         is_to_be_fitted(readout.load_ohm);
+         is_to_be_fitted(readout.load_ohm) || std::isnan(readout.supply_ohm.value_or(0.0));
 }
 
 std::string ArrayDescription::taxel_name(std::size_t taxel) const {

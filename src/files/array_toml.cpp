@@ -79,6 +79,7 @@ std::vector<Circuit> circuits_with(std::string_view key) {
   using enum Circuit;
   if (key == "readout.idle_rows") return {divider, transimpedance, none};
   if (key == "readout.idle_columns") return {divider};
+  if (key == "readout.column_switch_ohm") return {transimpedance, flexitac, divider};
   if (key == "readout.row_segment_ohm" || key == "readout.column_segment_ohm")
     return {divider, transimpedance, flexitac};
   return {transimpedance};
@@ -132,6 +133,32 @@ void read_circuit(ConfigFile& file, Readout& readout) {
   file.require("readout.adc_noise_counts");
 }
 
+/// A number, or "fit".
+void read_or_fit(ConfigFile& file, std::string_view key, std::optional<double>& value) {
+  if (file.is_text(key, "fit")) {
+    value = kFit;
+  } else {
+    file.number(key, value);
+  }
+}
+
+/// Points of sent counts beside volts, or beside the counts of an ideal ADC where it measures against the supply.
+void read_curve(ConfigFile& file, Readout& readout) {
+  std::vector<std::vector<double>> points;
+  file.number_rows("readout.adc_curve", 2, points);
+  double volts_per_count = 1.0;
+  if (readout.adc_reference_v) volts_per_count = *readout.adc_reference_v / readout.full_scale_counts();
+  for (const std::vector<double>& point : points) {
+    readout.adc_errors.curve.push_back({point[0], point[1] / volts_per_count});
+  }
+}
+
+void read_adc_errors(ConfigFile& file, Readout& readout) {
+  read_or_fit(file, "readout.adc_settling", readout.adc_errors.settling);
+  read_or_fit(file, "readout.adc_offset_counts", readout.adc_errors.offset_counts);
+  read_curve(file, readout);
+}
+
 void read_readout(ConfigFile& file, ArrayDescription& array) {
   Readout& readout = array.readout;
   read_circuit(file, readout);
@@ -140,7 +167,7 @@ void read_readout(ConfigFile& file, ArrayDescription& array) {
   read_choice(file, "readout.idle_columns", {IdleColumns::loaded, IdleColumns::floating}, readout.idle_columns);
   read_resistors(file, "readout.drive_ohm", readout.circuit, array.driven_lines(), readout.drive_ohm);
   read_resistors(file, "readout.load_ohm", readout.circuit, array.sensed_lines(), readout.load_ohm);
-  file.number_per_line("readout.column_switch_ohm", array.cols, readout.column_switch_ohm);
+  file.number_per_line("readout.column_switch_ohm", array.sensed_lines(), readout.column_switch_ohm);
   file.number_per_line("readout.amplifier_offset_v", array.cols, readout.amplifier_offset_v);
   file.number("readout.amplifier_gain", readout.amplifier_gain);
   file.number_per_line("readout.row_segment_ohm", array.rows, readout.row_segment_ohm);
@@ -154,6 +181,8 @@ void read_readout(ConfigFile& file, ArrayDescription& array) {
     file.number("readout.adc_reference_v", readout.adc_reference_v);
   }
   file.number("readout.supply_v", readout.supply_v);
+  read_or_fit(file, "readout.supply_ohm", readout.supply_ohm);
+  read_adc_errors(file, readout);
   file.boolean("readout.pressure_raises_reading", readout.pressure_raises_reading);
   file.number("readout.rail_counts", readout.rail_counts);
 }
@@ -247,6 +276,24 @@ std::string circuit_toml(const Readout& readout) {
   return text;
 }
 
+std::string fit_or_number_toml(std::string_view key, const std::optional<double>& value) {
+  return value ? fmt::format("{} = {}\n", key, ohm_toml(*value)) : "";
+}
+
+std::string instrument_toml(const Readout& readout) {
+  const AdcErrors& errors = readout.adc_errors;
+  std::string text = fit_or_number_toml("supply_ohm", readout.supply_ohm) +
+                     fit_or_number_toml("adc_settling", errors.settling) +
+                     fit_or_number_toml("adc_offset_counts", errors.offset_counts);
+  if (errors.curve.empty()) return text;
+  const double volts_per_count = readout.adc_reference_v ? *readout.adc_reference_v / readout.full_scale_counts() : 1.0;
+  std::vector<std::string> points;
+  for (const AdcPoint& point : errors.curve) {
+    points.push_back(fmt::format("[{}, {}]", point.sent_counts, point.ideal_counts * volts_per_count));
+  }
+  return text + fmt::format("adc_curve = [{}]\n", fmt::join(points, ", "));
+}
+
 }  // namespace
 
 Result<ArrayDescription> read_array(const std::string& path) {
@@ -276,6 +323,7 @@ std::string array_to_toml(const ArrayDescription& array) {
                       readout.adc_bits, readout.adc_noise_counts, readout.supply_noise,
                       readout.adc_reference_v ? fmt::format("{}", *readout.adc_reference_v) : "\"supply\"");
   if (readout.supply_v) text += fmt::format("supply_v = {}\n", *readout.supply_v);
+  text += instrument_toml(readout);
   text += fmt::format("pressure_raises_reading = {}\n", readout.pressure_raises_reading);
   if (readout.rail_counts) text += fmt::format("rail_counts = {}\n", *readout.rail_counts);
   return text;

@@ -56,6 +56,9 @@ Conditioner::Conditioner(const ArrayDescription& array, const SupplyBounds& supp
       highest_counts_(std::numeric_limits<float>::infinity()),
       lowest_counts_(-highest_counts_) {
   constexpr float kHalfCount = 0.5F;  // averaged readings
+  AdcErrors& errors = array_.readout.adc_errors;
+  if (errors.is_unknown()) errors = {{}, {}, errors.curve};  // calibration has yet to find them
+  if (errors.any()) adc_.emplace(array_);
   const Readout& readout = array_.readout;
   if (readout.pressure_raises_reading) {
     highest_counts_ = static_cast<float>(readout.rail_counts.value_or(readout.full_scale_counts())) - kHalfCount;
@@ -122,6 +125,7 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   const std::size_t missing = rejection_ == Rejection::none ? count_missing(raw) : 0;
   if (2 * missing > array_.taxel_count() - array_.absent.size()) rejection_ = Rejection::too_few_readings;
   if (rejection_ != Rejection::none) {
+    if (adc_) adc_->forget();
     rejected_supply_v_ = raw.supply_v.value_or(0.0);
     conditioned.status = FrameStatus::rejected;
     std::fill(conditioned.ratio.begin(), conditioned.ratio.end(), 0.0);
@@ -134,17 +138,19 @@ void Conditioner::process(const RawFrame& raw, ConditionedFrame& conditioned) no
   if (raw.supply_v && !supply_bounds_.trusted().contains(*raw.supply_v)) doubt_supply(*raw.supply_v, conditioned);
 }
 
-void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept {
+void Conditioner::convert(const RawFrame& raw, ConditionedFrame& conditioned) noexcept {
   const Readout& readout = array_.readout;
   const std::optional<double> supply_v = raw.supply_v ? supply_bounds_.used(*raw.supply_v) : readout.supply_v;
   const double reference = readout.adc_reference_v && supply_v ? *readout.adc_reference_v / *supply_v : 1.0;
   const double scale = (readout.pressure_raises_reading ? reference : -reference) / readout.full_scale_counts();
-  conditioned.sigma_ratio = std::abs(scale) * readout.adc_noise_counts;
+  conditioned.sigma_ratio = std::abs(scale) * readout.adc_noise_counts * noise_gain(readout.adc_errors);
+  if (adc_) adc_->find_slopes(raw.counts, conditioned.noise_gain);
   const double zero = readout.pressure_raises_reading ? 0.0 : 1.0;
   const std::size_t taxels = raw.counts.size();
   const float* const counts = raw.counts.data();
   double* const ratio = conditioned.ratio.data();
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) ratio[taxel] = zero + scale * static_cast<double>(counts[taxel]);
+  const float* const ideal = adc_ ? adc_->correct(raw.counts).data() : counts;
+  for (std::size_t taxel = 0; taxel < taxels; ++taxel) ratio[taxel] = zero + scale * static_cast<double>(ideal[taxel]);
   const float highest = highest_counts_;
   const float lowest = lowest_counts_;
   std::uint32_t saturated = 0;

@@ -173,7 +173,8 @@ bool fits_grounded_divider(const ArrayDescription& array) noexcept {
   const Readout& readout = array.readout;
   return readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded &&
          readout.idle_columns == IdleColumns::loaded && readout.row_segment_ohm.empty() &&
-         readout.column_segment_ohm.empty() && std::max(array.rows, array.cols) <= kMostFastLines;
+         readout.column_segment_ohm.empty() && readout.supply_ohm.value_or(0.0) == 0.0 &&
+         std::max(array.rows, array.cols) <= kMostFastLines;
 }
 
 void grounded_divider_ratios(const Readout& readout, std::span<const float> siemens, std::span<float> ratio) noexcept {

@@ -317,8 +317,8 @@ Result<FaultyCircuit> FaultyCircuit::create(const ArrayDescription& array, const
   if (Status valid = faults.validate(array); !valid) return valid.error();
   const Readout& readout = array.readout;
   if (!readout.row_segment_ohm.empty() || !readout.column_segment_ohm.empty() || !readout.column_switch_ohm.empty() ||
-      !readout.amplifier_offset_v.empty() || readout.amplifier_gain) {
-    return bad_input("faults: are not simulated with resistive lines, column switches or real amplifiers");
+      !readout.amplifier_offset_v.empty() || readout.amplifier_gain || readout.supply_ohm.value_or(0.0) > 0.0) {
+    return bad_input("faults: are not simulated with resistive lines, column switches, real amplifiers or supply_ohm");
   }
   return FaultyCircuit(array, faults);
 }

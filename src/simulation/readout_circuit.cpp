@@ -71,15 +71,30 @@ Electronics electronics(const ArrayXd& driven_ohm, const ArrayXd& sensed_ohm, In
   return {series, Table::Zero(terminals, cases), Table::Zero(terminals, cases)};
 }
 
+/// What is left of the supply behind its own resistance, where the driven line takes so much of an ideal one of 1 V
+/// [S].
+template <typename Siemens>
+auto left_of_supply(double supply_ohm, const Siemens& taken) {
+  return 1.0 / (1.0 + supply_ohm * taken);
+}
+
+/// Case k: of line k.
+ArrayXd taken_from_supply(const Solution& solution, Index driven) {
+  return -solution.sunk_a.topLeftCorner(driven, driven).diagonal();
+}
+
 // Case k: line k is driven. Last case: the sources of the sensed lines alone, which act in every scan.
-Table idle_driven_grounded(const TerminalNetwork& network, const ArrayXd& drive_ohm, const Sinks& sinks) {
+Table idle_driven_grounded(const TerminalNetwork& network, const ArrayXd& drive_ohm, const Sinks& sinks,
+                           double supply_ohm) {
   const Index driven = drive_ohm.size();
   const Index sensed = sinks.ohm.size();
   Electronics scans = electronics(drive_ohm, sinks.ohm, driven + 1);
   scans.source_v.topLeftCorner(driven, driven).setIdentity();
   scans.source_v.col(driven).tail(sensed) = sinks.source;
-  const Table sunk = solve(network, scans).sunk_a.bottomRows(sensed).transpose();
-  return sinks.readings(sunk.topRows(driven).rowwise() + sunk.row(driven));
+  const Solution solution = solve(network, scans);
+  const ArrayXd left = left_of_supply(supply_ohm, taken_from_supply(solution, driven));
+  const Table sunk = solution.sunk_a.bottomRows(sensed).transpose();
+  return sinks.readings((left.matrix().asDiagonal() * sunk.topRows(driven)).rowwise() + sunk.row(driven));
 }
 
 // Case k: unit current into line k, all driven lines floating: its resistance is V_kk, so the driver, which sees the
@@ -98,21 +113,27 @@ Table idle_driven_floating(const TerminalNetwork& network, const ArrayXd& drive_
 }
 
 // Without any load: case k, line k driven, gives the open voltages V_jk; case driven + j, unit current into sensed line
-// j, its resistance R_j. The load that is switched to it divides V_jk by 1 + R_j/load_ohm_j.
-Table one_load_grounded(const TerminalNetwork& network, const ArrayXd& drive_ohm, const ArrayXd& load_ohm) {
+// j, its resistance R_j. The load that is switched to it, behind the switch, takes I_jk = V_jk/(R_j + switch_ohm_j +
+// load_ohm_j) and reads load_ohm_j I_jk. By reciprocity line k takes V_jk I_jk more of the supply for it.
+Table one_load_grounded(const TerminalNetwork& network, const ArrayXd& drive_ohm, const ArrayXd& load_ohm,
+                        const ArrayXd& switch_ohm, double supply_ohm) {
   const Index driven = drive_ohm.size();
   const Index sensed = load_ohm.size();
   Electronics scans = electronics(drive_ohm, ArrayXd::Constant(sensed, kNothing), driven + sensed);
   scans.source_v.topLeftCorner(driven, driven).setIdentity();
   scans.current_a.bottomRightCorner(sensed, sensed).setIdentity();
-  const Table voltage = solve(network, scans).voltage_v.bottomRows(sensed);
-  const ArrayXd loaded = load_ohm / (load_ohm + voltage.rightCols(sensed).diagonal().array());
-  return voltage.leftCols(driven).transpose() * loaded.matrix().asDiagonal();
+  const Solution solution = solve(network, scans);
+  const ArrayXd own = solution.voltage_v.bottomRightCorner(sensed, sensed).diagonal();
+  const Table open = solution.voltage_v.bottomLeftCorner(sensed, driven).transpose();
+  const Table current = open * (load_ohm + switch_ohm + own).inverse().matrix().asDiagonal();
+  const Table taken = open.cwiseProduct(current).colwise() + taken_from_supply(solution, driven).matrix();
+  return (left_of_supply(supply_ohm, taken.array()) * current.array()).matrix() * load_ohm.matrix().asDiagonal();
 }
 
 // A series of driver, array and load; the array's resistance between line k and sensed line j is the voltage of a unit
 // current into line k, with line j at 0 V and all others floating.
-Table one_load_floating(const TerminalNetwork& network, const ArrayXd& drive_ohm, const ArrayXd& load_ohm) {
+Table one_load_floating(const TerminalNetwork& network, const ArrayXd& drive_ohm, const ArrayXd& load_ohm,
+                        const ArrayXd& switch_ohm) {
   const Index driven = drive_ohm.size();
   const Index sensed = load_ohm.size();
   Electronics scans = electronics(ArrayXd::Constant(driven, kNothing), ArrayXd::Constant(sensed, kNothing), driven);
@@ -121,7 +142,7 @@ Table one_load_floating(const TerminalNetwork& network, const ArrayXd& drive_ohm
   for (Index j = 0; j < sensed; ++j) {
     scans.series_ohm(driven + j) = 0.0;
     const ArrayXd array_ohm = solve(network, scans).voltage_v.topRows(driven).diagonal();
-    readings.col(j) = load_ohm(j) / (drive_ohm + array_ohm + load_ohm(j));
+    readings.col(j) = load_ohm(j) / (drive_ohm + array_ohm + switch_ohm(j) + load_ohm(j));
     scans.series_ohm(driven + j) = kNothing;
   }
   return readings;
@@ -135,15 +156,20 @@ TerminalNetwork network_of(const Table& taxels, const std::vector<double>& drive
 
 /// Readings [driven, sensed] over the supply.
 Table readings(const Readout& readout, const TerminalNetwork& network) {
-  const ArrayXd drive = as_array(readout.drive_ohm);
+  const double supply_ohm = readout.supply_ohm.value_or(0.0);
   const ArrayXd load = as_array(readout.load_ohm);
-  if (readout.circuit == Circuit::flexitac) return one_load_grounded(network, drive, load);
+  const ArrayXd switches = array_or_zero(readout.column_switch_ohm, load.size());
+  ArrayXd drive = as_array(readout.drive_ohm);
+  if (readout.circuit == Circuit::flexitac) return one_load_grounded(network, drive, load, switches, supply_ohm);
   const bool rows_float = readout.idle_rows == IdleRows::floating;
+  if (rows_float) drive += supply_ohm;  // one driver at a time, nothing returns through the others
   if (readout.idle_columns == IdleColumns::floating) {
-    return rows_float ? one_load_floating(network, drive, load) : one_load_grounded(network, drive, load);
+    return rows_float ? one_load_floating(network, drive, load, switches)
+                      : one_load_grounded(network, drive, load, switches, supply_ohm);
   }
   const Sinks sinks = sinks_of(readout);
-  return rows_float ? idle_driven_floating(network, drive, sinks) : idle_driven_grounded(network, drive, sinks);
+  return rows_float ? idle_driven_floating(network, drive, sinks)
+                    : idle_driven_grounded(network, drive, sinks, supply_ohm);
 }
 
 }  // namespace

@@ -93,6 +93,7 @@ Simulator::Simulator(ArrayDescription array, Scene scene, ConductiveRubber rubbe
       rubber_(std::move(rubber)),
       circuit_(std::move(circuit)),
       faulty_(std::move(faulty)),
+      capacitor_(array_),
       adc_(array_.readout, environment.adc_noise_lsb),
       environment_(environment),
       instruments_(Random::stream(seed, kInstrumentStream)),
@@ -139,6 +140,7 @@ Result<bool> Simulator::next(RawFrame& frame) {
       truth_.temperature_celsius + environment_.temperature_noise_celsius * instruments_.normal();
   frame.supply_v = truth_.supply_v * (1.0 + environment_.supply_noise * instruments_.normal());
   frame.counts.resize(ratio_.size());
+  capacitor_.sample(ratio_, truth_.supply_v);
   adc_.convert(ratio_, truth_.supply_v, instruments_, frame.counts);
   if (is_faulty) faulty_->stick(frame.counts);
   return true;

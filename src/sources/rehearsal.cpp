@@ -22,6 +22,7 @@ Rehearsal::Rehearsal(const ArrayDescription& array, simulation::ConductiveRubber
       hand_(array.taxel_count(), seed),
       rubber_(std::move(rubber)),
       circuit_(std::move(circuit)),
+      capacitor_(array),
       adc_(array.readout, kEnvironment.adc_noise_lsb),
       random_(seed),
       frame_seconds_(1.0 / rate_hz),
@@ -50,6 +51,7 @@ void Rehearsal::read(std::uint64_t number, RawFrame& frame) {
   frame.temperature_celsius = kCelsius + kEnvironment.temperature_noise_celsius * random_.normal();
   frame.supply_v = supply_v_ * (1.0 + kEnvironment.supply_noise * random_.normal());
   frame.counts.resize(ratio_.size());
+  capacitor_.sample(ratio_, supply_v_);
   adc_.convert(ratio_, supply_v_, random_, frame.counts);
 }
 

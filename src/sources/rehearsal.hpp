@@ -13,6 +13,7 @@
 #include "dermis/simulation/adc.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 #include "dermis/simulation/rubber.hpp"
+#include "dermis/simulation/sampling_capacitor.hpp"
 #include "dermis/sources/guide_voice.hpp"
 #include "sources/rehearsing_hand.hpp"
 
@@ -38,6 +39,7 @@ class Rehearsal {
   RehearsingHand hand_;
   simulation::ConductiveRubber rubber_;
   simulation::ReadoutCircuit circuit_;
+  simulation::SamplingCapacitor capacitor_;
   simulation::Adc adc_;
   Random random_;
   double frame_seconds_;

@@ -161,9 +161,16 @@ class ArrayFile(SmallArray):
     def test_a_key_of_another_circuit(self):
         self.refuse_array(ARRAY + "amplifier_gain = 1e5\n", [":14", "amplifier_gain", "transimpedance"])
 
+    def test_an_instrument_that_cannot_be(self):
+        self.refuse_array(ARRAY + "adc_settling = 1.5\n", [":14", "adc_settling", "0 to 0.5"])
+        self.refuse_array(ARRAY + "adc_curve = [[0, 0], [5, 5], [4, 6]]\n", [":14", "adc_curve", "rise", "point 2"])
+        self.refuse_array(ARRAY + "supply_ohm = -3\n", [":14", "supply_ohm", "0 or more"])
+        self.refuse_array(ARRAY + "column_switch_ohm = 80\n", [":14", "column_switch_ohm", "idle_columns"])
+
     def test_a_circuit_that_is_not_known_yet(self):
         for text in (ARRAY.replace("load_ohm = 200.0", 'load_ohm = "fit"'),
-                     ARRAY.replace('"divider"', '"auto"')):
+                     ARRAY.replace('"divider"', '"auto"'), ARRAY + 'adc_settling = "fit"\n',
+                     ARRAY + 'supply_ohm = "fit"\n'):
             self.refuse_array(text, ["fitted"])
 
     def test_unknown_physics(self):

@@ -80,6 +80,29 @@ TEST_P(EveryInversion, agrees_with_the_simulator) {
   }
 }
 
+TEST_P(EveryInversion, agrees_with_the_simulator_behind_a_weak_supply_and_switches) {
+  Random random(2);
+  for (const std::size_t size : {2U, 5U, 8U}) {
+    SCOPED_TRACE(testing::Message() << size << 'x' << size << ", seed 2");
+    auto array = random_array(GetParam(), size, size, random);
+    array.readout.amplifier_offset_v.clear();
+    array.readout.supply_ohm = 10.0;
+    const bool shares_a_load =
+        array.readout.circuit == Circuit::flexitac || array.readout.idle_columns == IdleColumns::floating;
+    if (shares_a_load) array.readout.column_switch_ohm.assign(size, 80.0);
+    const auto siemens = touched(array, random, 1e-6);
+    const auto ratio = simulated_ratios(array, siemens);
+    std::vector<double> inverted(siemens.size());
+    EXPECT_TRUE(inversion_for(array, {0.0})->invert(ratio, inverted).solved);
+    EXPECT_LE(distance(inverted, siemens), 1e-6);
+    const auto model = model_ratios(array, siemens);
+    for (std::size_t k = 0; k < ratio.size(); ++k) EXPECT_NEAR(model[k], ratio[k], 1e-9 * std::abs(ratio[k]) + 1e-15);
+    array.readout.supply_ohm = 0.0;
+    (void)inversion_for(array, {0.0})->invert(ratio, inverted);
+    EXPECT_GT(distance(inverted, siemens), 1e-4) << "the supply matters";
+  }
+}
+
 /// The certificate, computed anew.
 double misfit(const ArrayDescription& array, const std::vector<double>& ratio, const std::vector<double>& siemens) {
   const auto model = model_ratios(array, siemens);

@@ -175,7 +175,7 @@ TEST(ArrayDescription, names_the_part_of_the_circuit_out_of_range) {
             }),
             "readout.idle_columns: belongs to circuit = \"divider\"");
   EXPECT_EQ(message_after([](Array& array) { array.readout.amplifier_gain = 100.0; }),
-            "readout.circuit: column_switch_ohm, amplifier_offset_v and amplifier_gain belong to \"transimpedance\"");
+            "readout.circuit: amplifier_offset_v and amplifier_gain belong to \"transimpedance\"");
   EXPECT_EQ(message_after([&](Array& array) {
               amplified(array);
               array.readout.amplifier_gain = INFINITY;

@@ -138,6 +138,55 @@ TEST(ArrayToml, takes_fit_for_a_resistance_that_calibration_is_to_find) {
             "array.toml:12: readout.load_ohm: must be a number or \"fit\", or a list of 3 of these");
 }
 
+TEST(ArrayToml, takes_in_what_an_instrument_is_not_ideal_and_writes_it_again) {
+  const std::string keys =
+      "supply_ohm = 4.5\nadc_settling = 0.03\nadc_offset_counts = -2.5\nadc_curve = [[0, 0.15], [4000, 3.3]]\n";
+  const Result<ArrayDescription> array =
+      array_from_toml(with("adc_bits = 12\n", "adc_bits = 12\n" + keys), "array.toml");
+  ASSERT_TRUE(array) << array.error().message;
+  EXPECT_EQ(array->readout.supply_ohm, 4.5);
+  EXPECT_EQ(array->readout.adc_errors.settling, 0.03);
+  EXPECT_EQ(array->readout.adc_errors.offset_counts, -2.5);
+  ASSERT_EQ(array->readout.adc_errors.curve.size(), 2U);
+  EXPECT_EQ(array->readout.adc_errors.curve[1].sent_counts, 4000.0);
+  EXPECT_NEAR(array->readout.adc_errors.curve[0].ideal_counts, 0.15 / 3.3 * 4095.0, 1e-9);
+  EXPECT_FALSE(array->has_unknown_circuit());
+  const Result<ArrayDescription> again = array_from_toml(array_to_toml(*array), "again.toml");
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(array_to_toml(*again), array_to_toml(*array));
+  EXPECT_EQ(again->readout.adc_errors.settling, 0.03);
+}
+
+TEST(ArrayToml, an_instrument_that_calibration_is_to_find_is_unknown) {
+  for (const char* const key : {"supply_ohm", "adc_settling", "adc_offset_counts"}) {
+    const std::string line = std::string(key) + " = \"fit\"\n";
+    const Result<ArrayDescription> array =
+        array_from_toml(with("adc_bits = 12\n", "adc_bits = 12\n" + line), "array.toml");
+    ASSERT_TRUE(array) << array.error().message;
+    EXPECT_TRUE(array->has_unknown_circuit()) << key;
+    EXPECT_NE(array_to_toml(*array).find(line), std::string::npos) << key;
+  }
+}
+
+TEST(ArrayToml, refuses_an_instrument_that_cannot_be) {
+  const auto error_with = [](const std::string& line) {
+    return error_of(with("adc_bits = 12\n", "adc_bits = 12\n" + line));
+  };
+  EXPECT_EQ(
+      error_with("adc_settling = 0.7\n"),
+      "array.toml:14: readout.adc_settling: must be 0 to 0.5, the share that a reading keeps of the one before it");
+  EXPECT_EQ(error_with("adc_offset_counts = 5000\n"),
+            "array.toml:14: readout.adc_offset_counts: must be less than 2^adc_bits - 1");
+  EXPECT_EQ(error_with("supply_ohm = -1\n"), "array.toml:14: readout.supply_ohm: must be 0 or more ohm");
+  EXPECT_EQ(error_with("adc_curve = [[0, 0]]\n"), "array.toml:14: readout.adc_curve: needs at least two points");
+  EXPECT_EQ(error_with("adc_curve = [[0, 0], [10, 1], [10, 2]]\n"),
+            "array.toml:14: readout.adc_curve: both columns must rise from point to point; point 2 does not");
+  EXPECT_EQ(
+      error_with("column_switch_ohm = 100\n"),
+      "array.toml:14: readout.column_switch_ohm: carries no current where each column has its load; leave it out, "
+      "or set idle_columns = \"floating\"");
+}
+
 TEST(ArrayToml, takes_one_resistance_for_all_lines_of_a_circuit_that_calibration_is_to_find) {
   constexpr const char* kAuto = "[array]\nrows = 2\ncols = 3\n[readout]\ncircuit = \"auto\"\nadc_bits = 12\n";
   const Result<ArrayDescription> array = array_from_toml(std::string(kAuto) + "load_ohm = 200\n", "array.toml");

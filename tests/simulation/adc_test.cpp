@@ -40,6 +40,14 @@ TEST(Adc, clamps_to_its_range) {
   EXPECT_FALSE(std::signbit(convert(readout, 0.0, {-1e-6}, 5.0).front())) << "no ADC says -0";
 }
 
+TEST(Adc, offset_and_curve_change_what_is_sent) {
+  Readout readout;
+  readout.adc_errors.offset_counts = 10.0;
+  readout.adc_errors.curve = {{0.0, 100.0}, {1000.0, 1100.0}, {3000.0, 2100.0}};
+  const std::vector<double> ratio = {100.0 / 4095.0, 600.0 / 4095.0, 1600.0 / 4095.0, 2200.0 / 4095.0, 50.0 / 4095.0};
+  EXPECT_EQ(convert(readout, 0.0, ratio, 5.0), (std::vector<float>{10, 510, 2010, 3110, 0}));
+}
+
 TEST(Adc, noise_has_the_asked_variance_on_top_of_the_rounding) {
   constexpr std::size_t kReadings = 100'000;
   const auto counts = convert(Readout{}, 2.0, std::vector<double>(kReadings, 1000.0 / 4095.0), 5.0);

@@ -38,7 +38,12 @@ class CircuitModel {
   /// Readings over the supply at the last solution [rows, cols].
   [[nodiscard]] std::span<const double> ratio() const noexcept;
 
-  /// d ratio / d siemens at the last solution, [reading, taxel], row-major [ohm].
+  /// What the supply's own resistance leaves of the supply during each reading of the last solution [rows, cols]:
+  /// 1/(1 + supply_ohm Y), where the driven line takes Y of an ideal one [S].
+  [[nodiscard]] std::span<const double> supply_left() const noexcept;
+
+  /// d ratio / d siemens at the last solution, [reading, taxel], row-major [ohm]. The derivatives take the resistance
+  /// of a supply that idle lines do not share for a loss of each reading on its own.
   void taxel_jacobian(std::span<double> jacobian) const noexcept;
 
   /// Its diagonal: d ratio / d siemens of the same taxel [rows, cols] [ohm].

@@ -46,8 +46,29 @@ enum class IdleColumns {
   floating,  ///< In nothing: one load is switched from column to column.
 };
 
-/// A resistance that calibration is to find ("fit"); not a number, so nothing can compute with it.
-inline constexpr double kFitOhm = std::numeric_limits<double>::quiet_NaN();
+/// What calibration is to find ("fit"); not a number, so nothing can compute with it.
+inline constexpr double kFit = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kFitOhm = kFit;
+
+/// What an ADC sends, and what an ideal one would send.
+struct AdcPoint {
+  double sent_counts = 0.0;
+  double ideal_counts = 0.0;
+};
+
+/// In what an ADC and the multiplexer before it are not ideal (docs/circuits.md). Preprocessing undoes all of it in the
+/// counts: the offset first, then the curve, then the settling.
+struct AdcErrors {
+  /// Share that a reading keeps of the voltage sampled before it, 0 ... 0.5, or kFit. Empty: none is known of.
+  /// Frames of a device hold their readings in the order of its scan, which ArrayDescription::order turns.
+  std::optional<double> settling;
+  /// Sent counts above those of a straight ADC, or kFit. Empty: none are known of.
+  std::optional<double> offset_counts;
+  std::vector<AdcPoint> curve;  ///< At least two points, both columns rising; empty: straight.
+
+  [[nodiscard]] bool any() const noexcept;         ///< Something is to be undone.
+  [[nodiscard]] bool is_unknown() const noexcept;  ///< Something is kFit.
+};
 
 /// The path from taxel resistance to counts (the paper's Fig. 3). Lists with one value a line may be empty if the
 /// circuit does not have that part. For `automatic` the driven lines are not known yet, so drive_ohm and load_ohm are
@@ -58,9 +79,10 @@ struct Readout {
   Quantity quantity = Quantity::counts;
   IdleRows idle_rows = IdleRows::grounded;         ///< divider, transimpedance
   IdleColumns idle_columns = IdleColumns::loaded;  ///< divider
-  std::vector<double> drive_ohm;          ///< Resistance of the driver of each driven line [ohm], >= 0 or kFitOhm.
-  std::vector<double> load_ohm;           ///< Divider or feedback resistor of each sensed line [ohm], > 0 or kFitOhm.
-  std::vector<double> column_switch_ohm;  ///< transimpedance: between a column and its amplifier [ohm], >= 0.
+  std::vector<double> drive_ohm;  ///< Resistance of the driver of each driven line [ohm], >= 0 or kFitOhm.
+  std::vector<double> load_ohm;   ///< Divider or feedback resistor of each sensed line [ohm], > 0 or kFitOhm.
+  /// Between a sensed line and its amplifier (transimpedance), or the one load that all share [ohm], >= 0.
+  std::vector<double> column_switch_ohm;
   std::vector<double>
       amplifier_offset_v;                ///< transimpedance: input offset of a column's amplifier [V]; needs supply_v.
   std::optional<double> amplifier_gain;  ///< transimpedance: open-loop gain, >= 1; empty: ideal.
@@ -73,7 +95,11 @@ struct Readout {
   double supply_noise = 0.0;               ///< Relative standard deviation of the measured supply, 0 ... 0.1.
   std::optional<double> adc_reference_v;   ///< Full scale of the ADC [V], > 0; empty: the supply itself (ratiometric).
   std::optional<double> supply_v;          ///< Nominal supply [V], > 0, for frames that carry none.
-  bool pressure_raises_reading = true;     ///< false: the reading falls with pressure, and 1 - ratio is used.
+  /// The supply's own resistance before all drivers [ohm], >= 0 or kFit: it carries the current of the driven line. The
+  /// ADC's reference and the measured supply do not see its drop. Empty: none is known of.
+  std::optional<double> supply_ohm;
+  AdcErrors adc_errors;
+  bool pressure_raises_reading = true;  ///< false: the reading falls with pressure, and 1 - ratio is used.
   /// Reading at which pressure saturates the readout [counts], 0 ... 2^adc_bits - 1; empty: the end of the ADC.
   std::optional<double> rail_counts;
 

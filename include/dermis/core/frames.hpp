@@ -84,9 +84,10 @@ struct ConditionedFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
   std::optional<double> temperature_celsius;
-  std::vector<double> ratio;  ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
-  double sigma_ratio = 0.0;   ///< Standard deviation of every ratio, rounding included.
-  double supply_doubt = 0.0;  ///< Relative standard deviation of a supply that is not trusted, beside its noise.
+  std::vector<double> ratio;      ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
+  double sigma_ratio = 0.0;       ///< Standard deviation of every ratio, rounding included.
+  std::vector<float> noise_gain;  ///< Of each ratio's noise, where the ADC has a curve: times sigma_ratio; empty: 1.
+  double supply_doubt = 0.0;      ///< Relative standard deviation of a supply that is not trusted, beside its noise.
   std::vector<TaxelStatus> taxels;
 };
 

@@ -8,6 +8,7 @@
 
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
+#include "dermis/preprocessing/adc_correction.hpp"
 #include "dermis/preprocessing/supply_bounds.hpp"
 
 namespace dermis::preprocessing {
@@ -35,7 +36,8 @@ enum class Rejection {
 ///   circuit
 ///                                                                       and the supply are unknown, the factor is 1)
 ///
-/// and 1 - ratio if pressure lowers the reading. Pressure drives readings to one end of the ADC, or to
+/// and 1 - ratio if pressure lowers the reading. What the ADC is not ideal in is undone in the counts first
+/// (AdcCorrection). Pressure drives readings to one end of the ADC, or to
 /// readout.rail_counts. Readings within half a count of that end, or beyond it, are marked saturated. A taxel has no
 /// reading if it is NaN, infinite, above 2^adc_bits - 1, or below 0 where readings are counts. It is invalid and gets
 /// the mean ratio of its neighbours that have one. A taxel that the sheet does not have is invalid and has the ratio 0.
@@ -73,13 +75,14 @@ class Conditioner {
   [[nodiscard]] std::size_t count_missing(const RawFrame& raw) const noexcept;
   [[nodiscard]] Rejection inspect(const RawFrame& raw) const noexcept;
   [[nodiscard]] Rejection inspect_supply(const RawFrame& raw) const noexcept;
-  void convert(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
+  void convert(const RawFrame& raw, ConditionedFrame& conditioned) noexcept;
   void doubt_supply(double measured_v, ConditionedFrame& conditioned) const noexcept;
   void mark_saturated(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
   void mark_missing(const RawFrame& raw, ConditionedFrame& conditioned) const noexcept;
 
   ArrayDescription array_;
   SupplyBounds supply_bounds_;
+  std::optional<AdcCorrection> adc_;  // empty: it is ideal
   float full_scale_counts_;
   float least_counts_;
   float highest_counts_;  // readings above it are saturated

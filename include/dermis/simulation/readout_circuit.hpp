@@ -19,8 +19,9 @@ namespace dermis::simulation {
 ///                      at (o gain + I load_ohm)/(1 + gain). r may exceed 1 or be below 0: the rails are those of
 ///                      the ADC
 ///   none:              conductance times kUnknownCircuitOhm, without crosstalk
-/// and 1 minus this where pressure lowers the reading. A line with a segment resistance has its driver, load or
-/// amplifier at the taxel of row or column 0. Right to about 1e-12 of each reading. Thread-safe: ratios() only reads.
+/// and 1 minus this where pressure lowers the reading. supply_ohm lowers the source of the driven line by the current
+/// of that line. A line with a segment resistance has its driver, load or amplifier at the taxel of row or column 0.
+/// Right to about 1e-12 of each reading. Thread-safe: ratios() only reads.
 class ReadoutCircuit {
  public:
   static constexpr double kUnknownCircuitOhm = 100.0;  ///< Reading per conductance of `circuit = "none"` [ohm].

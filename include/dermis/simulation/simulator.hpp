@@ -19,6 +19,7 @@
 #include "dermis/simulation/line_faults.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
 #include "dermis/simulation/rubber.hpp"
+#include "dermis/simulation/sampling_capacitor.hpp"
 #include "dermis/simulation/scene.hpp"
 
 namespace dermis::simulation {
@@ -74,6 +75,7 @@ class Simulator final : public FrameSource {
   ConductiveRubber rubber_;
   ReadoutCircuit circuit_;
   std::optional<FaultyCircuit> faulty_;
+  SamplingCapacitor capacitor_;
   Adc adc_;
   EnvironmentOptions environment_;
   Random instruments_;

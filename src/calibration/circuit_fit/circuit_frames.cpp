@@ -49,8 +49,8 @@ void forget_lines_of(const ArrayDescription& array, std::size_t saturated, std::
   }
 }
 
-std::vector<float> known_newtons(const ArrayDescription& array, std::span<const Load> loads,
-                                 const ConditionedFrame& conditioned) {
+void read_loads(const ArrayDescription& array, std::span<const Load> loads, const ConditionedFrame& conditioned,
+                CircuitFrame& frame) {
   Sample sample;
   expand_loads(array, loads, sample);
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
@@ -62,7 +62,11 @@ std::vector<float> known_newtons(const ArrayDescription& array, std::span<const 
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
     if (conditioned.taxels[taxel] == TaxelStatus::saturated) forget_lines_of(array, taxel, sample.known_newtons);
   }
-  return sample.known_newtons;
+  frame.newtons = std::move(sample.known_newtons);
+  const auto is_bad = [&](std::size_t taxel) { return conditioned.taxels[taxel] != TaxelStatus::ok; };
+  std::erase_if(sample.totals,
+                [&](const TotalForce& total) { return std::any_of(total.taxels.begin(), total.taxels.end(), is_bad); });
+  frame.totals = std::move(sample.totals);
 }
 
 bool is_same_load(const std::vector<float>& a, const std::vector<float>& b) {
@@ -73,7 +77,12 @@ bool is_same_load(const std::vector<float>& a, const std::vector<float>& b) {
 bool is_repetition(const Labelled& first, const Labelled& next) {
   if (first.celsius.has_value() != next.celsius.has_value()) return false;
   if (first.celsius && std::abs(*first.celsius - *next.celsius) > kSameCelsius) return false;
-  return is_same_load(first.frame.newtons, next.frame.newtons);
+  const auto is_same_total = [](const TotalForce& a, const TotalForce& b) {
+    return a.newtons == b.newtons && a.taxels == b.taxels;
+  };
+  const std::vector<TotalForce>& totals = next.frame.totals;
+  return is_same_load(first.frame.newtons, next.frame.newtons) &&
+         std::equal(totals.begin(), totals.end(), first.frame.totals.begin(), first.frame.totals.end(), is_same_total);
 }
 
 /// The running mean of frames with equal loads.
@@ -111,7 +120,7 @@ std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<c
     next.celsius = conditioned.temperature_celsius;
     next.frame.ratio = conditioned.ratio;
     next.frame.sigma_ratio = next.frame.said_sigma = conditioned.sigma_ratio;
-    next.frame.newtons = known_newtons(array, loads_of[k], conditioned);
+    read_loads(array, loads_of[k], conditioned, next.frame);
     if (!unlabelled_between && !labelled.empty() && is_repetition(labelled.back(), next)) {
       average_into(labelled.back(), next);
     } else {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "dermis/calibration/sample_database.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
@@ -18,8 +19,9 @@ struct CircuitFrame {
   double sigma_ratio = 0.0;    ///< Standard deviation of each, as repetitions show it.
   double said_sigma = 0.0;     ///< Of one reading, as the description says it: what is averaged was cut at 0 with it.
   std::vector<float> newtons;  ///< [taxels]: 0 idle, NaN unknown or beside a pressed taxel, which may touch it too.
-  double temperature = 0.0;    ///< In [-1, 1] over the recording; 0 where it is not an input.
-  std::size_t averaged = 1;    ///< Frames in a row with the same loads, taken as one.
+  std::vector<TotalForce> totals;  ///< Over taxels that share it in an unknown way, none of them at the rail.
+  double temperature = 0.0;        ///< In [-1, 1] over the recording; 0 where it is not an input.
+  std::size_t averaged = 1;        ///< Frames in a row with the same loads, taken as one.
 };
 
 struct CircuitFrames {

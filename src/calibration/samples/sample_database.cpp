@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "calibration/circuit_fit/circuit_choice.hpp"
+#include "calibration/instrument/instrument_fit.hpp"
 #include "calibration/labels/flicker.hpp"
 #include "calibration/labels/label_check.hpp"
 #include "calibration/labels/labels.hpp"
@@ -271,12 +272,24 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
         fmt::format("readings end at {} counts under whatever load: taken for saturated there (rail_counts)",
                     *known.readout.rail_counts));
   }
+  InstrumentFit instrument = fit_settling(known, frames, loads);
+  labels.remarks.insert(labels.remarks.end(), instrument.statements.begin(), instrument.statements.end());
+  const bool asks = asks_for_instrument(instrument.array.readout);
+  known = without_unknown_instrument(std::move(instrument.array));
   std::optional<CircuitFit> circuit;
-  if (array.has_unknown_circuit() || has_floating_lines(array.readout)) {
+  if (known.has_unknown_circuit() || has_floating_lines(array.readout)) {
     Result<CircuitFit> fit = fit_circuit(known, frames, loads, settle_time);
     if (!fit) return fit.error();
     known = fit->array;
     if (!fit->statements.empty()) circuit = std::move(*fit);
+  }
+  double unexplained_share = 0.0;
+  if (known.readout.circuit != Circuit::none) {
+    Result<InstrumentFit> fit = fit_instrument(known, frames, loads, settle_time, asks);
+    if (!fit) return fit.error();
+    known = std::move(fit->array);
+    unexplained_share = fit->unexplained;
+    labels.remarks.insert(labels.remarks.end(), fit->statements.begin(), fit->statements.end());
   }
   Result<SampleDatabase> database = invert_frames(known, frames, loads, settle_time, progress);
   if (!database && array.readout.circuit == Circuit::automatic && known.readout.circuit != Circuit::none) {
@@ -286,6 +299,7 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
     database = invert_frames(circuit->array, frames, loads, settle_time, progress);
   }
   if (!database) return database.error();
+  database->unexplained_share = unexplained_share;
   database->circuit_fit = std::move(circuit);
   std::move(labels.remarks.begin(), labels.remarks.end(), std::back_inserter(database->remarks));
   return database;
@@ -294,7 +308,8 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
 double bare_reading(const SampleDatabase& database, const Sample& sample, std::size_t taxel) {
   if (sample.taxels[taxel] == TaxelStatus::invalid) return 0.0;
   const Readout& readout = database.array.readout;
-  const double full_scale = sample.sigma_ratio * readout.full_scale_counts() / readout.adc_noise_counts;  // as a ratio
+  const double noise_counts = readout.adc_noise_counts * preprocessing::noise_gain(readout.adc_errors);
+  const double full_scale = sample.sigma_ratio * readout.full_scale_counts() / noise_counts;  // as a ratio
   const auto ratio = static_cast<double>(sample.ratio[taxel]);
   return readout.pressure_raises_reading ? ratio / full_scale : 1.0 - (1.0 - ratio) / full_scale;
 }

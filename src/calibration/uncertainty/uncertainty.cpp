@@ -147,6 +147,13 @@ void fit_material(const JudgedLoads& judged, const ForceTraining& training, fusi
   report.relative_sigma_of_tables = set_relative_sigma({tables.begin(), tables.end()}, profile, networks);
 }
 
+/// What circuit and ADC are said wrongly of touches every force, by as much as presses on several taxels show.
+void widen(double unexplained_share, fusion::ForceNetworks& networks) {
+  for (float& sigma : networks.relative_sigma) {
+    sigma = static_cast<float>(std::hypot(static_cast<double>(sigma), unexplained_share));
+  }
+}
+
 std::string range_text(const RelativeSigma& sigma) {
   const auto [least, most] = std::minmax_element(sigma.begin(), sigma.end());
   return fmt::format("+- {:.2f} to {:.2f} % beside that", 100.0 * *least, 100.0 * *most);
@@ -188,6 +195,7 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   report.supply_noise = likeliest_supply_noise(*judged);
   model.array.readout.supply_noise = report.supply_noise;
   fit_material(*judged, training, model.networks, report);
+  widen(database.unexplained_share, model.networks);
   return report;
 }
 

@@ -30,12 +30,30 @@ std::size_t potential_count(const ArrayDescription& array) {
 
 struct CircuitModel::Implementation {
   explicit Implementation(const ArrayDescription& array)
-      : lines(array), network(lines), scan(make_circuit_scan(lines, network)), ratio(array.taxel_count()) {}
+      : lines(array),
+        network(lines),
+        scan(make_circuit_scan(lines, network)),
+        ratio(array.taxel_count()),
+        supply_left(array.taxel_count(), 1.0) {}
+
+  /// A driver's resistance takes from its reading what it takes of the supply: Y = -(d I / d rho) / I.
+  void load_supply() noexcept {
+    lines.for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
+      const double current = scan->currents()(at(d), at(s));
+      const double taken = current == 0.0 ? 0.0 : -scan->current_by_resistor(d, s, d) / current;
+      supply_left[reading] = 1.0 / (1.0 + lines.supply_ohm() * taken);
+      ratio[reading] *= supply_left[reading];
+    });
+  }
+
+  /// Of a reading's derivative.
+  [[nodiscard]] double loss(std::size_t reading) const noexcept { return supply_left[reading] * supply_left[reading]; }
 
   ScannedLines lines;
   LineNetwork network;
   std::unique_ptr<CircuitScan> scan;
   std::vector<double> ratio;
+  std::vector<double> supply_left;
 };
 
 CircuitModel::CircuitModel(std::unique_ptr<Implementation> implementation)
@@ -57,7 +75,7 @@ Result<CircuitModel> CircuitModel::create(const ArrayDescription& array) {
 }
 
 void CircuitModel::solve(std::span<const double> siemens) noexcept {
-  auto& [lines, network, scan, ratio] = *implementation_;
+  auto& [lines, network, scan, ratio, supply_left] = *implementation_;
   assert(siemens.size() == lines.taxels());
   network.eliminate(lines, siemens);
   scan->solve();
@@ -68,6 +86,7 @@ void CircuitModel::solve(std::span<const double> siemens) noexcept {
       ratio[lines.reading(d, s)] = sensed.gain * currents(at(d), at(s)) + sensed.offset;
     }
   }
+  if (lines.supply_ohm() > 0.0) implementation_->load_supply();
 }
 
 void CircuitModel::set_resistors(std::span<const double> drive_ohm, std::span<const double> load_ohm) {
@@ -81,19 +100,27 @@ std::span<const double> CircuitModel::ratio() const noexcept {
   return implementation_->ratio;
 }
 
+std::span<const double> CircuitModel::supply_left() const noexcept {
+  return implementation_->supply_left;
+}
+
 void CircuitModel::taxel_jacobian(std::span<double> jacobian) const noexcept {
   assert(jacobian.size() == implementation_->ratio.size() * implementation_->ratio.size());
   implementation_->scan->taxel_jacobian(jacobian);
+  const std::size_t taxels = implementation_->ratio.size();
+  for (std::size_t k = 0; k < jacobian.size(); ++k) jacobian[k] *= implementation_->loss(k / taxels);
 }
 
 void CircuitModel::own_derivatives(std::span<double> derivatives) const noexcept {
   assert(derivatives.size() == implementation_->ratio.size());
   implementation_->scan->own_derivatives(derivatives);
+  for (std::size_t k = 0; k < derivatives.size(); ++k) derivatives[k] *= implementation_->loss(k);
 }
 
 void CircuitModel::multiply_taxel_jacobian(std::span<const double> change, std::span<double> product) noexcept {
   assert(change.size() == implementation_->ratio.size() && product.size() == implementation_->ratio.size());
   implementation_->scan->multiply_taxel_jacobian(change, product);
+  for (std::size_t k = 0; k < product.size(); ++k) product[k] *= implementation_->loss(k);
 }
 
 void CircuitModel::drive_jacobian(std::span<double> jacobian) const noexcept {
@@ -101,8 +128,8 @@ void CircuitModel::drive_jacobian(std::span<double> jacobian) const noexcept {
   assert(jacobian.size() == lines.taxels() * lines.driven());
   lines.for_each_reading([&](std::size_t d, std::size_t s, std::size_t reading) {
     for (std::size_t line = 0; line < lines.driven(); ++line) {
-      jacobian[reading * lines.driven() + line] =
-          lines.sensed_head(s).gain * implementation_->scan->current_by_resistor(d, s, line);
+      jacobian[reading * lines.driven() + line] = implementation_->loss(reading) * lines.sensed_head(s).gain *
+                                                  implementation_->scan->current_by_resistor(d, s, line);
     }
   });
 }
@@ -118,6 +145,9 @@ void CircuitModel::load_jacobian(std::span<double> jacobian) const noexcept {
       jacobian[reading * lines.sensed() + line] = sensed.gain * by_rho * lines.sensed_head(line).rho_by_load;
     }
     jacobian[reading * lines.sensed() + s] += sensed.gain_by_load * currents(at(d), at(s));
+    for (std::size_t line = 0; line < lines.sensed(); ++line) {
+      jacobian[reading * lines.sensed() + line] *= implementation_->loss(reading);
+    }
   });
 }
 

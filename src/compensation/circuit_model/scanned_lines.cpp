@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "compensation/readout_parts.hpp"
+
 namespace dermis::compensation {
 
 ScannedLines::ScannedLines(const ArrayDescription& array)
@@ -13,6 +15,8 @@ ScannedLines::ScannedLines(const ArrayDescription& array)
       driven_are_tied_(columns_are_driven_ || array.readout.idle_rows == IdleRows::grounded),
       sensed_are_tied_(!columns_are_driven_ && array.readout.idle_columns == IdleColumns::loaded),
       driven_(array.driven_lines()),
+      series_ohm_(has_supply_in_series(array) ? array.readout.supply_ohm.value_or(0.0) : 0.0),
+      supply_ohm_(array.readout.supply_ohm.value_or(0.0) - series_ohm_),
       rho_(array.driven_lines() + array.sensed_lines()),
       sensed_head_(array.sensed_lines()) {
   read_resistors();
@@ -27,7 +31,7 @@ void ScannedLines::set_resistors(std::span<const double> drive_ohm, std::span<co
 }
 
 void ScannedLines::read_resistors() {
-  std::copy(array_.readout.drive_ohm.begin(), array_.readout.drive_ohm.end(), rho_.begin());
+  for (std::size_t d = 0; d < driven_; ++d) rho_[d] = array_.readout.drive_ohm[d] + series_ohm_;
   for (std::size_t s = 0; s < sensed(); ++s) {
     sensed_head_[s] = sensed_line(array_.readout, s);
     rho_[driven_ + s] = sensed_head_[s].rho;

@@ -39,6 +39,9 @@ class ScannedLines {
   [[nodiscard]] double rho(std::size_t line) const noexcept { return rho_[line]; }
   [[nodiscard]] const SensedLine& sensed_head(std::size_t sensed) const noexcept { return sensed_head_[sensed]; }
 
+  /// Resistance of the supply, which the current of the driven line lowers; 0 where it is part of rho.
+  [[nodiscard]] double supply_ohm() const noexcept { return supply_ohm_; }
+
   [[nodiscard]] bool is_row(std::size_t line) const noexcept { return (line < driven_) != columns_are_driven_; }
   /// The row or column that the line is.
   [[nodiscard]] std::size_t number(std::size_t line) const noexcept { return line < driven_ ? line : line - driven_; }
@@ -72,6 +75,8 @@ class ScannedLines {
   bool driven_are_tied_;
   bool sensed_are_tied_;
   std::size_t driven_;
+  double series_ohm_;  // of the supply, in rho of the driven lines
+  double supply_ohm_;
   std::vector<double> rho_;              // [lines]
   std::vector<SensedLine> sensed_head_;  // [sensed]
 };

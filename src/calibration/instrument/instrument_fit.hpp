@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/core/frames.hpp"
+#include "dermis/core/loads.hpp"
+#include "dermis/core/result.hpp"
+
+namespace dermis::calibration {
+
+/// In what an instrument is not as its description says, and what is left.
+struct InstrumentFit {
+  ArrayDescription array;               ///< With what was found.
+  std::vector<std::string> statements;  ///< What was found, and what nothing explains, a sentence each.
+  /// By how much presses on several taxels differ from single ones beyond chance and beyond all that was found,
+  /// relative; 0: they agree, or there are none.
+  double unexplained = 0.0;
+};
+
+/// The description says "fit" of its ADC or its supply.
+[[nodiscard]] bool asks_for_instrument(const Readout& readout);
+
+/// Offset and supply that are to be fitted are left out.
+[[nodiscard]] ArrayDescription without_unknown_instrument(ArrayDescription array);
+
+/// Sets what the description leaves open of the settling to what single presses tell (measure_settling()), or to none.
+[[nodiscard]] InstrumentFit fit_settling(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                         std::span<const Load> loads);
+
+/// Presses on several taxels must give the forces that single presses have taught: offset and curve of the ADC,
+/// resistance of the supply and drivers are what they may tell. Each kind that the description leaves open is fitted by
+/// Gauss-Newton, and the one that explains most is taken, then the next beside it, as long as chance would not
+/// explain as much. Drivers are named, not changed: the description gives them. `array` has a circuit whose resistances
+/// are known. `is_asked_for`: it is said where nothing can tell. Errors: those of circuit_frames(), a circuit that
+/// cannot be inverted.
+[[nodiscard]] Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<const RawFrame> frames,
+                                                   std::span<const Load> loads, Nanos settle_time, bool is_asked_for);
+
+}  // namespace dermis::calibration

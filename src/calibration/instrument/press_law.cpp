@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/instrument/press_law.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "dermis/core/quantile.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr std::size_t kLeastSingles = 20;  // to learn a law from
+constexpr double kResolved = 5.0;          // a conductance over its noise
+constexpr double kSigmasOfDeviation = 1.4826;
+constexpr double kLeastScatter = 0.002;
+constexpr double kReadable = 2.0;       // an unloaded conductance over its noise
+constexpr Index kOwnTerms = 3;          // level, exponent, temperature
+constexpr Index kSharedTerms = 6;       // z, z^2, z^3, z^4, t, t z
+constexpr double kOwnPrecision = 0.01;  // of an exponent about the common one: a tenth, beside a scatter of 1 %
+
+/// Every taxel that is pressed, or may be.
+bool may_be_pressed(float newtons) {
+  return newtons != 0.0F;
+}
+
+std::optional<Press> press_of(const CircuitFrame& frame) {
+  Press press{&frame, {}, 0.0};
+  for (std::size_t taxel = 0; taxel < frame.newtons.size(); ++taxel) {
+    if (!(frame.newtons[taxel] > 0.0F)) continue;
+    press.taxels.push_back(taxel);
+    press.newtons += static_cast<double>(frame.newtons[taxel]);
+  }
+  for (const TotalForce& total : frame.totals) {
+    press.taxels.insert(press.taxels.end(), total.taxels.begin(), total.taxels.end());
+    press.newtons += total.newtons;
+  }
+  if (press.taxels.empty() || !(press.newtons > 0.0)) return std::nullopt;
+  return press;
+}
+
+void thin_out(std::vector<Press>& presses, std::size_t most) {
+  if (presses.size() <= most) return;
+  for (std::size_t k = 0; k < most; ++k) presses[k] = presses[k * presses.size() / most];
+  presses.resize(most);
+}
+
+std::set<std::size_t> taxels_of(const std::vector<Press>& presses) {
+  std::set<std::size_t> taxels;
+  for (const Press& press : presses) taxels.insert(press.taxels.begin(), press.taxels.end());
+  return taxels;
+}
+
+/// First those of taxels whose laws the presses on several ask for.
+void thin_out_single(Presses& presses, std::size_t most) {
+  const std::set<std::size_t> asked = taxels_of(presses.several);
+  const auto is_asked = [&](const Press& press) { return asked.contains(press.taxels.front()); };
+  const auto others = std::stable_partition(presses.single.begin(), presses.single.end(), is_asked);
+  std::vector<Press> rest(others, presses.single.end());
+  presses.single.erase(others, presses.single.end());
+  thin_out(presses.single, most);
+  thin_out(rest, most - presses.single.size());
+  presses.single.insert(presses.single.end(), rest.begin(), rest.end());
+}
+
+/// Mean conductance of each taxel in the frames in which it is idle.
+std::vector<double> unloaded_siemens(const std::vector<const CircuitFrame*>& frames, const InvertedFrames& inverted) {
+  std::vector<double> sum(frames.front()->newtons.size());
+  std::vector<double> count(sum.size());
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    for (std::size_t taxel = 0; taxel < sum.size(); ++taxel) {
+      if (may_be_pressed(frames[k]->newtons[taxel])) continue;
+      sum[taxel] += inverted[k]->siemens[taxel];
+      count[taxel] += 1.0;
+    }
+  }
+  for (std::size_t taxel = 0; taxel < sum.size(); ++taxel) sum[taxel] /= std::max(count[taxel], 1.0);
+  return sum;
+}
+
+/// What a frame says of one of its taxels.
+struct LawPoint {
+  double z = 0.0;      // ln of the conductance above the unloaded one
+  double sigma = 0.0;  // of z, by the noise of readings
+  double t = 0.0;      // temperature
+};
+
+VectorXd shared_basis(const LawPoint& point) {
+  VectorXd basis(kSharedTerms);
+  const double z = point.z;
+  basis << z, z * z, z * z * z, z * z * z * z, point.t, point.t * z;
+  return basis;
+}
+
+Eigen::Vector3d own_basis(const LawPoint& point) {
+  return {1.0, point.z, point.t};
+}
+
+/// ln F of each taxel by z.
+class PressLaws {
+ public:
+  explicit PressLaws(std::size_t taxels) : own_(taxels), variance_(taxels) {}
+
+  /// Least squares with the taxels' own terms eliminated. `taxels`, `log_force`: of each point.
+  void fit(const std::vector<LawPoint>& points, const std::vector<std::size_t>& taxels,
+           const std::vector<double>& log_force) {
+    std::vector<Equations> equations(own_.size());
+    MatrixXd normal = MatrixXd::Identity(kSharedTerms, kSharedTerms) * 1e-6;
+    VectorXd right = VectorXd::Zero(kSharedTerms);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const VectorXd common = shared_basis(points[k]);
+      equations[taxels[k]].add(own_basis(points[k]), common, log_force[k]);
+      normal += common * common.transpose();
+      right += common * log_force[k];
+    }
+    for (const Equations& taxel : equations) {
+      if (taxel.count == 0.0) continue;
+      normal -= taxel.between.transpose() * taxel.own.llt().solve(taxel.between);
+      right -= taxel.between.transpose() * taxel.own.llt().solve(taxel.right);
+    }
+    common_ = normal.ldlt().solve(right);
+    for (std::size_t taxel = 0; taxel < own_.size(); ++taxel) {
+      const Equations& of_taxel = equations[taxel];
+      if (of_taxel.count == 0.0) continue;
+      own_[taxel] = of_taxel.own.llt().solve(of_taxel.right - of_taxel.between * common_);
+      variance_[taxel] = 1.0 / of_taxel.count;
+    }
+  }
+
+  [[nodiscard]] double log_force(std::size_t taxel, const LawPoint& point) const {
+    return own_[taxel].dot(own_basis(point)) + common_.dot(shared_basis(point));
+  }
+  /// d ln F / d z.
+  [[nodiscard]] double slope(std::size_t taxel, const LawPoint& point) const {
+    constexpr double kStep = 1e-4;
+    LawPoint moved = point;
+    moved.z += kStep;
+    return (log_force(taxel, moved) - log_force(taxel, point)) / kStep;
+  }
+  /// Of the law, over that of a press.
+  [[nodiscard]] double variance(std::size_t taxel) const { return variance_[taxel]; }
+
+ private:
+  struct Equations {
+    Eigen::Matrix3d own = Eigen::Vector3d(1e-9, kOwnPrecision, kOwnPrecision).asDiagonal();
+    Eigen::Matrix<double, kOwnTerms, kSharedTerms> between = Eigen::Matrix<double, kOwnTerms, kSharedTerms>::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    double count = 0.0;
+
+    void add(const Eigen::Vector3d& basis, const VectorXd& common, double value) {
+      own += basis * basis.transpose();
+      between += basis * common.transpose();
+      right += basis * value;
+      count += 1.0;
+    }
+  };
+
+  std::vector<Eigen::Vector3d> own_;
+  std::vector<double> variance_;
+  VectorXd common_;
+};
+
+/// Conductances on a scale on which the powers of z stay small.
+class Scale {
+ public:
+  Scale(const Presses& presses, const InvertedFrames& inverted, const std::vector<double>& unloaded) {
+    std::vector<double> logs;
+    for (std::size_t k = 0; k < presses.single.size(); ++k) {
+      const std::size_t taxel = presses.single[k].taxels.front();
+      const double excess = inverted[k]->siemens[taxel] - unloaded[taxel];
+      if (excess > kResolved * inverted[k]->sigma_siemens[taxel]) logs.push_back(std::log(excess));
+    }
+    if (logs.size() < kLeastSingles) return;
+    const double low = quantile(logs, 0.02);
+    const double high = quantile(logs, 0.98);
+    centre_ = 0.5 * (low + high);
+    half_span_ = std::max(0.5 * (high - low), 0.1);
+    is_there_ = true;
+  }
+
+  [[nodiscard]] bool is_there() const { return is_there_; }
+
+  [[nodiscard]] std::optional<LawPoint> point(const CircuitFrame& frame, const InvertedFrame& inverted,
+                                              std::size_t taxel, double unloaded, double least_sigmas) const {
+    constexpr double kBeyond = 1.2;  // laws are not continued
+    const double excess = inverted.siemens[taxel] - unloaded;
+    const double sigma = inverted.sigma_siemens[taxel];
+    if (!(excess > least_sigmas * sigma)) return std::nullopt;
+    const double z = std::min((std::log(excess) - centre_) / half_span_, kBeyond);
+    if (z < -kBeyond) return std::nullopt;
+    return LawPoint{z, sigma / excess / half_span_, frame.temperature};
+  }
+
+ private:
+  double centre_ = 0.0;
+  double half_span_ = 1.0;
+  bool is_there_ = false;
+};
+
+struct LearnedLaws {
+  PressLaws laws;
+  double scatter = 0.0;  // of a single press about its law
+};
+
+/// Empty: too few presses that tell.
+std::optional<LearnedLaws> learn_laws(const Presses& presses, const InvertedFrames& inverted,
+                                      const std::vector<double>& unloaded, const Scale& scale) {
+  if (!scale.is_there()) return std::nullopt;
+  std::vector<LawPoint> points;
+  std::vector<std::size_t> taxels;
+  std::vector<double> log_forces;
+  for (std::size_t k = 0; k < presses.single.size(); ++k) {
+    const Press& press = presses.single[k];
+    const std::size_t taxel = press.taxels.front();
+    const auto point = scale.point(*press.frame, *inverted[k], taxel, unloaded[taxel], kResolved);
+    if (!point) continue;
+    points.push_back(*point);
+    taxels.push_back(taxel);
+    log_forces.push_back(std::log(press.newtons));
+  }
+  if (points.size() < kLeastSingles) return std::nullopt;
+  LearnedLaws learned{PressLaws(unloaded.size())};
+  learned.laws.fit(points, taxels, log_forces);
+  std::vector<double> deviations;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    deviations.push_back(std::abs(log_forces[k] - learned.laws.log_force(taxels[k], points[k])));
+  }
+  const auto pressed = static_cast<double>(std::set<std::size_t>(taxels.begin(), taxels.end()).size());
+  const auto count = static_cast<double>(points.size());
+  const double freedom = std::max(count - 2.0 * pressed - static_cast<double>(kSharedTerms), 1.0);
+  learned.scatter =
+      std::max(kLeastScatter, kSigmasOfDeviation * quantile(deviations, 0.5) * std::sqrt(count / freedom));
+  return learned;
+}
+
+void add_total(const Press& press, const InvertedFrame& inverted, const std::vector<double>& unloaded,
+               const Scale& scale, const LearnedLaws& learned, InstrumentMisfit& misfit) {
+  double total = 0.0;
+  double variance = 0.0;
+  for (const std::size_t taxel : press.taxels) {
+    const auto point = scale.point(*press.frame, inverted, taxel, unloaded[taxel], 0.0);
+    if (!point) continue;
+    const double force = std::exp(learned.laws.log_force(taxel, *point));
+    const double of_law = learned.scatter * learned.scatter * (1.0 + learned.laws.variance(taxel));
+    total += force;
+    variance += force * force * (of_law + std::pow(learned.laws.slope(taxel, *point) * point->sigma, 2));
+  }
+  misfit.totals.push_back(total > 0.0 ? std::log(total / press.newtons) : -1.0);
+  misfit.sigmas.push_back(total > 0.0 ? std::sqrt(variance) / total : 1.0);
+}
+
+/// A mean of what taxels conduct too much, over their noise.
+struct IdleMean {
+  double sum = 0.0;
+  double weight = 0.0;
+
+  void add(double excess, double sigma) {
+    if (!(sigma > 0.0) || !std::isfinite(sigma)) return;
+    sum += excess / (sigma * sigma);
+    weight += 1.0 / (sigma * sigma);
+  }
+  [[nodiscard]] double mean() const { return weight > 0.0 ? sum / weight : 0.0; }
+  [[nodiscard]] double variance() const { return weight > 0.0 ? 1.0 / weight : 0.0; }
+};
+
+void add_idle(const Press& press, const InvertedFrame& inverted, const std::vector<double>& unloaded, std::size_t cols,
+              InstrumentMisfit& misfit) {
+  const std::size_t pressed = press.taxels.front();
+  IdleMean row;
+  IdleMean column;
+  IdleMean elsewhere;
+  for (std::size_t taxel = 0; taxel < unloaded.size(); ++taxel) {
+    if (press.frame->newtons[taxel] != 0.0F || !(unloaded[taxel] > kReadable * inverted.sigma_siemens[taxel])) continue;
+    const bool is_in_row = taxel / cols == pressed / cols;
+    IdleMean& mean = is_in_row ? row : taxel % cols == pressed % cols ? column : elsewhere;
+    mean.add(inverted.siemens[taxel] - unloaded[taxel], inverted.sigma_siemens[taxel]);
+  }
+  for (const IdleMean& line : {row, column}) {
+    const bool is_known = line.weight > 0.0 && elsewhere.weight > 0.0;
+    misfit.idle.push_back(
+        is_known ? (line.mean() - elsewhere.mean()) / std::sqrt(line.variance() + elsewhere.variance()) : 0.0);
+  }
+}
+
+}  // namespace
+
+Presses sort_presses(const CircuitFrames& frames, std::size_t most) {
+  Presses presses;
+  for (const CircuitFrame& frame : frames.frames) {
+    std::optional<Press> press = press_of(frame);
+    if (!press) continue;
+    (press->taxels.size() == 1 ? presses.single : presses.several).push_back(*std::move(press));
+  }
+  const std::set<std::size_t> alone = taxels_of(presses.single);
+  std::erase_if(presses.several, [&](const Press& press) {
+    return !std::all_of(press.taxels.begin(), press.taxels.end(),
+                        [&](std::size_t taxel) { return alone.contains(taxel); });
+  });
+  thin_out(presses.several, most);
+  thin_out_single(presses, most);
+  return presses;
+}
+
+std::vector<const CircuitFrame*> frames_of(const Presses& presses) {
+  std::vector<const CircuitFrame*> frames;
+  for (const Press& press : presses.single) frames.push_back(press.frame);
+  for (const Press& press : presses.several) frames.push_back(press.frame);
+  return frames;
+}
+
+std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const InvertedFrames& inverted, std::size_t cols) {
+  const std::vector<const CircuitFrame*> frames = frames_of(presses);
+  const auto is_there = [](const auto& frame) { return frame.has_value(); };
+  if (presses.single.size() < kLeastSingles || !std::all_of(inverted.begin(), inverted.end(), is_there)) {
+    return std::nullopt;
+  }
+  const std::vector<double> unloaded = unloaded_siemens(frames, inverted);
+  InstrumentMisfit misfit;
+  for (std::size_t k = 0; k < presses.single.size(); ++k)
+    add_idle(presses.single[k], *inverted[k], unloaded, cols, misfit);
+  if (presses.several.empty()) return misfit;
+  const Scale scale(presses, inverted, unloaded);
+  const std::optional<LearnedLaws> learned = learn_laws(presses, inverted, unloaded, scale);
+  if (!learned) return std::nullopt;
+  for (std::size_t k = 0; k < presses.several.size(); ++k) {
+    add_total(presses.several[k], *inverted[presses.single.size() + k], unloaded, scale, *learned, misfit);
+  }
+  return misfit;
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/circuit_fit/inverted_frame.hpp"
+
+namespace dermis::calibration {
+
+/// What one frame presses, and with how much in all.
+struct Press {
+  const CircuitFrame* frame = nullptr;
+  std::vector<std::size_t> taxels;
+  double newtons = 0.0;
+};
+
+/// Frames by what they press.
+struct Presses {
+  std::vector<Press> single;   ///< One taxel alone.
+  std::vector<Press> several;  ///< Taxels that were all pressed alone, too.
+};
+
+/// At most so many of each kind, evenly chosen. Presses on several taxels keep the single ones of their taxels first.
+[[nodiscard]] Presses sort_presses(const CircuitFrames& frames, std::size_t most);
+
+/// The frames of all presses: the single ones, then those of several.
+[[nodiscard]] std::vector<const CircuitFrame*> frames_of(const Presses& presses);
+
+/// What an instrument leaves unexplained.
+struct InstrumentMisfit {
+  std::vector<double> totals;  ///< ln(total as the laws of single presses say / true) [several]
+  std::vector<double> sigmas;  ///< Standard deviation of each, if the circuit is right.
+  /// What the idle taxels in the row, then in the column of a single press conduct more than untouched, beside the idle
+  /// ones elsewhere, in standard deviations [2 single].
+  std::vector<double> idle;
+};
+
+/// `inverted`: of frames_of(presses), all there. A press must not change what idle taxels conduct. Each taxel has a law
+/// ln F = a + b z + c z^2 + d z^3 + e z^4 of z = ln(conductance above the unloaded one), with c, d and e of all taxels
+/// the same; temperature shifts it. Empty: too few presses to tell, or conductances that follow no law.
+[[nodiscard]] std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const InvertedFrames& inverted,
+                                                        std::size_t cols);
+
+}  // namespace dermis::calibration
