@@ -74,7 +74,9 @@ bool ForceNetworks::is_consistent() const noexcept {
   const bool in_range = (uses_temperature || shape.inputs + 1 == kInputsWithTemperature) && shape.hidden <= 64 &&
                         std::isfinite(centre_celsius) && std::isfinite(half_span_celsius) &&
                         half_span_celsius >= 0.0 &&  // std::clamp needs low <= high
-                        (!uses_temperature || half_span_celsius > 0.0);
+                        (!uses_temperature || half_span_celsius > 0.0) &&
+                        std::all_of(temperature_gap_celsius.begin(), temperature_gap_celsius.end(), is_finite) &&
+                        temperature_gap_celsius[0] <= temperature_gap_celsius[1];
   return in_range && all(unloaded.offset_siemens, taxels, is_finite) && all(unloaded.per_celsius, taxels, is_finite) &&
          all(reference_siemens, taxels, is_positive) && all(heaviest_siemens, taxels, is_positive) &&
          all(heaviest_newtons, taxels, [](float value) { return value > 0.0F; }) && all(gain, taxels, is_positive) &&
@@ -158,7 +160,10 @@ ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conduc
   const double outside = is_known ? std::abs(offset - clamped) : 0.0;
   constexpr double kSensorNoiseCelsius = 1.0;
   if (uses_temperature() && outside > kSensorNoiseCelsius) force.status |= FrameStatus::temperature_clamped;
-  return {clamped, std::hypot(networks_.temperature_sigma_celsius, outside), outside};
+  const auto& [lowest, highest] = networks_.temperature_gap_celsius;
+  const double celsius = *conductance.temperature_celsius;
+  const double in_gap = std::max(std::min(celsius - lowest, highest - celsius), 0.0);
+  return {clamped, std::hypot(networks_.temperature_sigma_celsius, outside, in_gap), outside};
 }
 
 void ForceFusion::prepare_inputs(const ConductanceFrame& conductance, double temperature_offset) noexcept {
@@ -215,9 +220,8 @@ void ForceFusion::compute_forces(const Temperature& temperature, ForceFrame& for
   sources.temperature_sigma = static_cast<float>(temperature.sigma);
   if (uses_temperature()) {
     sources.temperature_per_celsius = static_cast<float>(1.0 / networks_.unloaded.temperature.half_span_celsius);
-  } else {
-    sources.unlearned_variance = static_cast<float>(std::pow(kUnlearnedPerCelsius * temperature.outside, 2));
   }
+  sources.unlearned_variance = static_cast<float>(std::pow(kUnlearnedPerCelsius * temperature.outside, 2));
   sources.log_first_knot = first;
   sources.knots_per_log = static_cast<float>(kSigmaKnots - 1) / (last - first);
   ForceSums& sums = force.sums;

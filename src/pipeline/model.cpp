@@ -25,6 +25,7 @@ using fusion::LookUpTables;
 using preprocessing::SupplyRange;
 
 constexpr const char* kFormatWithoutSigma = "dermis model 1";
+constexpr const char* kTemperatureGap = "networks.temperature_gap_celsius";
 constexpr const char* kProvenancePrefix = "provenance.";
 constexpr std::size_t kMaxBaselines = 16;
 
@@ -89,6 +90,8 @@ void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
   put_tensor<double>(file, "networks.temperature_celsius", {3},
                      {networks.unloaded.temperature.centre_celsius, networks.unloaded.temperature.half_span_celsius,
                       networks.temperature_sigma_celsius});
+  const auto& gap = networks.temperature_gap_celsius;
+  if (gap[0] < gap[1]) put_tensor<double>(file, kTemperatureGap, {2}, {gap.begin(), gap.end()});
   const TaxelTensors tensors;
   for (const auto& [name, member] : tensors.unloaded) put_tensor(file, name, {taxels}, networks.unloaded.*member);
   for (const auto& [name, member] : tensors.floats) put_tensor(file, name, {taxels}, networks.*member);
@@ -108,6 +111,11 @@ ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, Tens
   if (temperature.size() == 3) {
     networks.unloaded.temperature = {temperature[0], temperature[1]};
     networks.temperature_sigma_celsius = temperature[2];
+  }
+  if (file.tensors.contains(kTemperatureGap)) {
+    std::vector<double> gap;
+    reader.get(kTemperatureGap, {2}, gap);
+    if (gap.size() == 2) networks.temperature_gap_celsius = {gap[0], gap[1]};
   }
   const TaxelTensors tensors;
   for (const auto& [name, member] : tensors.unloaded) reader.get(name, {taxels}, networks.unloaded.*member);

@@ -508,6 +508,22 @@ TEST(ForceFusion, an_unknown_or_far_temperature_costs_certainty) {
   }
 }
 
+TEST(ForceFusion, a_temperature_in_the_gap_is_as_uncertain_as_the_nearest_calibrated_one_is_far) {
+  auto networks = support::random_networks(8, 3, 2, 4);
+  const std::vector<double> siemens(8, 1e-3);
+  auto with_gap = networks;
+  with_gap.temperature_gap_celsius = {15.0, 35.0};
+  for (const auto& [celsius, far] : {std::pair(10.0, 0.0), std::pair(18.0, 3.0), std::pair(25.0, 10.0)}) {
+    networks.temperature_sigma_celsius = std::hypot(with_gap.temperature_sigma_celsius, far);
+    const auto expected = fuse(networks, make_frame(siemens, celsius));
+    const auto between = fuse(with_gap, make_frame(siemens, celsius));
+    EXPECT_EQ(between.newtons, expected.newtons);
+    for (std::size_t k = 0; k < 8; ++k) {
+      EXPECT_FLOAT_EQ(between.sigma_newtons[k], expected.sigma_newtons[k]) << celsius << " C";
+    }
+  }
+}
+
 TEST(ForceNetworks, consistent_networks_are_consistent) {
   EXPECT_TRUE(power_law().is_consistent());
   EXPECT_TRUE(two_power_laws().is_consistent());
@@ -585,6 +601,14 @@ TEST(ForceNetworks, every_broken_field_is_found) {
       {"dead size", [](auto& n) { n.dead.pop_back(); }},
       {"temperature sigma negative", [](auto& n) { n.temperature_sigma_celsius = -0.1; }},
       {"temperature sigma NaN", [](auto& n) { n.temperature_sigma_celsius = kNan; }},
+      {"temperature gap falling",
+       [](auto& n) {
+         n.temperature_gap_celsius = {30.0, 20.0};
+       }},
+      {"temperature gap NaN",
+       [](auto& n) {
+         n.temperature_gap_celsius = {20.0, kNan};
+       }},
       {"offset sigma negative", [](auto& n) { n.offset_sigma_siemens[1] = -1e-9F; }},
       {"offset sigma size", [](auto& n) { n.offset_sigma_siemens.pop_back(); }},
       {"relative sigma 0", [](auto& n) { n.relative_sigma[1] = 0.0F; }},

@@ -62,6 +62,7 @@ Model make_model() {
   model.array.readout.supply_v = 5.1;
   model.array.readout.pressure_raises_reading = false;
   model.networks = support::random_networks(6, 3, 4, 77);
+  model.networks.temperature_gap_celsius = {12.0, 100.0 / 3.0};
   model.networks.sigma_knots_newtons = {0.3F, 77.0F};
   model.networks.heaviest_newtons[2] = std::numeric_limits<float>::infinity();
   model.networks.dead[5] = 1;
@@ -107,6 +108,7 @@ void expect_equal(const Model& a, const Model& b) {
   EXPECT_EQ(a.networks.dead, b.networks.dead);
   EXPECT_EQ(a.networks.parameters, b.networks.parameters);
   EXPECT_EQ(a.networks.temperature_sigma_celsius, b.networks.temperature_sigma_celsius);
+  EXPECT_EQ(a.networks.temperature_gap_celsius, b.networks.temperature_gap_celsius);
   EXPECT_EQ(a.networks.offset_sigma_siemens, b.networks.offset_sigma_siemens);
   EXPECT_EQ(a.networks.relative_sigma, b.networks.relative_sigma);
   EXPECT_EQ(a.networks.sigma_knots_newtons, b.networks.sigma_knots_newtons);

@@ -48,7 +48,8 @@ struct TestedLoad {
   double newtons = 0.0;             ///< The load, > 0.
   double noise_n = 0.0;             ///< As large as the noise of the load [N].
   double error_n = 0.0;             ///< As large as the error on a new load in the same place [N].
-  double leverage = 0.0;            ///< Of the load on its own estimate: network::FittedResidual.
+  double leverage = 0.0;            ///< Of its press on its estimate, 0 ... 0.95: network::FittedResidual.
+  std::size_t press = 0;            ///< First sample of its press: loads of one press are alike.
 };
 
 struct ForceTraining {

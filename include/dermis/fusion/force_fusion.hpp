@@ -48,6 +48,8 @@ struct ForceNetworks {
 
   // The uncertainty that calibration found; see ForceFusion.
   double temperature_sigma_celsius = 0.0;   ///< Noise of the temperature sensor [C], >= 0.
+  /// Lowest and highest of the temperatures between which nothing tells how the forces bend; equal: there are none.
+  std::array<double, 2> temperature_gap_celsius{};
   std::vector<float> offset_sigma_siemens;  ///< Standard deviation of unloaded.offset_siemens [S], >= 0.
   /// Relative error of the force from causes without a term of their own (misfit, hysteresis, creep), > 0, at
   /// kSigmaKnots forces in equal ratios. Between them its square is linear in ln(newtons), beyond the ends it is
@@ -71,16 +73,17 @@ struct ForceNetworks {
 ///
 ///   (sigma_newtons / newtons)^2 = (p / e)^2 (sigma_siemens^2 + offset_sigma^2) + (q sigma_T)^2 + relative_sigma^2
 ///
-/// If temperature is not an input, the square of 0.5 %/C times the distance from the calibrated temperatures is added.
-/// Pressure-sensitive rubber drifts by 0.2 to 1 %/C (FlexiForce: 0.36), and that of this rubber is not measured.
+/// The square of 0.5 %/C times the distance from the calibrated temperatures is added. Pressure-sensitive rubber drifts
+/// by 0.2 to 1 %/C (FlexiForce: 0.36), and how this rubber drifts there is not measured.
 ///
 /// Outside the calibrated loads further squares are added. Beyond the heaviest load F_h it is that of x sqrt(0.2^2 +
 /// (0.3 x)^2), x = ln(newtons / F_h). Below the first of sigma_knots_newtons it is that of 0.1 ln(first / newtons). On
 /// the line below the first load of a table it is also that of 0.3 ln(e_1 / e), e_1 the conductance there. From 8 F_h
 /// on the force is constant, with an infinite sigma.
 ///
-/// sigma_T is the noise of the temperature sensor and the amount by which the temperature was clamped. Without a
-/// temperature it is half_span / sqrt(3). Below e = sigma_siemens (+) offset_sigma the right side times newtons is that
+/// sigma_T is the noise of the temperature sensor and the distance to the nearest calibrated temperature, by which a
+/// temperature outside was clamped. In temperature_gap_celsius the network draws a line, but rubber may have changed
+/// anywhere. Without a temperature sigma_T is half_span / sqrt(3). Below e = sigma_siemens (+) offset_sigma the right side times newtons is that
 /// of this conductance, reached along the power law. So an unloaded taxel shows its detection limit, the force that
 /// would just exceed the noise.
 ///

@@ -9,10 +9,36 @@ namespace dermis::calibration {
 namespace {
 
 // Standard deviations of the prior: a hidden unit bends ln(newtons) by about one over the range of its inputs; the
-// power law and the linear temperature term are left nearly free.
+// power law is left nearly free. Rubbers drift by 0.2 to 1 %/C.
 constexpr double kHiddenDeviation = 1.5;
+constexpr double kHiddenDeviationOfBend = 0.3;
 constexpr double kDirectDeviation = 5.0;
+constexpr double kDeviationPerCelsius = 0.02;
 constexpr double kHeldDeviation = 1e-4;
+
+double power_deviation(bool is_exponent, PowerPrior power) {
+  const bool is_held = power == PowerPrior::held || (!is_exponent && power == PowerPrior::straight);
+  return is_held ? kHeldDeviation : kDirectDeviation;
+}
+
+/// Of the weight of a hidden unit.
+double temperature_deviation(TemperaturePrior temperature) {
+  if (temperature == TemperaturePrior::free) return kHiddenDeviation;
+  return temperature == TemperaturePrior::bend ? kHiddenDeviationOfBend : kHeldDeviation;
+}
+
+double deviation(const network::PerceptronShape& shape, std::size_t parameter, const NetworkPrior& prior) {
+  if (parameter == shape.direct_weight(0)) return power_deviation(true, prior.power);
+  if (parameter == shape.direct_weight(1)) return power_deviation(false, prior.power);
+  const bool uses_temperature = shape.inputs == fusion::kInputsWithTemperature;
+  if (!uses_temperature) return kHiddenDeviation;
+  const std::size_t temperature = shape.inputs - 1;
+  if (parameter == shape.direct_weight(temperature)) return kDeviationPerCelsius * prior.half_span_celsius;
+  for (std::size_t unit = 0; unit < shape.hidden; ++unit) {
+    if (parameter == shape.weight(unit, temperature)) return temperature_deviation(prior.temperature);
+  }
+  return kHiddenDeviation;
+}
 
 }  // namespace
 
@@ -54,18 +80,13 @@ std::vector<double> random_start(const network::PerceptronShape& shape, double n
   return free;
 }
 
-void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals, std::span<double> jacobian,
-                     std::size_t columns, PowerPrior power) noexcept {
+void prior_residuals(const ForceNetwork& network, const NetworkPrior& prior, double scale, std::span<double> residuals,
+                     std::span<double> jacobian, std::size_t columns) noexcept {
   const network::PerceptronShape& shape = network.shape;
   for (std::size_t k = 0; k < shape.parameter_count(); ++k) {
     const bool is_level = k == shape.output_bias();
-    const bool is_exponent = k == shape.direct_weight(0);
-    const bool is_bend = k == shape.direct_weight(1);
-    const double centre = is_exponent ? 1.0 : 0.0;
-    const bool is_held = (is_exponent && power == PowerPrior::held) || (is_bend && power != PowerPrior::free);
-    const double of_direct = is_held ? kHeldDeviation : kDirectDeviation;
-    const double deviation = k >= shape.direct_weight(0) ? of_direct : kHiddenDeviation;
-    const double weight = is_level ? 0.0 : scale / deviation;
+    const double centre = k == shape.direct_weight(0) ? 1.0 : 0.0;
+    const double weight = is_level ? 0.0 : scale / deviation(shape, k, prior);
     const double slope = network::monotone::is_positive(shape, k) ? network.parameters[k] : 1.0;
     residuals[k] = weight * (network.parameters[k] - centre);
     if (jacobian.empty()) continue;

@@ -47,10 +47,25 @@ enum class PowerPrior {
   held,      ///< Nothing: the exponent is 1.
 };
 
+/// What the data can tell of temperature.
+enum class TemperaturePrior {
+  free,  ///< How it changes the law of force and conductance.
+  bend,  ///< A factor on the force that bends, from three temperatures.
+  line,  ///< The factor's logarithm is a line, from two: hidden units do not see temperature.
+};
+
+/// What the data can tell of the law, for prior_residuals().
+struct NetworkPrior {
+  PowerPrior power = PowerPrior::free;
+  TemperaturePrior temperature = TemperaturePrior::free;
+  double half_span_celsius = 0.0;  ///< That an input of 1 is worth, where temperature is one.
+};
+
 /// A Gaussian prior on the parameters, as residuals that are appended to those of the data: hidden weights are about 0,
-/// the power of conductance about 1, and what `power` calls unknown hardly leaves that. `scale`: standard deviation of
-/// a data residual. Fills residuals [parameter_count] and, where it is not empty, jacobian [parameter_count, columns].
-void prior_residuals(const ForceNetwork& network, double scale, std::span<double> residuals, std::span<double> jacobian,
-                     std::size_t columns, PowerPrior power = PowerPrior::free) noexcept;
+/// the power of conductance about 1, the temperature coefficient what rubbers have, and what `prior` calls unknown
+/// hardly leaves that. `scale`: standard deviation of a data residual. Fills residuals [parameter_count] and, where it
+/// is not empty, jacobian [parameter_count, columns].
+void prior_residuals(const ForceNetwork& network, const NetworkPrior& prior, double scale, std::span<double> residuals,
+                     std::span<double> jacobian, std::size_t columns) noexcept;
 
 }  // namespace dermis::calibration

@@ -20,6 +20,7 @@
 #include "calibration/training/shared_training.hpp"
 #include "calibration/training/table_choice.hpp"
 #include "calibration/training/taxel_training.hpp"
+#include "calibration/training/temperature_levels.hpp"
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/core/quantile.hpp"
 
@@ -269,8 +270,9 @@ std::vector<ForceNetwork> train_own(const Evidence& evidence, const Division& di
     const std::vector<TaxelPoint>& points = evidence.points[division.own[k]];
     const bool uses_temperature = evidence.temperatures.is_input;
     const auto shape = force_shape(uses_temperature, hidden_units(points, uses_temperature));
-    std::optional<ForceNetwork> like = train_taxel_like(others, shape, points);
-    networks[k] = like ? *std::move(like) : train_taxel(shape, points, division.own[k]);
+    const TemperatureSpan& span = evidence.temperatures.span;
+    std::optional<ForceNetwork> like = train_taxel_like(others, shape, points, span);
+    networks[k] = like ? *std::move(like) : train_taxel(shape, points, span, division.own[k]);
     if (progress) progress(static_cast<double>(++done) / static_cast<double>(division.own.size()));
   };
   const std::vector<std::size_t> first = even_choice(division.own.size(), kFirstNetworks);
@@ -381,6 +383,7 @@ Result<ForceTraining> train_force_networks(const SampleDatabase& database,
   }
   report_networks(division, trained, report);
   training.networks = assemble(evidence, division, trained, report);
+  training.networks.temperature_gap_celsius = temperature_gap(database, evidence.temperatures);
   training.tested_own = tested_presses(division.own, trained.own, evidence);
   training.tested_shared = std::move(trained.shared.tested);
   training.tested_unpressed = std::move(trained.shared.tested_unpressed);

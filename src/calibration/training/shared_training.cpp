@@ -10,6 +10,7 @@
 
 #include "calibration/training/force_levels.hpp"
 #include "calibration/training/shared_loads.hpp"
+#include "calibration/training/temperature_levels.hpp"
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
 
@@ -70,11 +71,20 @@ PowerPrior power_prior(const std::vector<MeasuredLoad>& loads) {
   return levels_of(loads) < kLeastLevelsOfBend ? PowerPrior::straight : PowerPrior::free;
 }
 
+NetworkPrior prior_of(const std::vector<MeasuredLoad>& loads, const SampleTemperatures& temperatures) {
+  NetworkPrior prior{power_prior(loads), TemperaturePrior::free, temperatures.span.half_span_celsius};
+  std::vector<WarmLoad> warm;
+  for (const MeasuredLoad& load : loads) warm.push_back({load.load_newtons, load.temperature});
+  if (temperatures.is_input) prior.temperature = temperature_prior(std::move(warm), temperatures.span);
+  return prior;
+}
+
 /// The least-squares problem for given gains; its parameters are the free values of the network.
 class SharedProblem {
  public:
-  SharedProblem(const std::vector<MeasuredLoad>& raw, const UnloadedFit& unloaded)
-      : power_(power_prior(raw)), gain_(unloaded.noise_siemens.size(), 1.0) {
+  SharedProblem(const std::vector<MeasuredLoad>& raw, const SampleTemperatures& temperatures,
+                const UnloadedFit& unloaded)
+      : prior_(prior_of(raw, temperatures)), gain_(unloaded.noise_siemens.size(), 1.0) {
     double log_newtons = 0.0;
     double active = 0.0;
     double active_siemens = 0.0;
@@ -141,14 +151,14 @@ class SharedProblem {
         }
         residuals[k] = load.weight * (sum - load.newtons);
       }
-      prior_residuals(network, kExpectedResidual, residuals.subspan(loads_.size(), n),
-                      jacobian.empty() ? jacobian : jacobian.subspan(loads_.size() * n), n, power_);
+      prior_residuals(network, prior_, kExpectedResidual, residuals.subspan(loads_.size(), n),
+                      jacobian.empty() ? jacobian : jacobian.subspan(loads_.size() * n), n);
     };
   }
 
  private:
   std::vector<SharedLoad> loads_;
-  PowerPrior power_;
+  NetworkPrior prior_;
   std::vector<double> gain_;  // [taxels]
   double reference_siemens_ = 1.0;
   double heaviest_siemens_ = 0.0;
@@ -339,8 +349,8 @@ SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatu
   shared.gain.assign(dead.size(), 1.0);
   if (loads.empty()) return shared;
 
-  SharedProblem problem(loads, unloaded);
-  const SharedProblem thinned(all.loads(kMostSharesForStart), unloaded);
+  SharedProblem problem(loads, temperatures, unloaded);
+  const SharedProblem thinned(all.loads(kMostSharesForStart), temperatures, unloaded);
   std::vector<Candidate> candidates = best_starts(thinned, temperatures.is_input, most_hidden_units(loads));
   Candidate chosen = choose_size(problem, candidates);
   double mean_square = chosen.leave_one_out;

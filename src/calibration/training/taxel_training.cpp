@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calibration/training/force_levels.hpp"
+#include "calibration/training/temperature_levels.hpp"
 #include "dermis/network/levenberg_marquardt.hpp"
 
 namespace dermis::calibration {
@@ -30,16 +31,29 @@ double geometric_mean(std::span<const TaxelPoint> points, double TaxelPoint::*me
   return std::exp(sum / static_cast<double>(points.size()));
 }
 
+NetworkPrior prior_of(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
+                      const TemperatureSpan& temperature) {
+  NetworkPrior prior;
+  if (count_levels(rising_loads(points)) < kLeastLevelsOfBend) prior.power = PowerPrior::straight;
+  if (shape.inputs < fusion::kInputsWithTemperature) return prior;
+  std::vector<WarmLoad> warm;
+  for (const TaxelPoint& point : points) warm.push_back({point.load_newtons, point.temperature});
+  prior.temperature = temperature_prior(std::move(warm), temperature);
+  prior.half_span_celsius = temperature.half_span_celsius;
+  return prior;
+}
+
 /// The points of a taxel as a problem of least squares.
 class TaxelProblem {
  public:
-  TaxelProblem(const network::PerceptronShape& shape, std::span<const TaxelPoint> points) {
+  TaxelProblem(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
+               const TemperatureSpan& temperature)
+      : prior_(prior_of(shape, points, temperature)) {
     network_.shape = shape;
     network_.reference_siemens = geometric_mean(points, &TaxelPoint::excess_siemens);
     network_.heaviest_siemens = 0.0;
     network_.parameters.resize(shape.parameter_count());
     typical_newtons_ = geometric_mean(points, &TaxelPoint::newtons);
-    if (count_levels(rising_loads(points)) < kLeastLevelsOfBend) power_ = PowerPrior::straight;
     for (const TaxelPoint& point : points) {
       network_.heaviest_siemens = std::max(network_.heaviest_siemens, point.excess_siemens);
       network_.heaviest_newtons = std::max(network_.heaviest_newtons, point.newtons);
@@ -94,14 +108,14 @@ class TaxelProblem {
         residuals[k] = point.weight * (network_.log_newtons(point.inputs, row) - point.log_newtons);
         for (double& derivative : row) derivative *= point.weight;
       }
-      prior_residuals(network_, 1.0, residuals.subspan(points_.size()),
-                      jacobian.empty() ? jacobian : jacobian.subspan(points_.size() * n), n, power_);
+      prior_residuals(network_, prior_, 1.0, residuals.subspan(points_.size()),
+                      jacobian.empty() ? jacobian : jacobian.subspan(points_.size() * n), n);
     };
   }
 
   ForceNetwork network_;  // its parameters are those that are tried last
   std::vector<TrainingPoint> points_;
-  PowerPrior power_ = PowerPrior::free;
+  NetworkPrior prior_;
   double typical_newtons_ = 0.0;
 };
 
@@ -125,8 +139,8 @@ std::vector<double> rising_loads(std::span<const TaxelPoint> points) {
 }
 
 ForceNetwork train_taxel(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
-                         std::uint64_t seed) {
-  TaxelProblem problem(shape, points);
+                         const TemperatureSpan& temperature, std::uint64_t seed) {
+  TaxelProblem problem(shape, points, temperature);
   Random random(seed);
   std::vector<double> best;
   double best_error = 0.0;
@@ -141,9 +155,9 @@ ForceNetwork train_taxel(const network::PerceptronShape& shape, std::span<const 
 }
 
 std::optional<ForceNetwork> train_taxel_like(std::span<const ForceNetwork> others,
-                                             const network::PerceptronShape& shape,
-                                             std::span<const TaxelPoint> points) {
-  TaxelProblem problem(shape, points);
+                                             const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
+                                             const TemperatureSpan& temperature) {
+  TaxelProblem problem(shape, points, temperature);
   std::vector<double> best;
   double best_error = 0.0;
   for (const ForceNetwork& other : others) {

@@ -27,13 +27,15 @@ struct TaxelPoint {
 
 /// Trains ln(newtons) of one taxel on its points by Levenberg-Marquardt, from several random starts. Every point counts
 /// by its noise and a floor for what the temperature and supply meters add. Two different loads tell a power, no more.
+/// `temperature` is the span of the inputs where they have one.
 [[nodiscard]] ForceNetwork train_taxel(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
-                                       std::uint64_t seed);
+                                       const TemperatureSpan& temperature, std::uint64_t seed);
 
 /// The same from one start: of the networks of other taxels that have this shape, the one that fits the points best.
 /// Taxels of a sheet are alike, and their networks lie near each other. Empty: no network has this shape.
 [[nodiscard]] std::optional<ForceNetwork> train_taxel_like(std::span<const ForceNetwork> others,
                                                            const network::PerceptronShape& shape,
-                                                           std::span<const TaxelPoint> points);
+                                                           std::span<const TaxelPoint> points,
+                                                           const TemperatureSpan& temperature);
 
 }  // namespace dermis::calibration
