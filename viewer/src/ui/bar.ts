@@ -20,7 +20,7 @@ export class Bar {
   readonly #tabs: HTMLElement[];
 
   constructor(context: ViewContext, views: readonly View[], actions: BarActions) {
-    this.#pill = new ConnectionPill(context.stream, context.live);
+    this.#pill = new ConnectionPill(context);
     this.#tabs = views.map(({ name, title }) =>
       element("a", { class: "tab", href: `#/${name}`, "data-tab": name, onclick: (event) => this.#go(event, context, name) }, title),
     );
