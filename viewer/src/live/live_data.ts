@@ -7,6 +7,7 @@ import type { Stream } from "../stream/stream";
 import type { Suit } from "../suit";
 import { readThreat, stands, type Threat } from "../messages/threat";
 import { ContactSlots, Trail } from "./contact_slots";
+import { Delay } from "./delay";
 import { EventLog } from "./event_log";
 import { ForceHistory } from "./force_history";
 import { RegionForce } from "./region_force";
@@ -51,6 +52,8 @@ export class LiveData {
   readonly events = new EventLog();
   readonly region: RegionForce;
   readonly health = new Signal<readonly HealthStatus[]>([]);
+  /** Of the frames, also while the picture is paused. */
+  readonly delay = new Delay();
   /** Time of the newest frame of any array. */
   latestS = 0;
   version = 0;
@@ -64,10 +67,14 @@ export class LiveData {
     this.region = new RegionForce(subscribe);
     suit.description.follow(({ arrays }) => this.#restart(arrays.map(({ name }) => name)));
     subscribe("/contacts", (message) => this.#receive(message));
+    stream.subscribe("/contacts", (_, logTimeS) => this.delay.add(logTimeS, performance.now()));
     paused.follow((isPaused) => !isPaused && this.#held.splice(0).forEach((receive) => receive()));
     stream.subscribe("/threat", (message) => this.threats.add(readThreat(message)));
     this.threats.log.follow(([newest]) => newest !== undefined && this.#logThreat(newest));
-    stream.serverInfo.follow(() => this.threats.restart());
+    stream.serverInfo.follow(() => {
+      this.threats.restart();
+      this.delay.restart();
+    });
     stream.parameters.follow((parameters) => this.#seeTare(parameters.get("/tare")));
     stream.subscribe("/statistics", (message) => (this.statistics.value = readStatistics(message)));
     stream.subscribe("/health", (message) => (this.health.value = readHealth(message)));

@@ -21,7 +21,7 @@ export class Bar {
   readonly #tabs: HTMLElement[];
 
   constructor(context: ViewContext, views: readonly View[], actions: BarActions) {
-    this.#pill = new ConnectionPill(context.stream, context.live);
+    this.#pill = new ConnectionPill(context);
     this.#tabs = views.map(({ name, title }) =>
       element("a", { class: "tab", href: `#/${name}`, "data-tab": name, onclick: (event) => this.#go(event, context, name) }, title),
     );
@@ -117,10 +117,16 @@ function makePause({ paused, stream }: ViewContext, actions: BarActions): HTMLEl
   return button;
 }
 
-function makeTare({ stream }: ViewContext, actions: BarActions): HTMLElement {
+function makeTare({ stream, suit }: ViewContext, actions: BarActions): HTMLElement {
   const button = element("button", { class: "button", "data-role": "tare", title: "What is shown now is zero (T)", onclick: () => actions.tare() }, "Tare");
+  const enable = (): void => {
+    const isCalibrated = suit.description.value.arrays.some(({ calibrated }) => calibrated);
+    button.disabled = !isCalibrated || typeof stream.parameters.value.get("/tare") !== "boolean";
+    button.title = isCalibrated ? "What is shown now is zero (T)" : "Counts have no zero: calibrate first";
+  };
+  suit.description.follow(enable);
   stream.parameters.follow((parameters) => {
-    button.disabled = typeof parameters.get("/tare") !== "boolean";
+    enable();
     const isOn = parameters.get("/tare") === true;
     button.setAttribute("aria-pressed", String(isOn));
     setText(button, isOn ? "Tared" : "Tare");

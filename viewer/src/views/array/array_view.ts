@@ -281,7 +281,7 @@ class ArrayView implements View {
     setData(this.element, "frames", String(display.framesDrawn));
     const shown = live.arrays[suit.indexOf(array.name)];
     if (shown === undefined) return;
-    this.#contacts.show(shown);
+    this.#contacts.show(shown, array.calibrated);
     this.#summary.show(array, shown, array.calibrated ? force! : raw!);
     this.#summary.showRegion(live.region.region.value?.array === array.name ? live.region : undefined);
   }

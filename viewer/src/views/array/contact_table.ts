@@ -70,7 +70,7 @@ export class ContactTable {
     );
   }
 
-  show({ contacts: frame, slots }: ArrayLive): void {
+  show({ contacts: frame, slots }: ArrayLive, isCalibrated: boolean): void {
     let used = 0;
     let hidden = 0;
     for (let index = 0; index < frame.count; ++index) {
@@ -80,6 +80,7 @@ export class ContactTable {
       else hidden += 1;
     }
     this.#rows.forEach((row, index) => setHidden(row.element, index >= used));
-    setText(this.#more, used === 0 ? "Nothing touches this array." : hidden > 0 ? `and ${hidden} more` : "");
+    const none = isCalibrated ? "Nothing touches this array." : "Touches are found by their forces: calibrate first.";
+    setText(this.#more, used === 0 ? none : hidden > 0 ? `and ${hidden} more` : "");
   }
 }

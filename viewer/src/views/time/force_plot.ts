@@ -21,11 +21,13 @@ export interface Line {
   history: ForceHistory;
 }
 
-/** Forces over the last seconds: newest at the right, newtons from 0 to a round end. */
+/** Forces, or counts, over the last seconds: newest at the right, from 0 to a round end. */
 export class ForcePlot {
   readonly element: HTMLElement;
   readonly #room = element("div", { class: "plot-room" });
   readonly #legend = element("ul", { class: "legend" });
+  readonly #title = element("h2");
+  readonly #unit = element("span", { class: "dim" });
   readonly #resizing = new ResizeObserver(() => this.#resize());
   #lines: readonly Line[] = [];
   #names: HTMLElement[] = [];
@@ -40,10 +42,17 @@ export class ForcePlot {
   constructor(title: string, role: string) {
     this.element = element(
       "section",
-      { class: "panel plot-panel", "aria-label": title, "data-role": role },
-      element("header", { class: "panel-title" }, element("h2", {}, title), element("span", { class: "dim" }, "N"), this.#legend),
+      { class: "panel plot-panel", "data-role": role },
+      element("header", { class: "panel-title" }, this.#title, this.#unit, this.#legend),
       this.#room,
     );
+    this.setTitle(title, "N");
+  }
+
+  setTitle(title: string, unit: string): void {
+    this.element.setAttribute("aria-label", title);
+    setText(this.#title, title);
+    setText(this.#unit, unit);
   }
 
   show(): void {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import "uplot/dist/uPlot.min.css";
-import { element, setText } from "../../dom";
+import { element, setHidden, setText } from "../../dom";
 import { fixed } from "../../format";
 import { SLOTS } from "../../live/contact_slots";
 import { EVENT_KINDS } from "../../live/event_log";
@@ -11,9 +11,11 @@ import { setting } from "../../settings";
 import type { View, ViewContext, ViewFactory } from "../../view";
 import { EVENT_LOOKS } from "./event_marks";
 import { ForcePlot, type Line } from "./force_plot";
+import { ReadingHistories } from "./reading_histories";
 
 const WINDOWS_S = [10, 60];
 const PERIOD_MS = 45;
+const CONTACTS_TITLE = "Force of each contact of the array";
 /** More arrays than colours: the one that is chosen is shown alone. */
 const MOST_LINES = 8;
 
@@ -23,7 +25,8 @@ class TimeView implements View {
   readonly element: HTMLElement;
   readonly #context: ViewContext;
   readonly #totals = new ForcePlot("Total force of each array", "plot-totals");
-  readonly #contacts = new ForcePlot("Force of each contact of the array", "plot-contacts");
+  readonly #contacts = new ForcePlot(CONTACTS_TITLE, "plot-contacts");
+  readonly #readings: ReadingHistories;
   readonly #windowS = setting<number>("window", 10, (value) => WINDOWS_S.includes(value));
   readonly #lastEvent = element("p", { class: "dim", "data-role": "last-event" });
   #isShown = false;
@@ -33,6 +36,7 @@ class TimeView implements View {
 
   constructor(context: ViewContext) {
     this.#context = context;
+    this.#readings = new ReadingHistories(context.stream);
     this.element = element(
       "div",
       { class: "view time-view", "data-view": "time" },
@@ -59,6 +63,7 @@ class TimeView implements View {
     this.#isShown = false;
     this.#totals.hide();
     this.#contacts.hide();
+    this.#readings.follow([]);
   }
 
   draw(nowMs: number): void {
@@ -117,11 +122,28 @@ class TimeView implements View {
       color: `--series-${color + 1}`,
       history: live.arrays[suit.indexOf(name)]!.total,
     });
-    const shown = arrays.length > MOST_LINES ? arrays.filter(({ name }) => name === chosen) : arrays;
+    const withForces = arrays.filter(({ calibrated }) => calibrated);
+    const shown = withForces.length > MOST_LINES ? withForces.filter(({ name }) => name === chosen) : withForces;
+    setHidden(this.#totals.element, withForces.length === 0);
     const { region, history } = live.region;
     const drawn = region.value;
     const ofRegion: Line[] = drawn === undefined ? [] : [{ name: () => `region ${regionName(drawn)}`, color: "--text", history }];
     this.#totals.setLines([...shown.map(({ name }, index) => line(name, index)), ...ofRegion], this.#windowS.value);
+    const isCalibrated = suit.selected.value?.calibrated !== false;
+    this.#readings.follow(isCalibrated ? [] : [chosen]);
+    if (isCalibrated) this.#setContacts(chosen);
+    else this.#setReadings(chosen);
+  }
+
+  /** There are counts alone. */
+  #setReadings(array: string): void {
+    this.#contacts.setTitle("Highest reading of the array, which is not calibrated yet", "counts");
+    this.#contacts.setLines([{ name: () => array, color: "--series-1", history: this.#readings.of(array) }], this.#windowS.value);
+  }
+
+  #setContacts(chosen: string): void {
+    const { live, suit } = this.#context;
+    this.#contacts.setTitle(CONTACTS_TITLE, "N");
     const slots = live.arrays[suit.indexOf(chosen)]?.slots.slots ?? [];
     const contacts = slots.slice(0, SLOTS).map((slot, index) => ({
       name: () => (slot.id === 0 ? "ended" : `contact ${slot.id}`),
