@@ -31,9 +31,9 @@ Eigen::MatrixXd overlaps(std::span<const KnownPress> presses, std::size_t taxels
 }
 
 /// Presses as Gaussian variables of a common covariance.
-class Presses {
+class GaussianPresses {
  public:
-  Presses(std::span<const KnownPress> presses, std::size_t taxels)
+  GaussianPresses(std::span<const KnownPress> presses, std::size_t taxels)
       : log_ratio_(presses.size()), variance_(presses.size()), overlap_(overlaps(presses, taxels)) {
     for (std::size_t k = 0; k < presses.size(); ++k) {
       log_ratio_[static_cast<Eigen::Index>(k)] = presses[k].log_ratio;
@@ -76,7 +76,7 @@ bool can_tell_spread(std::span<const KnownPress> presses) {
   return std::min(presses.size(), pressed_taxels(presses)) >= kLeastToTellSpread;
 }
 
-double likeliest_spread(Presses& presses) {
+double likeliest_spread(GaussianPresses& presses) {
   double best = 0.0;
   double most = -std::numeric_limits<double>::infinity();
   for (int step = 0; step <= kSpreadSteps; ++step) {
@@ -94,7 +94,7 @@ double likeliest_spread(Presses& presses) {
 
 GainChange change_of(std::span<const KnownPress> presses, std::size_t taxels) {
   assert(!presses.empty());
-  Presses gaussian(presses, taxels);
+  GaussianPresses gaussian(presses, taxels);
   GainChange change;
   if (can_tell_spread(presses)) change.spread = likeliest_spread(gaussian);
   gaussian.assume(change.spread);
