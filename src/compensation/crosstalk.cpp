@@ -152,6 +152,7 @@ void Compensator::process(const ConditionedFrame& conditioned, ConductanceFrame&
   conductance.taxels = conditioned.taxels;
   conductance.siemens.resize(conditioned.ratio.size());
   conductance.sigma_siemens.resize(conditioned.ratio.size());
+  prepare_errors(conditioned.ratio.size(), conductance.errors);
   conductance.residual_sigma = 0.0;
   std::fill(conductance.siemens.begin(), conductance.siemens.end(), 0.0);
   std::fill(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end(), 0.0);
@@ -204,6 +205,14 @@ InversionResult Compensator::invert(std::span<const double> ratio, ConductanceFr
                                                : inversion_->invert(ratio, conductance.siemens);
 }
 
+/// A first frame without a solution has their size, too.
+void Compensator::prepare_errors(std::size_t taxels, ConductanceErrors& errors) const noexcept {
+  errors.siemens.resize(taxels);
+  errors.noise_siemens.resize(shared_errors_->tells_noise() ? 0 : taxels);
+  errors.doubt_siemens.resize(taxels);
+  if (errors.circuit != shared_errors_) errors.circuit = shared_errors_;
+}
+
 /// Before anything but noise is in the standard deviations.
 void Compensator::note_errors(const ConditionedFrame& conditioned, ConductanceFrame& conductance) const noexcept {
   ConductanceErrors& errors = conductance.errors;
@@ -211,11 +220,9 @@ void Compensator::note_errors(const ConditionedFrame& conditioned, ConductanceFr
   if (!shared_errors_->tells_noise()) {
     errors.noise_siemens.assign(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end());
   }
-  errors.doubt_siemens.resize(conductance.siemens.size());
   faults_->find_doubt(conductance.siemens, errors.doubt_siemens);
   errors.sigma_ratio = conditioned.sigma_ratio * mean_noise_gain(conditioned.noise_gain);
   errors.supply_doubt = conditioned.supply_doubt;
-  if (errors.circuit != shared_errors_) errors.circuit = shared_errors_;
 }
 
 void Compensator::mask_faulty_taxels(ConductanceFrame& conductance) const noexcept {

@@ -75,6 +75,7 @@ TotalForce signed_total(const ForceSums& sums, const Region& region) {
     per_celsius += static_cast<double>(sums.newtons_per_celsius[taxel]);
     weight[taxel] = static_cast<double>(sums.newtons_per_siemens[taxel]);
   }
+  if (total.left_out == region.size()) return total;  // a rejected frame may have no conductances
   variance += square(per_celsius * sums.temperature_sigma) + square(sums.gain_sigma * total.newtons);
   variance += conductance_variance(sums.conductances, weight);
   total.sigma_newtons = std::sqrt(variance);

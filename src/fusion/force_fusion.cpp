@@ -124,6 +124,10 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
   force.sigma_newtons.resize(taxels);
   force.signal_to_noise.resize(taxels);
   resize(force.sums, taxels);
+  force.sums.conductances = conductance.errors;
+  if (!conductance.errors.circuit) {
+    force.sums.conductances.noise_siemens.assign(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end());
+  }
   const bool fits = conductance.siemens.size() == taxels && conductance.sigma_siemens.size() == taxels;
   if (has(conductance.status, FrameStatus::rejected) || !fits) {
     force.status |= FrameStatus::rejected;
@@ -139,10 +143,6 @@ void ForceFusion::process(const ConductanceFrame& conductance, ForceFrame& force
   bank_.evaluate(inputs_, outputs_, gradient_);
   look_up(temperature.offset);
   compute_forces(temperature, force);
-  force.sums.conductances = conductance.errors;
-  if (!conductance.errors.circuit) {
-    force.sums.conductances.noise_siemens.assign(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end());
-  }
   compute_signals(temperature.sigma, force);
   apply_status(force);
 }

@@ -112,7 +112,10 @@ void compute_forces(const ForceSources& sources, const FusedForces& fused) {
     const auto bend = hn::Mul(hn::Set(d, 0.5F), hn::Mul(exponent, hn::Sub(exponent, one)));
     const auto kept = hn::Max(hn::NegMulAdd(bend, hn::Mul(noise_part, noise_part), one), hn::Zero(d));
     const auto signed_newtons = hn::CopySign(hn::IfThenZeroElse(is_zero, hn::Mul(magnitude, kept)), excess);
-    const auto per_siemens = hn::Div(hn::Mul(at_reached, exponent), hn::Mul(reached, reference));
+    // Within the noise the chord from zero stands for the slope.
+    const auto chord = hn::Div(noise_share, reached);
+    const auto slope = hn::MulAdd(hn::Sub(one, exponent), hn::Mul(chord, chord), exponent);
+    const auto per_siemens = hn::Div(hn::Mul(at_reached, slope), hn::Mul(reached, reference));
     const auto of_zero = hn::Mul(per_siemens, load(sources.offset_sigma));
     const auto own_variance = hn::MulAdd(hn::Mul(signed_newtons, signed_newtons), of_law, hn::Mul(of_zero, of_zero));
     const auto of_offset = hn::Mul(per_siemens, load(sources.offset_per_celsius));

@@ -160,15 +160,22 @@ TEST(ThreatMonitor, compares_contacts_by_what_they_exceed_beyond_the_calibrated_
   EXPECT_TRUE(monitor.process(frame, report));
 }
 
-TEST(ThreatMonitor, sums_the_taxels_that_something_presses) {
+TEST(ThreatMonitor, sums_signed_forces_so_that_noise_cancels) {
   ThreatMonitor monitor = monitor_of({{}, {limit_of(ThreatQuantity::total_force, 30.0)}});
   ForceFrame frame = idle_frame(milliseconds(10));
-  for (float& newtons : frame.newtons) newtons = 5.0F;  // of no significance
+  const std::vector<float> zeros(frame.newtons.size());
+  frame.sums.own_variance = frame.sums.newtons_per_siemens = frame.sums.newtons_per_celsius = zeros;
+  for (std::size_t taxel = 0; taxel < zeros.size(); ++taxel) {
+    frame.sums.newtons.push_back(taxel % 2 == 0 ? 5.0F : -5.0F);
+    frame.newtons[taxel] = std::max(frame.sums.newtons[taxel], 0.0F);
+  }
   EXPECT_FALSE(monitor.process(frame, {}));
   EXPECT_EQ(monitor.states().front().now.value, 0.0);
   press(frame, 0, 20.0F);
   press(frame, 2, 20.0F);
   press(frame, 3, kNan);
+  frame.sums.newtons = zeros;
+  for (const std::size_t taxel : {0U, 2U, 3U}) frame.sums.newtons[taxel] = frame.newtons[taxel];
   frame.time = milliseconds(20);
   EXPECT_TRUE(monitor.process(frame, {}));
   EXPECT_NEAR(monitor.states().front().now.value, 40.0, 1e-6);

@@ -119,6 +119,7 @@ class Compensator {
               const ReferenceConductances& references);
   InversionResult invert(std::span<const double> ratio, ConductanceFrame& conductance) noexcept;
   InversionResult invert_possible(const ConditionedFrame& conditioned, ConductanceFrame& conductance) noexcept;
+  void prepare_errors(std::size_t taxels, ConductanceErrors& errors) const noexcept;
   void note_errors(const ConditionedFrame& conditioned, ConductanceFrame& conductance) const noexcept;
   void mask_faulty_taxels(ConductanceFrame& conductance) const noexcept;
 
