@@ -249,12 +249,12 @@ std::string describe(const Explanation& found, const ArrayDescription& array, st
       ohms.minCoeff(), ohms.maxCoeff());
 }
 
-/// What drivers that are not as described take from one of two equal presses in a row, the heaviest: relative.
-double doubt_of_drivers(const Explanation& found, const CircuitFrames& frames) {
+/// What such a part takes from one of two equal presses in a row, the heaviest: relative.
+double effect_of(InstrumentPart part, const Explanation& found, const CircuitFrames& frames) {
   const std::vector<InstrumentPart>& parts = found.parameters.parts();
-  const auto drivers = std::find(parts.begin(), parts.end(), InstrumentPart::drivers);
-  if (drivers == parts.end()) return 0.0;
-  const auto place = static_cast<std::size_t>(drivers - parts.begin());
+  const auto here = std::find(parts.begin(), parts.end(), part);
+  if (here == parts.end()) return 0.0;
+  const auto place = static_cast<std::size_t>(here - parts.begin());
   const VectorXd shares = found.values.segment(found.parameters.first_of(place), found.parameters.size_of(place));
   double highest = 0.0;
   for (const CircuitFrame& frame : frames.frames) {
@@ -269,6 +269,17 @@ Explanation without_drivers(Judge& judge, const ArrayDescription& array, const E
   if (std::erase(parts, InstrumentPart::drivers) == 0) return found;
   std::optional<Explanation> rest = explain(judge, {array, parts});
   return rest ? *std::move(rest) : found;
+}
+
+/// What is left after what was applied: how sure forces are, and a sentence where presses do not agree.
+void notice(const Judge& judge, const Explanation& applied, InstrumentFit& fit) {
+  const double square = judge.square_of_totals(applied.residuals);
+  if (square <= kNoticed) return;
+  fit.unexplained = std::max(fit.unexplained, judge.largest_difference(applied.residuals));
+  fit.statements.push_back(fmt::format(
+      "presses on several taxels do not add up: they scatter {:.1f} times as much as single ones tell, {:.1f} % of the "
+      "force; circuit or ADC are not as described, and forces are said to be so much less sure",
+      std::sqrt(square), 100.0 * fit.unexplained));
 }
 
 }  // namespace
@@ -326,14 +337,10 @@ Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<co
   if (is_asked_for && has_totals && best->parameters.count() == 0) fit.statements.emplace_back(kNothing);
   const Explanation applied = without_drivers(judge, array, *best);
   fit.array = applied.parameters.array_at(applied.values);
-  fit.unexplained = doubt_of_drivers(*best, *labelled);
-  const double square = has_totals ? judge.square_of_totals(applied.residuals) : 0.0;
-  if (square <= kNoticed) return fit;
-  fit.unexplained = std::max(fit.unexplained, judge.largest_difference(applied.residuals));
-  fit.statements.push_back(fmt::format(
-      "presses on several taxels do not add up: they scatter {:.1f} times as much as single ones tell, {:.1f} % of the "
-      "force; circuit or ADC are not as described, and forces are said to be so much less sure",
-      std::sqrt(square), 100.0 * fit.unexplained));
+  fit.unexplained = effect_of(InstrumentPart::drivers, *best, *labelled);
+  // Idle taxels alone tell a supply and drivers apart no better than so.
+  if (!has_totals) fit.unexplained = std::max(fit.unexplained, effect_of(InstrumentPart::supply, *best, *labelled));
+  if (has_totals) notice(judge, applied, fit);
   return fit;
 }
 
