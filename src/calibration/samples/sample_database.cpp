@@ -296,10 +296,11 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   double unexplained_share = 0.0;
   if (known.readout.circuit != Circuit::none) {
     Result<InstrumentFit> fit = fit_instrument(known, frames, chosen, settle_time, asks);
-    if (!fit) return fit.error();
-    known = std::move(fit->array);
-    unexplained_share = fit->unexplained;
-    labels.remarks.insert(labels.remarks.end(), fit->statements.begin(), fit->statements.end());
+    if (fit) {  // what is wrong with the frames is said below, with its place
+      known = std::move(fit->array);
+      unexplained_share = fit->unexplained;
+      labels.remarks.insert(labels.remarks.end(), fit->statements.begin(), fit->statements.end());
+    }
   }
   Result<SampleDatabase> database = invert_frames(known, frames, loads, settle_time, progress);
   if (!database && array.readout.circuit == Circuit::automatic && known.readout.circuit != Circuit::none) {
