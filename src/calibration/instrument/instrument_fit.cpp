@@ -86,7 +86,9 @@ class Judge {
   std::optional<VectorXd> residuals(const InstrumentParameters& parameters, const VectorXd& values) {
     const Result<InvertedFrames> inverted = parameters.invert(frames_, values);
     if (!inverted) return std::nullopt;
-    const std::optional<InstrumentMisfit> misfit = misfit_of(presses_, *inverted, cols_);
+    if (readable_.empty()) readable_ = readable_taxels(presses_, *inverted);
+    if (readable_.empty()) return std::nullopt;
+    const std::optional<InstrumentMisfit> misfit = misfit_of(presses_, *inverted, cols_, readable_);
     if (!misfit) return std::nullopt;
     if (sigmas_.size() == 0) sigmas_ = Eigen::Map<const VectorXd>(misfit->sigmas.data(), std::ssize(misfit->sigmas));
     VectorXd residuals(std::ssize(misfit->totals) + std::ssize(misfit->idle));
@@ -109,6 +111,7 @@ class Judge {
   std::size_t cols_;
   Presses presses_;
   std::vector<const CircuitFrame*> frames_;
+  std::vector<bool> readable_;  // of the instrument as described
   VectorXd sigmas_;
 };
 
@@ -137,6 +140,21 @@ MatrixXd information(const MatrixXd& slopes, const VectorXd& weights, const Vect
   return normal;
 }
 
+/// A step downhill, halved until it is one. false: there is none.
+bool move(Judge& judge, const InstrumentParameters& parameters, const VectorXd& step, VectorXd& values,
+          VectorXd& residuals) {
+  constexpr double kLeastShare = 0.1;
+  for (double share = 1.0; share > kLeastShare; share *= 0.5) {
+    const VectorXd next = parameters.possible(values - share * step);
+    const std::optional<VectorXd> there = judge.residuals(parameters, next);
+    if (!there || huber_cost(*there) > huber_cost(residuals)) continue;
+    values = next;
+    residuals = *there;
+    return true;
+  }
+  return false;
+}
+
 std::optional<Explanation> explain(Judge& judge, InstrumentParameters parameters) {
   VectorXd values = VectorXd::Zero(parameters.count());
   VectorXd errors = values;
@@ -152,11 +170,7 @@ std::optional<Explanation> explain(Judge& judge, InstrumentParameters parameters
     const Eigen::LDLT<MatrixXd> factors(normal);
     errors = factors.solve(MatrixXd::Identity(normal.rows(), normal.cols())).diagonal().cwiseMax(0.0).cwiseSqrt();
     if (step == 0 && gradient.dot(factors.solve(gradient)) < kWorthAFit * kEvidence) return std::nullopt;
-    const VectorXd next = parameters.possible(values - factors.solve(gradient));
-    const std::optional<VectorXd> there = judge.residuals(parameters, next);
-    if (!there || huber_cost(*there) > huber_cost(*here)) break;
-    values = next;
-    here = there;
+    if (!move(judge, parameters, factors.solve(gradient), values, *here)) break;
   }
   if (!here) return std::nullopt;
   return Explanation{std::move(parameters), std::move(values), std::move(errors), *std::move(here)};
@@ -174,9 +188,10 @@ std::vector<InstrumentPart> open_parts(const ArrayDescription& array) {
   const Readout& readout = array.readout;
   std::vector<InstrumentPart> parts;
   if (!readout.adc_errors.offset_counts) parts.push_back(InstrumentPart::offset);
-  if (!readout.supply_ohm && readout.amplifier_offset_v.empty()) parts.push_back(InstrumentPart::supply);
   if (readout.adc_errors.curve.empty()) parts.push_back(InstrumentPart::curve);
-  if (readout.drive_error_ohm.empty()) parts.push_back(InstrumentPart::drivers);
+  if (!readout.drive_error_ohm.empty()) return parts;  // drivers were fitted: what is left of them looks like a supply
+  if (!readout.supply_ohm && readout.amplifier_offset_v.empty()) parts.push_back(InstrumentPart::supply);
+  parts.push_back(InstrumentPart::drivers);
   return parts;
 }
 
@@ -234,12 +249,12 @@ std::string describe(const Explanation& found, const ArrayDescription& array, st
       ohms.minCoeff(), ohms.maxCoeff());
 }
 
-/// What drivers that are not as described take from one of two equal presses in a row, the heaviest: relative.
-double doubt_of_drivers(const Explanation& found, const CircuitFrames& frames) {
+/// What such a part takes from one of two equal presses in a row, the heaviest: relative.
+double effect_of(InstrumentPart part, const Explanation& found, const CircuitFrames& frames) {
   const std::vector<InstrumentPart>& parts = found.parameters.parts();
-  const auto drivers = std::find(parts.begin(), parts.end(), InstrumentPart::drivers);
-  if (drivers == parts.end()) return 0.0;
-  const auto place = static_cast<std::size_t>(drivers - parts.begin());
+  const auto here = std::find(parts.begin(), parts.end(), part);
+  if (here == parts.end()) return 0.0;
+  const auto place = static_cast<std::size_t>(here - parts.begin());
   const VectorXd shares = found.values.segment(found.parameters.first_of(place), found.parameters.size_of(place));
   double highest = 0.0;
   for (const CircuitFrame& frame : frames.frames) {
@@ -254,6 +269,17 @@ Explanation without_drivers(Judge& judge, const ArrayDescription& array, const E
   if (std::erase(parts, InstrumentPart::drivers) == 0) return found;
   std::optional<Explanation> rest = explain(judge, {array, parts});
   return rest ? *std::move(rest) : found;
+}
+
+/// What is left after what was applied: how sure forces are, and a sentence where presses do not agree.
+void notice(const Judge& judge, const Explanation& applied, InstrumentFit& fit) {
+  const double square = judge.square_of_totals(applied.residuals);
+  if (square <= kNoticed) return;
+  fit.unexplained = std::max(fit.unexplained, judge.largest_difference(applied.residuals));
+  fit.statements.push_back(fmt::format(
+      "presses on several taxels do not add up: they scatter {:.1f} times as much as single ones tell, {:.1f} % of the "
+      "force; circuit or ADC are not as described, and forces are said to be so much less sure",
+      std::sqrt(square), 100.0 * fit.unexplained));
 }
 
 }  // namespace
@@ -296,29 +322,25 @@ Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<co
   InstrumentFit fit{array, {}, 0.0};
   const Result<CircuitFrames> labelled = circuit_frames(array, frames, loads, settle_time);
   if (!labelled) return labelled.error();
-  if (std::optional<std::string> dead_zone = describe_dead_zone(*labelled)) {
-    fit.statements.push_back(*std::move(dead_zone));
-  }
+  const std::optional<std::string> dead_zone = describe_dead_zone(*labelled);
+  if (dead_zone) fit.statements.push_back(*dead_zone);
   Judge judge(array, *labelled);
   const bool has_totals = judge.presses().several.size() >= kLeastPresses;
   if (is_asked_for && !has_totals) fit.statements.emplace_back(kNoPresses);
   std::optional<Explanation> best = explain(judge, {array, {}});
   if (!best) return fit;
-  while (std::optional<Explanation> better = best_beside(judge, array, *best)) best = std::move(better);
+  const auto explain_more = [&] { return dead_zone ? std::nullopt : best_beside(judge, array, *best); };
+  while (std::optional<Explanation> better = explain_more()) best = std::move(better);
   for (std::size_t place = 0; place < best->parameters.parts().size(); ++place) {
     fit.statements.push_back(describe(*best, array, place));
   }
   if (is_asked_for && has_totals && best->parameters.count() == 0) fit.statements.emplace_back(kNothing);
   const Explanation applied = without_drivers(judge, array, *best);
   fit.array = applied.parameters.array_at(applied.values);
-  fit.unexplained = doubt_of_drivers(*best, *labelled);
-  const double square = has_totals ? judge.square_of_totals(applied.residuals) : 0.0;
-  if (square <= kNoticed) return fit;
-  fit.unexplained = std::max(fit.unexplained, judge.largest_difference(applied.residuals));
-  fit.statements.push_back(fmt::format(
-      "presses on several taxels do not add up: they scatter {:.1f} times as much as single ones tell, {:.1f} % of the "
-      "force; circuit or ADC are not as described, and forces are said to be so much less sure",
-      std::sqrt(square), 100.0 * fit.unexplained));
+  fit.unexplained = effect_of(InstrumentPart::drivers, *best, *labelled);
+  // Idle taxels alone tell a supply and drivers apart no better than so.
+  if (!has_totals) fit.unexplained = std::max(fit.unexplained, effect_of(InstrumentPart::supply, *best, *labelled));
+  if (has_totals) notice(judge, applied, fit);
   return fit;
 }
 

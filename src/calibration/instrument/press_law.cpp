@@ -21,7 +21,7 @@ constexpr std::size_t kLeastSingles = 20;  // to learn a law from
 constexpr double kResolved = 5.0;          // a conductance over its noise
 constexpr double kSigmasOfDeviation = 1.4826;
 constexpr double kLeastScatter = 0.002;
-constexpr double kReadable = 2.0;       // an unloaded conductance over its noise
+constexpr double kReadable = 3.0;       // an unloaded conductance over its noise
 constexpr Index kOwnTerms = 3;          // level, exponent, temperature
 constexpr Index kSharedTerms = 6;       // z, z^2, z^3, z^4, t, t z
 constexpr double kOwnPrecision = 0.01;  // of an exponent about the common one: a tenth, beside a scatter of 1 %
@@ -83,6 +83,30 @@ std::vector<double> unloaded_siemens(const std::vector<const CircuitFrame*>& fra
   }
   for (std::size_t taxel = 0; taxel < sum.size(); ++taxel) sum[taxel] /= std::max(count[taxel], 1.0);
   return sum;
+}
+
+bool are_all_there(const InvertedFrames& inverted) {
+  return std::all_of(inverted.begin(), inverted.end(), [](const auto& frame) { return frame.has_value(); });
+}
+
+bool is_above_noise(std::size_t taxel, const std::vector<double>& unloaded, const InvertedFrames& inverted,
+                    double sigmas) {
+  return unloaded[taxel] > sigmas * inverted.front()->sigma_siemens[taxel];
+}
+
+/// What conducts nothing cannot be lowered by any press: an instrument that takes all from idle taxels would be right.
+bool stay_readable(const std::vector<bool>& readable, const std::vector<double>& unloaded,
+                   const InvertedFrames& inverted) {
+  constexpr double kStillReadable = 1.0;
+  constexpr double kMostLost = 0.1;
+  double all = 0.0;
+  double lost = 0.0;
+  for (std::size_t taxel = 0; taxel < readable.size(); ++taxel) {
+    if (!readable[taxel]) continue;
+    all += 1.0;
+    if (!is_above_noise(taxel, unloaded, inverted, kStillReadable)) lost += 1.0;
+  }
+  return lost <= kMostLost * all;
 }
 
 /// What a frame says of one of its taxels.
@@ -271,13 +295,13 @@ struct IdleMean {
 };
 
 void add_idle(const Press& press, const InvertedFrame& inverted, const std::vector<double>& unloaded, std::size_t cols,
-              InstrumentMisfit& misfit) {
+              const std::vector<bool>& readable, InstrumentMisfit& misfit) {
   const std::size_t pressed = press.taxels.front();
   IdleMean row;
   IdleMean column;
   IdleMean elsewhere;
   for (std::size_t taxel = 0; taxel < unloaded.size(); ++taxel) {
-    if (press.frame->newtons[taxel] != 0.0F || !(unloaded[taxel] > kReadable * inverted.sigma_siemens[taxel])) continue;
+    if (press.frame->newtons[taxel] != 0.0F || !readable[taxel]) continue;
     const bool is_in_row = taxel / cols == pressed / cols;
     IdleMean& mean = is_in_row ? row : taxel % cols == pressed % cols ? column : elsewhere;
     mean.add(inverted.siemens[taxel] - unloaded[taxel], inverted.sigma_siemens[taxel]);
@@ -315,16 +339,26 @@ std::vector<const CircuitFrame*> frames_of(const Presses& presses) {
   return frames;
 }
 
-std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const InvertedFrames& inverted, std::size_t cols) {
-  const std::vector<const CircuitFrame*> frames = frames_of(presses);
-  const auto is_there = [](const auto& frame) { return frame.has_value(); };
-  if (presses.single.size() < kLeastSingles || !std::all_of(inverted.begin(), inverted.end(), is_there)) {
-    return std::nullopt;
+std::vector<bool> readable_taxels(const Presses& presses, const InvertedFrames& inverted) {
+  if (presses.single.empty() || !are_all_there(inverted)) return {};
+  const std::vector<double> unloaded = unloaded_siemens(frames_of(presses), inverted);
+  std::vector<bool> readable(unloaded.size());
+  for (std::size_t taxel = 0; taxel < unloaded.size(); ++taxel) {
+    readable[taxel] = is_above_noise(taxel, unloaded, inverted, kReadable);
   }
+  return readable;
+}
+
+std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const InvertedFrames& inverted, std::size_t cols,
+                                          const std::vector<bool>& readable) {
+  const std::vector<const CircuitFrame*> frames = frames_of(presses);
+  if (presses.single.size() < kLeastSingles || !are_all_there(inverted)) return std::nullopt;
   const std::vector<double> unloaded = unloaded_siemens(frames, inverted);
+  if (!stay_readable(readable, unloaded, inverted)) return std::nullopt;
   InstrumentMisfit misfit;
-  for (std::size_t k = 0; k < presses.single.size(); ++k)
-    add_idle(presses.single[k], *inverted[k], unloaded, cols, misfit);
+  for (std::size_t k = 0; k < presses.single.size(); ++k) {
+    add_idle(presses.single[k], *inverted[k], unloaded, cols, readable, misfit);
+  }
   if (presses.several.empty()) return misfit;
   const Scale scale(presses, inverted, unloaded);
   const std::optional<LearnedLaws> learned = learn_laws(presses, inverted, unloaded, scale);

@@ -210,6 +210,15 @@ std::optional<std::string> leave_out_flickering(std::span<const RawFrame> frames
                      fmt::join(names, ", "), taxels.size() == 1 ? "s" : "");
 }
 
+/// Those of the frames that become samples: no more are kept in memory.
+std::vector<Load> loads_of_samples(std::size_t taxels, std::span<const Load> loads, std::size_t frame_count) {
+  const std::vector<bool> is_chosen = choose_samples(taxels, LoadsOfFrames(loads, frame_count));
+  std::vector<Load> chosen;
+  std::copy_if(loads.begin(), loads.end(), std::back_inserter(chosen),
+               [&](const Load& load) { return is_chosen[load.frame]; });
+  return chosen;
+}
+
 bool has_floating_lines(const Readout& readout) {
   if (readout.circuit != Circuit::divider) return false;
   return readout.idle_rows == IdleRows::floating || readout.idle_columns == IdleColumns::floating;
@@ -272,7 +281,8 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
         fmt::format("readings end at {} counts under whatever load: taken for saturated there (rail_counts)",
                     *known.readout.rail_counts));
   }
-  InstrumentFit instrument = fit_settling(known, frames, loads);
+  const std::vector<Load> chosen = loads_of_samples(array.taxel_count(), loads, frames.size());
+  InstrumentFit instrument = fit_settling(known, frames, chosen);
   labels.remarks.insert(labels.remarks.end(), instrument.statements.begin(), instrument.statements.end());
   const bool asks = asks_for_instrument(instrument.array.readout);
   known = without_unknown_instrument(std::move(instrument.array));
@@ -285,11 +295,12 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
   }
   double unexplained_share = 0.0;
   if (known.readout.circuit != Circuit::none) {
-    Result<InstrumentFit> fit = fit_instrument(known, frames, loads, settle_time, asks);
-    if (!fit) return fit.error();
-    known = std::move(fit->array);
-    unexplained_share = fit->unexplained;
-    labels.remarks.insert(labels.remarks.end(), fit->statements.begin(), fit->statements.end());
+    Result<InstrumentFit> fit = fit_instrument(known, frames, chosen, settle_time, asks);
+    if (fit) {  // what is wrong with the frames is said below, with its place
+      known = std::move(fit->array);
+      unexplained_share = fit->unexplained;
+      labels.remarks.insert(labels.remarks.end(), fit->statements.begin(), fit->statements.end());
+    }
   }
   Result<SampleDatabase> database = invert_frames(known, frames, loads, settle_time, progress);
   if (!database && array.readout.circuit == Circuit::automatic && known.readout.circuit != Circuit::none) {
