@@ -11,7 +11,6 @@ namespace {
 // Standard deviations of the prior: a hidden unit bends ln(newtons) by about one over the range of its inputs; the
 // power law is left nearly free. Rubbers drift by 0.2 to 1 %/C.
 constexpr double kHiddenDeviation = 1.5;
-constexpr double kHiddenDeviationOfBend = 0.3;
 constexpr double kDirectDeviation = 5.0;
 constexpr double kDeviationPerCelsius = 0.02;
 constexpr double kHeldDeviation = 1e-4;
@@ -21,12 +20,6 @@ double power_deviation(bool is_exponent, PowerPrior power) {
   return is_held ? kHeldDeviation : kDirectDeviation;
 }
 
-/// Of the weight of a hidden unit.
-double temperature_deviation(TemperaturePrior temperature) {
-  if (temperature == TemperaturePrior::free) return kHiddenDeviation;
-  return temperature == TemperaturePrior::bend ? kHiddenDeviationOfBend : kHeldDeviation;
-}
-
 double deviation(const network::PerceptronShape& shape, std::size_t parameter, const NetworkPrior& prior) {
   if (parameter == shape.direct_weight(0)) return power_deviation(true, prior.power);
   if (parameter == shape.direct_weight(1)) return power_deviation(false, prior.power);
@@ -34,8 +27,8 @@ double deviation(const network::PerceptronShape& shape, std::size_t parameter, c
   if (!uses_temperature) return kHiddenDeviation;
   const std::size_t temperature = shape.inputs - 1;
   if (parameter == shape.direct_weight(temperature)) return kDeviationPerCelsius * prior.half_span_celsius;
-  for (std::size_t unit = 0; unit < shape.hidden; ++unit) {
-    if (parameter == shape.weight(unit, temperature)) return temperature_deviation(prior.temperature);
+  for (std::size_t unit = 0; unit < shape.hidden && prior.temperature == TemperaturePrior::line; ++unit) {
+    if (parameter == shape.weight(unit, temperature)) return kHeldDeviation;
   }
   return kHiddenDeviation;
 }
