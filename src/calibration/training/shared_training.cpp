@@ -330,9 +330,8 @@ double heaviest_share(const SharedProblem& problem, const ForceNetwork& network)
 
 /// The errors of the loads on single taxels as those of taxels that were never pressed: the network alone, without the
 /// gain. The p parameters that take up what differs from taxel to taxel leave n - p of n taxels to tell of it; what is
-/// known of sheets counts as kTaxelsOfPrior more. A new taxel's variance is larger by 1 + p / n, and because the
-/// scatter is itself uncertain, the 68 % point of Student's distribution of f degrees of freedom is that of f / (f - 1)
-/// times it.
+/// known of sheets counts as kTaxelsOfPrior more. A new taxel's variance is larger by 1 + p / n, and by the variance of
+/// Student's distribution of f degrees of freedom, f / (f - 2), because the scatter is itself uncertain.
 std::vector<TestedLoad> tested_as_unpressed(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
                                             const ForceNetwork& network, const Candidate& chosen) {
   std::vector<std::size_t> places;
@@ -354,7 +353,7 @@ std::vector<TestedLoad> tested_as_unpressed(const std::vector<MeasuredLoad>& raw
   const auto count = static_cast<double>(taxels.size());
   const double parameters = leverages * count / static_cast<double>(std::max<std::size_t>(tested.size(), 1));
   const double freedom = std::max(count - parameters, 0.0) + kTaxelsOfPrior;
-  const double wider = (1.0 + std::max(parameters, 1.0) / count) * freedom / (freedom - 1.0);
+  const double wider = (1.0 + std::max(parameters, 1.0) / count) * freedom / (freedom - 2.0);
   for (TestedLoad& load : tested) {
     const double prior_n = kGainDeviation * load.newtons;
     const double square = (count * load.error_n * load.error_n + kTaxelsOfPrior * prior_n * prior_n) / freedom;
