@@ -50,6 +50,18 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
   return facts;
 }
 
+/// What most of the array is worth, before anything else is said.
+void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) {
+  const UncertaintyReport& uncertainty = report.uncertainty;
+  if (!uncertainty.relative_sigma_of_unpressed || 2 * uncertainty.unpressed_taxels < array.taxel_count()) return;
+  report.remarks.insert(
+      report.remarks.begin(),
+      fmt::format("{} of {} taxels were not pressed: their forces are +- {:.0f} %, as taxels differ; five loads of an "
+                  "air bladder over all of them tell each one's gain",
+                  uncertainty.unpressed_taxels, array.taxel_count(),
+                  100.0 * uncertainty.relative_sigma_of_unpressed->back()));
+}
+
 }  // namespace
 
 Result<Calibration> calibrate(const ArrayDescription& array, std::span<const RawFrame> frames,
@@ -108,6 +120,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   });
   if (!uncertainty) return uncertainty.error();
   report.uncertainty = *uncertainty;
+  remark_unpressed(database.array, report);
   report.training = std::move(training->report);
   if (database.circuit_fit) {
     report.circuit = database.circuit_fit->statements;

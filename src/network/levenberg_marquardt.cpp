@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace dermis::network {
@@ -154,15 +155,16 @@ LevenbergMarquardtReport minimise(LeastSquaresProblem& problem, std::vector<doub
 }
 
 double FittedResidual::as_noise() const noexcept {
-  return residual / std::sqrt(1.0 - leverage);
+  return residual / std::sqrt(1.0 - common_leverage);
 }
 
 double FittedResidual::as_new_error() const noexcept {
-  return residual * std::sqrt((1.0 + leverage) / (1.0 - leverage));
+  return residual * std::sqrt((1.0 + common_leverage) / (1.0 - common_leverage));
 }
 
 std::vector<FittedResidual> fitted_residuals(const ResidualFunction& residual_function, std::size_t data_count,
-                                             std::size_t residual_count, std::span<const double> parameters) {
+                                             std::size_t residual_count, std::span<const double> parameters,
+                                             std::span<const std::size_t> groups) {
   const auto n = static_cast<Eigen::Index>(parameters.size());
   Vector residuals(static_cast<Eigen::Index>(residual_count));
   Matrix jacobian(residuals.size(), n);
@@ -170,10 +172,17 @@ std::vector<FittedResidual> fitted_residuals(const ResidualFunction& residual_fu
   Matrix normal = jacobian.transpose() * jacobian;
   normal.diagonal().array() += kDiagonalFloor * std::max(normal.diagonal().maxCoeff(), 1e-300);
   const Eigen::LDLT<Matrix> factors(normal);
+  std::map<std::size_t, Vector> common;  // what a shift of the group does to the parameters
+  for (std::size_t j = 0; j < groups.size(); ++j) {
+    common.try_emplace(groups[j], Vector::Zero(n)).first->second += jacobian.row(static_cast<Eigen::Index>(j));
+  }
+  for (auto& [group, sum] : common) sum = factors.solve(sum).eval();
   std::vector<FittedResidual> fitted;
-  for (Eigen::Index j = 0; j < static_cast<Eigen::Index>(data_count); ++j) {
-    const Vector row = jacobian.row(j);
-    fitted.push_back({residuals[j], std::clamp(row.dot(factors.solve(row)), 0.0, kMaxLeverage)});
+  for (std::size_t j = 0; j < data_count; ++j) {
+    const Vector row = jacobian.row(static_cast<Eigen::Index>(j));
+    const double leverage = std::clamp(row.dot(factors.solve(row)), 0.0, kMaxLeverage);
+    const double of_group = groups.empty() ? leverage : row.dot(common.at(groups[j]));
+    fitted.push_back({residuals[static_cast<Eigen::Index>(j)], leverage, std::clamp(of_group, leverage, kMaxLeverage)});
   }
   return fitted;
 }

@@ -91,7 +91,10 @@ void put_networks(SafetensorsFile& file, const ForceNetworks& networks) {
                      {networks.unloaded.temperature.centre_celsius, networks.unloaded.temperature.half_span_celsius,
                       networks.temperature_sigma_celsius});
   const auto& gap = networks.temperature_gap_celsius;
-  if (gap[0] < gap[1]) put_tensor<double>(file, kTemperatureGap, {2}, {gap.begin(), gap.end()});
+  if (gap[0] < gap[1]) {
+    file.metadata[kTemperatureGap] = "yes";
+    put_tensor<double>(file, kTemperatureGap, {2}, {gap.begin(), gap.end()});
+  }
   const TaxelTensors tensors;
   for (const auto& [name, member] : tensors.unloaded) put_tensor(file, name, {taxels}, networks.unloaded.*member);
   for (const auto& [name, member] : tensors.floats) put_tensor(file, name, {taxels}, networks.*member);
@@ -112,7 +115,7 @@ ForceNetworks get_networks(const SafetensorsFile& file, std::size_t taxels, Tens
     networks.unloaded.temperature = {temperature[0], temperature[1]};
     networks.temperature_sigma_celsius = temperature[2];
   }
-  if (file.tensors.contains(kTemperatureGap)) {
+  if (file.metadata.contains(kTemperatureGap)) {
     std::vector<double> gap;
     reader.get(kTemperatureGap, {2}, gap);
     if (gap.size() == 2) networks.temperature_gap_celsius = {gap[0], gap[1]};

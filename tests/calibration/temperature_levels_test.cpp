@@ -23,16 +23,15 @@ std::vector<WarmLoad> loads_at(const std::vector<double>& temperatures, double d
   return loads;
 }
 
-TEST(TemperatureLevels, two_tell_a_line_three_a_bend_and_four_a_law) {
+TEST(TemperatureLevels, two_tell_a_line_and_three_a_law) {
   EXPECT_EQ(temperature_prior(loads_at({-1.0, 1.0}), kSpan), TemperaturePrior::line);
-  EXPECT_EQ(temperature_prior(loads_at({-1.0, 0.0, 1.0}), kSpan), TemperaturePrior::bend);
-  EXPECT_EQ(temperature_prior(loads_at({-1.0, -0.3, 0.3, 1.0}), kSpan), TemperaturePrior::free);
+  EXPECT_EQ(temperature_prior(loads_at({-1.0, 0.0, 1.0}), kSpan), TemperaturePrior::free);
 }
 
 TEST(TemperatureLevels, are_no_more_where_temperature_goes_with_the_load) {
   EXPECT_EQ(temperature_prior(loads_at({0.0}, 1.0), kSpan), TemperaturePrior::line);
   EXPECT_EQ(temperature_prior(loads_at({-1.0, 0.5}, 0.5), kSpan), TemperaturePrior::line);
-  EXPECT_EQ(temperature_prior(loads_at({-1.0, -0.3, 0.4}, 0.6), kSpan), TemperaturePrior::bend);
+  EXPECT_EQ(temperature_prior(loads_at({-1.0, -0.3, 0.4}, 0.6), kSpan), TemperaturePrior::free);
 }
 
 TEST(TemperatureLevels, a_sensor_that_scatters_makes_none) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
@@ -65,6 +66,14 @@ TEST(Uncertainty, adc_noise_is_at_least_that_of_rounding) {
 TEST(Uncertainty, adc_noise_is_not_made_up_where_the_end_of_the_adc_hides_it) {
   EXPECT_FALSE(measure_adc_noise(unloaded_database(60, 0.5, 1.0, true, 10)));
   EXPECT_FALSE(measure_adc_noise(unloaded_database(4, 40.0, 1.0, true, 11)));  // too few
+}
+
+TEST(Uncertainty, adc_noise_is_found_where_the_end_of_the_adc_cuts_it) {
+  for (const double noise : {5.0, 10.0}) {
+    const auto measured = measure_adc_noise(unloaded_database(60, 2.0, noise, true, 14));
+    ASSERT_TRUE(measured);
+    EXPECT_NEAR(*measured / noise, 1.0, 0.1);
+  }
 }
 
 TEST(Uncertainty, adc_noise_is_not_raised_by_a_touch_or_a_flickering_taxel) {
@@ -193,6 +202,81 @@ TEST(Uncertainty, intervals_cover_what_they_promise_on_taxels_that_were_never_pr
   EXPECT_LE(within_68 / count, 0.73);
   EXPECT_GE(within_95 / count, 0.92);
   EXPECT_LE(within_95 / count, 0.98);
+}
+
+struct Covered {
+  double count = 0.0;
+  double within_68 = 0.0;
+  double within_95 = 0.0;
+
+  void judge(float newtons, float sigma, double true_newtons) {
+    const double error = std::abs(static_cast<double>(newtons) - true_newtons) / static_cast<double>(sigma);
+    count += 1.0;
+    within_68 += error <= 1.0 ? 1.0 : 0.0;
+    within_95 += error <= 1.96 ? 1.0 : 0.0;
+  }
+};
+
+// Rubber that answers each touch with another gain: what a touch shows of one weight and of the next is one error.
+TEST(Uncertainty, loads_of_one_touch_count_as_one) {
+  constexpr double kGainDeviation = 0.05;
+  Random chance(5);
+  double gain = 1.0;
+  PressBench bench{24, [&](std::size_t, double newtons) { return gain * 1e-4 * std::pow(newtons, 0.9); }, 0.002};
+  SampleDatabase database = bench.presses({}, 0);
+  for (int touch = 0; touch < 2; ++touch) {
+    for (std::size_t taxel = 0; taxel < bench.taxels; ++taxel) {
+      gain = std::exp(kGainDeviation * chance.normal());
+      for (const double newtons : {5.0, 15.0, 5.0}) {
+        for (int k = 0; k < 30; ++k) database.samples.push_back(bench.sample(taxel, newtons));
+      }
+      database.samples.push_back(bench.sample(taxel, 0.0));
+    }
+  }
+  for (std::size_t k = 0; k < database.samples.size(); ++k) database.samples[k].frame = k;
+  const auto calibration = calibrate(database);
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  EXPECT_LT(calibration->report.uncertainty.supply_noise, 0.005);  // 0 is true
+  BenchForces estimates(calibration->model.networks, bench);
+  Covered covered;
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    for (std::size_t taxel = 0; taxel < bench.taxels; ++taxel) {
+      gain = std::exp(kGainDeviation * chance.normal());
+      const double newtons = std::array{6.0, 9.0, 13.0}[static_cast<std::size_t>(repeat) % 3];
+      const ForceFrame& force = estimates.press(taxel, newtons);
+      covered.judge(force.newtons[taxel], force.sigma_newtons[taxel], newtons);
+    }
+  }
+  EXPECT_GE(covered.within_68 / covered.count, 0.6);
+  EXPECT_LE(covered.within_68 / covered.count, 0.8);
+  EXPECT_GE(covered.within_95 / covered.count, 0.9);
+}
+
+TEST(Uncertainty, a_handful_of_presses_does_not_tell_more_than_is_known_of_sheets) {
+  Covered covered;
+  for (std::uint64_t sheet = 1; sheet <= 12; ++sheet) {
+    Random chance(sheet);
+    std::vector<double> gain(30);
+    for (double& of_taxel : gain) of_taxel = std::exp(0.15 * chance.normal());
+    const auto law = [&](std::size_t taxel, double newtons) { return gain[taxel] * 1e-4 * std::pow(newtons, 0.9); };
+    PressBench bench{gain.size(), law, 0.002};
+    SampleDatabase database = bench.presses({}, 0);
+    const std::array weights{2.0, 3.0, 5.0, 8.0, 12.0};
+    for (std::size_t k = 0; k < weights.size(); ++k) database.samples.push_back(bench.sample(k, weights[k]));
+    for (std::size_t k = 0; k < database.samples.size(); ++k) database.samples[k].frame = k;
+    const auto calibration = calibrate(database);
+    ASSERT_TRUE(calibration) << calibration.error().message;
+    ASSERT_FALSE(calibration->report.remarks.empty());
+    EXPECT_NE(calibration->report.remarks.front().find("25 of 30 taxels were not pressed"), std::string::npos);
+    BenchForces estimates(calibration->model.networks, bench);
+    for (std::size_t taxel = weights.size(); taxel < bench.taxels; ++taxel) {
+      const ForceFrame& force = estimates.press(taxel, 5.0);
+      covered.judge(force.newtons[taxel], force.sigma_newtons[taxel], 5.0);
+    }
+  }
+  EXPECT_GE(covered.within_68 / covered.count, 0.6);
+  EXPECT_LE(covered.within_68 / covered.count, 0.85);
+  EXPECT_GE(covered.within_95 / covered.count, 0.9);
 }
 
 // A bladder loads all taxels, and the inversion makes much noise of such readings; a contact's are less noisy.

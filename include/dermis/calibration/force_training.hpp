@@ -46,10 +46,11 @@ struct TestedLoad {
   std::size_t sample = 0;           ///< In the database.
   std::vector<std::size_t> taxels;  ///< That carry it.
   double newtons = 0.0;             ///< The load, > 0.
+  double residual_n = 0.0;          ///< Of the training [N].
   double noise_n = 0.0;             ///< As large as the noise of the load [N].
   double error_n = 0.0;             ///< As large as the error on a new load in the same place [N].
-  double leverage = 0.0;            ///< Of its press on its estimate, 0 ... 0.95: network::FittedResidual.
-  std::size_t press = 0;            ///< First sample of its press: loads of one press are alike.
+  double leverage = 0.0;            ///< Of the load on its own estimate: network::FittedResidual.
+  std::size_t touch = 0;            ///< First sample of its touch, whose loads have errors in common.
 };
 
 struct ForceTraining {

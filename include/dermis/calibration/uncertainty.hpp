@@ -14,9 +14,10 @@ namespace dermis::calibration {
 
 /// Noise of one reading [counts], rounding included. It comes from the differences of successive unloaded samples, each
 /// with the resolution of its own supply. So neither the level of a taxel nor its drift counts. Touched samples and
-/// flickering taxels are left out. It is at least 1 / sqrt(12), the noise of rounding alone. Empty if there are fewer
-/// than 5 unloaded samples, or if an end of the ADC hides the noise. That is when more than half of the taxels are at
-/// it in more than a tenth of the samples. Thread-safe.
+/// flickering taxels are left out. It is at least 1 / sqrt(12), the noise of rounding alone. Where more than half of
+/// the taxels are at an end of the ADC in more than a tenth of the samples, what that end cuts off is part of the
+/// likelihood. Empty if there are fewer than 5 unloaded samples, or if that finds less than two counts: rounding hides
+/// the rest. Thread-safe.
 [[nodiscard]] std::optional<double> measure_adc_noise(const SampleDatabase& database);
 
 /// Noise of the temperature sensor [C], from second differences of successive samples. 0 if samples have no
@@ -36,6 +37,7 @@ struct UncertaintyReport {
   std::optional<RelativeSigma> relative_sigma_of_shared;     ///< Of taxels on the shared network.
   std::optional<RelativeSigma> relative_sigma_of_tables;     ///< Of taxels with a look-up table.
   std::optional<RelativeSigma> relative_sigma_of_unpressed;  ///< Of those of them that no load pressed.
+  std::size_t unpressed_taxels = 0;                          ///< How many these are.
 };
 
 /// "readings +- 1.05 counts, supply +- 0.10 %, temperature +- 0.30 C, forces +- 0.2 to 0.4 % beside that".

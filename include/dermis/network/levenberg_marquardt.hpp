@@ -77,23 +77,26 @@ LevenbergMarquardtReport minimise(LeastSquaresProblem& problem, std::vector<doub
 
 /// A residual of a fit, and how strongly the fit follows its datum.
 struct FittedResidual {
-  double residual = 0.0;  ///< r
-  double leverage = 0.0;  ///< h, 0 ... 0.95, from the linearised problem.
+  double residual = 0.0;         ///< r
+  double leverage = 0.0;         ///< h, 0 ... 0.95, from the linearised problem.
+  double common_leverage = 0.0;  ///< H, h ... 0.95: on the estimate, of a shift that the datum's group has in common.
 
   /// The residual with its datum left out of the fit: r / (1 - h). Allen 1974 (PRESS).
   [[nodiscard]] double left_out() const noexcept { return residual / (1.0 - leverage); }
 
-  /// r scaled to another variance. The noise of a datum has the variance s^2, and r has (1 - h) s^2. as_noise() scales
-  /// r to s^2. as_new_error() scales it to (1 + h) s^2, the variance of the error on a new datum in the same place.
+  /// r scaled to another variance. The noise of a datum has the variance s^2, and r has (1 - H) s^2. as_noise() scales
+  /// r to s^2. as_new_error() scales it to (1 + H) s^2, the variance of the error on a new datum in the same place.
   [[nodiscard]] double as_noise() const noexcept;
   [[nodiscard]] double as_new_error() const noexcept;
 };
 
 /// The first `data_count` residuals at the minimum `parameters` (all residuals, a penalty's rows included, shape the
-/// normal matrix). data_count >= 1 and at least one parameter. Thread-safe.
+/// normal matrix). data_count >= 1 and at least one parameter. `groups` [data_count]: data with the same number share
+/// their error; empty: each has its own. Thread-safe.
 [[nodiscard]] std::vector<FittedResidual> fitted_residuals(const ResidualFunction& residual_function,
                                                            std::size_t data_count, std::size_t residual_count,
-                                                           std::span<const double> parameters);
+                                                           std::span<const double> parameters,
+                                                           std::span<const std::size_t> groups = {});
 
 /// Mean square of the first `data_count` residuals, each with its own datum left out, without any refit. Conditions as
 /// for fitted_residuals().

@@ -19,7 +19,7 @@ struct JudgedSample {
   std::size_t sample = 0;  // in the database
   double newtons = 0.0;
   double error_of_table = 0.0;  // relative
-  std::size_t press = 0;        // TaxelPoint::press
+  std::size_t touch = 0;        // TaxelPoint::touch
 };
 
 /// Forces of a method where nothing presses [N].

@@ -9,9 +9,8 @@ namespace dermis::calibration {
 namespace {
 
 // Standard deviations of the prior: a hidden unit bends ln(newtons) by about one over the range of its inputs; the
-// power law is left nearly free. Rubbers drift by 0.2 to 1 %/C.
+// power law and what many temperatures tell are left nearly free. Rubbers drift by 0.2 to 1 %/C.
 constexpr double kHiddenDeviation = 1.5;
-constexpr double kHiddenDeviationOfBend = 0.3;
 constexpr double kDirectDeviation = 5.0;
 constexpr double kDeviationPerCelsius = 0.02;
 constexpr double kHeldDeviation = 1e-4;
@@ -21,21 +20,17 @@ double power_deviation(bool is_exponent, PowerPrior power) {
   return is_held ? kHeldDeviation : kDirectDeviation;
 }
 
-/// Of the weight of a hidden unit.
-double temperature_deviation(TemperaturePrior temperature) {
-  if (temperature == TemperaturePrior::free) return kHiddenDeviation;
-  return temperature == TemperaturePrior::bend ? kHiddenDeviationOfBend : kHeldDeviation;
-}
-
 double deviation(const network::PerceptronShape& shape, std::size_t parameter, const NetworkPrior& prior) {
   if (parameter == shape.direct_weight(0)) return power_deviation(true, prior.power);
   if (parameter == shape.direct_weight(1)) return power_deviation(false, prior.power);
-  const bool uses_temperature = shape.inputs == fusion::kInputsWithTemperature;
-  if (!uses_temperature) return kHiddenDeviation;
-  const std::size_t temperature = shape.inputs - 1;
+  const std::size_t temperature = fusion::kInputsWithTemperature - 1;
+  if (shape.inputs <= temperature) return kHiddenDeviation;
+  if (prior.temperature == TemperaturePrior::free) {
+    return parameter == shape.direct_weight(temperature) ? kDirectDeviation : kHiddenDeviation;
+  }
   if (parameter == shape.direct_weight(temperature)) return kDeviationPerCelsius * prior.half_span_celsius;
   for (std::size_t unit = 0; unit < shape.hidden; ++unit) {
-    if (parameter == shape.weight(unit, temperature)) return temperature_deviation(prior.temperature);
+    if (parameter == shape.weight(unit, temperature)) return kHeldDeviation;
   }
   return kHiddenDeviation;
 }

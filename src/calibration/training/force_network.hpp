@@ -8,6 +8,7 @@
 
 #include "dermis/core/random.hpp"
 #include "dermis/fusion/force_fusion.hpp"
+#include "dermis/network/levenberg_marquardt.hpp"
 #include "dermis/network/perceptron.hpp"
 
 namespace dermis::calibration {
@@ -18,11 +19,9 @@ struct ForceNetwork {
   double reference_siemens = 1.0;
   double heaviest_siemens = 1.0;
   double heaviest_newtons = 0.0;
-  double rms_error = 0.0;          ///< Root mean square relative error on its own samples.
-  std::vector<double> parameters;  ///< [shape.parameter_count()]
-  std::vector<double> noise;       ///< ln(estimate / newtons) of each sample, as large as its noise.
-  std::vector<double> new_errors;  ///< The same, as large as a new sample there would have.
-  std::vector<double> leverage;    ///< Of each sample on its own estimate.
+  double rms_error = 0.0;                       ///< Root mean square relative error on its own samples.
+  std::vector<double> parameters;               ///< [shape.parameter_count()]
+  std::vector<network::FittedResidual> fitted;  ///< ln(estimate / newtons) of each sample.
 
   using Inputs = std::array<double, fusion::kInputsWithTemperature>;
 
@@ -50,8 +49,7 @@ enum class PowerPrior {
 /// What the data can tell of temperature.
 enum class TemperaturePrior {
   free,  ///< How it changes the law of force and conductance.
-  bend,  ///< A factor on the force that bends, from three temperatures.
-  line,  ///< The factor's logarithm is a line, from two: hidden units do not see temperature.
+  line,  ///< A factor on the force whose logarithm is a line: hidden units do not see temperature.
 };
 
 /// What the data can tell of the law, for prior_residuals().

@@ -16,7 +16,7 @@
 #include "calibration/even_choice.hpp"
 #include "calibration/samples/unloaded_fit.hpp"
 #include "calibration/training/force_levels.hpp"
-#include "calibration/training/left_out_presses.hpp"
+#include "calibration/training/press_numbers.hpp"
 #include "calibration/training/shared_training.hpp"
 #include "calibration/training/table_choice.hpp"
 #include "calibration/training/taxel_training.hpp"
@@ -61,17 +61,19 @@ double unloaded_sigma_siemens(const SampleDatabase& database, std::size_t taxel)
 std::vector<TaxelPoint> pressed_points(const SampleDatabase& database, std::size_t taxel, const Evidence& evidence) {
   std::vector<TaxelPoint> points;
   const double unloaded_sigma = unloaded_sigma_siemens(database, taxel);
+  PressNumbers numbers;
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
     const Sample& sample = database.samples[k];
     const double load_newtons = sample.known_newtons[taxel];
     const double share = sample.felt_share.empty() ? 1.0 : static_cast<double>(sample.felt_share[taxel]);
     if (!(load_newtons > 0.0) || std::isnan(share)) continue;
+    const auto& [press, touch] = numbers.next(sample, k, load_newtons);
     double noise = evidence.unloaded.noise_siemens[taxel];
     if (unloaded_sigma > 0.0) noise *= static_cast<double>(sample.sigma_siemens[taxel]) / unloaded_sigma;
     points.push_back({excess_siemens(sample, taxel, evidence.unloaded, evidence.temperatures), noise,
-                      normalised_temperature(sample, evidence.temperatures), share * load_newtons, load_newtons, k});
+                      normalised_temperature(sample, evidence.temperatures), share * load_newtons, load_newtons, k,
+                      press, touch});
   }
-  number_presses(points);
   return points;
 }
 
@@ -226,15 +228,14 @@ std::vector<TestedLoad> tested_presses(const std::vector<std::size_t>& own, cons
                                        const Evidence& evidence) {
   std::vector<TestedLoad> presses;
   for (std::size_t k = 0; k < own.size(); ++k) {
-    const std::vector<TaxelPoint>& points = evidence.points[own[k]];
-    for (std::size_t point = 0; point < points.size(); ++point) {
-      const double newtons = points[point].newtons;
-      presses.push_back({points[point].sample,
-                         {own[k]},
-                         newtons,
-                         newtons * std::expm1(networks[k].noise[point]),
-                         newtons * std::expm1(networks[k].new_errors[point]),
-                         networks[k].leverage[point]});
+    for (std::size_t at = 0; const network::FittedResidual& fitted : networks[k].fitted) {
+      const TaxelPoint& point = evidence.points[own[k]][at++];
+      const double residual_n = point.newtons * std::expm1(fitted.residual);
+      TestedLoad& load = presses.emplace_back(TestedLoad{point.sample, {own[k]}, point.newtons, residual_n});
+      load.noise_n = point.newtons * std::expm1(fitted.as_noise());
+      load.error_n = point.newtons * std::expm1(fitted.as_new_error());
+      load.leverage = fitted.leverage;
+      load.touch = point.touch;
     }
   }
   return presses;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "calibration/training/force_levels.hpp"
+#include "calibration/training/press_numbers.hpp"
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/core/random.hpp"
 
@@ -16,7 +17,6 @@ namespace {
 
 using Points = std::span<const TaxelPoint>;
 
-constexpr double kSameForce = 1.03;  // of the samples of one press
 constexpr std::size_t kFolds = 10;
 constexpr double kMostError = 1.0;  // counts as this: a single wild one decides nothing
 constexpr double kMostLeverage = 0.95;
@@ -72,7 +72,7 @@ std::vector<std::size_t> folds_of_loads(const std::vector<Points>& presses, cons
 /// the fit as all of them do that the fit has seen.
 double left_out_error(const TestedLoad& load, std::size_t samples_of_press) {
   const double pull = std::min(load.leverage * static_cast<double>(samples_of_press), kMostLeverage);
-  return load.noise_n / load.newtons * std::sqrt(1.0 - load.leverage) / (1.0 - pull);
+  return load.residual_n / load.newtons / (1.0 - pull);
 }
 
 class TaxelComparison {
@@ -97,7 +97,7 @@ class TaxelComparison {
       if (kept.empty() || fitted.knots.empty()) continue;
       const fusion::ForceTables table = assemble_tables({fitted}, {taxel_});
       for (std::size_t k = 0; k < presses_.size(); ++k) {
-        const bool is_within = presses_[k].front().newtons <= kSameForce * kept.back().newtons;
+        const bool is_within = presses_[k].front().newtons <= PressNumbers::kSameForce * kept.back().newtons;
         if (fold_of[k] == fold && is_within) judge_press(presses_[k], table, judged);
       }
     }
@@ -124,7 +124,7 @@ class TaxelComparison {
       const double error = std::exp(static_cast<double>(value.log_newtons)) / point.newtons - 1.0;
       result.of_table += std::min(std::abs(error), kMostError);
       result.of_network += std::min(std::abs(left_out_error(*of_network, samples)), kMostError);
-      judged.samples.push_back({point.sample, point.newtons, error});
+      judged.samples.push_back({point.sample, point.newtons, error, point.touch});
     }
     result.of_table /= static_cast<double>(samples);
     result.of_network /= static_cast<double>(samples);
@@ -139,18 +139,6 @@ class TaxelComparison {
 };
 
 }  // namespace
-
-void number_presses(std::vector<TaxelPoint>& points) {
-  const TaxelPoint* first = nullptr;
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const auto goes_on = [&] {
-      const auto [least, most] = std::minmax(points[k].load_newtons, first->load_newtons);
-      return points[k].sample == points[k - 1].sample + 1 && most <= kSameForce * least;
-    };
-    if (first == nullptr || !goes_on()) first = &points[k];
-    points[k].press = first->sample;
-  }
-}
 
 std::vector<ComparedTaxel> judge_left_out_presses(std::span<const std::vector<TaxelPoint>> points,
                                                   const TableMaker& maker, const ForceTraining& training) {

@@ -12,10 +12,6 @@
 
 namespace dermis::calibration {
 
-/// Samples in a row under about the same force are one press: sets TaxelPoint::press of all points of a taxel, by
-/// rising sample, before any are left out.
-void number_presses(std::vector<TaxelPoint>& points);
-
 /// What networks and tables make of presses that neither has seen [taxels]. A tenth of the presses of a taxel is left
 /// out of its table at a time; where it has but two loads, all presses of one. The error of the network on a press is
 /// that of a fit without it, by the leverage of its samples. Presses heavier than all that are left are not judged.

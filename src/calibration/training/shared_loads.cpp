@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+
+#include "calibration/training/press_numbers.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -15,8 +18,12 @@ constexpr std::size_t kMostPresses = 12;  // of one taxel alone; more tell littl
 SharedLoads::SharedLoads(const SampleDatabase& database, const SampleTemperatures& temperatures,
                          const UnloadedFit& unloaded, const std::vector<bool>& dead)
     : database_(database), temperatures_(temperatures), unloaded_(unloaded), dead_(dead) {
+  std::map<std::vector<std::size_t>, PressNumbers> numbers;
   for (std::size_t k = 0; k < database.samples.size(); ++k) {
-    for (const TotalForce& total : database.samples[k].totals) add(k, total.taxels, total.newtons, total.felt_share);
+    for (const TotalForce& total : database.samples[k].totals) {
+      add({k, total.newtons, numbers[total.taxels].next(database.samples[k], k, total.newtons).touch}, total.taxels,
+          total.felt_share);
+    }
   }
   add_presses();
 }
@@ -24,10 +31,12 @@ SharedLoads::SharedLoads(const SampleDatabase& database, const SampleTemperature
 /// At most kMostPresses of the presses on each taxel alone, evenly.
 void SharedLoads::add_presses() {
   std::vector<std::vector<Press>> presses(dead_.size());
+  std::vector<PressNumbers> numbers(dead_.size());
   for (std::size_t k = 0; k < database_.samples.size(); ++k) {
     for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
       const double newtons = database_.samples[k].known_newtons[taxel];
-      if (newtons > 0.0) presses[taxel].push_back({k, newtons});
+      if (newtons > 0.0)
+        presses[taxel].push_back({k, newtons, numbers[taxel].next(database_.samples[k], k, newtons).touch});
     }
   }
   for (std::size_t taxel = 0; taxel < dead_.size(); ++taxel) {
@@ -36,18 +45,19 @@ void SharedLoads::add_presses() {
     for (std::size_t k = 0; k < count; ++k) {
       const Press& press = of_taxel[k * of_taxel.size() / count];
       const std::vector<float>& felt_share = database_.samples[press.sample].felt_share;
-      add(press.sample, {taxel}, press.newtons, felt_share.empty() ? 1.0 : static_cast<double>(felt_share[taxel]));
+      add(press, {taxel}, felt_share.empty() ? 1.0 : static_cast<double>(felt_share[taxel]));
     }
   }
 }
 
-void SharedLoads::add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons, double felt_share) {
+void SharedLoads::add(const Press& press, const std::vector<std::size_t>& taxels, double felt_share) {
   if (std::isnan(felt_share)) return;
-  const Sample& sample = database_.samples[index];
+  const Sample& sample = database_.samples[press.sample];
   MeasuredLoad load;
-  load.sample = index;
-  load.newtons = felt_share * newtons;
-  load.load_newtons = newtons;
+  load.sample = press.sample;
+  load.newtons = felt_share * press.newtons;
+  load.load_newtons = press.newtons;
+  load.touch = press.touch;
   load.temperature = normalised_temperature(sample, temperatures_);
   bool is_felt = false;
   for (const std::size_t taxel : taxels) {

@@ -21,6 +21,7 @@ struct MeasuredLoad {
   double temperature = 0.0;                            ///< As an input of a network, in [-1, 1].
   double newtons = 0.0;                                ///< What the material felt of it.
   double load_newtons = 0.0;
+  std::size_t touch = 0;  ///< First sample of its touch.
 };
 
 /// The loads of a database that one network of all taxels learns from: those on several taxels, and some of the presses
@@ -37,10 +38,11 @@ class SharedLoads {
   struct Press {
     std::size_t sample;
     double newtons;
+    std::size_t touch;
   };
 
   void add_presses();
-  void add(std::size_t index, const std::vector<std::size_t>& taxels, double newtons, double felt_share);
+  void add(const Press& press, const std::vector<std::size_t>& taxels, double felt_share);
 
   const SampleDatabase& database_;
   const SampleTemperatures& temperatures_;

@@ -18,6 +18,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr std::size_t kMostHiddenUnits = 3;
+constexpr std::size_t kLeastSharesOfBend = 8;  // fewer single taxels differ by more than the law bends
 constexpr std::size_t kLevelsPerHiddenUnit = 7;
 constexpr std::size_t kStarts = 6;
 constexpr int kMaxIterations = 120;
@@ -25,7 +26,7 @@ constexpr std::size_t kMostSharesForStart = 15'000;  // taxels of all loads toge
 constexpr std::size_t kMostShares = 200'000;         // to choose among the starts, and for the final training
 constexpr double kGainDeviation = 0.15;              // of a gain: docs/derivations.md, "Spread of the taxels"
 constexpr double kMostGain = 4.0;
-constexpr std::size_t kLeastTaxelsForScatter = 5;
+constexpr double kTaxelsOfPrior = 5.0;  // that kGainDeviation is worth where taxels say how they differ
 constexpr int kGainRounds = 3;
 constexpr std::size_t kFolds = 5;
 constexpr std::uint64_t kSeed = 20;
@@ -68,7 +69,10 @@ bool are_one_load(const std::vector<MeasuredLoad>& loads) {
 /// make the law a stair.
 PowerPrior power_prior(const std::vector<MeasuredLoad>& loads) {
   if (are_one_load(loads)) return PowerPrior::held;
-  return levels_of(loads) < kLeastLevelsOfBend ? PowerPrior::straight : PowerPrior::free;
+  std::size_t shares = 0;
+  for (const MeasuredLoad& load : loads) shares += load.excess.size();
+  const bool are_few = levels_of(loads) < kLeastLevelsOfBend || shares < kLeastSharesOfBend;
+  return are_few ? PowerPrior::straight : PowerPrior::free;
 }
 
 NetworkPrior prior_of(const std::vector<MeasuredLoad>& loads, const SampleTemperatures& temperatures) {
@@ -281,23 +285,33 @@ class GainFit {
   std::vector<std::vector<double>> forces_;  // weighted, of every share
 };
 
+/// Loads with the same number in `groups` share an error.
+std::vector<network::FittedResidual> fitted_loads(const SharedProblem& problem, const Candidate& chosen,
+                                                  const std::vector<std::size_t>& groups) {
+  const std::size_t count = groups.size();
+  return network::fitted_residuals(problem.residual_function(chosen.shape), count, count + chosen.free.size(),
+                                   chosen.free, groups);
+}
+
 /// The errors of the loads as if each were left out. The leverage knows of the network's parameters but not of the
-/// gains: the errors are scaled to the mean square that held-out loads have with them.
+/// gains: the errors are scaled by as much as held-out loads are worse than that, or not at all.
 std::vector<TestedLoad> tested_loads(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
-                                     const Candidate& chosen, double mean_square) {
-  const std::size_t count = raw.size();
-  const std::vector<network::FittedResidual> fitted = network::fitted_residuals(
-      problem.residual_function(chosen.shape), count, count + chosen.free.size(), chosen.free);
-  const double scale = std::max(std::sqrt(mean_square / chosen.leave_one_out), 1.0);
+                                     const Candidate& chosen, double scale) {
+  std::vector<std::size_t> touches;
+  for (const MeasuredLoad& load : raw) {
+    touches.push_back(load.touch * problem.gain().size() + load.excess.front().first);
+  }
+  const std::vector<network::FittedResidual> fitted = fitted_loads(problem, chosen, touches);
   std::vector<TestedLoad> tested;
-  for (std::size_t k = 0; k < count; ++k) {
-    TestedLoad& load = tested.emplace_back();
-    load.sample = raw[k].sample;
+  for (std::size_t k = 0; k < raw.size(); ++k) {
+    const double newtons_per_residual = scale / problem.loads()[k].weight;
+    TestedLoad& load = tested.emplace_back(TestedLoad{raw[k].sample, {}, raw[k].newtons});
     for (const auto& [taxel, siemens] : raw[k].excess) load.taxels.push_back(taxel);
-    load.newtons = raw[k].newtons;
-    load.noise_n = scale * fitted[k].as_noise() / problem.loads()[k].weight;
-    load.error_n = scale * fitted[k].as_new_error() / problem.loads()[k].weight;
+    load.residual_n = newtons_per_residual * fitted[k].residual;
+    load.noise_n = newtons_per_residual * fitted[k].as_noise();
+    load.error_n = newtons_per_residual * fitted[k].as_new_error();
     load.leverage = fitted[k].leverage;
+    load.touch = raw[k].touch;
   }
   return tested;
 }
@@ -315,26 +329,35 @@ double heaviest_share(const SharedProblem& problem, const ForceNetwork& network)
 }
 
 /// The errors of the loads on single taxels as those of taxels that were never pressed: the network alone, without the
-/// gain. If their mean square over the n taxels is m, the variance is m n / (n - 1), that of a new taxel larger by
-/// 1 + 1/n, and because it is itself uncertain, the 68 % point of Student's distribution is that of (n - 1) / (n - 2)
-/// times it.
+/// gain. The p parameters that take up what differs from taxel to taxel leave n - p of n taxels to tell of it; what is
+/// known of sheets counts as kTaxelsOfPrior more. A new taxel's variance is larger by 1 + p / n, and by the variance of
+/// Student's distribution of f degrees of freedom, f / (f - 2), because the scatter is itself uncertain.
 std::vector<TestedLoad> tested_as_unpressed(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
-                                            const ForceNetwork& network) {
+                                            const ForceNetwork& network, const Candidate& chosen) {
+  std::vector<std::size_t> places;
+  for (const MeasuredLoad& load : raw) places.push_back(load.excess.front().first);
+  const std::vector<network::FittedResidual> fitted = fitted_loads(problem, chosen, places);
   std::vector<TestedLoad> tested;
   std::set<std::size_t> taxels;
+  double leverages = 0.0;
   for (std::size_t k = 0; k < raw.size(); ++k) {
     const SharedLoad& load = problem.loads()[k];
     if (load.shares.size() != 1) continue;
     const Share& share = load.shares.front();
     taxels.insert(share.taxel);
+    leverages += fitted[k].common_leverage;
     const double estimate = std::exp(network.log_newtons(share.inputs, {}));
-    const double relative_error = 1.0 - load.newtons / estimate;  // the standard deviation is a share of the estimate
-    tested.push_back({raw[k].sample, {share.taxel}, load.newtons, 0.0, relative_error * load.newtons, 0.0});
+    const double error_n = load.newtons - load.newtons * load.newtons / estimate;  // sigma is a share of the estimate
+    tested.push_back({raw[k].sample, {share.taxel}, load.newtons, error_n, 0.0, error_n});
   }
   const auto count = static_cast<double>(taxels.size());
-  const bool tells = taxels.size() >= kLeastTaxelsForScatter;
+  const double parameters = leverages * count / static_cast<double>(std::max<std::size_t>(tested.size(), 1));
+  const double freedom = std::max(count - parameters, 0.0) + kTaxelsOfPrior;
+  const double wider = (1.0 + std::max(parameters, 1.0) / count) * freedom / (freedom - 2.0);
   for (TestedLoad& load : tested) {
-    load.error_n = tells ? load.error_n * std::sqrt((count + 1.0) / (count - 2.0)) : kGainDeviation * load.newtons;
+    const double prior_n = kGainDeviation * load.newtons;
+    const double square = (count * load.error_n * load.error_n + kTaxelsOfPrior * prior_n * prior_n) / freedom;
+    load.error_n = std::sqrt(wider * square);
   }
   return tested;
 }
@@ -366,8 +389,8 @@ SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatu
   shared.network = problem.network(chosen.shape, chosen.free);
   shared.gain = problem.gain();
   shared.heaviest_newtons = heaviest_share(problem, shared.network);
-  shared.tested = tested_loads(loads, problem, chosen, mean_square);
-  shared.tested_unpressed = tested_as_unpressed(loads, problem, shared.network);
+  shared.tested = tested_loads(loads, problem, chosen, std::max(std::sqrt(mean_square / chosen.leave_one_out), 1.0));
+  shared.tested_unpressed = tested_as_unpressed(loads, problem, shared.network, chosen);
   shared.leave_one_out_error = kRelativeErrorOfResidual * std::sqrt(mean_square);
   return shared;
 }

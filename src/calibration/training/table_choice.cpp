@@ -122,7 +122,8 @@ void install(const std::vector<std::size_t>& asked, std::span<const std::vector<
     networks.heaviest_newtons[taxel] = static_cast<float>(newtons);
     for (const JudgedSample& sample : judged[taxel].samples) {
       const double error_n = sample.error_of_table * sample.newtons;
-      training.tested_tables.push_back({sample.sample, {taxel}, sample.newtons, error_n, error_n, 0.0, sample.press});
+      training.tested_tables.push_back(
+          {sample.sample, {taxel}, sample.newtons, error_n, error_n, error_n, 0.0, sample.touch});
     }
   }
   const std::set<std::size_t> gone(taxels.begin(), taxels.end());

@@ -59,6 +59,7 @@ class TaxelProblem {
       network_.heaviest_newtons = std::max(network_.heaviest_newtons, point.newtons);
       points_.push_back({network_.inputs(point.excess_siemens, point.temperature), std::log(point.newtons),
                          1.0 / std::hypot(kNoiseFloor, point.noise_siemens / point.excess_siemens)});
+      touches_.push_back(point.touch);
     }
   }
 
@@ -80,14 +81,12 @@ class TaxelProblem {
   }
 
   [[nodiscard]] ForceNetwork network_at(std::span<const double> free) {
-    const auto fitted = network::fitted_residuals(residual_function(), points_.size(), residual_count(), free);
     network::monotone::parameters(network_.shape, free, network_.parameters);
     ForceNetwork network = network_;
+    network.fitted = network::fitted_residuals(residual_function(), points_.size(), residual_count(), free, touches_);
     double square = 0.0;
     for (std::size_t k = 0; k < points_.size(); ++k) {
-      network.noise.push_back(fitted[k].as_noise() / points_[k].weight);
-      network.new_errors.push_back(fitted[k].as_new_error() / points_[k].weight);
-      network.leverage.push_back(fitted[k].leverage);
+      network.fitted[k].residual /= points_[k].weight;
       square += std::pow(std::expm1(network.log_newtons(points_[k].inputs, {}) - points_[k].log_newtons), 2);
     }
     network.rms_error = std::sqrt(square / static_cast<double>(points_.size()));
@@ -115,6 +114,7 @@ class TaxelProblem {
 
   ForceNetwork network_;  // its parameters are those that are tried last
   std::vector<TrainingPoint> points_;
+  std::vector<std::size_t> touches_;  // of the points
   NetworkPrior prior_;
   double typical_newtons_ = 0.0;
 };

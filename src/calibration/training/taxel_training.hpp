@@ -19,7 +19,8 @@ struct TaxelPoint {
   double newtons = 0.0;         ///< What the material felt, > 0.
   double load_newtons = 0.0;    ///< What pressed, > 0.
   std::size_t sample = 0;       ///< Where it comes from in the database.
-  std::size_t press = 0;        ///< Where its press begins there: number_presses().
+  std::size_t press = 0;        ///< Where its press begins there, and its touch: PressNumbers.
+  std::size_t touch = 0;
 };
 
 /// The loads of the points.

@@ -14,9 +14,8 @@ namespace {
 constexpr double kAlikeForces = 1.5;       // heaviest over lightest
 constexpr double kLevelShare = 1.0 / 8.0;  // of the calibrated span: temperatures that are one
 constexpr double kLevelCelsius = 1.0;      // and at least
-constexpr std::size_t kLevelsOfBend = 3;
-constexpr std::size_t kLevelsOfLaw = 4;  // for what a hidden unit can do
-constexpr double kWideGap = 0.55;        // of the calibrated span: three even temperatures leave half
+constexpr double kLevelsOfLaw = 3.0;
+constexpr double kWideGap = 0.55;  // of the calibrated span: three even temperatures leave half
 
 /// Different temperatures of `loads`, which become rising.
 std::size_t count_temperatures(std::span<WarmLoad> loads, double width) {
@@ -50,8 +49,7 @@ TemperaturePrior temperature_prior(std::vector<WarmLoad> loads, const Temperatur
     first = last;
   }
   const double typical = levels.empty() ? 0.0 : upper_median(std::move(levels));
-  if (typical >= kLevelsOfLaw) return TemperaturePrior::free;
-  return typical >= kLevelsOfBend ? TemperaturePrior::bend : TemperaturePrior::line;
+  return typical >= kLevelsOfLaw ? TemperaturePrior::free : TemperaturePrior::line;
 }
 
 std::array<double, 2> temperature_gap(const SampleDatabase& database, const SampleTemperatures& temperatures) {

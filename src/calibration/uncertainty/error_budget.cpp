@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr std::size_t kMostLoads = 4000;  // more do not make the estimates better
 constexpr std::size_t kLoadsPerTask = 100;
+constexpr double kLeastPairs = 20.0;
 
 /// Units 3 and 4 with a given error of the supply and networks that have hardly any of their own.
 class ErrorBudget {
@@ -61,6 +63,7 @@ class ErrorBudget {
 JudgedLoad judge(const TestedLoad& load, const fusion::ForceNetworks& networks, const ForceFrame& without_supply,
                  const ForceFrame& with_supply) {
   JudgedLoad judged;
+  judged.tested = &load;
   judged.square_noise = load.noise_n * load.noise_n;
   judged.square_error = load.error_n * load.error_n;
   judged.newtons = load.newtons;
@@ -95,6 +98,23 @@ std::vector<const TestedLoad*> some_of(const std::vector<TestedLoad>& loads) {
 double JudgedLoad::variance(double supply_noise, const VarianceProfile& profile) const {
   const double known = instruments + std::pow(supply_noise / kUnitSupplyNoise, 2) * supply;
   return std::inner_product(profile.begin(), profile.end(), material.begin(), known);
+}
+
+std::optional<double> most_supply_noise(const std::vector<JudgedLoad>& loads) {
+  std::map<std::pair<std::size_t, std::size_t>, double> last;  // residual, by touch and first taxel
+  double scatter = 0.0;
+  double of_unit = 0.0;
+  double pairs = 0.0;
+  for (const JudgedLoad& load : loads) {
+    const TestedLoad& tested = *load.tested;
+    const auto [before, is_first] = last.try_emplace({tested.touch, tested.taxels.front()}, tested.residual_n);
+    if (is_first) continue;
+    scatter += 0.5 * std::pow(tested.residual_n - std::exchange(before->second, tested.residual_n), 2);
+    of_unit += load.supply;
+    pairs += 1.0;
+  }
+  if (pairs < kLeastPairs || of_unit <= 0.0) return std::nullopt;
+  return JudgedLoad::kUnitSupplyNoise * std::sqrt(scatter / of_unit);
 }
 
 Result<std::vector<JudgedLoad>> judge_loads(const SampleDatabase& database, const std::vector<TestedLoad>& loads,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "dermis/calibration/force_training.hpp"
@@ -18,6 +19,7 @@ using VarianceProfile = std::array<double, fusion::kSigmaKnots>;
 
 /// A tested load with the variances of the sum of its taxels' forces, by where they come from [N^2].
 struct JudgedLoad {
+  const TestedLoad* tested = nullptr;
   double square_noise = 0.0;
   double square_error = 0.0;
   double newtons = 0.0;
@@ -30,8 +32,12 @@ struct JudgedLoad {
   static constexpr double kUnitSupplyNoise = 0.005;
 };
 
+/// The error of the supply that explains all of the scatter from load to load within touches, of which there must be 20
+/// pairs. A supply is measured anew for each of them.
+[[nodiscard]] std::optional<double> most_supply_noise(const std::vector<JudgedLoad>& loads);
+
 /// The budget of some of the tested loads, at most 4,000, by what `model` says of its instruments. Left out are loads
-/// to which the material adds nothing. Errors: those of Compensator::create().
+/// to which the material adds nothing. `loads` must outlive it. Errors: those of Compensator::create().
 [[nodiscard]] Result<std::vector<JudgedLoad>> judge_loads(const SampleDatabase& database,
                                                           const std::vector<TestedLoad>& loads,
                                                           const pipeline::Model& model);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -17,6 +18,8 @@ constexpr double kOneSigmaShare = 0.682689;  // of a normal distribution within 
 constexpr double kOutlierRatio = 9.0;        // of mean squares: three standard deviations
 constexpr std::size_t kLeastUnloadedSamples = 5;
 constexpr double kMostShareAtEnd = 0.1;  // cuts 8 % off the standard deviation
+constexpr double kMostShareCut = 0.8;    // at the lower end, of the readings of a taxel that still tells
+constexpr double kLeastCutNoise = 2.0;   // counts; rounding hides less
 constexpr std::size_t kLeastTemperatures = 20;
 constexpr double kMostTemperatureNoise = 1.0;
 
@@ -53,6 +56,50 @@ std::vector<std::size_t> free_taxels(const SampleDatabase& database, const std::
   return taxels;
 }
 
+/// Variance of a normal distribution [counts^2] of which readings below half a count show as 0: Tobin 1958, by the EM
+/// algorithm.
+double variance_of_cut(const std::vector<double>& counts) {
+  constexpr double kCut = 0.5;
+  constexpr int kSteps = 100;
+  double middle = mean(counts);
+  double variance = 1.0;
+  for (const double count : counts) variance = std::max(variance, std::pow(count - middle, 2));
+  for (int step = 0; step < kSteps; ++step) {
+    const double sigma = std::sqrt(variance);
+    const double cut = (kCut - middle) / sigma;
+    const double below = std::max(0.5 * std::erfc(-cut / std::numbers::sqrt2), 1e-12);
+    const double ratio = std::exp(-0.5 * cut * cut) / std::sqrt(2.0 * std::numbers::pi) / below;
+    const double hidden = middle - sigma * ratio;  // mean of the readings below
+    const double hidden_square = hidden * hidden + variance * (1.0 - cut * ratio - ratio * ratio);
+    double sum = 0.0;
+    double square = 0.0;
+    for (const double count : counts) {
+      sum += count < kCut ? hidden : count;
+      square += count < kCut ? hidden_square : count * count;
+    }
+    middle = sum / static_cast<double>(counts.size());
+    variance = std::max(square / static_cast<double>(counts.size()) - middle * middle, 1.0 / 12.0);
+  }
+  return variance;
+}
+
+/// Where the lower end of the ADC cuts the readings of most taxels.
+std::optional<double> noise_of_cut(const SampleDatabase& database, const std::vector<const Sample*>& unloaded) {
+  const double full_scale = database.array.readout.full_scale_counts();
+  std::vector<double> of_taxel;
+  for (std::size_t taxel = 0; taxel < database.array.taxel_count(); ++taxel) {
+    std::vector<double> counts;
+    for (const Sample* sample : unloaded) counts.push_back(full_scale * bare_reading(database, *sample, taxel));
+    const auto cut = std::count_if(counts.begin(), counts.end(), [](double count) { return count < 0.5; });
+    if (static_cast<double>(cut) > kMostShareCut * static_cast<double>(counts.size())) continue;
+    of_taxel.push_back(variance_of_cut(counts));
+  }
+  if (of_taxel.empty()) return std::nullopt;
+  erase_outliers(of_taxel);
+  const double noise = std::sqrt(mean(of_taxel));
+  return noise >= kLeastCutNoise ? std::optional(noise) : std::nullopt;
+}
+
 /// Half the square of the difference of two readings [counts^2]: on average the variance of one.
 double half_square_difference(const SampleDatabase& database, const Sample& a, const Sample& b, std::size_t taxel) {
   const double sigma = std::hypot(a.sigma_ratio, b.sigma_ratio);
@@ -67,7 +114,7 @@ std::optional<double> measure_adc_noise(const SampleDatabase& database) {
   const std::vector<const Sample*> unloaded = unloaded_samples(database);
   if (unloaded.size() < kLeastUnloadedSamples) return std::nullopt;
   const std::vector<std::size_t> taxels = free_taxels(database, unloaded);
-  if (2 * taxels.size() < database.array.taxel_count()) return std::nullopt;
+  if (2 * taxels.size() < database.array.taxel_count()) return noise_of_cut(database, unloaded);
   std::vector<double> of_pair(unloaded.size() - 1);
   for (std::size_t k = 0; k < of_pair.size(); ++k) {
     for (const std::size_t taxel : taxels) {

@@ -16,6 +16,7 @@ constexpr double kOutlierRatio = 9.0;        // of mean squares: three standard 
 constexpr double kLeastRelativeSigma = 1e-3;
 constexpr double kStartRelativeSigma = 0.1;
 constexpr std::size_t kLoadsPerKnot = 50;
+constexpr double kPriorShare = 0.15;  // of the loads: as many more say that all forces are alike
 
 using Square = double JudgedLoad::*;
 
@@ -68,9 +69,12 @@ double surprise(const std::vector<JudgedLoad>& loads, double supply_noise) {
 }
 
 /// The fixed point of the variance components of a normal distribution (the multiplicative step of Lange's MM
-/// algorithm), outliers as above.
+/// algorithm), outliers as above. Loads that nobody put on say at each knot what all loads say together, so that a knot
+/// without loads of its own leans on the others.
 VarianceProfile likeliest_profile(const std::vector<JudgedLoad>& loads, double supply_noise) {
-  VarianceProfile profile = even_profile(loads, &JudgedLoad::square_error, supply_noise);
+  const VarianceProfile even = even_profile(loads, &JudgedLoad::square_error, supply_noise);
+  VarianceProfile profile = even;
+  const double prior = kPriorShare * static_cast<double>(loads.size()) / static_cast<double>(profile.size());
   if (loads.size() < kLoadsPerKnot * profile.size()) return profile;
   constexpr int kSteps = 100;
   for (int step = 0; step < kSteps; ++step) {
@@ -85,7 +89,9 @@ VarianceProfile likeliest_profile(const std::vector<JudgedLoad>& loads, double s
       }
     }
     for (std::size_t k = 0; k < profile.size(); ++k) {
-      if (found[k] > 0.0) profile[k] *= std::sqrt(found[k] / expected[k]);
+      found[k] += prior / profile[k] * even[k] / profile[k];
+      expected[k] += prior / profile[k];
+      profile[k] *= std::sqrt(found[k] / expected[k]);
     }
   }
   return scaled(profile, loads, &JudgedLoad::square_error, supply_noise);

@@ -40,10 +40,19 @@ Result<JudgedLoads> judge_all(const SampleDatabase& database, const ForceTrainin
   return judged;
 }
 
+/// No more than loads within touches scatter: what differs from touch to touch is the material's.
+double highest_supply_noise(const JudgedLoads& loads) {
+  double highest = 0.05;
+  for (const std::vector<JudgedLoad>* of_kind : {&loads.own, &loads.shared, &loads.tables}) {
+    highest = std::min(highest, most_supply_noise(*of_kind).value_or(highest));
+  }
+  return highest;
+}
+
 /// The supply error that makes the noise of all loads likeliest.
 double likeliest_supply_noise(const JudgedLoads& loads) {
   constexpr double kLowest = 1e-4;
-  constexpr double kHighest = 0.05;
+  const double highest = highest_supply_noise(loads);
   constexpr double kStep = 1.1;
   double best = 0.0;
   const auto of_all = [&](double supply_noise) {
@@ -51,7 +60,7 @@ double likeliest_supply_noise(const JudgedLoads& loads) {
            surprise(loads.tables, supply_noise);
   };
   double least = of_all(best);
-  for (double supply_noise = kLowest; supply_noise < kHighest; supply_noise *= kStep) {
+  for (double supply_noise = kLowest; supply_noise < highest; supply_noise *= kStep) {
     const double sum = of_all(supply_noise);
     if (sum >= least) continue;
     least = sum;
@@ -138,6 +147,7 @@ void fit_material(const JudgedLoads& judged, const ForceTraining& training, fusi
     VarianceProfile profile = likeliest_profile(judged.unpressed, report.supply_noise);
     if (training.report.is_one_load) add_uncertainty_of_line(networks, profile);
     report.relative_sigma_of_unpressed = set_relative_sigma(unpressed, profile, networks);
+    report.unpressed_taxels = unpressed.size();
   }
   const std::vector<std::size_t>& tables = training.report.table_taxels;
   if (tables.empty()) return;
