@@ -7,8 +7,8 @@
 
 namespace dermis::app {
 
-/// Declares --in, --tare, --tare-force, --arrays, --extra, --label and --labels, which it returns; `examples` must live as long as
-/// the action.
+/// Declares --in, --tare, --tare-force, --arrays, --extra, --label and --labels, which it returns; `examples` must live
+/// as long as the action.
 Option add_example_options(Command& command, recognising::ExampleOptions& examples);
 
 }  // namespace dermis::app

@@ -84,8 +84,9 @@ std::vector<std::string> FrameTroubles::describe() const {
   if (missing_.any()) lines.push_back(missing_.describe());
   if (const auto range = missing_.describe_range()) lines.push_back(*range);
   if (unsolved_ > 0) {
-    lines.push_back(fmt::format("{} of {} frames without forces: their readings {}, the first at {}", unsolved_, frames_,
-                                2 * lost_outside_ > lost_ ? "lie outside of the ADC" : kMisfit, first_unsolved_));
+    lines.push_back(fmt::format("{} of {} frames without forces: their readings {}, the first at {}", unsolved_,
+                                frames_, 2 * lost_outside_ > lost_ ? "lie outside of the ADC" : kMisfit,
+                                first_unsolved_));
   }
   if (faulty_ > 0) {
     lines.push_back(

@@ -20,7 +20,7 @@ namespace dermis::health {
 struct FaultHistory {
   compensation::LineFault fault;       ///< As it was last seen.
   std::optional<std::size_t> until{};  ///< First frame without it; empty while it lasts.
-  std::size_t times = 1;               ///< It was found so often, first in fault.frame and gone the last time at `until`.
+  std::size_t times = 1;  ///< It was found so often, first in fault.frame and gone the last time at `until`.
 };
 
 /// Describes a fault, to be read after place_name(): its kind, since when, what to check, and what is lost. "is open

@@ -59,7 +59,7 @@ class FrameTroubles {
   std::size_t lost_outside_ = 0;  ///< Of these, with readings that are none of the ADC.
   std::string first_rejection_;
   std::string first_unsolved_;  ///< Its place.
-  std::size_t rows_;  ///< Of the array.
+  std::size_t rows_;            ///< Of the array.
   Doubt supply_;
   Doubt kelvin_;
   Doubt silent_;

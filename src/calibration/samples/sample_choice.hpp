@@ -10,9 +10,9 @@
 namespace dermis::calibration {
 
 /// Which frames become samples [frames]: all labelled ones, unless they would fill more than 180 MB. Then at most 4,000
-/// of the frames that press in the same places do, or fewer, until they fit. Places that are pressed less often keep all
-/// of theirs, and of unloaded frames a sixteenth of all samples stay. Those of one place are chosen evenly over their
-/// forces, both ends included.
+/// of the frames that press in the same places do, or fewer, until they fit. Places that are pressed less often keep
+/// all of theirs, and of unloaded frames a sixteenth of all samples stay. Those of one place are chosen evenly over
+/// their forces, both ends included.
 [[nodiscard]] std::vector<bool> choose_samples(std::size_t taxels, const LoadsOfFrames& loads);
 
 }  // namespace dermis::calibration
