@@ -47,7 +47,7 @@ struct ForceNetworks {
   ForceTables tables;  ///< Take the place of the network, and of its gain, on the taxels that have one.
 
   // The uncertainty that calibration found; see ForceFusion.
-  double temperature_sigma_celsius = 0.0;   ///< Noise of the temperature sensor [C], >= 0.
+  double temperature_sigma_celsius = 0.0;  ///< Noise of the temperature sensor [C], >= 0.
   /// Lowest and highest of the temperatures between which nothing tells how the forces bend; equal: there are none.
   std::array<double, 2> temperature_gap_celsius{};
   std::vector<float> offset_sigma_siemens;  ///< Standard deviation of unloaded.offset_siemens [S], >= 0.
@@ -83,9 +83,9 @@ struct ForceNetworks {
 ///
 /// sigma_T is the noise of the temperature sensor and the distance to the nearest calibrated temperature, by which a
 /// temperature outside was clamped. In temperature_gap_celsius the network draws a line, but rubber may have changed
-/// anywhere. Without a temperature sigma_T is half_span / sqrt(3). Below e = sigma_siemens (+) offset_sigma the right side times newtons is that
-/// of this conductance, reached along the power law. So an unloaded taxel shows its detection limit, the force that
-/// would just exceed the noise.
+/// anywhere. Without a temperature sigma_T is half_span / sqrt(3). Below e = sigma_siemens (+) offset_sigma the right
+/// side times newtons is that of this conductance, reached along the power law. So an unloaded taxel shows its
+/// detection limit, the force that would just exceed the noise.
 ///
 ///   signal_to_noise = e / (sqrt(sigma_siemens^2 + offset_sigma^2) + 2 |per_celsius| sigma_T)
 ///
