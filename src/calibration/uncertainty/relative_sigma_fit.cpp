@@ -16,7 +16,7 @@ constexpr double kOutlierRatio = 9.0;        // of mean squares: three standard 
 constexpr double kLeastRelativeSigma = 1e-3;
 constexpr double kStartRelativeSigma = 0.1;
 constexpr std::size_t kLoadsPerKnot = 50;
-constexpr double kPriorShare = 0.15;  // of the loads: as many more say that all forces are alike
+constexpr double kPriorShare = 0.1;  // of the loads: as many more say that all forces are alike
 
 using Square = double JudgedLoad::*;
 
