@@ -102,9 +102,13 @@ class Judge {
     const VectorXd sizes = residuals.head(sigmas_.size()).cwiseProduct(sigmas_).cwiseAbs();
     return quantile(std::vector<double>(sizes.begin(), sizes.end()), kMostPressesShare);
   }
-  /// Those of presses on several taxels come first.
+  /// Of presses on several taxels, which come first: the mean, or what the median makes of it where that is less, so
+  /// that single outliers are no misfit.
   [[nodiscard]] double square_of_totals(const VectorXd& residuals) const {
-    return residuals.head(sigmas_.size()).squaredNorm() / static_cast<double>(sigmas_.size());
+    constexpr double kMedianOfSquare = 0.4549;  // of a standard normal variable
+    const VectorXd squares = residuals.head(sigmas_.size()).cwiseAbs2();
+    const double median = upper_median(std::vector<double>(squares.begin(), squares.end()));
+    return std::min(squares.mean(), median / kMedianOfSquare);
   }
 
  private:
@@ -325,8 +329,10 @@ Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<co
   const std::optional<std::string> dead_zone = describe_dead_zone(*labelled);
   if (dead_zone) fit.statements.push_back(*dead_zone);
   Judge judge(array, *labelled);
-  const bool has_totals = judge.presses().several.size() >= kLeastPresses;
-  if (is_asked_for && !has_totals) fit.statements.emplace_back(kNoPresses);
+  if (judge.presses().several.size() < kLeastPresses) {
+    if (is_asked_for) fit.statements.emplace_back(kNoPresses);
+    return fit;
+  }
   std::optional<Explanation> best = explain(judge, {array, {}});
   if (!best) return fit;
   const auto explain_more = [&] { return dead_zone ? std::nullopt : best_beside(judge, array, *best); };
@@ -334,13 +340,11 @@ Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<co
   for (std::size_t place = 0; place < best->parameters.parts().size(); ++place) {
     fit.statements.push_back(describe(*best, array, place));
   }
-  if (is_asked_for && has_totals && best->parameters.count() == 0) fit.statements.emplace_back(kNothing);
+  if (is_asked_for && best->parameters.count() == 0) fit.statements.emplace_back(kNothing);
   const Explanation applied = without_drivers(judge, array, *best);
   fit.array = applied.parameters.array_at(applied.values);
   fit.unexplained = effect_of(InstrumentPart::drivers, *best, *labelled);
-  // Idle taxels alone tell a supply and drivers apart no better than so.
-  if (!has_totals) fit.unexplained = std::max(fit.unexplained, effect_of(InstrumentPart::supply, *best, *labelled));
-  if (has_totals) notice(judge, applied, fit);
+  notice(judge, applied, fit);
   return fit;
 }
 

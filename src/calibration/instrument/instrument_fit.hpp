@@ -35,9 +35,10 @@ struct InstrumentFit {
 /// Presses on several taxels must give the forces that single presses have taught: offset and curve of the ADC,
 /// resistance of the supply and drivers are what they may tell. Each kind that the description leaves open is fitted by
 /// Gauss-Newton, and the one that explains most is taken, then the next beside it, as long as chance would not
-/// explain as much. Drivers are named, not changed: the description gives them. `array` has a circuit whose resistances
-/// are known. `is_asked_for`: it is said where nothing can tell. Errors: those of circuit_frames(), a circuit that
-/// cannot be inverted.
+/// explain as much. Idle taxels on pressed lines add to this, but without eight presses on several taxels nothing is
+/// fitted: temperature and material move idle taxels, too. Drivers are named, not changed: the description gives them.
+/// `array` has a circuit whose resistances are known. `is_asked_for`: it is said where nothing can tell. Errors: those
+/// of circuit_frames(), a circuit that cannot be inverted.
 [[nodiscard]] Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<const RawFrame> frames,
                                                    std::span<const Load> loads, Nanos settle_time, bool is_asked_for);
 

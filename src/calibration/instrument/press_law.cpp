@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "dermis/core/quantile.hpp"
@@ -18,7 +19,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr std::size_t kLeastSingles = 20;  // to learn a law from
-constexpr double kResolved = 5.0;          // a conductance over its noise
+constexpr std::size_t kMostTaxels = 6;
+constexpr double kResolved = 5.0;  // a conductance over its noise
 constexpr double kSigmasOfDeviation = 1.4826;
 constexpr double kLeastScatter = 0.002;
 constexpr double kReadable = 3.0;       // an unloaded conductance over its noise
@@ -44,6 +46,22 @@ std::optional<Press> press_of(const CircuitFrame& frame) {
   }
   if (press.taxels.empty() || !(press.newtons > 0.0)) return std::nullopt;
   return press;
+}
+
+double lightest_of(const std::vector<Press>& single) {
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const Press& press : single) lightest = std::min(lightest, press.newtons);
+  return lightest;
+}
+
+/// A press on few taxels, each as heavy as single presses are: below those nobody knows the law.
+bool is_well_known(const Press& press, double lightest) {
+  if (press.taxels.size() > kMostTaxels) return false;
+  const std::vector<float>& newtons = press.frame->newtons;
+  const bool is_heavy = press.newtons >= static_cast<double>(press.taxels.size()) * lightest;
+  return is_heavy && std::all_of(press.taxels.begin(), press.taxels.end(), [&](std::size_t taxel) {
+           return !(static_cast<double>(newtons[taxel]) < lightest);  // not a number: the total alone is known
+         });
 }
 
 void thin_out(std::vector<Press>& presses, std::size_t most) {
@@ -323,9 +341,11 @@ Presses sort_presses(const CircuitFrames& frames, std::size_t most) {
     (press->taxels.size() == 1 ? presses.single : presses.several).push_back(*std::move(press));
   }
   const std::set<std::size_t> alone = taxels_of(presses.single);
+  const double lightest = lightest_of(presses.single);
   std::erase_if(presses.several, [&](const Press& press) {
-    return !std::all_of(press.taxels.begin(), press.taxels.end(),
-                        [&](std::size_t taxel) { return alone.contains(taxel); });
+    const bool are_alone =
+        std::all_of(press.taxels.begin(), press.taxels.end(), [&](std::size_t taxel) { return alone.contains(taxel); });
+    return !are_alone || !is_well_known(press, lightest);
   });
   thin_out(presses.several, most);
   thin_out_single(presses, most);

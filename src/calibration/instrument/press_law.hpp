@@ -21,7 +21,7 @@ struct Press {
 /// Frames by what they press.
 struct Presses {
   std::vector<Press> single;   ///< One taxel alone.
-  std::vector<Press> several;  ///< Taxels that were all pressed alone, too.
+  std::vector<Press> several;  ///< Up to six taxels that were all pressed alone, too, and no lighter.
 };
 
 /// At most so many of each kind, evenly chosen. Presses on several taxels keep the single ones of their taxels first.
