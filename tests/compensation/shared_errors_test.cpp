@@ -62,7 +62,7 @@ struct Case {
     EXPECT_TRUE((*make_crosstalk_inversion(of, {0.0}))->invert(readings, found).solved);
     return std::inner_product(weight.begin(), weight.end(), found.begin(), 0.0);
   }
-  [[nodiscard]] double slope(std::vector<double> above, std::vector<double> below) const {
+  [[nodiscard]] double slope(const std::vector<double>& above, const std::vector<double>& below) const {
     return (sum(array, above) - sum(array, below)) / (2.0 * kRatioStep);
   }
 
