@@ -47,7 +47,7 @@ std::string place_name(const StandingLoad& load, const ArrayDescription& array) 
   const std::size_t taxels = taxels_of(load);
   if (taxels == 0) return "no taxel";
   const TaxelBox box = box_of(load.bears, array);
-  const std::string first = taxel_name(box.first_row, box.first_col);
+  std::string first = taxel_name(box.first_row, box.first_col);
   if (taxels == 1) return first;
   const std::string last = taxel_name(box.last_row, box.last_col);
   if (taxels == box.area()) return first + " to " + last;
