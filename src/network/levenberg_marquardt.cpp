@@ -155,11 +155,12 @@ LevenbergMarquardtReport minimise(LeastSquaresProblem& problem, std::vector<doub
 }
 
 double FittedResidual::as_noise() const noexcept {
-  return residual / std::sqrt(1.0 - common_leverage);
+  return std::copysign(std::hypot(common / std::sqrt(1.0 - common_leverage), residual - common), residual);
 }
 
 double FittedResidual::as_new_error() const noexcept {
-  return residual * std::sqrt((1.0 + common_leverage) / (1.0 - common_leverage));
+  const double growth = std::sqrt((1.0 + common_leverage) / (1.0 - common_leverage));
+  return std::copysign(std::hypot(common * growth, residual - common), residual);
 }
 
 std::vector<FittedResidual> fitted_residuals(const ResidualFunction& residual_function, std::size_t data_count,
@@ -172,9 +173,12 @@ std::vector<FittedResidual> fitted_residuals(const ResidualFunction& residual_fu
   Matrix normal = jacobian.transpose() * jacobian;
   normal.diagonal().array() += kDiagonalFloor * std::max(normal.diagonal().maxCoeff(), 1e-300);
   const Eigen::LDLT<Matrix> factors(normal);
-  std::map<std::size_t, Vector> common;  // what a shift of the group does to the parameters
+  std::map<std::size_t, Vector> common;                   // what a shift of the group does to the parameters
+  std::map<std::size_t, std::pair<double, double>> sums;  // residuals of the group, and how many
   for (std::size_t j = 0; j < groups.size(); ++j) {
     common.try_emplace(groups[j], Vector::Zero(n)).first->second += jacobian.row(static_cast<Eigen::Index>(j));
+    sums[groups[j]].first += residuals[static_cast<Eigen::Index>(j)];
+    sums[groups[j]].second += 1.0;
   }
   for (auto& [group, sum] : common) sum = factors.solve(sum).eval();
   std::vector<FittedResidual> fitted;
@@ -182,7 +186,9 @@ std::vector<FittedResidual> fitted_residuals(const ResidualFunction& residual_fu
     const Vector row = jacobian.row(static_cast<Eigen::Index>(j));
     const double leverage = std::clamp(row.dot(factors.solve(row)), 0.0, kMaxLeverage);
     const double of_group = groups.empty() ? leverage : row.dot(common.at(groups[j]));
-    fitted.push_back({residuals[static_cast<Eigen::Index>(j)], leverage, std::clamp(of_group, leverage, kMaxLeverage)});
+    const double residual = residuals[static_cast<Eigen::Index>(j)];
+    const double mean = groups.empty() ? residual : sums.at(groups[j]).first / sums.at(groups[j]).second;
+    fitted.push_back({residual, leverage, std::clamp(of_group, leverage, kMaxLeverage), mean});
   }
   return fitted;
 }

@@ -80,12 +80,14 @@ struct FittedResidual {
   double residual = 0.0;         ///< r
   double leverage = 0.0;         ///< h, 0 ... 0.95, from the linearised problem.
   double common_leverage = 0.0;  ///< H, h ... 0.95: on the estimate, of a shift that the datum's group has in common.
+  double common = 0.0;           ///< m: mean residual of the group, of which a datum alone is one.
 
   /// The residual with its datum left out of the fit: r / (1 - h). Allen 1974 (PRESS).
   [[nodiscard]] double left_out() const noexcept { return residual / (1.0 - leverage); }
 
-  /// r scaled to another variance. The noise of a datum has the variance s^2, and r has (1 - H) s^2. as_noise() scales
-  /// r to s^2. as_new_error() scales it to (1 + H) s^2, the variance of the error on a new datum in the same place.
+  /// r scaled to another variance. What a group has in common has the variance s^2, and m has (1 - H) s^2, as the fit
+  /// follows it. as_noise() scales m to s^2, as_new_error() to (1 + H) s^2, the variance of the error on a new group in
+  /// the same place. The fit hardly follows what data of a group differ by, so r - m stays.
   [[nodiscard]] double as_noise() const noexcept;
   [[nodiscard]] double as_new_error() const noexcept;
 };

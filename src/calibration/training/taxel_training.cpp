@@ -87,6 +87,7 @@ class TaxelProblem {
     double square = 0.0;
     for (std::size_t k = 0; k < points_.size(); ++k) {
       network.fitted[k].residual /= points_[k].weight;
+      network.fitted[k].common /= points_[k].weight;
       square += std::pow(std::expm1(network.log_newtons(points_[k].inputs, {}) - points_[k].log_newtons), 2);
     }
     network.rms_error = std::sqrt(square / static_cast<double>(points_.size()));
