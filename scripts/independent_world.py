@@ -43,6 +43,19 @@ class Rubber:
         return 1.0 / (self.contact_ohm + 1.0 / (self.rest_siemens + self.level * newtons**self.exponent))
 
 
+def node_voltages(siemens, drive_ohm, load_ohm):
+    """Of the rows, then of the columns, over the supply, as one row after another is driven [frames, nodes, rows]."""
+    frames, rows, cols = siemens.shape
+    nodal = numpy.zeros((frames, rows + cols, rows + cols))
+    nodal[:, :rows, rows:] = -siemens
+    nodal[:, rows:, :rows] = -siemens.transpose(0, 2, 1)
+    nodal[:, range(rows), range(rows)] = siemens.sum(axis=2) + 1.0 / drive_ohm
+    nodal[:, range(rows, rows + cols), range(rows, rows + cols)] = siemens.sum(axis=1) + 1.0 / load_ohm
+    driven = numpy.zeros((rows + cols, rows))
+    driven[range(rows), range(rows)] = 1.0 / drive_ohm
+    return numpy.linalg.solve(nodal, driven[None])
+
+
 @dataclass
 class Instrument:
     """Rows driven in turn through their drivers, the others grounded through theirs; columns end in loads."""
@@ -54,15 +67,8 @@ class Instrument:
 
     def ratio(self, siemens):
         """Column voltages over the supply, one scan of the rows a frame [frames, rows, cols]."""
-        frames, rows, cols = siemens.shape
-        nodal = numpy.zeros((frames, rows + cols, rows + cols))
-        nodal[:, :rows, rows:] = -siemens
-        nodal[:, rows:, :rows] = -siemens.transpose(0, 2, 1)
-        nodal[:, range(rows), range(rows)] = siemens.sum(axis=2) + 1.0 / self.drive_ohm
-        nodal[:, range(rows, rows + cols), range(rows, rows + cols)] = siemens.sum(axis=1) + 1.0 / self.load_ohm
-        driven = numpy.zeros((rows + cols, rows))
-        driven[range(rows), range(rows)] = 1.0 / self.drive_ohm
-        return numpy.linalg.solve(nodal, driven[None])[:, rows:, :].transpose(0, 2, 1)
+        rows = siemens.shape[1]
+        return node_voltages(siemens, self.drive_ohm, self.load_ohm)[:, rows:, :].transpose(0, 2, 1)
 
     def counts(self, siemens, random):
         full_scale = 2**self.bits - 1

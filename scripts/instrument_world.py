@@ -19,6 +19,8 @@ import tempfile
 
 import numpy
 
+from independent_world import node_voltages, write_frames
+
 ROWS = COLS = 10
 DRIVE_OHM, LOAD_OHM, CONTACT_OHM = 30.0, 220.0, 60.0
 FULL, VOLTS = 4095, 5.0
@@ -53,15 +55,7 @@ class World:
 
     def volts(self, siemens):
         """Over the supply, by the nodal equations with one row driven after another."""
-        nodes = ROWS + COLS
-        network = numpy.zeros((nodes, nodes))
-        network[:ROWS, ROWS:] = -siemens
-        network[ROWS:, :ROWS] = -siemens.T
-        own = numpy.concatenate([siemens.sum(1) + 1 / self.drive, siemens.sum(0) + 1 / LOAD_OHM])
-        network[range(nodes), range(nodes)] = own
-        sources = numpy.zeros((nodes, ROWS))
-        sources[range(ROWS), range(ROWS)] = 1 / self.drive
-        solved = numpy.linalg.solve(network, sources)
+        solved = node_voltages(siemens[None], self.drive, LOAD_OHM)[0]
         taken = (1 - numpy.diag(solved[:ROWS])) / self.drive
         supply_ohm = SUPPLY_OHM if self.fault == "sag" else 0.0
         return (solved[ROWS:] / (1 + supply_ohm * taken)).T
@@ -160,12 +154,8 @@ def work(world, count=300):
     return numpy.array(fields), frames
 
 
-def write_frames(path, frames):
-    with open(path, "w", encoding="ascii") as file:
-        names = [f"r{k // COLS}c{k % COLS}" for k in range(ROWS * COLS)]
-        file.write(",".join(["time_s"] + names) + "\n")
-        for k, frame in enumerate(frames):
-            file.write(",".join([f"{k * 0.01:.2f}"] + [f"{count:.0f}" for count in frame]) + "\n")
+def as_counts(frames):
+    return numpy.array(frames).astype(int).reshape(-1, ROWS, COLS)
 
 
 def read_table(path):
@@ -186,7 +176,7 @@ def judge(binary, fault, mode, seed, presses, folder):
     frames, loads = calibration(world, presses)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "array.toml").write_text(description(world, mode))
-    write_frames(folder / "frames.csv", frames)
+    write_frames(folder / "frames.csv", as_counts(frames))
     (folder / "loads.csv").write_text("frame,kind,where,value\n" + "\n".join(loads) + "\n")
     code, said = run(binary, "calibrate", "--array", folder / "array.toml", "--frames", folder / "frames.csv",
                      "--loads", folder / "loads.csv", "--out", folder / "model")
@@ -194,7 +184,7 @@ def judge(binary, fault, mode, seed, presses, folder):
     if code != 0:
         return None, said
     fields, touched = work(world)
-    write_frames(folder / "work.csv", touched)
+    write_frames(folder / "work.csv", as_counts(touched))
     code, output = run(binary, "run", "--model", folder / "model", "--in", folder / "work.csv", "--out",
                        folder / "forces.csv", "--sigma", folder / "sigma.csv")
     if code != 0:

@@ -96,8 +96,7 @@ class SharedPipeline {
   /// Once for each tare that was refused or has taken a load.
   void warn_of_tare() {
     const pipeline::Tare& tare = pipeline_.last_tare();
-    const bool has_ended = tare.state == pipeline::Tare::State::taken || tare.state == pipeline::Tare::State::refused;
-    if (!has_ended || std::exchange(told_tare_, tare.number) == tare.number) return;
+    if (!tare.has_ended() || std::exchange(told_tare_, tare.number) == tare.number) return;
     std::string text = pipeline::describe(tare, array_);
     if (tare.state == pipeline::Tare::State::refused) text = "not tared: " + text + ", or tare(force=True)";
     if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();

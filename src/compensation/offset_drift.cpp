@@ -23,7 +23,6 @@ constexpr double kUnloadedPerSecond = 0.01 / 60.0;  // 1 % of the unloaded condu
 constexpr double kSigmasPerSecond = 1.0 / 600.0;    // and a sigma in ten.
 constexpr float kCreepBackS = 10.0F;
 constexpr double kBandOfUnloaded = 0.1;
-constexpr double kRangeOfUnloaded = 0.5;
 constexpr double kBandSigmas = 5.0;
 constexpr double kRangeSigmas = 3.0;
 constexpr double kMostAveraged = 25.0;  // Not all noise is white.
@@ -266,7 +265,7 @@ void OffsetDrift::Implementation::take_block_as_zero() noexcept {
 void OffsetDrift::Implementation::measure_step(std::size_t taxel, double step) noexcept {
   const double noise = noise_of_mean(taxel);
   step_.siemens[taxel] = step > noise ? step : 0.0;
-  step_.is_beyond_drift[taxel] = step > kRangeOfUnloaded * unloaded_siemens(taxel) + noise ? 1 : 0;
+  step_.is_beyond_drift[taxel] = step > kMostDriftOfUnloaded * unloaded_siemens(taxel) + noise ? 1 : 0;
 }
 
 double OffsetDrift::Implementation::unloaded_siemens(std::size_t taxel) const noexcept {
@@ -329,7 +328,7 @@ void OffsetDrift::Implementation::follow(std::size_t taxel, double block_s) noex
     const double largest = block_s * (kUnloadedPerSecond * unloaded + kSigmasPerSecond * block_.sigma[taxel]);
     step = std::clamp(step, -largest, largest);
   }
-  const double most = zero_.tared[taxel] + kRangeOfUnloaded * unloaded +
+  const double most = zero_.tared[taxel] + kMostDriftOfUnloaded * unloaded +
                       kRangeSigmas * (block_.sigma[taxel] + unloaded_.sigma_siemens[taxel]);
   zero_.offset[taxel] = std::min(zero_.offset[taxel] + step, most);
   blocks = std::min(blocks + 1.0F, kSettlingBlocks);

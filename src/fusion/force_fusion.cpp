@@ -154,14 +154,14 @@ ForceFusion::Temperature ForceFusion::temperature(const ConductanceFrame& conduc
     if (uses_temperature()) force.status |= FrameStatus::temperature_unknown;
     return {0.0, calibrated.half_span_celsius / std::numbers::sqrt3, 0.0};  // anywhere in the calibrated span
   }
-  const double offset = *conductance.temperature_celsius - calibrated.centre_celsius;
-  const double clamped = calibrated.offset(*conductance.temperature_celsius);
+  const double celsius = *conductance.temperature_celsius;
+  const double offset = celsius - calibrated.centre_celsius;
+  const double clamped = calibrated.offset(celsius);
   const bool is_known = calibrated.half_span_celsius > 0.0;  // at which temperatures the forces were calibrated
   const double outside = is_known ? std::abs(offset - clamped) : 0.0;
   constexpr double kSensorNoiseCelsius = 1.0;
   if (uses_temperature() && outside > kSensorNoiseCelsius) force.status |= FrameStatus::temperature_clamped;
   const auto& [lowest, highest] = networks_.temperature_gap_celsius;
-  const double celsius = *conductance.temperature_celsius;
   const double in_gap = std::max(std::min(celsius - lowest, highest - celsius), 0.0);
   return {clamped, std::hypot(networks_.temperature_sigma_celsius, outside, in_gap), outside};
 }

@@ -141,6 +141,19 @@ class DampedDescent {
   double damping_;
 };
 
+/// Data that share an error.
+struct ResidualGroup {
+  Vector shift;  // the sum of their rows, then what a shift of them all does to the parameters
+  double sum = 0.0;
+  double size = 0.0;
+
+  void add(const Vector& row, double residual) {
+    shift += row;
+    sum += residual;
+    size += 1.0;
+  }
+};
+
 }  // namespace
 
 LevenbergMarquardtReport minimise(const ResidualFunction& residual_function, std::size_t residual_count,
@@ -173,22 +186,22 @@ std::vector<FittedResidual> fitted_residuals(const ResidualFunction& residual_fu
   Matrix normal = jacobian.transpose() * jacobian;
   normal.diagonal().array() += kDiagonalFloor * std::max(normal.diagonal().maxCoeff(), 1e-300);
   const Eigen::LDLT<Matrix> factors(normal);
-  std::map<std::size_t, Vector> common;                   // what a shift of the group does to the parameters
-  std::map<std::size_t, std::pair<double, double>> sums;  // residuals of the group, and how many
+  std::map<std::size_t, ResidualGroup> common;
   for (std::size_t j = 0; j < groups.size(); ++j) {
-    common.try_emplace(groups[j], Vector::Zero(n)).first->second += jacobian.row(static_cast<Eigen::Index>(j));
-    sums[groups[j]].first += residuals[static_cast<Eigen::Index>(j)];
-    sums[groups[j]].second += 1.0;
+    const auto row = static_cast<Eigen::Index>(j);
+    common.try_emplace(groups[j], ResidualGroup{Vector::Zero(n)}).first->second.add(jacobian.row(row), residuals[row]);
   }
-  for (auto& [group, sum] : common) sum = factors.solve(sum).eval();
+  for (auto& [number, group] : common) group.shift = factors.solve(group.shift).eval();
   std::vector<FittedResidual> fitted;
   for (std::size_t j = 0; j < data_count; ++j) {
     const Vector row = jacobian.row(static_cast<Eigen::Index>(j));
     const double leverage = std::clamp(row.dot(factors.solve(row)), 0.0, kMaxLeverage);
-    const double of_group = groups.empty() ? leverage : row.dot(common.at(groups[j]));
     const double residual = residuals[static_cast<Eigen::Index>(j)];
-    const double mean = groups.empty() ? residual : sums.at(groups[j]).first / sums.at(groups[j]).second;
-    fitted.push_back({residual, leverage, std::clamp(of_group, leverage, kMaxLeverage), mean});
+    FittedResidual& added = fitted.emplace_back(FittedResidual{residual, leverage, leverage, residual});
+    if (groups.empty()) continue;
+    const ResidualGroup& group = common.at(groups[j]);
+    added.common_leverage = std::clamp(row.dot(group.shift), leverage, kMaxLeverage);
+    added.common = group.sum / group.size;
   }
   return fitted;
 }

@@ -8,12 +8,12 @@
 #include <chrono>
 #include <cmath>
 
+#include "dermis/compensation/offset_drift.hpp"
+
 namespace dermis::pipeline {
 namespace {
 
 constexpr std::chrono::seconds kLongEnough{5};
-constexpr double kLeastNewtons = 0.1;
-constexpr double kMostDrift = 0.5;  // of the unloaded conductance: what OffsetDrift follows
 constexpr double kTouchedSigmas = 5.0;
 
 struct TaxelBox {
@@ -74,7 +74,8 @@ void StandingLoadWatch::add(const ConductanceFrame& conductance, const ForceFram
   const double offset_celsius = calibrated.offset(conductance.temperature_celsius.value_or(calibrated.centre_celsius));
   for (std::size_t taxel = 0; taxel < bears_.size(); ++taxel) {
     const double at_rest = std::max(unloaded_.at(taxel, offset_celsius), 0.0);
-    const double most = (1.0 + kMostDrift) * at_rest + kTouchedSigmas * conductance.sigma_siemens[taxel];
+    const double most =
+        (1.0 + compensation::kMostDriftOfUnloaded) * at_rest + kTouchedSigmas * conductance.sigma_siemens[taxel];
     const bool is_loaded = conductance.siemens[taxel] > most && std::isfinite(force.newtons[taxel]);
     if (!is_loaded) bears_[taxel] = 0;
     if (is_loaded) newtons_[taxel] += static_cast<double>(force.newtons[taxel]);
@@ -93,12 +94,12 @@ void StandingLoadWatch::begin_anew() {
 
 std::optional<StandingLoad> StandingLoadWatch::load() const {
   if (frames_ == 0 || last_ - first_ < kLongEnough) return std::nullopt;
-  StandingLoad load{0.0, bears_};
+  double newtons = 0.0;
   for (std::size_t taxel = 0; taxel < bears_.size(); ++taxel) {
-    if (bears_[taxel] != 0) load.newtons += newtons_[taxel] / static_cast<double>(frames_);
+    if (bears_[taxel] != 0) newtons += newtons_[taxel] / static_cast<double>(frames_);
   }
-  if (load.newtons < kLeastNewtons) return std::nullopt;
-  return load;
+  if (newtons < kLeastStandingNewtons) return std::nullopt;
+  return StandingLoad{newtons, bears_};
 }
 
 }  // namespace dermis::pipeline

@@ -8,15 +8,9 @@
 #include <utility>
 
 namespace dermis::pipeline {
-namespace {
-
-constexpr double kLeastNewtons = 0.1;  // as contacts begin
-
-}  // namespace
-
 std::string describe(const Tare& tare, const ArrayDescription& array) {
   if (tare.state == Tare::State::refused) return describe(tare.load, array) + ": take it off and tare again";
-  if (tare.state != Tare::State::taken || tare.load.newtons < kLeastNewtons) return "";
+  if (tare.state != Tare::State::taken || tare.load.newtons < kLeastStandingNewtons) return "";
   return fmt::format("the tare takes {:.2g} N on {} as zero", tare.load.newtons, place_name(tare.load, array));
 }
 
@@ -46,7 +40,7 @@ void TareJudge::end(compensation::OffsetDrift& drift, const ConductanceFrame& co
   press(step, conductance);
   fusion.process(pressed_, scratch);
   tare_.state = Tare::State::taken;
-  const bool is_under_load = take_load(scratch, step, true) >= kLeastNewtons;
+  const bool is_under_load = take_load(scratch, step, true) >= kLeastStandingNewtons;
   if (!is_under_load) take_load(scratch, step, false);
   if (!is_under_load || over == TareOver::any_load) return;
   drift.undo_tare();

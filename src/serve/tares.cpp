@@ -104,9 +104,8 @@ std::vector<std::string> Tares::follow() {
   for (std::size_t k = 0; k < zeros_.size(); ++k) {
     const pipeline::Tare tare = live_.statistics(k).tare;
     const std::lock_guard lock(mutex_);
-    const bool is_over = tare.state == pipeline::Tare::State::taken || tare.state == pipeline::Tare::State::refused;
-    const bool is_news = is_over && tare.number != zeros_[k].seen;
-    zeros_[k].seen = is_over ? tare.number : 0;
+    const bool is_news = tare.has_ended() && tare.number != zeros_[k].seen;
+    zeros_[k].seen = tare.has_ended() ? tare.number : 0;
     if (is_news && !zeros_[k].client.empty()) end(k, tare);
   }
   const std::lock_guard lock(mutex_);

@@ -56,20 +56,22 @@ ForceNetworks power_law() {
   return networks;
 }
 
-/// Two taxels of it.
-ForceNetworks two_power_laws() {
+/// So many taxels of it.
+ForceNetworks equal_power_laws(std::size_t taxels) {
   ForceNetworks networks = power_law();
-  const auto twice = [](auto& values) { values.push_back(values.front()); };
-  twice(networks.unloaded.offset_siemens);
-  twice(networks.unloaded.per_celsius);
-  twice(networks.reference_siemens);
-  twice(networks.heaviest_siemens);
-  twice(networks.heaviest_newtons);
-  twice(networks.gain);
-  twice(networks.dead);
-  twice(networks.offset_sigma_siemens);
-  networks.relative_sigma.assign(2 * kSigmaKnots, 0.01F);
-  networks.parameters = {std::log(10.0F), std::log(10.0F), 0.9F, 0.9F, 0.0F, 0.0F};
+  const auto repeat = [&](auto& values) { values.assign(taxels, values.front()); };
+  repeat(networks.unloaded.offset_siemens);
+  repeat(networks.unloaded.per_celsius);
+  repeat(networks.reference_siemens);
+  repeat(networks.heaviest_siemens);
+  repeat(networks.heaviest_newtons);
+  repeat(networks.gain);
+  repeat(networks.dead);
+  repeat(networks.offset_sigma_siemens);
+  networks.relative_sigma.assign(kSigmaKnots * taxels, 0.01F);
+  std::vector<float> parameters;
+  for (const float value : networks.parameters) parameters.insert(parameters.end(), taxels, value);
+  networks.parameters = std::move(parameters);
   return networks;
 }
 
@@ -343,7 +345,7 @@ TEST(ForceFusion, rejected_frame_has_no_force_at_all) {
   frame.status = FrameStatus::rejected;
   frame.taxels.assign(2, TaxelStatus::invalid);
   frame.time = Nanos(5);
-  const auto force = fuse(two_power_laws(), frame);
+  const auto force = fuse(equal_power_laws(2), frame);
   EXPECT_EQ(force.status, FrameStatus::rejected);
   EXPECT_EQ(force.time, Nanos(5));
   ASSERT_EQ(force.newtons.size(), 2U);
@@ -352,7 +354,7 @@ TEST(ForceFusion, rejected_frame_has_no_force_at_all) {
 }
 
 TEST(ForceFusion, frame_of_another_size_is_rejected) {
-  const auto force = fuse(two_power_laws(), make_frame({1e-3, 1e-3, 1e-3}, 20.0));
+  const auto force = fuse(equal_power_laws(2), make_frame({1e-3, 1e-3, 1e-3}, 20.0));
   EXPECT_TRUE(has(force.status, FrameStatus::rejected));
   ASSERT_EQ(force.newtons.size(), 2U);
   EXPECT_TRUE(std::isnan(force.newtons[0]) && std::isnan(force.newtons[1]));
@@ -360,7 +362,7 @@ TEST(ForceFusion, frame_of_another_size_is_rejected) {
 }
 
 TEST(ForceFusion, conductance_that_is_not_a_number_makes_its_taxel_invalid) {
-  const auto force = fuse(two_power_laws(), make_frame({kNan, 1e-3 + 1e-5}, 20.0));
+  const auto force = fuse(equal_power_laws(2), make_frame({kNan, 1e-3 + 1e-5}, 20.0));
   EXPECT_TRUE(std::isnan(force.newtons[0]));
   EXPECT_NEAR(force.newtons[1], 10.0, 1e-4);
   EXPECT_EQ(force.taxels, (std::vector{TaxelStatus::invalid, TaxelStatus::ok}));
@@ -526,7 +528,7 @@ TEST(ForceFusion, a_temperature_in_the_gap_is_as_uncertain_as_the_nearest_calibr
 
 TEST(ForceNetworks, consistent_networks_are_consistent) {
   EXPECT_TRUE(power_law().is_consistent());
-  EXPECT_TRUE(two_power_laws().is_consistent());
+  EXPECT_TRUE(equal_power_laws(2).is_consistent());
   for (const std::size_t inputs : {2U, 3U}) EXPECT_TRUE(support::random_networks(9, inputs, 4, 1).is_consistent());
 }
 
@@ -633,20 +635,9 @@ TEST(ForceNetworks, every_broken_field_is_found) {
 
 /// As many taxels of one law: F = 10 N (e / 1 mS)^exponent, without an error of its own.
 ForceNetworks equal_laws(std::size_t taxels, float exponent) {
-  ForceNetworks networks = power_law();
-  const auto repeat = [&](auto& values) { values.assign(taxels, values.front()); };
-  repeat(networks.unloaded.offset_siemens);
-  repeat(networks.unloaded.per_celsius);
-  repeat(networks.reference_siemens);
-  repeat(networks.heaviest_siemens);
-  repeat(networks.heaviest_newtons);
-  repeat(networks.gain);
-  repeat(networks.dead);
-  repeat(networks.offset_sigma_siemens);
+  ForceNetworks networks = equal_power_laws(taxels);
   networks.relative_sigma.assign(kSigmaKnots * taxels, 1e-6F);
   networks.sigma_knots_newtons = {1e-6F, 100.0F};
-  networks.parameters.assign(3 * taxels, 0.0F);
-  std::fill_n(networks.parameters.begin(), taxels, std::log(10.0F));
   std::fill_n(networks.parameters.begin() + static_cast<std::ptrdiff_t>(taxels), taxels, exponent);
   return networks;
 }

@@ -23,10 +23,13 @@ struct OffsetDriftOptions {
   bool track = false;  ///< Follow the idle taxels; off: only tare() moves the offsets.
 };
 
+/// More than this share of its unloaded conductance, no drift adds to a taxel.
+inline constexpr double kMostDriftOfUnloaded = 0.5;
+
 /// What a tare found above the zero before it [taxels].
 struct TareStep {
   std::vector<double> siemens;                ///< As far as it is more than noise [S], >= 0.
-  std::vector<std::uint8_t> is_beyond_drift;  ///< 1: more than drift explains, 0.5 u beside the noise.
+  std::vector<std::uint8_t> is_beyond_drift;  ///< 1: more than kMostDriftOfUnloaded u beside the noise.
 };
 
 /// Keeps zero at zero. It subtracts from each conductance the change of the unloaded taxel since calibration, by an

@@ -15,6 +15,9 @@
 
 namespace dermis::pipeline {
 
+/// The least sum over taxels that counts as a load [N], as where contacts begin.
+inline constexpr double kLeastStandingNewtons = 0.1;
+
 /// A load that rests on taxels.
 struct StandingLoad {
   double newtons = 0.0;             ///< In all.
@@ -56,8 +59,7 @@ class StandingLoadWatch {
   std::vector<double> newtons_;      // sum over the frames [taxels]
 };
 
-/// "r2c3 to r5c6 were never released and read 16 N: take off what lies there, or tare if the array was put on like
-/// this"
+/// "r2c3 to r5c6 were never released and read 16 N: take off what lies there, or tare if the array was put on"
 [[nodiscard]] std::string describe_never_released(const StandingLoad& load, const ArrayDescription& array);
 
 }  // namespace dermis::pipeline

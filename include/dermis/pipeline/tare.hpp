@@ -28,10 +28,12 @@ struct Tare {
   State state = State::none;
   std::uint64_t number = 0;  ///< Of the tares that were begun.
   StandingLoad load;
+
+  [[nodiscard]] bool has_ended() const noexcept { return state == State::taken || state == State::refused; }
 };
 
 /// Of a tare that was refused: "r3c4 to r5c6 read 48 N: take it off and tare again"; of one that has taken a load: "the
-/// tare takes what r3c4 reads, 1.2 N, as zero"; else "".
+/// tare takes 1.2 N on r3c4 as zero"; else "".
 [[nodiscard]] std::string describe(const Tare& tare, const ArrayDescription& array);
 
 }  // namespace dermis::pipeline
