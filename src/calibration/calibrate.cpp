@@ -46,6 +46,7 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
                              : "not an input (less than 3 C apart, or missing in many frames)";
   if (!report.memory.empty()) facts["memory"] = report.memory;
   if (!report.remarks.empty()) facts["remarks"] = fmt::format("{}", fmt::join(report.remarks, "; "));
+  if (!report.doubts.empty()) facts[pipeline::kDoubts] = fmt::format("{}", fmt::join(report.doubts, "; "));
   if (!report.circuit.empty()) facts["circuit"] = fmt::format("{}", fmt::join(report.circuit, "; "));
   return facts;
 }
@@ -112,6 +113,8 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   report.frames_rejected = database.frames_rejected;
   report.first_rejection = database.first_rejection;
   report.remarks = database.remarks;
+  report.doubts = database.doubts;
+  report.lacks_proof = database.lacks_proof;
   calibration.model.array = database.array;
   calibration.model.supply = database.supply;
   calibration.model.networks = training->networks;

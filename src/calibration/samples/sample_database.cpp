@@ -293,12 +293,16 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
     known = fit->array;
     if (!fit->statements.empty()) circuit = std::move(*fit);
   }
+  std::vector<std::string> doubts;
+  bool lacks_proof = false;
   double unexplained_share = 0.0;
   if (known.readout.circuit != Circuit::none) {
     Result<InstrumentFit> fit = fit_instrument(known, frames, chosen, settle_time, asks);
     if (fit) {  // what is wrong with the frames is said below, with its place
       known = std::move(fit->array);
       unexplained_share = fit->unexplained;
+      doubts = std::move(fit->doubts);
+      lacks_proof = fit->lacks_proof;
       labels.remarks.insert(labels.remarks.end(), fit->statements.begin(), fit->statements.end());
     }
   }
@@ -310,6 +314,8 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
     database = invert_frames(circuit->array, frames, loads, settle_time, progress);
   }
   if (!database) return database.error();
+  database->doubts = std::move(doubts);
+  database->lacks_proof = lacks_proof;
   database->unexplained_share = unexplained_share;
   database->circuit_fit = std::move(circuit);
   std::move(labels.remarks.begin(), labels.remarks.end(), std::back_inserter(database->remarks));
