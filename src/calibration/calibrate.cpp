@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <optional>
@@ -54,13 +55,14 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
 /// What most of the array is worth, before anything else is said.
 void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) {
   const UncertaintyReport& uncertainty = report.uncertainty;
-  if (!uncertainty.relative_sigma_of_unpressed || 2 * uncertainty.unpressed_taxels < array.taxel_count()) return;
+  const auto& sigma = uncertainty.relative_sigma_of_unpressed;
+  if (!sigma || 2 * uncertainty.unpressed_taxels < array.taxel_count()) return;
   report.remarks.insert(
       report.remarks.begin(),
-      fmt::format("{} of {} taxels were not pressed: their forces are +- {:.0f} %, as taxels differ; five loads of an "
-                  "air bladder over all of them tell each one's gain",
-                  uncertainty.unpressed_taxels, array.taxel_count(),
-                  100.0 * uncertainty.relative_sigma_of_unpressed->back()));
+      fmt::format(
+          "{} of {} taxels were not pressed: their forces are +- {:.0f} % at best, as taxels differ; five loads of an "
+          "air bladder over all of them tell each one's gain",
+          uncertainty.unpressed_taxels, array.taxel_count(), 100.0 * *std::min_element(sigma->begin(), sigma->end())));
 }
 
 }  // namespace
