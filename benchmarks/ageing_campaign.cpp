@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "calibrated_model.hpp"
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/core/random.hpp"
-#include "dermis/fusion/contact.hpp"
 #include "dermis/health/ageing_monitor.hpp"
 #include "dermis/health/weight_check.hpp"
 #include "dermis/pipeline/pipeline.hpp"
@@ -141,7 +141,7 @@ class SheetAtWork {
   simulation::Adc adc_;
   pipeline::Pipeline pipeline_;
   health::AgeingMonitor monitor_;
-  fusion::ContactTracker tracker_;
+  contacts::ContactTracker tracker_;
   std::vector<double> drift_;
   double seconds_ = 0.0;
   ForceFrame force_;

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "calibrated_model.hpp"
-#include "dermis/fusion/contact.hpp"
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "support/pressure_patches.hpp"
 #include "support/reference_array.hpp"
@@ -192,7 +192,7 @@ Errors single_contacts(PressedArray& pressed, double diameter_m, Profile profile
     const std::vector<double> truth = support::taxel_forces(pressed.array, {patch});
     const double newtons = sum_of(truth);
     const ForceFrame& force = pressed.press(truth);
-    fusion::ContactTracker tracker(pressed.array);
+    contacts::ContactTracker tracker(pressed.array);
     tracker.process(force, report);
     if (newtons < 0.3) {
       ++errors.unseen;
@@ -275,7 +275,7 @@ void print_several_contacts(PressedArray& pressed) {
       }
       if (*std::min_element(newtons.begin(), newtons.end()) < 0.3) continue;
       ++frames;
-      fusion::ContactTracker tracker(pressed.array);
+      contacts::ContactTracker tracker(pressed.array);
       tracker.process(pressed.press(all), report);
       if (report.contacts.size() != count) continue;
       ++right;
@@ -311,7 +311,7 @@ void print_elongated_contacts(PressedArray& pressed) {
         const PressurePatch patch{
             random.uniform(0.03, 0.12),  random.uniform(0.03, 0.12),     0.5e-3 * axis, 0.5e-3 * other_axis,
             random.uniform(-1.57, 1.57), random.log_uniform(5.0, 100.0), profile};
-        fusion::ContactTracker tracker(pressed.array);
+        contacts::ContactTracker tracker(pressed.array);
         tracker.process(pressed.press(support::taxel_forces(pressed.array, {patch})), report);
         if (report.contacts.size() != 1) continue;
         const Contact& contact = report.contacts[0];
@@ -394,7 +394,7 @@ void print_scenes(const ArrayDescription& array, const pipeline::Model& model) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     const auto simulator = need(simulation::Simulator::create(array, {}, "contacts", seed));
     pipeline::Pipeline pipeline = need(pipeline::Pipeline::create(model));
-    fusion::ContactTracker tracker(array);
+    contacts::ContactTracker tracker(array);
     SceneJudge with_history;
     SceneJudge without_history;
     RawFrame frame;
@@ -404,7 +404,7 @@ void print_scenes(const ArrayDescription& array, const pipeline::Model& model) {
       pipeline.process(frame, force);
       tracker.process(force, report);
       with_history.judge(simulator->truth().contacts, report);
-      fusion::ContactTracker(array).process(force, report);
+      contacts::ContactTracker(array).process(force, report);
       without_history.judge(simulator->truth().contacts, report);
     }
     print_scene_line(seed, "tracked", with_history);

@@ -8,7 +8,7 @@
 #include <chrono>
 
 #include "dermis/calibration/calibrate.hpp"
-#include "dermis/fusion/contact.hpp"
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/simulation/simulator.hpp"
 #include "frame_times.hpp"
@@ -54,7 +54,7 @@ const Scene& scene() {
 void counts_to_contacts(benchmark::State& state) {
   std::vector<RawFrame> frames = scene().frames;
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(scene().model);
-  fusion::ContactTracker tracker(scene().array);
+  contacts::ContactTracker tracker(scene().array);
   ForceFrame force;
   ContactReport report;
   Nanos time{0};
@@ -72,7 +72,7 @@ void newtons_to_contacts(benchmark::State& state) {
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(scene().model);
   std::vector<ForceFrame> forces(scene().frames.size());
   for (std::size_t k = 0; k < forces.size(); ++k) pipeline->process(scene().frames[k], forces[k]);
-  fusion::ContactTracker tracker(scene().array);
+  contacts::ContactTracker tracker(scene().array);
   ContactReport report;
   Nanos time{0};
   std::size_t contacts = 0;

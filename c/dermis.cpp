@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/core/version.hpp"
-#include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/sources/open_source.hpp"
 
@@ -36,7 +36,7 @@ struct dermis_pipeline {
 
 struct dermis_tracker {
   std::size_t taxels;
-  dermis::fusion::ContactTracker tracker;
+  dermis::contacts::ContactTracker tracker;
   dermis::ContactReport report;
   std::vector<dermis_contact> contacts;
 };
@@ -240,7 +240,7 @@ dermis_status dermis_tracker_create(const dermis_model* model, dermis_tracker** 
   *tracker = nullptr;
   if (model == nullptr) return null_argument("model");
   return guarded([&] {
-    dermis::fusion::ContactTracker created(model->model.array, {}, model->model.strip);
+    dermis::contacts::ContactTracker created(model->model.array, {}, model->model.strip);
     *tracker = new dermis_tracker{
         .taxels = model->model.array.taxel_count(), .tracker = std::move(created), .report = {}, .contacts = {}};
     return DERMIS_OK;

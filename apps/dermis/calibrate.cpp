@@ -234,7 +234,7 @@ Status calibrate(const CalibrateOptions& options) {
       *database, *frames, [&](const std::string& stage, double share) { progress.show(stage, share); });
   if (!calibration) return calibration.error();
   if (!positions->empty()) {
-    Result<fusion::StripTable> strip = calibration::train_strip(calibration->model, *frames, *positions);
+    Result<contacts::StripTable> strip = calibration::train_strip(calibration->model, *frames, *positions);
     if (!strip) return strip.error();
     calibration->model.strip = *std::move(strip);
   }

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bindings.hpp"
-#include "dermis/fusion/contact.hpp"
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "frames.hpp"
 
@@ -39,7 +39,8 @@ PlaneVector vector_of(const py::handle& pair) {
 /// A tracker that refuses the forces of another array.
 class Tracker {
  public:
-  Tracker(const ArrayDescription& array, const fusion::ContactOptions& options, std::optional<fusion::StripTable> strip)
+  Tracker(const ArrayDescription& array, const contacts::ContactOptions& options,
+          std::optional<contacts::StripTable> strip)
       : shape_{array.rows, array.cols}, tracker_(array, options, std::move(strip)) {}
 
   std::vector<Contact> process(const ShapedForce& force) {
@@ -52,11 +53,11 @@ class Tracker {
 
  private:
   FrameShape shape_;
-  fusion::ContactTracker tracker_;
+  contacts::ContactTracker tracker_;
   ContactReport report_;
 };
 
-std::unique_ptr<Tracker> make_tracker(const py::object& of, const fusion::ContactOptions& options) {
+std::unique_ptr<Tracker> make_tracker(const py::object& of, const contacts::ContactOptions& options) {
   raise_where_failed(options.validate());
   if (py::isinstance<pipeline::Model>(of)) {
     const auto& model = of.cast<const pipeline::Model&>();
@@ -89,7 +90,7 @@ Contact contact_from(const py::tuple& state) {
 }  // namespace
 
 void bind_contacts(py::module_& module) {
-  const fusion::ContactOptions defaults;
+  const contacts::ContactOptions defaults;
   py::class_<Contact>(module, "Contact")
       .def_readonly("id", &Contact::id)
       .def_property_readonly("phase", &phase_of)

@@ -109,7 +109,7 @@ class ArrayWorker {
   // Of the worker's thread alone.
   std::unique_ptr<pipeline::Pipeline> pipeline_;
   LiveSettings settings_;
-  fusion::ContactTracker tracker_;
+  contacts::ContactTracker tracker_;
   Nanos last_time_{};
   Frame frame_;
   Counts counts_;

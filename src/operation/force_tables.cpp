@@ -33,7 +33,7 @@ Result<ForceTables> ForceTables::create(const ForceTablePaths& paths, const pipe
   if (paths.contacts.empty()) return tables;
   Result<files::ContactsCsvWriter> contacts = files::ContactsCsvWriter::create(paths.contacts);
   if (!contacts) return contacts.error();
-  tables.contacts_.emplace(ContactTable{fusion::ContactTracker(array, {}, model.strip), *std::move(contacts)});
+  tables.contacts_.emplace(ContactTable{contacts::ContactTracker(array, {}, model.strip), *std::move(contacts)});
   return tables;
 }
 

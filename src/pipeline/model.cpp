@@ -164,7 +164,7 @@ LookUpTables get_baseline(const SafetensorsFile& file, std::size_t index, std::s
   return tables;
 }
 
-void put_strip(SafetensorsFile& file, const fusion::StripTable& strip) {
+void put_strip(SafetensorsFile& file, const contacts::StripTable& strip) {
   const std::size_t knots = strip.centre_m.size();
   file.metadata["strip.knots"] = std::to_string(knots);
   put_tensor(file, "strip.centre_m", {knots}, strip.centre_m);
@@ -172,9 +172,9 @@ void put_strip(SafetensorsFile& file, const fusion::StripTable& strip) {
   put_tensor<double>(file, "strip.sigma_m", {1}, {strip.sigma_m});
 }
 
-fusion::StripTable get_strip(const SafetensorsFile& file, TensorReader& reader) {
+contacts::StripTable get_strip(const SafetensorsFile& file, TensorReader& reader) {
   const std::size_t knots = metadata_count(file, "strip.knots");
-  fusion::StripTable strip;
+  contacts::StripTable strip;
   reader.get("strip.centre_m", {knots}, strip.centre_m);
   reader.get("strip.position_m", {knots}, strip.position_m);
   std::vector<double> sigma;

@@ -8,60 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "dermis/core/quantile.hpp"
+#include "dermis/fusion/typical_siemens.hpp"
 #include "pipeline/tare_judge.hpp"
 
 namespace dermis::pipeline {
 
 namespace {
-
-/// Conductance of every taxel under a force that is typical for the array [S], > 0; of a dead taxel the median of the
-/// others, and 1 where the networks tell nothing.
-std::vector<double> typical_siemens(const fusion::ForceNetworks& networks) {
-  const std::size_t taxels = networks.taxel_count();
-  fusion::ForceFusion fusion(networks);
-  ConductanceFrame conductance;
-  conductance.temperature_celsius = networks.unloaded.temperature.centre_celsius;
-  conductance.siemens.resize(taxels);
-  conductance.sigma_siemens.assign(taxels, 0.0);
-  conductance.taxels.assign(taxels, TaxelStatus::ok);
-  ForceFrame force;
-  const auto press = [&](const std::vector<double>& share) {
-    for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-      conductance.siemens[taxel] = networks.unloaded.offset_siemens[taxel] +
-                                   share[taxel] * static_cast<double>(networks.reference_siemens[taxel]);
-    }
-    fusion.process(conductance, force);
-  };
-
-  press(std::vector<double>(taxels, 1.0));
-  std::vector<float> newtons;
-  std::copy_if(force.newtons.begin(), force.newtons.end(), std::back_inserter(newtons),
-               [](float value) { return std::isfinite(value); });
-  if (newtons.empty()) return std::vector<double>(taxels, 1.0);
-  const float typical_newtons = upper_median(std::move(newtons));
-
-  std::vector<double> share(taxels, 1.0);
-  for (double factor = 8.0; factor > 1.0 + 1e-6; factor = std::sqrt(factor)) {
-    press(share);
-    for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-      share[taxel] *= force.newtons[taxel] < typical_newtons ? factor : 1.0 / factor;
-    }
-  }
-  press(share);
-  std::vector<double>& siemens = conductance.siemens;
-  const auto tells = [&](std::size_t taxel) { return std::isfinite(force.newtons[taxel]) && siemens[taxel] > 0.0; };
-  std::vector<double> told;
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    if (tells(taxel)) told.push_back(siemens[taxel]);
-  }
-  if (told.empty()) return std::vector<double>(taxels, 1.0);
-  const double median = upper_median(std::move(told));
-  for (std::size_t taxel = 0; taxel < taxels; ++taxel) {
-    if (!tells(taxel)) siemens[taxel] = median;
-  }
-  return siemens;
-}
 
 compensation::UnloadedConductance unloaded(const fusion::ForceNetworks& networks) {
   return {networks.unloaded, {networks.offset_sigma_siemens.begin(), networks.offset_sigma_siemens.end()}};
@@ -76,7 +28,7 @@ Result<Pipeline> Pipeline::create(const Model& model) {
   if (model.networks.taxel_count() != model.array.taxel_count() || !is_consistent) {
     return bad_input("the model's networks do not fit its array, or hold values out of range");
   }
-  const std::vector<double> typical = typical_siemens(model.networks);
+  const std::vector<double> typical = fusion::typical_siemens(model.networks);
   Result<compensation::Compensator> compensator =
       compensation::Compensator::create(model.array, {typical, model.networks.unloaded.offset_siemens});
   if (!compensator) return compensator.error();

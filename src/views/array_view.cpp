@@ -48,7 +48,7 @@ Result<std::unique_ptr<ArrayView>> ArrayView::open(const std::string& from, cons
 
 void ArrayView::use(operation::ModelAtWork work) {
   work_.emplace(std::move(work));
-  tracker_.emplace(work_->model.array, fusion::ContactOptions{}, work_->model.strip);
+  tracker_.emplace(work_->model.array, contacts::ContactOptions{}, work_->model.strip);
   troubles_.emplace(work_->model.array, from_);
 }
 

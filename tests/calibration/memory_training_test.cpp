@@ -15,7 +15,7 @@
 #include "calibration/simulated.hpp"
 #include "dermis/calibration/calibrate.hpp"
 #include "dermis/calibration/evaluation.hpp"
-#include "dermis/fusion/contact.hpp"
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
@@ -167,7 +167,7 @@ Tracked tracked(const pipeline::Model& model, const Recording& recording) {
     }
   }
   Tracked result;
-  fusion::ContactTracker tracker(model.array);
+  contacts::ContactTracker tracker(model.array);
   ContactReport report;
   ForceFrame force;
   ForceFrame plain;

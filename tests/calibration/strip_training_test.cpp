@@ -12,8 +12,8 @@
 
 #include "calibration/tables/monotone_knots.hpp"
 #include "dermis/calibration/calibrate.hpp"
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/core/random.hpp"
-#include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
@@ -96,7 +96,7 @@ struct Errors {
 
 Errors errors_of(const pipeline::Model& model, const Touches& touches) {
   auto pipeline = pipeline::Pipeline::create(model);
-  fusion::ContactTracker tracker(model.array, {}, model.strip);
+  contacts::ContactTracker tracker(model.array, {}, model.strip);
   ForceFrame force;
   ContactReport report;
   Errors errors;

@@ -474,7 +474,7 @@ TEST(Model, is_not_written_from_a_model_that_could_not_be_read_back) {
 TEST(Model, keeps_the_learned_positions_of_a_strip) {
   const TemporaryFolder folder;
   Model model = support::hand_made_model(1, 3);
-  model.strip = fusion::StripTable{{0.001, 0.012, 0.019}, {0.0, 1.0 / 300.0, 0.02}, 1.0 / 7000.0};
+  model.strip = contacts::StripTable{{0.001, 0.012, 0.019}, {0.0, 1.0 / 300.0, 0.02}, 1.0 / 7000.0};
   ASSERT_TRUE(write_model(folder.file("m.st"), model));
   const Result<Model> read = read_model(folder.file("m.st"));
   ASSERT_TRUE(read) << read.error().message;

@@ -158,7 +158,7 @@ class Defaults(unittest.TestCase):
         self.assertEqual(found, defaults)
 
     def test_of_contacts(self):
-        self.expect(python_defaults("__init__", "ContactTracker"), "fusion/contact.hpp", "ContactOptions")
+        self.expect(python_defaults("__init__", "ContactTracker"), "contacts/contact_tracker.hpp", "ContactOptions")
 
     def test_of_a_server(self):
         found = {name: value for name, value in python_defaults("serve").items() if value is not None}

@@ -65,7 +65,7 @@ class Parameters : public testing::Test {
 };
 
 TEST_F(Parameters, begin_with_the_defaults) {
-  const fusion::ContactOptions contacts;
+  const contacts::ContactOptions contacts;
   const std::map<std::string, ParameterValue> expected = {{"/contacts/onset_sigma", contacts.onset_sigma},
                                                           {"/contacts/onset_force_n", contacts.onset_force_n},
                                                           {"/contacts/release_share", contacts.release_share},

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/core/random.hpp"
-#include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 #include "dermis/simulation/adc.hpp"
 #include "dermis/simulation/readout_circuit.hpp"
@@ -103,7 +103,7 @@ class Sheet {
   simulation::ReadoutCircuit circuit_;
   simulation::Adc adc_;
   pipeline::Pipeline pipeline_;
-  fusion::ContactTracker contacts_;
+  contacts::ContactTracker contacts_;
   ThreatMonitor monitor_;
   Random random_;
   std::vector<double> siemens_;

@@ -4,10 +4,10 @@
 
 #include <span>
 
+#include "dermis/contacts/strip_table.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/loads.hpp"
 #include "dermis/core/result.hpp"
-#include "dermis/fusion/strip_table.hpp"
 #include "dermis/pipeline/model.hpp"
 
 namespace dermis::calibration {
@@ -15,7 +15,7 @@ namespace dermis::calibration {
 /// Learns the position of touches on a strip from touches at known positions. It is an isotonic regression of the
 /// position on the centre of mass of the signals that `model` gives. `positions` by rising frame. Errors: an array that
 /// is no strip, fewer than 16 positions with a contact, positions that do not rise with the centre of mass.
-[[nodiscard]] Result<fusion::StripTable> train_strip(const pipeline::Model& model, std::span<const RawFrame> frames,
-                                                     std::span<const TouchPosition> positions);
+[[nodiscard]] Result<contacts::StripTable> train_strip(const pipeline::Model& model, std::span<const RawFrame> frames,
+                                                       std::span<const TouchPosition> positions);
 
 }  // namespace dermis::calibration

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frames.hpp"
-#include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/model.hpp"
 
 namespace dermis::health {
@@ -72,7 +72,7 @@ class WeightCheck {
   void close_piece(Press& press) const;
   static void count(const Press& press, WeightFinding& finding);
 
-  fusion::ContactTracker tracker_;
+  contacts::ContactTracker tracker_;
   ContactReport report_;
   std::optional<Press> press_;  ///< That lasts.
   WeightFinding finding_;       ///< Of the presses that are over.

@@ -13,12 +13,12 @@
 
 #include "dermis/compensation/line_faults.hpp"
 #include "dermis/compensation/offset_drift.hpp"
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/core/surface.hpp"
-#include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/pipeline/standing_load.hpp"
 #include "dermis/pipeline/tare.hpp"
@@ -63,7 +63,7 @@ struct ArrayStatistics {
 
 /// How all arrays of a suit work; may be changed meanwhile.
 struct LiveSettings {
-  fusion::ContactOptions contacts{};
+  contacts::ContactOptions contacts{};
   compensation::OffsetDriftOptions drift{.track = true};
 
   /// Names the first field that is out of its range, as "contacts.onset_sigma: ...".

@@ -5,13 +5,13 @@
 #include <optional>
 #include <string>
 
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/files/contacts_csv.hpp"
 #include "dermis/files/forces_csv.hpp"
 #include "dermis/files/totals_csv.hpp"
-#include "dermis/fusion/contact.hpp"
 #include "dermis/pipeline/model.hpp"
 
 namespace dermis::operation {
@@ -39,7 +39,7 @@ class ForceTables {
     [[nodiscard]] Status write(const ForceFrame& force);
     [[nodiscard]] Status commit() { return table.commit(); }
 
-    fusion::ContactTracker tracker;
+    contacts::ContactTracker tracker;
     files::ContactsCsvWriter table;
     ContactReport report{};
   };

@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
-#include "dermis/fusion/contact.hpp"
 #include "dermis/operation/operation.hpp"
 #include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/threats/threat_limits.hpp"
@@ -72,7 +72,7 @@ class ThreatWatch {
   const threats::ThreatLimits& limits_;
   std::atomic<bool>& stop_;
   Log log_;
-  fusion::ContactTracker contacts_;
+  contacts::ContactTracker contacts_;
   pipeline::FrameTroubles troubles_;
   RawFrame raw_;
   ForceFrame force_;

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "dermis/contacts/strip_table.hpp"
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/result.hpp"
 #include "dermis/files/safetensors.hpp"
 #include "dermis/fusion/force_fusion.hpp"
 #include "dermis/fusion/look_up.hpp"
 #include "dermis/fusion/material_memory.hpp"
-#include "dermis/fusion/strip_table.hpp"
 #include "dermis/preprocessing/supply_bounds.hpp"
 
 namespace dermis::pipeline {
@@ -24,8 +24,8 @@ struct Model {
   ArrayDescription array;
   fusion::ForceNetworks networks;
   std::vector<fusion::LookUpTables> baselines;
-  std::optional<fusion::MemoryLaw> memory{};  ///< Of the material, where the calibration learned one.
-  std::optional<fusion::StripTable> strip{};  ///< Learned positions on a strip, where the calibration had some.
+  std::optional<fusion::MemoryLaw> memory{};    ///< Of the material, where the calibration learned one.
+  std::optional<contacts::StripTable> strip{};  ///< Learned positions on a strip, where the calibration had some.
   /// Supplies of the frames of the calibration; empty: they had none, or the model is of a time that did not keep them.
   std::optional<preprocessing::SupplyRange> supply{};
   std::map<std::string, std::string> provenance;  ///< Hashes, counts and statistics of the calibration, as text.

@@ -68,7 +68,7 @@ class ThreatMonitor {
   ThreatMonitor& operator=(ThreatMonitor&&) noexcept;
   ~ThreatMonitor();
 
-  /// `report` is what fusion::ContactTracker made of the frame. A frame that is rejected changes nothing. Whether a
+  /// `report` is what contacts::ContactTracker made of the frame. A frame that is rejected changes nothing. Whether a
   /// threat began or ended. Never allocates.
   bool process(const ForceFrame& force, const ContactReport& report) noexcept;
 

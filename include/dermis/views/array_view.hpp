@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/core/contacts.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
-#include "dermis/fusion/contact.hpp"
 #include "dermis/operation/operation.hpp"
 #include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/sources/open_source.hpp"
@@ -62,7 +62,7 @@ class ArrayView {
 
   std::unique_ptr<FrameSource> source_;
   std::optional<operation::ModelAtWork> work_;
-  std::optional<fusion::ContactTracker> tracker_;
+  std::optional<contacts::ContactTracker> tracker_;
   std::optional<pipeline::FrameTroubles> troubles_;  ///< Of the forces.
   std::string from_;
   std::string name_;

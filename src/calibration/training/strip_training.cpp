@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "calibration/tables/monotone_knots.hpp"
-#include "dermis/fusion/contact.hpp"
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 
 namespace dermis::calibration {
@@ -37,7 +37,7 @@ std::vector<KnownTouch> find_touches(const pipeline::Model& model, pipeline::Pip
                                      std::span<const RawFrame> frames, std::span<const TouchPosition> positions) {
   const bool is_row = model.array.rows == 1;
   const double length = length_of(model.array);
-  fusion::ContactTracker tracker(model.array, {}, fusion::StripTable{{0.0, length}, {0.0, length}, 0.0});
+  contacts::ContactTracker tracker(model.array, {}, contacts::StripTable{{0.0, length}, {0.0, length}, 0.0});
   ForceFrame force;
   ContactReport report;
   std::vector<KnownTouch> touches;
@@ -78,11 +78,11 @@ void extend(std::vector<Knot>& knots, const std::vector<KnownTouch>& touches) {
 }
 
 /// What the touches scatter about the table beyond the noise of their centres of mass.
-double scatter_m(const fusion::StripTable& table, const std::vector<KnownTouch>& touches) {
+double scatter_m(const contacts::StripTable& table, const std::vector<KnownTouch>& touches) {
   double square = 0.0;
   double noise = 0.0;
   for (const KnownTouch& touch : touches) {
-    const fusion::StripTable::Place place = table.at(touch.centre_m);
+    const contacts::StripTable::Place place = table.at(touch.centre_m);
     square += std::pow(touch.position_m - place.position_m, 2);
     noise += std::pow(place.slope * touch.sigma_centre_m, 2);
   }
@@ -93,8 +93,8 @@ double scatter_m(const fusion::StripTable& table, const std::vector<KnownTouch>&
 
 }  // namespace
 
-Result<fusion::StripTable> train_strip(const pipeline::Model& model, std::span<const RawFrame> frames,
-                                       std::span<const TouchPosition> positions) {
+Result<contacts::StripTable> train_strip(const pipeline::Model& model, std::span<const RawFrame> frames,
+                                         std::span<const TouchPosition> positions) {
   if ((model.array.rows > 1) == (model.array.cols > 1)) {
     return bad_input("positions are learned on arrays of one row or one column of several taxels");
   }
@@ -114,7 +114,7 @@ Result<fusion::StripTable> train_strip(const pipeline::Model& model, std::span<c
     return bad_input("positions do not rise with the centre of mass: they are counted from the first taxel on");
   }
   extend(knots, touches);
-  fusion::StripTable table;
+  contacts::StripTable table;
   for (const Knot& knot : knots) {
     table.centre_m.push_back(knot.x);
     table.position_m.push_back(knot.y);

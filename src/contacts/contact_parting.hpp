@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "contacts/contact_gauge.hpp"
+#include "contacts/taxel_plane.hpp"
+#include "dermis/core/frames.hpp"
+
+namespace dermis::contacts {
+
+/// What a taxel must show that is not of the contact measured.
+struct Evidence {
+  double onset_sigma = 0.0;  ///< Standard deviations of its force, material included, that it must stand out by.
+  double share = 1.0;        ///< Of all that is asked of it.
+};
+
+/// Finds a weak contact beside a strong one, which makes no valley between them.
+class ContactParting {
+ public:
+  /// `plane` is to outlive it.
+  explicit ContactParting(const TaxelPlane& plane);
+
+  /// Of the taxels of `measured`, those that its patch does not explain and that hang together are put last, both parts
+  /// by falling force; returns how many stay. `held`: the taxels of contacts that are there, one of which must be among
+  /// those put last; where empty, the strongest that is unexplained.
+  [[nodiscard]] std::size_t part(const ForceFrame& force, std::span<std::uint32_t> taxels, const Measurement& measured,
+                                 Evidence evidence, std::span<const std::uint32_t> held);
+
+  /// Whether `taxel` stands out of the patch of `measured`, which there is. `scatter`: what a taxel may differ by from
+  /// the patch beside its noise [N].
+  [[nodiscard]] bool stands_out(const ForceFrame& force, std::uint32_t taxel, const Measurement& measured,
+                                Evidence evidence, float scatter) const;
+
+ private:
+  void keep_what_hangs_together(std::vector<std::uint32_t>& taxels) const;
+
+  const TaxelPlane& plane_;
+  std::vector<std::uint32_t> unexplained_;
+  std::vector<std::uint32_t> apart_;
+};
+
+}  // namespace dermis::contacts
