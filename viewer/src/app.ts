@@ -66,7 +66,7 @@ export class App implements ViewContext {
   }
 
   begin(): void {
-    document.body.append(this.#bar.element, makeTokenForm(this.stream), ...makeArraySetup(this.stream, this.suit), this.#notice, makeThreatBanner(this.live.threats, this.stream), makeTareBanner(this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds, this.#take.element);
+    document.body.append(this.#bar.element, makeTokenForm(this.stream), ...makeArraySetup(this.stream, this.suit, this.theme), this.#notice, makeThreatBanner(this.live.threats, this.stream), makeTareBanner(this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds, this.#take.element);
     window.addEventListener("hashchange", () => this.#route());
     window.addEventListener("keydown", (event) => this.#key(event));
     this.suit.selected.follow((array) => array !== undefined && this.#shown !== undefined && this.open(this.#shown.name));
