@@ -31,6 +31,11 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
   const pitch = element("input", { id: "array-pitch", class: "field", type: "number", min: 0.05, max: 1000, step: "any", value: 10, required: true });
   const bits = element("input", { id: "array-bits", class: "field", type: "number", min: 1, max: 24, step: 1, value: 12, required: true });
 
+  const tell = (words: string): void => {
+    setText(problem, words);
+    setHidden(problem, false);
+  };
+
   /** Rows and columns are those of the array, which may not be those that are sent. */
   let isSwapped = false;
   const swapLines = (transpose: boolean): void => {
@@ -50,9 +55,10 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
   const watch = (): void => {
     picture.forget();
     const shape = sentShape();
-    if (shape === undefined) feed.stop();
+    if (shape === undefined || !stream.services.value.has("/array/watch")) feed.stop();
     else void feed.watch(shape);
   };
+  stream.services.follow(watch); // they come after the description
   let typing = 0;
   for (const input of [rows, cols]) {
     input.addEventListener("input", () => {
@@ -63,19 +69,18 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     });
   }
   feed.latest.follow((touch) => {
-    if (touch !== undefined && feed.shape !== undefined) picture.show(touch, feed.shape, corners.way);
+    if (touch === undefined || feed.shape === undefined) return;
+    picture.show(touch, feed.shape, corners.way);
+    if (touch.problem !== "") tell(touch.problem);
   });
 
   /** Of a service; what it answers with an error is shown, and the question stays. */
-  async function ask(service: string, request: object): Promise<boolean> {
+  async function ask(service: string, request: object): Promise<void> {
     setHidden(problem, true);
     try {
       await stream.callService(service, request);
-      return true;
     } catch (error) {
-      setText(problem, error instanceof Error ? error.message : String(error));
-      setHidden(problem, false);
-      return false;
+      tell(error instanceof Error ? error.message : String(error));
     }
   }
   const use = async (file: string): Promise<void> => {
