@@ -3,7 +3,7 @@
 import { DisplayStatistics } from "./display_statistics";
 import { element, setHidden, setText } from "./dom";
 import { LiveData } from "./live/live_data";
-import type { HealthStatus } from "./messages/statistics";
+import { DiagnosticLevel, type HealthStatus } from "./messages/statistics";
 import { makeArraySetup } from "./setup/array_setup";
 import { Signal } from "./signal";
 import { Stream } from "./stream/stream";
@@ -60,7 +60,7 @@ export class App implements ViewContext {
   /** Somebody may have calibrated an array, here or on another page. */
   #refreshWhereCalibrated(health: readonly HealthStatus[]): void {
     const isNews = this.suit.description.value.arrays.some(
-      ({ name, calibrated }) => !calibrated && health.some((status) => status.name === name && !status.message.startsWith("not calibrated")),
+      ({ name, calibrated }) => !calibrated && health.some(({ name: of, level, message }) => of === name && level <= DiagnosticLevel.warn && !message.startsWith("not calibrated")),
     );
     if (isNews) void this.stream.refresh();
   }
