@@ -160,6 +160,7 @@ class DeviceSource final : public FrameSource {
   }
 
   void decode(std::span<const std::uint8_t> bytes, const Stamp& stamp) {
+    if (options_.received) options_.received(bytes);
     clock_.add(bytes.size(), stamp);
     decoder_->push(bytes);
     undecoded_.add(bytes, stamp.steady);

@@ -33,6 +33,7 @@ class RowDecoder : public Decoder {
     return layout_ ? layout_->shape : learner_.shape();
   }
   [[nodiscard]] std::string advice() const override;
+  [[nodiscard]] std::optional<FrameShape> likely_shape() const override { return learner_.likely_shape(); }
   [[nodiscard]] const DecoderCounts& counts() const noexcept override { return counts_; }
 
  private:

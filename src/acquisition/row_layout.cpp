@@ -51,11 +51,16 @@ double mean_difference(std::span<const float> values, std::size_t width, std::si
   return sum / static_cast<double>(values.size() - lag * width);
 }
 
-/// "rows=12&cols=10": of all shapes of so many taxels the one nearest to a square.
-std::string example_shape(std::size_t taxels) {
+/// Of all shapes of so many taxels the one nearest to a square, such as 12x10.
+FrameShape near_square(std::size_t taxels) {
   auto cols = static_cast<std::size_t>(std::sqrt(static_cast<double>(taxels)));
   while (cols > 1 && taxels % cols != 0) --cols;
-  return "rows=" + std::to_string(taxels / cols) + "&cols=" + std::to_string(cols);
+  return {taxels / cols, cols};
+}
+
+/// "rows=12&cols=10"
+std::string given_as(const FrameShape& shape) {
+  return "rows=" + std::to_string(shape.rows) + "&cols=" + std::to_string(shape.cols);
 }
 
 }  // namespace
@@ -220,18 +225,33 @@ void RowLayoutLearner::forget() noexcept {
   values_.clear();
 }
 
+bool RowLayoutLearner::Block::has_clock() const noexcept {
+  return is_clock && last > first && cols > 1;
+}
+
+std::size_t RowLayoutLearner::Block::readings() const noexcept {
+  return cols - (has_clock() ? 1 : 0);
+}
+
+std::optional<FrameShape> RowLayoutLearner::likely_shape() const {
+  const Block& block = unread_block();
+  const bool may_be_frame = !layout_ && !shape_ && block_before_.rows <= 1 && block.rows > 0 && block.readings() > 1;
+  return may_be_frame ? std::optional(near_square(block.readings())) : std::nullopt;
+}
+
 std::string RowLayoutLearner::advice() const {
-  const Block& block = block_.rows > 0 ? block_ : block_before_;
+  const Block& block = unread_block();
   if (layout_ || block.rows == 0) return {};
-  const bool has_clock = block.is_clock && block.last > block.first && block.cols > 1;
-  const std::size_t readings = block.cols - (has_clock ? 1 : 0);
+  const bool has_clock = block.has_clock();
+  const std::size_t readings = block.readings();
   const std::string what = (has_clock ? "a time and " : "") + std::to_string(readings) + " readings";
   if (shape_ && readings == shape_->cols) {
     return block.rows > shape_->rows ? unseparated_rows(readings) : std::string();
   }
   if (shape_) return "a line has " + what + ": check rows and cols";
-  if (block_before_.rows > 1 || readings < 2) return {};
-  const std::string given = "give rows and cols, as " + example_shape(readings);
+  const std::optional<FrameShape> likely = likely_shape();
+  if (!likely) return {};
+  const std::string given = "give rows and cols, as " + given_as(*likely);
   if (syntax_.single_lines == SingleLines::only) return "a line has " + what + ": " + given;
   return "a line has " + what + ". If it is a frame, " + given +
          "; if it is a row, print an empty line between frames, or whole frames in one line";

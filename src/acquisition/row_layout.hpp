@@ -40,6 +40,8 @@ class RowLayoutLearner {
   [[nodiscard]] const std::optional<FrameShape>& shape() const noexcept { return shape_; }
   /// What the lines so far lack, and the mend; empty where nothing can be said.
   [[nodiscard]] std::string advice() const;
+  /// Of lines that may be frames, the size nearest to a square; empty where that is not so, and where it is known.
+  [[nodiscard]] std::optional<FrameShape> likely_shape() const;
 
  private:
   /// Lines between two separators, as far as they are alike.
@@ -51,6 +53,8 @@ class RowLayoutLearner {
     double first = 0.0;    // number of its first row
     double last = 0.0;     // and of its last row
 
+    [[nodiscard]] bool has_clock() const noexcept;
+    [[nodiscard]] std::size_t readings() const noexcept;  // in a row
     [[nodiscard]] bool is_like(const Block& other) const noexcept {
       return rows == other.rows && cols == other.cols && even == other.even;
     }
@@ -77,6 +81,7 @@ class RowLayoutLearner {
   void learn_single_line(const Run& run, Sign sign);
   void keep_values(std::span<const std::uint8_t> line, std::size_t values);
   [[nodiscard]] bool lines_are_rows();
+  [[nodiscard]] const Block& unread_block() const noexcept { return block_.rows > 0 ? block_ : block_before_; }
   [[nodiscard]] bool all_rise() const noexcept { return alike_lines_ > 1 && rising_lines_ == alike_lines_; }
   [[nodiscard]] Run run() const noexcept { return {block_.cols, alike_lines_, all_rise()}; }
   [[nodiscard]] std::optional<FrameShape> shape_of_line(std::size_t values) const;

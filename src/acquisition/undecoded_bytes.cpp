@@ -7,6 +7,8 @@
 #include <memory>
 #include <string>
 
+#include "acquisition/look_of_bytes.hpp"
+#include "dermis/acquisition/device_source.hpp"
 #include "dermis/acquisition/protocol.hpp"
 
 namespace dermis::acquisition {
@@ -18,7 +20,7 @@ constexpr std::size_t kUnknownFrameBytes = 4096;
 constexpr std::size_t kMostBytesPerTaxel = 6;  // "65535 "
 
 /// What the decoder of that name says of the bytes.
-std::string advice_of(const std::string& name, ProtocolOptions options, std::span<const std::uint8_t> bytes) {
+UndecodedReason advice_of(const std::string& name, ProtocolOptions options, std::span<const std::uint8_t> bytes) {
   options.name = name;
   const Result<std::unique_ptr<Decoder>> decoder = make_decoder(options);
   if (!decoder) return {};
@@ -28,7 +30,7 @@ std::string advice_of(const std::string& name, ProtocolOptions options, std::spa
     while ((*decoder)->next(frame)) {
     }
   }
-  return (*decoder)->advice();
+  return {(*decoder)->advice(), (*decoder)->likely_shape()};
 }
 
 }  // namespace
@@ -51,23 +53,29 @@ bool UndecodedBytes::are_too_many(const std::optional<FrameShape>& shape, Nanos 
 }
 
 Error UndecodedBytes::error(const SourceUri& uri) const {
+  return bad_input(why_undecoded(uri, first_).why);
+}
+
+UndecodedReason why_undecoded(const SourceUri& uri, std::span<const std::uint8_t> bytes) {
   const ProtocolOptions& protocol = uri.protocol;
   const bool is_auto = protocol.name == "auto";
-  const std::string looks_like = detect_protocol(first_);
-  const std::string advice = is_auto || looks_like == protocol.name ? advice_of(looks_like, protocol, first_) : "";
+  const std::string looks_like = detect_protocol(bytes);
   const std::string place = "'" + uri.text + "': ";
-  if (!advice.empty()) return bad_input(place + "these bytes are " + looks_like + ", but " + advice);
+  if (is_auto || looks_like == protocol.name) {
+    const UndecodedReason advice = advice_of(looks_like, protocol, bytes);
+    if (!advice.why.empty())
+      return {place + "these bytes are " + looks_like + ", but " + advice.why, advice.likely_shape};
+  }
 
   std::string text = place + "these bytes are " + (is_auto ? "of no known protocol" : "not " + protocol.name);
   if (protocol.shape) text += " " + shape_text(*protocol.shape);
-  if (looks_like.empty()) {
+  if (is_auto || looks_like.empty()) {
     const bool is_serial = uri.transport == Transport::serial;
-    return bad_input(text + ": check protocol=" + (is_serial ? " and baud=" + std::to_string(uri.baud) : ""));
+    text += std::string(": check protocol=") + (is_serial ? " and baud=" + std::to_string(uri.baud) : "");
+    return {text + ". " + look_of_bytes(bytes)};
   }
-  if (looks_like != protocol.name) {
-    return bad_input(text + "; they look like " + looks_like + ": protocol=" + looks_like);
-  }
-  return bad_input(text + "; they look like " + looks_like + " of another size: check rows and cols");
+  if (looks_like != protocol.name) return {text + "; they look like " + looks_like + ": protocol=" + looks_like};
+  return {text + "; they look like " + looks_like + " of another size: check rows and cols"};
 }
 
 std::string shape_text(const FrameShape& shape) {

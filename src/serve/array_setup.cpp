@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/serve/array_setup.hpp"
 
-#include <algorithm>
+#include <fmt/core.h>
+
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -11,12 +13,14 @@
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
-#include "dermis/acquisition/serial_ports.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "serve/array_request.hpp"
 #include "serve/first_look.hpp"
 #include "serve/json_request.hpp"
+#include "serve/known_arrays.hpp"
+#include "serve/source_choice.hpp"
 #include "serve/touch_watch.hpp"
 
 namespace dermis::serve {
@@ -27,45 +31,50 @@ using sources::SourceName;
 
 constexpr std::chrono::milliseconds kPeriod{50};
 constexpr std::chrono::milliseconds kToAnswer{300};  // until a client has what it asked for
-constexpr std::size_t kMostPath = 255;
+constexpr std::size_t kMostFileName = 255;
+constexpr const char* kNoSource = "choose where the array is first";
+
+/// As two digits a byte.
+std::string hex_of(const std::vector<std::uint8_t>& bytes) {
+  std::string hex;
+  for (const std::uint8_t byte : bytes) hex += fmt::format("{:02x}", byte);
+  return hex;
+}
 
 /// /suit.json of an array that is not described yet.
-std::string suit_json(const std::string& from, const FirstLook& found) {
+std::string suit_json(const std::optional<SourceName>& name, const FirstLook& found) {
   ordered_json json;
   json["name"] = "";
   json["arrays"] = ordered_json::array();
   ordered_json& setup = json["setup"];
-  setup["from"] = from;
+  setup["from"] = name ? name->text : "";
+  setup["turnable"] = name && name->kind != sources::SourceKind::recording;
+  setup["readable"] = found.has_frames;
   setup["rows"] = found.shape ? ordered_json(found.shape->rows) : ordered_json();
   setup["cols"] = found.shape ? ordered_json(found.shape->cols) : ordered_json();
   setup["message"] = found.message;
+  setup["bytes"] = hex_of(found.bytes);
   return json_text(json);
 }
 
-Result<std::string> list_ports() {
+Result<std::string> list_known() {
   ordered_json answer;
-  answer["ports"] = ordered_json::array();
-  for (const acquisition::SerialPort& port : acquisition::serial_ports()) {
-    answer["ports"].push_back({{"device", port.device}, {"path", port.path}, {"product", port.product}});
+  answer["arrays"] = ordered_json::array();
+  for (const KnownArray& known : known_arrays()) {
+    answer["arrays"].push_back({{"file", known.file},
+                                {"name", known.array.name},
+                                {"rows", known.array.rows},
+                                {"cols", known.array.cols},
+                                {"calibrated", known.is_calibrated}});
   }
   return json_text(answer);
 }
 
-/// {"path": one of those that are listed, "baud": 115200}; without a baud it is that of most boards.
-Result<SourceName> port_request(std::string_view text) {
-  const Result<JsonRequest> request = JsonRequest::parse(text);
-  if (!request) return request.error();
-  const Result<std::string> path = request->text("path", kMostPath);
-  if (!path) return path.error();
-  const auto baud = request->number("baud", "50 to 20000000");
-  if (!baud) return baud.error();
-  const std::vector<acquisition::SerialPort> ports = acquisition::serial_ports();
-  if (std::ranges::find(ports, *path, &acquisition::SerialPort::path) == ports.end()) {
-    return bad_field("path", "is none of the serial ports of this machine");
-  }
-  std::string uri = "serial://" + *path;
-  if (*baud) uri += "?baud=" + std::to_string(**baud);
-  return SourceName::parse(uri);
+/// Missing readings are null.
+ordered_json counts_json(const std::vector<float>& counts) {
+  ordered_json json = ordered_json::array();
+  for (const float count : counts) json.push_back(std::isfinite(count) ? ordered_json(count) : ordered_json());
+  return json;
 }
 
 }  // namespace
@@ -97,21 +106,25 @@ class ArraySetup::Implementation {
  private:
   using Call = Result<std::string> (Implementation::*)(std::string_view);
 
-  std::vector<stream::Service> services(bool with_ports) {
+  std::vector<stream::Service> services(bool with_choice) {
     const auto service = [this](const char* name, Call call) {
       return stream::Service{name, [this, call](std::string_view request) { return (this->*call)(request); }};
     };
     std::vector<stream::Service> services = {service("/array/describe", &Implementation::describe),
+                                             service("/array/use", &Implementation::use),
                                              service("/array/watch", &Implementation::watch),
-                                             service("/array/touch", &Implementation::touch)};
-    if (!with_ports) return services;
-    services.push_back({"/ports/list", [](std::string_view) { return list_ports(); }});
-    services.push_back(service("/ports/open", &Implementation::open_port));
+                                             service("/array/touch", &Implementation::touch),
+                                             service("/source/look", &Implementation::look),
+                                             {"/array/known", [](std::string_view) { return list_known(); }}};
+    if (!with_choice) return services;
+    services.push_back({"/source/list", [](std::string_view) { return Result<std::string>(source_choices()); }});
+    services.push_back(service("/source/open", &Implementation::open));
+    services.push_back(service("/source/leave", &Implementation::leave));
     return services;
   }
 
   void show(const FirstLook& found) {
-    server_->set_document("/suit.json", "application/json", suit_json(name_ ? name_->text : "", found));
+    server_->set_document("/suit.json", "application/json", suit_json(name_, found));
   }
 
   [[nodiscard]] DescribedArray described() {
@@ -119,40 +132,102 @@ class ArraySetup::Implementation {
     return described_;
   }
 
-  Result<std::string> open_port(std::string_view request) {
-    Result<SourceName> name = port_request(request);
+  Result<std::string> open(std::string_view request) {
+    Result<SourceName> name = source_request(request);
     if (!name) return name.error();
-    watch_.reset();
-    const Result<FirstLook> found = first_look(*name, options_);
+    return look_at(*std::move(name));
+  }
+
+  Result<std::string> look(std::string_view /*request*/) {
+    if (!name_) return bad_input(kNoSource);
+    return look_at(*name_);
+  }
+
+  /// A source that cannot be opened is not taken.
+  Result<std::string> look_at(SourceName name) {
+    watch_.reset();  // a device can be opened once
+    const Result<FirstLook> found = first_look(name, options_);
     if (!found) return found.error();
-    name_ = *std::move(name);
+    name_ = std::move(name);
     show(*found);
     return json_text(nlohmann::json{{"from", name_->text}});
   }
 
+  /// Another source may be chosen.
+  Result<std::string> leave(std::string_view /*request*/) {
+    watch_.reset();
+    name_.reset();
+    show({});
+    return std::string("{}");
+  }
+
   Result<std::string> describe(std::string_view request) {
-    if (!name_) return bad_input("choose a serial port first");
+    if (!name_) return bad_input(kNoSource);
     const Result<ArrayDescription> array = array_request(request);
     if (!array) return array.error();
     const std::string path = array->name + ".toml";
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) {
-      return bad_field("name",
-                       path + " is there already: choose another name, or serve it as the model of this source");
+      return bad_field("name", path + " is there already: choose another name, or take the array from last time");
     }
-    if (Status status = files::write_array(path, *array); !status) return status.error();
-    const std::lock_guard lock(mutex_);
-    described_ = {name_->text, path};
-    return json_text(nlohmann::json{{"file", path}});
+    if (Status sends = check_frames(*array); !sends) return sends.error();
+    if (Status written = files::write_array(path, *array); !written) return written.error();
+    return serve_as(path);
   }
 
-  /// From now on touch() tells where the array is touched; `request` says the shape of what its source sends.
+  /// {"file": "mat.safetensors"}, one of those that are known.
+  Result<std::string> use(std::string_view text) {
+    if (!name_) return bad_input(kNoSource);
+    const Result<JsonRequest> request = JsonRequest::parse(text);
+    if (!request) return request.error();
+    const Result<std::string> file = request->text("file", kMostFileName);
+    if (!file) return file.error();
+    const Result<KnownArray> known = known_array(*file);
+    if (!known) return known.error();
+    if (name_->kind == sources::SourceKind::recording) {
+      if (const auto suit = open_suit({.from = name_->text, .model = known->file}, options_); !suit)
+        return suit.error();
+    }
+    if (Status sends = check_frames(known->array); !sends) return sends.error();
+    return serve_as(known->file);
+  }
+
+  Result<std::string> serve_as(const std::string& model) {
+    const std::lock_guard lock(mutex_);
+    described_ = {name_->text, model};
+    return json_text(nlohmann::json{{"file", model}});
+  }
+
+  /// Waits for a frame of such an array: what sends none is not served, as its map would stay blank. Those of
+  /// recordings are turned already.
+  Status check_frames(const ArrayDescription& array) {
+    const FrameShape shape{array.rows, array.cols};
+    const FrameShape sent = name_->kind == sources::SourceKind::recording ? shape : array.order.sent(shape);
+    if (!watch_ || watch_->shape() != sent) begin_watch(sent);
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    for (;;) {
+      const TouchWatch::Seen seen = watch_->seen();
+      if (seen.frames > 0) return Done{};
+      if (!seen.problem.empty()) return bad_input(seen.problem);
+      const bool is_stopped = options_.stop != nullptr && *options_.stop;
+      if (is_stopped || std::chrono::steady_clock::now() > end) {
+        return bad_input(fmt::format("no frame of {}x{} readings came within 8 s", sent.rows, sent.cols));
+      }
+      std::this_thread::sleep_for(kPeriod);
+    }
+  }
+
+  void begin_watch(FrameShape shape) {
+    watch_.reset();  // a device can be opened once
+    watch_ = std::make_unique<TouchWatch>(*name_, shape, options_);
+  }
+
+  /// From now on touch() tells what is sent; `request` says its shape.
   Result<std::string> watch(std::string_view request) {
-    if (!name_) return bad_input("choose a serial port first");
+    if (!name_) return bad_input(kNoSource);
     const Result<FrameShape> shape = shape_request(request);
     if (!shape) return shape.error();
-    watch_.reset();  // a device can be opened once
-    watch_ = std::make_unique<TouchWatch>(*name_, *shape, options_);
+    begin_watch(*shape);
     return std::string("{}");
   }
 
@@ -164,6 +239,7 @@ class ArraySetup::Implementation {
     answer["ready"] = seen.is_ready;
     answer["touched"] = seen.taxel ? ordered_json{*seen.taxel / cols, *seen.taxel % cols} : ordered_json();
     answer["problem"] = seen.problem;
+    answer["counts"] = counts_json(seen.counts);
     return json_text(answer);
   }
 

@@ -2,16 +2,21 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "serve/first_look.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <span>
 #include <thread>
 #include <utility>
+
+#include "dermis/acquisition/device_source.hpp"
 
 namespace dermis::serve {
 namespace {
 
-constexpr std::chrono::seconds kPatience{8};
 constexpr std::chrono::milliseconds kPeriod{50};
+constexpr std::size_t kMostKept = 65536;
+constexpr std::size_t kMostShown = 256;
 
 /// Sets a flag when another is set, or after kPatience.
 class Patience {
@@ -31,6 +36,19 @@ class Patience {
   std::jthread thread_;
 };
 
+/// No frame was made of these bytes, which may be none.
+void explain(const sources::SourceName& name, std::vector<std::uint8_t> bytes, FirstLook& found) {
+  if (!name.uri || bytes.empty()) {
+    if (found.message.empty()) found.message = "nothing came within 8 s";
+    return;
+  }
+  acquisition::UndecodedReason reason = acquisition::why_undecoded(*name.uri, bytes);
+  found.message = std::move(reason.why);
+  found.shape = reason.likely_shape;
+  bytes.resize(std::min(bytes.size(), kMostShown));
+  found.bytes = std::move(bytes);
+}
+
 }  // namespace
 
 Result<FirstLook> first_look(const sources::SourceName& name, sources::SourceOptions options) {
@@ -42,14 +60,23 @@ Result<FirstLook> first_look(const sources::SourceName& name, sources::SourceOpt
     found.message = line;
     if (log) log(line);
   };
+  std::vector<std::uint8_t> bytes;
+  options.received = [&](std::span<const std::uint8_t> more) {
+    more = more.first(std::min(more.size(), kMostKept - bytes.size()));
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  };
   const Result<std::unique_ptr<FrameSource>> source = sources::open_source(name, options);
   if (!source) return source.error();
   RawFrame frame;
   const Result<bool> came = (*source)->next(frame);
   if (!came && came.error().kind != ErrorKind::bad_input) return came.error();
   if (!came) found.message = came.error().message;
-  if (came && *came) found.shape = (*source)->shape();
-  if (came && !*came && found.message.empty()) found.message = "nothing came within 8 s";
+  found.has_frames = came && *came;
+  if (found.has_frames) {
+    found.shape = (*source)->shape();
+  } else {
+    explain(name, std::move(bytes), found);
+  }
   return found;
 }
 

@@ -2,8 +2,11 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #pragma once
 
+#include <chrono>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
@@ -11,13 +14,18 @@
 
 namespace dermis::serve {
 
+/// How long a device may take to send its first frame.
+inline constexpr std::chrono::seconds kPatience{8};
+
 /// What a source sends, as far as that tells the array.
 struct FirstLook {
-  std::optional<FrameShape> shape{};
-  std::string message{};  ///< What the bytes are, or what they lack.
+  bool has_frames = false;
+  std::optional<FrameShape> shape{};  ///< Of the frames; without frames the one that they would likely have.
+  std::string message{};              ///< What the bytes are, or what they lack.
+  std::vector<std::uint8_t> bytes{};  ///< The first of those of which no frame was made, at most 256.
 };
 
-/// Reads the first frame, for at most 8 s. Bytes of which no frame can be made are told, and no error.
+/// Reads the first frame, for at most kPatience. Bytes of which no frame can be made are told, and no error.
 [[nodiscard]] Result<FirstLook> first_look(const sources::SourceName& name, sources::SourceOptions options);
 
 }  // namespace dermis::serve

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "dermis/calibration/uncalibrated_model.hpp"
 #include "serve/saved_minute.hpp"
 
 namespace dermis::serve {
@@ -39,10 +40,11 @@ std::string file_name(const std::string& path) {
 }  // namespace
 
 RecordingServices::RecordingServices(const ServedSuit& suit, const SessionOptions& options, SuitRecorder::Arrays arrays,
-                                     SuitRecorder& recorder, stream::Server& server,
+                                     const ModelsInUse& models, SuitRecorder& recorder, stream::Server& server,
                                      std::optional<PlayedRecording::PlayedSuit> played)
     : folder_(options.recordings.empty() ? options.record : options.recordings),
       arrays_(std::move(arrays)),
+      models_(models),
       recorder_(recorder),
       server_(server),
       last_minute_(suit.arrays.size()) {
@@ -79,7 +81,7 @@ Result<std::string> RecordingServices::begin(const JsonRequest& request) {
 /// From now on, clients may also save what it names.
 Result<std::string> RecordingServices::list() {
   ordered_json answer;
-  answer["folder"] = folder_.path();
+  answer["folder"] = absolute_path(folder_.path());
   answer["recording"] = recorder_.recording() ? file_name(recorder_.path()) : "";
   answer["files"] = ordered_json::array();
   for (const SavedFile& file : folder_.recordings()) {
@@ -103,7 +105,8 @@ Result<std::string> RecordingServices::play(const JsonRequest& request) {
   return json_text(ordered_json{{"port", *port}});
 }
 
-/// {"array": "chest"} is a frames.csv of that array; without it all are in a recording.
+/// {"array": "chest"} is a frames.csv of that array, and its forces where it is calibrated; without it all are in a
+/// recording.
 Result<std::string> RecordingServices::save(const JsonRequest& request) {
   const Result<Selection> selection = selection_of(request);
   if (!selection) return selection.error();
@@ -121,7 +124,25 @@ Result<std::string> RecordingServices::save(const JsonRequest& request) {
           : save_csv(last_minute_, static_cast<std::size_t>(array - arrays.begin()), array->shape, *selection, path);
   if (!frames) return frames.error();
   give(path);
-  return json_text(ordered_json{{"file", file_name(path)}, {"frames", *frames}});
+  ordered_json answer{{"file", file_name(path)}, {"frames", *frames}};
+  if (!name->empty()) {
+    const Result<std::string> forces =
+        save_forces_of(static_cast<std::size_t>(array - arrays.begin()), *selection, path);
+    if (!forces) return forces.error();
+    if (!forces->empty()) answer["forces"] = file_name(*forces);
+  }
+  return json_text(answer);
+}
+
+/// Beside the counts at `path`, where there is a calibration; returns where.
+Result<std::string> RecordingServices::save_forces_of(std::size_t array, const Selection& selection,
+                                                      const std::string& path) {
+  const std::shared_ptr<const pipeline::Model> model = models_.of(array);
+  if (calibration::is_uncalibrated(*model)) return std::string();
+  const std::string forces = std::filesystem::path(path).replace_extension().string() + "-newtons.csv";
+  if (Status saved = save_forces(last_minute_, array, *model, selection, forces); !saved) return saved.error();
+  give(forces);
+  return forces;
 }
 
 }  // namespace dermis::serve

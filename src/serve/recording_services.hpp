@@ -13,8 +13,10 @@
 #include "dermis/stream/server.hpp"
 #include "serve/json_request.hpp"
 #include "serve/last_minute.hpp"
+#include "serve/models_in_use.hpp"
 #include "serve/played_recording.hpp"
 #include "serve/recordings_folder.hpp"
+#include "serve/saved_minute.hpp"
 #include "serve/suit_recorder.hpp"
 
 namespace dermis::serve {
@@ -23,9 +25,10 @@ namespace dermis::serve {
 class RecordingServices {
  public:
   /// `options`: of the session; the folder is that of its recording. `arrays`: how they are recorded now. `played`:
-  /// empty where nothing may be played. `recorder` and `server` must outlive it.
+  /// empty where nothing may be played. `models`, `recorder` and `server` must outlive it.
   RecordingServices(const ServedSuit& suit, const SessionOptions& options, SuitRecorder::Arrays arrays,
-                    SuitRecorder& recorder, stream::Server& server, std::optional<PlayedRecording::PlayedSuit> played);
+                    const ModelsInUse& models, SuitRecorder& recorder, stream::Server& server,
+                    std::optional<PlayedRecording::PlayedSuit> played);
 
   /// "/recordings/begin", ...
   [[nodiscard]] std::vector<std::string> names() const;
@@ -41,10 +44,13 @@ class RecordingServices {
   [[nodiscard]] Result<std::string> list();
   [[nodiscard]] Result<std::string> play(const JsonRequest& request);
   [[nodiscard]] Result<std::string> save(const JsonRequest& request);
+  [[nodiscard]] Result<std::string> save_forces_of(std::size_t array, const Selection& selection,
+                                                   const std::string& path);
   void give(const std::string& path);
 
   const RecordingsFolder folder_;
   const SuitRecorder::Arrays arrays_;
+  const ModelsInUse& models_;
   SuitRecorder& recorder_;
   stream::Server& server_;
   LastMinute last_minute_;

@@ -24,6 +24,13 @@ std::int64_t since_1970(fs::file_time_type time) {
 
 }  // namespace
 
+std::string absolute_path(const std::string& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error).lexically_normal();
+  const bool is_folder = !absolute.has_filename() && absolute.has_relative_path();
+  return error ? path : (is_folder ? absolute.parent_path() : absolute).string();
+}
+
 RecordingsFolder::RecordingsFolder(const std::string& recording) : path_(fs::path(recording).parent_path().string()) {
   if (path_.empty()) path_ = ".";
 }

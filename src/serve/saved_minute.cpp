@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "dermis/files/forces_csv.hpp"
+#include "dermis/pipeline/pipeline.hpp"
 #include "serve/saved_files.hpp"
 
 namespace dermis::serve {
@@ -28,6 +30,22 @@ Result<std::size_t> save_csv(const LastMinute& minute, std::size_t array, FrameS
   const auto take = [&](std::size_t number, RawFrame& frame) { frame = std::move(frames[number]); };
   if (Status written = write_frames(path, shape, frames.size(), take); !written) return written.error();
   return frames.size();
+}
+
+Status save_forces(const LastMinute& minute, std::size_t array, const pipeline::Model& model,
+                   const Selection& selection, const std::string& path) {
+  const std::vector<RawFrame> frames = minute.frames(array, selection.first, selection.last);
+  if (frames.empty()) return nothing_there();
+  Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
+  if (!pipeline) return pipeline.error();
+  Result<files::ForcesCsvWriter> writer = files::ForcesCsvWriter::create(path, model.array.rows, model.array.cols);
+  if (!writer) return writer.error();
+  ForceFrame force;
+  for (const RawFrame& frame : frames) {
+    pipeline->process(frame, force);
+    if (Status written = writer->write(force); !written) return written;
+  }
+  return writer->commit();
 }
 
 Result<std::size_t> save_recording(const LastMinute& minute, const std::vector<recordings::RecordedArray>& arrays,

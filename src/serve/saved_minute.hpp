@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dermis/core/result.hpp"
+#include "dermis/pipeline/model.hpp"
 #include "dermis/recordings/suit_recording.hpp"
 #include "serve/last_minute.hpp"
 
@@ -22,7 +23,11 @@ struct Selection {
 [[nodiscard]] Result<std::size_t> save_csv(const LastMinute& minute, std::size_t array, FrameShape shape,
                                            const Selection& selection, const std::string& path);
 
-/// Writes the frames of all arrays as a recording; the same.
+/// Writes the forces of one array, as `dermis run` makes them from these frames: without a tare. Fails as save_csv().
+[[nodiscard]] Status save_forces(const LastMinute& minute, std::size_t array, const pipeline::Model& model,
+                                 const Selection& selection, const std::string& path);
+
+/// Writes the frames of all arrays as a recording; as save_csv().
 [[nodiscard]] Result<std::size_t> save_recording(const LastMinute& minute,
                                                  const std::vector<recordings::RecordedArray>& arrays,
                                                  const Selection& selection, const std::string& path);

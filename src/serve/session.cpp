@@ -23,6 +23,7 @@
 #include "serve/models_in_use.hpp"
 #include "serve/recognition_publisher.hpp"
 #include "serve/recording_services.hpp"
+#include "serve/recordings_folder.hpp"
 #include "serve/service_arrays.hpp"
 #include "serve/status_publisher.hpp"
 #include "serve/suit_json.hpp"
@@ -137,12 +138,14 @@ class Session::Implementation {
   [[nodiscard]] stream::Handlers handlers();
   [[nodiscard]] std::vector<stream::Service> services();
   [[nodiscard]] Status set_parameter(const stream::Parameter& parameter, const std::string& client);
+  [[nodiscard]] Result<std::string> call_calibration(const std::string& name, std::string_view request);
   [[nodiscard]] std::optional<PlayedRecording::PlayedSuit> player();
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
   [[nodiscard]] Status use_classes(std::size_t array, recognition::Classes classes);
   void show_suit();
   void show_body();
   void report_failed_recording(const std::string& why);
+  void report_recording(std::uint64_t frames);
   void report_left_out();
   void report_tares();
   void publish_to_dds(std::int64_t tick);
@@ -181,9 +184,10 @@ Session::Implementation::Implementation(ServedSuit suit, SessionParts parts, con
       ageing_(suit_),
       recorder_(
           options.record, [this] { return recorded_arrays(suit_, models_); },
-          [this](const std::string& why) { report_failed_recording(why); }),
+          [this](const std::string& why) { report_failed_recording(why); },
+          [this](std::uint64_t frames) { report_recording(frames); }),
       recordings_(
-          suit_, options, [this] { return recorded_arrays(suit_, models_); }, recorder_, *server_, player()),
+          suit_, options, [this] { return recorded_arrays(suit_, models_); }, models_, recorder_, *server_, player()),
       broadcaster_(suit_, *server_),
       recognition_(suit_, *server_, recorder_),
       calibration_(
@@ -255,7 +259,7 @@ stream::Handlers Session::Implementation::handlers() {
 std::vector<stream::Service> Session::Implementation::services() {
   std::vector<stream::Service> services;
   for (const std::string& name : CalibrationServices::names()) {
-    services.push_back({name, [this, name](std::string_view request) { return calibration_.call(name, request); }});
+    services.push_back({name, [this, name](std::string_view request) { return call_calibration(name, request); }});
   }
   for (const std::string& name : TeachingServices::names()) {
     services.push_back({name, [this, name](std::string_view request) { return teaching_.call(name, request); }});
@@ -277,6 +281,15 @@ std::vector<stream::Service> Session::Implementation::services() {
     services.push_back({"/threats/reset", [this](std::string_view request) { return threats_->reset(request); }});
   }
   return services;
+}
+
+/// A person cannot press what is over.
+Result<std::string> Session::Implementation::call_calibration(const std::string& name, std::string_view request) {
+  const bool is_over = suit_.playback && suit_.playback->status().state == PlaybackStatus::State::ended;
+  if (name == "/calibration/start" && is_over) {
+    return bad_input("the recording has ended: play it from its beginning, then begin");
+  }
+  return calibration_.call(name, request);
 }
 
 /// What is played itself plays no other.
@@ -330,6 +343,10 @@ Status Session::Implementation::use_classes(std::size_t array, recognition::Clas
 void Session::Implementation::report_failed_recording(const std::string& why) {
   tell("the recording has ended: " + why);
   server_->parameters_changed();
+}
+
+void Session::Implementation::report_recording(std::uint64_t frames) {
+  tell(fmt::format("recorded {} frames: {}", frames, absolute_path(recorder_.path())), kInfoLevel);
 }
 
 void Session::Implementation::log(const std::string& line) const {

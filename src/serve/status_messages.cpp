@@ -44,17 +44,17 @@ messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::M
   diagnosis.name = name;
   diagnosis.hardware_id = model.array.name;
   health::Condition condition = health::condition_of(model, statistics.faults, ageing);
-  diagnosis.values = std::move(condition.details);
+  const bool is_uncalibrated = calibration::is_uncalibrated(model);  // "since calibration" says nothing of it
+  if (!is_uncalibrated) diagnosis.values = std::move(condition.details);
   if (!statistics.error.empty()) {
     diagnosis.level = messages::Diagnosis::Level::error;
     diagnosis.message = statistics.error;
   } else if (statistics.ended) {
     diagnosis.level = messages::Diagnosis::Level::stale;
     diagnosis.message = "the source has ended";
-  } else if (calibration::is_uncalibrated(model)) {
+  } else if (is_uncalibrated) {
     diagnosis.level = messages::Diagnosis::Level::warning;
     diagnosis.message = "not calibrated yet: calibrate";
-    diagnosis.values.clear();
   } else {
     const bool is_healthy = statistics.faults.empty() && !ageing.has_aged();
     if (!is_healthy || statistics.standing) diagnosis.level = messages::Diagnosis::Level::warning;

@@ -22,8 +22,11 @@ std::string recording_name(const std::string& wanted, bool is_first, std::chrono
   return (pattern.parent_path() / name).string();
 }
 
-SuitRecorder::SuitRecorder(std::string wanted, Arrays arrays, Failed failed)
-    : wanted_(std::move(wanted)), arrays_(std::move(arrays)), failed_(std::move(failed)) {}
+SuitRecorder::SuitRecorder(std::string wanted, Arrays arrays, Failed failed, Written written)
+    : wanted_(std::move(wanted)),
+      arrays_(std::move(arrays)),
+      failed_(std::move(failed)),
+      written_(std::move(written)) {}
 
 SuitRecorder::~SuitRecorder() {
   static_cast<void>(end());
@@ -54,10 +57,11 @@ void SuitRecorder::stop() {
   recording_ = false;
 }
 
-/// A recording that failed is told so here, too: once, and by a thread that nobody waits for.
+/// How it ended is told here, too: once, and by a thread that nobody waits for.
 void SuitRecorder::close(recordings::SuitRecordingWriter& writer) {
   outcome_ = writer.commit();
-  if (!outcome_) failed_(outcome_.error().message);
+  if (!outcome_) return failed_(outcome_.error().message);
+  if (written_) written_(frames_);
 }
 
 Status SuitRecorder::end() {

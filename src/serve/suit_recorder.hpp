@@ -33,10 +33,11 @@ class SuitRecorder {
  public:
   using Arrays = std::function<std::vector<recordings::RecordedArray>()>;
   using Failed = std::function<void(const std::string& why)>;
+  using Written = std::function<void(std::uint64_t frames)>;
 
-  /// `wanted`: the path of the first recording, or empty. `arrays` tells begin() what is recorded; `failed` is told, on
-  /// the thread that closes the file, why a recording ended.
-  SuitRecorder(std::string wanted, Arrays arrays, Failed failed);
+  /// `wanted`: the path of the first recording, or empty. `arrays` tells begin() what is recorded. On the thread that
+  /// closes the file, `failed` is told why a recording ended, and `written` how many frames a complete one has.
+  SuitRecorder(std::string wanted, Arrays arrays, Failed failed, Written written = {});
   SuitRecorder(const SuitRecorder&) = delete;
   SuitRecorder& operator=(const SuitRecorder&) = delete;
   /// As end().
@@ -71,6 +72,7 @@ class SuitRecorder {
   const std::string wanted_;
   const Arrays arrays_;
   const Failed failed_;
+  const Written written_;
   std::mutex switch_mutex_;  // One begin() or end() at a time.
   std::atomic<bool> recording_{false};
   std::atomic<std::uint64_t> frames_{0};

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "dermis/sources/pacer.hpp"
 #include "serve/touch_finder.hpp"
 
 namespace dermis::serve {
@@ -11,7 +12,9 @@ namespace dermis::serve {
 TouchWatch::TouchWatch(sources::SourceName name, FrameShape shape, sources::SourceOptions options)
     : name_(std::move(name)), shape_(shape), thread_([this, options = std::move(options)]() mutable {
         const Status watched = watch(std::move(options));
-        if (!watched) keep({.problem = watched.error().message});
+        if (watched) return;
+        const std::lock_guard lock(mutex_);
+        seen_.problem = watched.error().message;
       }) {}
 
 TouchWatch::~TouchWatch() {
@@ -38,16 +41,20 @@ Status TouchWatch::watch(sources::SourceOptions options) {
   const Result<std::unique_ptr<FrameSource>> source = sources::open_source(name_, options);
   if (!source) return source.error();
   TouchFinder finder(shape_.taxel_count());
+  sources::Pacer pacer(&stop_);
+  std::optional<Nanos> first;
   RawFrame frame;
-  while (!stop_) {
+  for (std::uint64_t frames = 1; !stop_; ++frames) {
     const Result<bool> more = (*source)->next(frame);
     if (!more) return more.error();
     if (!*more) break;
     if (frame.counts.size() != shape_.taxel_count()) return bad_input("rows and cols are not those of the frames");
+    if (!first) first = frame.time;
+    if (!(*source)->is_live() && !pacer.wait_until(sources::due_after(*first, frame.time))) break;
     finder.add(frame.counts);
-    keep({.is_ready = finder.is_ready(), .taxel = finder.touched()});
+    keep({frames, {frame.counts.begin(), frame.counts.end()}, finder.is_ready(), finder.touched()});
   }
-  return stop_ ? Status(Done{}) : failed("the source has ended");
+  return stop_ || !(*source)->is_live() ? Status(Done{}) : failed("the source has ended");
 }
 
 }  // namespace dermis::serve

@@ -4,20 +4,25 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "dermis/core/frame_source.hpp"
 #include "dermis/sources/open_source.hpp"
 
 namespace dermis::serve {
 
-/// Reads a source, from its making to its end, for where the array is touched. Thread-safe.
+/// Reads a source, from its making to its end, for what it sends and where the array is touched. A recording is read at
+/// its own pace. Thread-safe.
 class TouchWatch {
  public:
   struct Seen {
+    std::uint64_t frames = 0;            ///< So far; 0: `counts` is empty.
+    std::vector<float> counts{};         ///< Of the newest frame, row-major.
     bool is_ready = false;               ///< The readings at rest are known.
     std::optional<std::size_t> taxel{};  ///< That is touched, row-major.
     std::string problem{};               ///< Why the source gives no frames (any more).

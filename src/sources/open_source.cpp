@@ -50,10 +50,11 @@ Status check_order(const std::string& path, const ArrayDescription* array) {
 
 /// Its frames are turned as the array's description says. Those of files were turned when they were written.
 Result<std::unique_ptr<FrameSource>> open_device(const acquisition::SourceUri& uri, const SourceOptions& options) {
-  if (options.array == nullptr) return acquisition::open_device(uri, {{}, options.stop, options.notice});
+  acquisition::DeviceOptions device_options{{}, options.stop, options.notice, options.received};
+  if (options.array == nullptr) return acquisition::open_device(uri, device_options);
   const LineOrder& order = options.array->order;
-  Result<std::unique_ptr<FrameSource>> device =
-      acquisition::open_device(uri, {order.sent(*shape_of(options.array)), options.stop, options.notice});
+  device_options.shape = order.sent(*shape_of(options.array));
+  Result<std::unique_ptr<FrameSource>> device = acquisition::open_device(uri, device_options);
   if (!device) return device.error();
   return turned_source(*std::move(device), order, uri.text);
 }

@@ -369,5 +369,51 @@ TEST(DeviceSource, allocates_nothing_once_it_runs) {
   EXPECT_EQ(guard.count(), 0U);
 }
 
+std::string why(const std::string& bytes) {
+  const SourceUri uri = parse_source_uri("tcp://127.0.0.1:1").value();
+  return why_undecoded(uri, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}).why;
+}
+
+TEST(WhyUndecoded, names_what_a_person_would_see_in_the_bytes) {
+  EXPECT_EQ(why(std::string(40, '\0')),
+            "'tcp://127.0.0.1:1': these bytes are of no known protocol: check protocol=. Each of them is 0x00");
+  expect_words(why("\x01\x92\xfe\x80\x03\x11"), {"They are not text"});
+  expect_words(why("no end of a line"), {"no line of it ends"});
+}
+
+TEST(WhyUndecoded, shows_a_whole_line_that_is_not_numbers_alone) {
+  expect_words(why("cut\r\ntemp=21.5 C\r\ntemp=21.6 C\r\n"), {"not numbers alone, such as 'temp=21.5 C'"});
+}
+
+TEST(WhyUndecoded, counts_the_numbers_of_lines) {
+  expect_words(why("7\n512\n513\n511\n"), {"Each line has one number: print a row or a frame in a line"});
+  expect_words(why("7\n1,2,3\n1,2\n1 2 3 4\n"), {"Their lines have 2 to 4 numbers: print as many in each"});
+}
+
+TEST(WhyUndecoded, suggests_the_size_that_is_nearest_to_a_square) {
+  std::string lines;
+  for (int line = 0; line < 12; ++line) {
+    for (int reading = 0; reading < 120; ++reading) lines += std::to_string(100 + (5 * line + 7 * reading) % 23) + ",";
+    lines.back() = '\n';
+  }
+  const SourceUri uri = parse_source_uri("tcp://127.0.0.1:1").value();
+  const UndecodedReason reason =
+      why_undecoded(uri, {reinterpret_cast<const std::uint8_t*>(lines.data()), lines.size()});
+  expect_words(reason.why, {"120 readings", "rows=12&cols=10"});
+  EXPECT_EQ(reason.likely_shape, (FrameShape{12, 10}));
+}
+
+TEST(DeviceSource, gives_all_bytes_as_they_come) {
+  const std::vector<std::uint8_t> sent(700, 'x');
+  std::size_t received = 0;
+  DeviceOptions options;
+  options.received = [&](std::span<const std::uint8_t> bytes) { received += bytes.size(); };
+  auto source = open_device(BytesInFile(sent).uri("protocol=dermis"), options);
+  ASSERT_TRUE(source) << source.error().message;
+  RawFrame frame;
+  EXPECT_FALSE((*source)->next(frame));
+  EXPECT_EQ(received, sent.size());
+}
+
 }  // namespace
 }  // namespace dermis::acquisition

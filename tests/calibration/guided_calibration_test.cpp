@@ -243,6 +243,23 @@ TEST(GuidedCalibration, says_which_taxel_is_pressed_instead) {
   EXPECT_EQ(state.presses_done, 0U);
 }
 
+TEST(GuidedCalibration, tells_how_much_of_the_last_fit_is_done) {
+  const ArrayDescription array = reference_array(8, 8);
+  CalibrationPlan plan = default_plan(array);
+  plan.weights_n = {2.0, 20.0};
+  const auto guide = begin(array, plan);
+  session_of(array).walk(*guide, [](const GuideState&) { return false; });
+  double share = 0.0;
+  for (GuideState state = guide->state(); state.stage == GuideStage::fitting; state = guide->state()) {
+    EXPECT_EQ(state.message.find("Fitting "), 0U) << state.message;
+    EXPECT_NE(state.message.find(" s "), std::string::npos) << state.message;
+    EXPECT_GE(state.hold_share, share);
+    EXPECT_LE(state.hold_share, 1.0);
+    share = state.hold_share;
+  }
+  EXPECT_GT(share, 0.0);
+}
+
 TEST(GuidedCalibration, asks_for_a_press_again_that_was_too_short) {
   const ArrayDescription array = reference_array(4, 4);
   const auto guide = begin(array, small_plan());

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
@@ -105,23 +106,88 @@ TEST_F(ArraySetupTest, tells_where_the_array_is_touched) {
   StreamClient client((*setup)->port());
   EXPECT_EQ(client.call("/array/touch", "{}"), "nothing is watched");
   EXPECT_EQ(client.call("/array/watch", R"({"rows":3,"cols":4})"), "{}");
-  EXPECT_EQ(ask_until(client, "/array/touch", R"("ready":true)"), R"({"ready":true,"touched":null,"problem":""})");
+  const std::string answer = ask_until(client, "/array/touch", R"("ready":true)");
+  EXPECT_EQ(answer.find(R"({"ready":true,"touched":null,"problem":"","counts":[)"), 0U) << answer;
+  EXPECT_EQ(std::ranges::count(answer, ','), 3 + 11) << answer;
   EXPECT_EQ(client.call("/array/watch", R"({"rows":4,"cols":4})"), "{}");
   ask_until(client, "/array/touch", "rows and cols are not those of the frames");
 }
 
-TEST_F(ArraySetupTest, opens_only_serial_ports_that_it_has_listed) {
+TEST_F(ArraySetupTest, opens_only_what_it_offers) {
   const auto setup = ArraySetup::create("", any_port(), {});
   ASSERT_TRUE(setup) << setup.error().message;
   StreamClient client((*setup)->port());
-  EXPECT_NE(client.call("/ports/list", "{}").find("\"ports\":["), std::string::npos);
+  EXPECT_NE(client.call("/source/list", "{}").find("\"ports\":["), std::string::npos);
   std::ofstream("bytes") << "1,2,3\n";
-  for (const char* path : {"/etc/passwd", "bytes", "/dev/ttyACM99999", "", "/dev/null?baud=1"}) {
-    EXPECT_EQ(client.call("/ports/open", R"({"path":")" + std::string(path) + "\"}"),
-              "path: is none of the serial ports of this machine");
+  for (const char* path : {"/etc/passwd", "bytes", "/dev/ttyACM99999", "/dev/null?baud=1"}) {
+    EXPECT_EQ(client.call("/source/open", R"({"port":")" + std::string(path) + "\"}"),
+              "port: is none of the serial ports of this machine");
+    EXPECT_EQ(client.call("/source/open", R"({"recording":")" + std::string(path) + "\"}"),
+              "recording: is none of this folder");
   }
+  EXPECT_EQ(client.call("/source/open", R"({"simulation":"idle"})"), "simulation: is none of those offered");
+  for (const char* address : {"file:bytes", "serial:///dev/null", "sim:idle?rate=1", "stdin:"}) {
+    const std::string answer = client.call("/source/open", R"({"address":")" + std::string(address) + "\"}");
+    EXPECT_EQ(answer.find("\"from\""), std::string::npos) << answer;
+  }
+  EXPECT_EQ(client.call("/source/open", R"({"address":"file://bytes"})"),
+            "address: must be HOST:PORT, or begin with tcp://, tcp-listen:// or udp://");
   EXPECT_EQ(client.call("/array/describe", R"({"name":"mat","rows":3,"cols":4,"pitch_um":8000,"adc_bits":10})"),
-            "choose a serial port first");
+            "choose where the array is first");
+}
+
+TEST_F(ArraySetupTest, serves_an_array_from_last_time_at_the_source_that_a_client_chooses) {
+  ArrayDescription array;
+  array.name = "old";
+  array.rows = array.cols = 16;
+  array.row_pitch_m = array.col_pitch_m = 0.01;
+  array.readout.circuit = Circuit::automatic;
+  array.readout.adc_bits = 12;
+  ASSERT_TRUE(files::write_array("old.toml", array));
+  array.rows = 3;
+  array.name = "other";
+  ASSERT_TRUE(files::write_array("other.toml", array));
+  std::ofstream("unrelated.toml") << "[threats]\n";
+  const auto setup = ArraySetup::create("", any_port(), {});
+  ASSERT_TRUE(setup) << setup.error().message;
+  StreamClient client((*setup)->port());
+  EXPECT_EQ(client.call("/array/use", R"({"file":"old.toml"})"), "choose where the array is first");
+  const std::string known = client.call("/array/known", "{}");
+  EXPECT_NE(known.find(R"({"file":"old.toml","name":"old","rows":16,"cols":16,"calibrated":false})"), std::string::npos)
+      << known;
+  EXPECT_EQ(known.find("unrelated"), std::string::npos);
+  EXPECT_EQ(client.call("/source/open", R"({"simulation":"contacts"})"), R"({"from":"sim:contacts?rate=100"})");
+  EXPECT_EQ(client.call("/array/use", R"({"file":"unrelated.toml"})"), "file: is none of the arrays of this folder");
+  EXPECT_EQ(client.call("/array/use", R"({"file":"other.toml"})"), "rows and cols are not those of the frames");
+  const std::atomic<bool> stop = false;
+  DescribedArray described;
+  std::thread work([&] { described = (*setup)->run(stop); });
+  EXPECT_EQ(client.call("/array/use", R"({"file":"old.toml"})"), R"({"file":"old.toml"})");
+  work.join();
+  EXPECT_EQ(described.from, "sim:contacts?rate=100");
+  EXPECT_EQ(described.model, "old.toml");
+}
+
+TEST_F(ArraySetupTest, goes_back_to_the_choice_of_a_source) {
+  const auto setup = ArraySetup::create("", any_port(), {});
+  ASSERT_TRUE(setup) << setup.error().message;
+  StreamClient client((*setup)->port());
+  client.call("/source/open", R"({"simulation":"contacts"})");
+  EXPECT_EQ(client.call("/source/leave", "{}"), "{}");
+  EXPECT_EQ(client.call("/source/look", "{}"), "choose where the array is first");
+}
+
+TEST_F(ArraySetupTest, writes_nothing_of_an_array_whose_source_sends_no_frame) {
+  std::ofstream file("bytes");
+  for (int line = 0; line < 20; ++line) file << "1,2,3,4,5,6\n";
+  file.close();
+  const auto setup = ArraySetup::create("file:bytes", any_port(), {});
+  ASSERT_TRUE(setup) << setup.error().message;
+  StreamClient client((*setup)->port());
+  const std::string answer =
+      client.call("/array/describe", R"({"name":"mat","rows":5,"cols":4,"pitch_um":8000,"adc_bits":10})");
+  EXPECT_NE(answer.find("check rows and cols"), std::string::npos) << answer;
+  EXPECT_FALSE(std::filesystem::exists("mat.toml"));
 }
 
 TEST_F(ArraySetupTest, offers_no_ports_where_the_device_was_named_or_others_reach_the_server) {
@@ -177,8 +243,8 @@ TEST_F(ArraySetupTest, listens_to_the_port_that_a_client_chooses) {
   const auto setup = ArraySetup::create("", any_port(), {});
   ASSERT_TRUE(setup) << setup.error().message;
   StreamClient client((*setup)->port());
-  EXPECT_NE(client.call("/ports/list", "{}").find(board.name()), std::string::npos);
-  EXPECT_EQ(client.call("/ports/open", R"({"path":")" + board.name() + R"(","baud":115200})"),
+  EXPECT_NE(client.call("/source/list", "{}").find(board.name()), std::string::npos);
+  EXPECT_EQ(client.call("/source/open", R"({"port":")" + board.name() + R"(","baud":115200})"),
             R"({"from":"serial://)" + board.name() + R"(?baud=115200"})");
   const std::atomic<bool> stop = false;
   DescribedArray described;

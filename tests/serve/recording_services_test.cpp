@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -71,6 +72,8 @@ TEST(RecordingServices, saves_what_nobody_has_recorded_while_it_is_of_the_last_m
   const json csv = ask(client, "save", R"({"array":"right"})");
   EXPECT_TRUE(csv["file"].get<std::string>().starts_with("right-"));
   EXPECT_EQ(recordings::read_frames(folder.file(csv["file"]))->size(), csv["frames"]);
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder.file(csv["forces"])));
+  EXPECT_EQ(ask(client, "list")["folder"], std::filesystem::path(folder.file("x")).parent_path().string());
   EXPECT_EQ(client.call("/recordings/save", R"({"array":"back"})"), "array: there is none of that name");
   EXPECT_EQ(client.call("/recordings/save", R"({"to_ms":1})"),
             "there is no frame of that time any more; the last minute is kept");

@@ -63,6 +63,15 @@ TEST(StatusMessages, an_array_without_a_model_is_to_be_calibrated) {
   EXPECT_EQ(diagnosis.values, Values{});
 }
 
+TEST(StatusMessages, an_array_without_a_model_that_cannot_be_read_is_not_called_dead_since_calibration) {
+  const pipeline::Model model = calibration::uncalibrated_model(support::hand_made_model(3, 4).array);
+  live::ArrayStatistics statistics;
+  statistics.error = "these bytes are of no known protocol";
+  const messages::Diagnosis diagnosis = diagnosis_message("chest", model, statistics);
+  EXPECT_EQ(diagnosis.message, statistics.error);
+  EXPECT_EQ(diagnosis.values, Values{});
+}
+
 TEST(StatusMessages, a_whole_array_is_healthy) {
   const messages::Diagnosis diagnosis = diagnosis_message("chest", support::hand_made_model(3, 4), {});
   EXPECT_EQ(diagnosis.level, Level::ok);

@@ -92,6 +92,17 @@ TEST(SuitRecorder, keeps_every_frame_of_arrays_that_write_at_once) {
   }
 }
 
+TEST(SuitRecorder, tells_how_many_frames_a_complete_recording_has) {
+  const TemporaryFolder folder;
+  std::uint64_t told = 0;
+  SuitRecorder recorder(folder.file("rec.mcap"), arrays, fail_on, [&](std::uint64_t frames) { told = frames; });
+  ASSERT_TRUE(recorder.begin());
+  for (std::size_t number = 0; number < 7; ++number) recorder.write(0, frame(number));
+  EXPECT_EQ(told, 0U);
+  ASSERT_TRUE(recorder.end());
+  EXPECT_EQ(told, 7U);
+}
+
 TEST(SuitRecorder, takes_no_frame_before_the_beginning_and_none_after_the_stop) {
   const TemporaryFolder folder;
   SuitRecorder recorder(folder.file("rec.mcap"), arrays, fail_on);

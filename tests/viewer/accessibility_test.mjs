@@ -94,7 +94,7 @@ for (const colorScheme of ["light", "dark"]) {
       try {
         const page = await openPage(browser, nothing.url);
         await page.emulateMedia({ colorScheme });
-        await page.locator("[data-role=port-setup]").waitFor();
+        await page.locator("[data-role=source-setup]").waitFor();
         assert.deepEqual(await findings(page), []);
         await page.close();
       } finally {

@@ -39,11 +39,11 @@ async function walk(page, server) {
 
   await reaches(page, 2);
   assert.match(await page.locator(".calibration-picture canvas").getAttribute("aria-label"), /2 rows, 3 columns, \d+ presses/);
-  await page.keyboard.press("r");
+  await page.keyboard.press("b");
   await hears(page, /That is r\dc\d: put/);
   await reaches(page, 8);
   await hears(page, /^Put/);  // before, the press is to be released: it is kept, and nothing is there to skip
-  await page.keyboard.press("s");
+  await page.keyboard.press("n");
   await hears(page, /^17 presses of 1 to 10 N\./);
   assert.match(await part(page, "instruction").textContent(), /median error \d+\.\d %.*It holds for about 22 C/);
   const quality = await part(page, "quality").textContent();
@@ -148,6 +148,23 @@ it("asks before it forgets presses, and says what the server refuses", async () 
     await part(second, "walk").waitFor();
     assertUnhurt(page);
     assertUnhurt(second);
+  } finally {
+    await server.stop();
+  }
+});
+
+it("does not begin on a recording that has ended, where nobody can press", async () => {
+  const server = await bench.serve("--port", "0", "--from", bench.path("recording.mcap"), ...bench.model);
+  try {
+    const page = await openPage(browser, `${server.url}#/calibration`);
+    await becomes(page, "live");
+    await part(page, "scrub").press("End");
+    await page.locator("[data-role=connection]", { hasText: "At its end" }).waitFor();
+    await part(page, "start").click();
+    await page.locator("[data-role=problem]", { hasText: "the recording has ended" }).waitFor();
+    assert.ok(await part(page, "walk").isHidden());
+    assertUnhurt(page);
+    await page.close();
   } finally {
     await server.stop();
   }

@@ -86,8 +86,9 @@ it("shows the counts of a CSV mat of which nothing is known but its rows and col
     assert.match(await part(page, "found").textContent(), /a time and 120 readings/);
     const person = new Person(page);
     await person.fill("array-name", "csv");
-    await person.fill("array-rows", "12");
-    await person.fill("array-cols", "10");
+    assert.equal(await page.locator("#array-rows").inputValue(), "12");
+    assert.equal(await page.locator("#array-cols").inputValue(), "10");
+    await part(page, "live-picture").waitFor();
     await person.submit();
     await part(page, "uncalibrated").waitFor();
     await becomes(page, "live");
@@ -167,11 +168,11 @@ it("lists the serial ports where no device is named, and opens the one that is c
     }
     server = await serve();
     const page = await openPage(browser, server.url);
-    await part(page, "port-setup").waitFor();
+    await part(page, "source-setup").waitFor();
     assert.ok(await part(page, "array-setup").isHidden());
-    await page.locator(`[data-port="${port}"]`).click();
+    await page.locator(`[data-source="${port}"]`).click();
     await part(page, "array-setup").waitFor();
-    assert.ok(await part(page, "port-setup").isHidden());
+    assert.ok(await part(page, "source-setup").isHidden());
     assert.match(await part(page, "found").textContent(), /these bytes are dermis, 3x4/);
     assert.equal(await page.locator("#array-cols").inputValue(), "4");
     await page.locator("#array-name").fill("board");

@@ -170,6 +170,65 @@ it("says which mesh of a body cannot be shown", async () => {
   });
 });
 
+/** In the page: the picture of the suit as the browser shows it, its border and the share that differs from its corner. */
+async function lookAtPicture(page) {
+  const shot = await page.locator(".suit-room > canvas").screenshot();
+  return page.evaluate(async (data) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${data}`;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+    const ink = canvas.getContext("2d");
+    ink.drawImage(image, 0, 0);
+    const { data: pixels, width, height } = ink.getImageData(0, 0, canvas.width, canvas.height);
+    const isDrawn = (x, y) => [0, 1, 2].some((channel) => Math.abs(pixels[4 * (y * width + x) + channel] - pixels[4 * (3 * width + 3) + channel]) > 12);
+    let [inside, atBorder] = [0, 0];
+    for (let y = 2; y < height - 2; ++y) {
+      for (let x = 2; x < width - 2; ++x) {
+        if (!isDrawn(x, y)) continue;
+        inside += 1;
+        if (y === 2 || y === height - 3 || x === 2 || x === width - 3) atBorder += 1;
+      }
+    }
+    return { inside: inside / (width * height), atBorder };
+  }, shot.toString("base64"));
+}
+
+it("has the whole body in view when it is opened", async () => {
+  writeSuit('body = "tall.urdf"', true);
+  writeFileSync(bench.path("tall.urdf"), urdf("head.glb").replace('<box size="0.1 0.1 0.06"/>', '<box size="0.2 0.3 1.8"/>'));
+  await showSuit(async (page) => {
+    await page.waitForTimeout(500);
+    const { inside, atBorder } = await lookAtPicture(page);
+    assert.ok(inside > 0.02, String(inside));
+    assert.equal(atBorder, 0);
+  });
+});
+
+it("shows the frame of the pause where it is opened later", async () => {
+  await shown(["--from", "sim:contacts?rate=100", ...bench.model], "array", async (page) => {
+    await page.locator("[data-role=highest-taxel]", { hasText: / N / }).waitFor();
+    await page.locator("[data-role=pause]").click();
+    await page.locator("[data-tab=suit]").click();
+    await eventually(page, () => Number(document.querySelector("[data-view=suit]")?.dataset.stamp) > 0);
+    const stamp = () => page.locator("[data-view=suit]").getAttribute("data-stamp");
+    const first = await stamp();
+    await page.waitForTimeout(300);
+    assert.equal(await stamp(), first);
+    await page.locator("[data-role=pause]").click();
+    await eventually(page, (before) => document.querySelector("[data-view=suit]").dataset.stamp !== before, first);
+  });
+});
+
+it("shows the array that is opened during a pause, too", async () => {
+  await shown(["--from", "sim:contacts?rate=100", ...bench.model], "time", async (page) => {
+    await page.locator("[data-role=pause]").click();
+    await page.locator("[data-tab=array]").click();
+    await page.locator("[data-role=highest-taxel]", { hasText: / N / }).waitFor();
+  });
+});
+
 it("shows a mannequin where nothing is known of the body", async () => {
   writeSuit("", false);
   await showSuit(labelsAreApart);

@@ -35,6 +35,8 @@ it("records under a name, shows the size as it grows, plays the recording and sa
     await page.waitForFunction((before) => document.querySelector("[data-recording='walk.mcap'] [data-field=size]").textContent !== before, first, { timeout: WAIT_MS });
     await part(page, "begin-recording").click();
     await row.getByText("Play it").waitFor();
+    await words(page, "notice", new RegExp(`recorded \\d+ frames: ${bench.path("walk.mcap")}`));
+    await page.locator(".recording-list", { hasText: `Folder of the server: ${bench.folder}` }).waitFor();
     await part(page, "begin-recording").click();
     await words(page, "take-words", "walk.mcap is there already");
 
@@ -67,6 +69,10 @@ it("saves the last minute of all arrays as a recording and of one as a table", a
     assert.ok(rows.length > 1);
     assert.deepEqual(Object.keys(rows[0]).filter((column) => column.startsWith("r")).length, 20);
     await words(page, "take-words", `${rows.length} frames`);
+    const newtons = readCsv(bench.path(table.name.replace(".csv", "-newtons.csv")));
+    assert.equal(newtons.length, rows.length);
+    assert.ok(newtons.some((row) => Number(row.r0c0) > 0 || Number(row.r3c4) > 0 || Number(row.r2c2) > 0));
+    await words(page, "take-words", "-newtons.csv");
   });
 });
 

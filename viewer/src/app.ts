@@ -3,7 +3,7 @@
 import { DisplayStatistics } from "./display_statistics";
 import { element, setHidden, setText } from "./dom";
 import { LiveData } from "./live/live_data";
-import type { HealthStatus } from "./messages/statistics";
+import { DiagnosticLevel, type HealthStatus } from "./messages/statistics";
 import { makeArraySetup } from "./setup/array_setup";
 import { Signal } from "./signal";
 import { Stream } from "./stream/stream";
@@ -60,13 +60,13 @@ export class App implements ViewContext {
   /** Somebody may have calibrated an array, here or on another page. */
   #refreshWhereCalibrated(health: readonly HealthStatus[]): void {
     const isNews = this.suit.description.value.arrays.some(
-      ({ name, calibrated }) => !calibrated && health.some((status) => status.name === name && !status.message.startsWith("not calibrated")),
+      ({ name, calibrated }) => !calibrated && health.some(({ name: of, level, message }) => of === name && level <= DiagnosticLevel.warn && !message.startsWith("not calibrated")),
     );
     if (isNews) void this.stream.refresh();
   }
 
   begin(): void {
-    document.body.append(this.#bar.element, makeTokenForm(this.stream), ...makeArraySetup(this.stream, this.suit), this.#notice, makeThreatBanner(this.live.threats, this.stream), makeTareBanner(this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds, this.#take.element);
+    document.body.append(this.#bar.element, makeTokenForm(this.stream), ...makeArraySetup(this.stream, this.suit, this.theme), this.#notice, makeThreatBanner(this.live.threats, this.stream), makeTareBanner(this.stream), this.#room, this.#transport.element, this.#help, this.#thresholds, this.#take.element);
     window.addEventListener("hashchange", () => this.#route());
     window.addEventListener("keydown", (event) => this.#key(event));
     this.suit.selected.follow((array) => array !== undefined && this.#shown !== undefined && this.open(this.#shown.name));

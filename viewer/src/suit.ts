@@ -67,10 +67,17 @@ export interface ArrayDescription {
 
 /** An array of which nothing is written yet: what its source tells. */
 export interface ArraySetup {
+  /** Empty: the user chooses where the array is. */
   from: string;
+  /** Frames come; else rows and columns are those that they would likely have. */
+  readable: boolean;
+  /** Lines of a recording are turned already. */
+  turnable: boolean;
   rows: number | null;
   cols: number | null;
   message: string;
+  /** The first of those of which no frame is made, two hexadecimal digits each. */
+  bytes: string;
 }
 
 export interface SuitDescription {

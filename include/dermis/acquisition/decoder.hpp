@@ -67,6 +67,9 @@ class Decoder {
   /// What bytes that hold no frame lack, and the mend; empty where nothing is known.
   [[nodiscard]] virtual std::string advice() const { return {}; }
 
+  /// Of bytes that hold no frame, the shape that frames would likely have; empty where nothing is known.
+  [[nodiscard]] virtual std::optional<FrameShape> likely_shape() const { return {}; }
+
   /// The name of the protocol that "auto" has detected; empty until then, and for decoders of one protocol.
   [[nodiscard]] virtual std::string_view detected_protocol() const noexcept { return {}; }
 };

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "dermis/acquisition/source_uri.hpp"
@@ -19,6 +21,8 @@ struct DeviceOptions {
   /// If set, next() delivers what was received, then returns false within 100 ms.
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string&)> notice{};  ///< Receives messages for the user, one line each.
+  /// Is given all bytes as they come, before they are decoded.
+  std::function<void(std::span<const std::uint8_t>)> received{};
 };
 
 /// Opens a device as a source of frames. Each frame carries when its last byte had come;
@@ -33,5 +37,14 @@ struct DeviceOptions {
 
 /// The same by the text of its URI. Also fails on one that parse_source_uri() refuses.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_device(const std::string& uri, const DeviceOptions& options);
+
+/// Why no frame was made of what a device sent.
+struct UndecodedReason {
+  std::string why;                           ///< In one line, with the mend.
+  std::optional<FrameShape> likely_shape{};  ///< Its frames may have it; empty where nothing is known.
+};
+
+/// `bytes`: the first that came from the device, which hold no frame.
+[[nodiscard]] UndecodedReason why_undecoded(const SourceUri& uri, std::span<const std::uint8_t> bytes);
 
 }  // namespace dermis::acquisition

@@ -43,7 +43,7 @@ struct GuideState {
   std::optional<std::size_t> together_with;  ///< Another taxel, to be pressed at the same time with as much.
   double reading = 1.0;                      ///< Of `taxel` now over that of the unloaded taxel: 1 unloaded, rising.
   std::optional<double> together_reading;    ///< The same of `together_with`.
-  double hold_share = 0.0;                   ///< Of the quiet time or the hold that is done, 0 ... 1.
+  double hold_share = 0.0;                   ///< Of the quiet time, the hold or the last fit that is done, 0 ... 1.
   std::optional<std::size_t> pressed_taxel;  ///< The one that is pressed though it should not; else that feels most.
   std::optional<std::size_t> missing_taxel;  ///< Of two, the one that is not pressed while the other is.
   std::size_t presses_done = 0;

@@ -16,20 +16,21 @@ namespace dermis::serve {
 /// What a client has described.
 struct DescribedArray {
   std::string from{};   ///< URI of its source.
-  std::string model{};  ///< Path of its NAME.toml, in the current folder.
+  std::string model{};  ///< Its NAME.toml, or a model or array.toml from last time, in the current folder.
 };
 
 /// An array of which nothing is written yet. Serves a page that shows what its source sends, and asks for what that
 /// does not tell: the source itself, rows and columns, which way round they are. What a client answers becomes an
-/// array.toml with circuit = "auto".
+/// array.toml with circuit = "auto", as soon as the source has sent a frame of that shape; until then it is asked on.
 class ArraySetup {
  public:
   /// Reads the first frame of the source that the URI `from` names, for at most 8 s, and begins to answer clients.
   /// Bytes of which no frame can be made are no error: the page tells what they lack. Fails where the URI is wrong, its
   /// device is not there, or the port cannot be bound.
   ///
-  /// Where `from` is empty, clients choose among the serial ports of this machine. They are offered to clients of this
-  /// machine only: a server that others can reach needs `from`. No port is opened that a client did not choose.
+  /// Where `from` is empty, clients choose: a serial port of this machine, an address, a recording of the current
+  /// folder, or the simulator. Only clients of this machine may: a server that others can reach needs `from`. Nothing
+  /// is opened that a client did not choose.
   [[nodiscard]] static Result<std::unique_ptr<ArraySetup>> create(const std::string& from,
                                                                   const SessionOptions& options,
                                                                   sources::SourceOptions source_options);

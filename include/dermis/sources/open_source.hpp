@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,7 +26,9 @@ struct SourceOptions {
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const std::string&)> notice{};  ///< Told what a user should know while it goes on; one line.
   std::function<void(const std::string&)> loss{};    ///< Told in one line, at its end, that a file is cut off there.
-  std::function<void(double share)> simulated{};     ///< Told how much of a scene is simulated before its first frame.
+  /// Given all bytes of a device as they come, before they are decoded.
+  std::function<void(std::span<const std::uint8_t>)> received{};
+  std::function<void(double share)> simulated{};  ///< Told how much of a scene is simulated before its first frame.
   std::shared_ptr<GuideVoice> guide{};  ///< Whom the hand of sim:rehearsal obeys. Null: nobody, it presses nothing.
 };
 

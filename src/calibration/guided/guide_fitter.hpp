@@ -29,8 +29,9 @@ class GuideFitter {
     std::optional<Result<Calibration>> calibration;  ///< Of a last job.
   };
 
-  /// `on_outcome` is called on the thread of the fits.
-  GuideFitter(ArrayDescription array, std::function<void(Outcome)> on_outcome);
+  /// `on_outcome` is called on the thread of the fits; `on_progress` gets the share done of a last job, from any
+  /// thread.
+  GuideFitter(ArrayDescription array, std::function<void(Outcome)> on_outcome, std::function<void(double)> on_progress);
   GuideFitter(const GuideFitter&) = delete;
   GuideFitter& operator=(const GuideFitter&) = delete;
   /// Waits for the fit that is going on.
@@ -42,9 +43,11 @@ class GuideFitter {
  private:
   void work();
   [[nodiscard]] Outcome run(const Job& job) const;
+  [[nodiscard]] Outcome run_last(const Job& job) const;
 
   ArrayDescription array_;
   std::function<void(Outcome)> on_outcome_;
+  std::function<void(double)> on_progress_;
   std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<Job> waiting_;

@@ -5,12 +5,14 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "calibration/circuit_fit/telling_presses.hpp"
 
 namespace dermis::calibration {
 namespace {
 
+constexpr double kShareThatTells = 0.05;  // how long the rest takes
 constexpr double kGramsPerNewton = 1000.0 / 9.80665;
 
 std::string describe_errors(const GuideState& state, const ArrayDescription& array) {
@@ -94,8 +96,10 @@ std::string describe_press(const GuideState& state, const ArrayDescription& arra
   return {};
 }
 
-std::string describe_fitting(const GuidedPresses& presses) {
-  return fmt::format("Fitting {} presses.", presses.size());
+std::string describe_fitting(const GuidedPresses& presses, double share, double seconds) {
+  if (share < kShareThatTells) return fmt::format("Fitting {} presses, for {:.0f} s so far.", presses.size(), seconds);
+  const double left = std::ceil(seconds * (1.0 - share) / share);
+  return fmt::format("Fitting {} presses: about {:.0f} s left.", presses.size(), left);
 }
 
 std::string describe_result(const Calibration& calibration, const GuideState& state, const GuidedPresses& presses) {

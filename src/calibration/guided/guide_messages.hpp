@@ -20,8 +20,8 @@ namespace dermis::calibration {
 /// What a person is to do in the stage `pressing`.
 [[nodiscard]] std::string describe_press(const GuideState& state, const ArrayDescription& array);
 
-/// What goes on in the stage `fitting`.
-[[nodiscard]] std::string describe_fitting(const GuidedPresses& presses);
+/// What goes on in the stage `fitting`, of which that share is done after so many seconds.
+[[nodiscard]] std::string describe_fitting(const GuidedPresses& presses, double share, double seconds);
 
 /// What a finished calibration reached and what it holds for.
 [[nodiscard]] std::string describe_result(const Calibration& calibration, const GuideState& state,

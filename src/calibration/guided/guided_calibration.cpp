@@ -3,6 +3,7 @@
 #include "dermis/calibration/guided_calibration.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <mutex>
 #include <utility>
 
@@ -27,6 +28,10 @@ double ratio_per_count(const ArrayDescription& array) {
   return reference / readout.full_scale_counts();
 }
 
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
 }  // namespace
 
 class GuidedCalibration::Implementation {
@@ -49,6 +54,8 @@ class GuidedCalibration::Implementation {
     std::optional<double> unpressed_error;
     std::shared_ptr<const Calibration> calibration;
     std::string failure;
+    double share = 0.0;                           // done of the last one
+    std::chrono::steady_clock::time_point begin;  // of the last one
   };
 
   void wait_for_quiet(const RawFrame& raw);
@@ -60,6 +67,7 @@ class GuidedCalibration::Implementation {
   void start_last_fit();
   void fail(std::string why);
   void accept_fit(GuideFitter::Outcome outcome);
+  void accept_share(double share);
   [[nodiscard]] std::string message(const GuideState& state) const;
 
   const ArrayDescription array_;
@@ -84,7 +92,9 @@ GuidedCalibration::Implementation::Implementation(ArrayDescription array, Calibr
       conditioner_(array_),
       quiet_(plan_.unloaded_time, ratio_per_count(array_)),
       presses_(plan_),
-      fitter_(array_, [this](GuideFitter::Outcome outcome) { accept_fit(std::move(outcome)); }) {}
+      fitter_(
+          array_, [this](GuideFitter::Outcome outcome) { accept_fit(std::move(outcome)); },
+          [this](double share) { accept_share(share); }) {}
 
 void GuidedCalibration::Implementation::feed(const RawFrame& raw) {
   const std::lock_guard lock(mutex_);
@@ -135,6 +145,8 @@ void GuidedCalibration::Implementation::start_last_fit() {
   recogniser_->rest();
   if (presses_.kept().empty()) return fail("Every press was skipped: there is nothing to fit.");
   stage_ = GuideStage::fitting;
+  fit_.share = 0.0;
+  fit_.begin = std::chrono::steady_clock::now();
   start_fit(true);
 }
 
@@ -162,6 +174,11 @@ void GuidedCalibration::Implementation::accept_fit(GuideFitter::Outcome outcome)
   }
   fit_.calibration = std::make_shared<const Calibration>(std::move(outcome.calibration->value()));
   stage_ = GuideStage::done;
+}
+
+void GuidedCalibration::Implementation::accept_share(double share) {
+  const std::lock_guard lock(mutex_);
+  fit_.share = std::max(fit_.share, share);
 }
 
 Status GuidedCalibration::Implementation::skip() {
@@ -208,6 +225,7 @@ GuideState GuidedCalibration::Implementation::state() const {
   } else if (last_time_) {
     state.hold_share = quiet_.share(*last_time_);
   }
+  if (stage_ == GuideStage::fitting) state.hold_share = fit_.share;
   if (stage_ == GuideStage::pressing) {
     state.pressed_taxel = recogniser_->pressed_taxel();
     state.missing_taxel = recogniser_->missing_taxel();
@@ -230,7 +248,7 @@ std::string GuidedCalibration::Implementation::message(const GuideState& state) 
     case GuideStage::none: break;
     case GuideStage::unloaded: return describe_quiet(quiet_.is_disturbed());
     case GuideStage::pressing: return describe_press(state, array_);
-    case GuideStage::fitting: return describe_fitting(presses_.kept());
+    case GuideStage::fitting: return describe_fitting(presses_.kept(), fit_.share, seconds_since(fit_.begin));
     case GuideStage::done: return describe_result(*fit_.calibration, state, presses_.kept());
     case GuideStage::failed: return fit_.failure;
   }

@@ -135,13 +135,16 @@ std::optional<double> error_on_left_out_presses(const ArrayDescription& array, c
 }
 
 std::optional<double> error_on_left_out_taxels(const ArrayDescription& array, const std::vector<RawFrame>& unloaded,
-                                               const GuidedPresses& presses) {
+                                               const GuidedPresses& presses,
+                                               const std::function<void(double)>& progress) {
   const PressesOfTaxel grouped = by_taxel(presses);
   if (grouped.size() == array.taxel_count()) return std::nullopt;
   std::vector<double> errors;
-  for (std::size_t fold = 0; fold < std::min(kTaxelFolds, grouped.size()); ++fold) {
+  const std::size_t folds = std::min(kTaxelFolds, grouped.size());
+  for (std::size_t fold = 0; fold < folds; ++fold) {
     const std::vector<double> of_fold = errors_on(whole_taxels(grouped, fold), array, unloaded, presses);
     errors.insert(errors.end(), of_fold.begin(), of_fold.end());
+    progress(static_cast<double>(fold + 1) / static_cast<double>(folds));
   }
   return median(std::move(errors));
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -34,9 +35,10 @@ using GuidedPresses = std::vector<std::shared_ptr<const GuidedPress>>;
                                                               const GuidedPresses& presses);
 
 /// The same on taxels without a press: all presses of a quarter of the taxels are left out, four times. Empty where
-/// every taxel is pressed.
+/// every taxel is pressed. `progress` gets the share done.
 [[nodiscard]] std::optional<double> error_on_left_out_taxels(const ArrayDescription& array,
                                                              const std::vector<RawFrame>& unloaded,
-                                                             const GuidedPresses& presses);
+                                                             const GuidedPresses& presses,
+                                                             const std::function<void(double)>& progress);
 
 }  // namespace dermis::calibration

@@ -82,7 +82,7 @@ class CalibrationView implements View {
   }
 
   key(event: KeyboardEvent): boolean {
-    const action = { s: "skip", r: "repeat" }[event.key];
+    const action = { n: "skip", b: "repeat" }[event.key];
     const stage = this.#state?.stage;
     if (action !== undefined && stage === CalibrationStage.pressing) this.#call(action);
     else if (event.key === "Enter" && stage === CalibrationStage.done && !(event.target instanceof HTMLButtonElement)) this.#call("save");

@@ -55,8 +55,8 @@ export class WalkPanel {
   readonly #cancel: HTMLButtonElement;
 
   constructor(actions: WalkActions) {
-    this.#skip = button("skip", "Skip", "S", () => actions.skip());
-    this.#repeat = button("repeat", "Last one again", "R", () => actions.repeat());
+    this.#skip = button("skip", "Skip", "N", () => actions.skip());
+    this.#repeat = button("repeat", "Last one again", "B", () => actions.repeat());
     this.#finish = button("finish", "Finish now", "", () => actions.finish());
     this.#save = button("save", "Save and use", "Enter", () => actions.save());
     this.#save.classList.add("primary");
@@ -82,9 +82,10 @@ export class WalkPanel {
 
   set(state: CalibrationState, array: ArrayDescription | undefined): void {
     const { stage } = state;
-    this.#progress.max = Math.max(1, state.pressesTotal);
-    this.#progress.value = state.pressesDone;
-    setText(this.#count, `${state.pressesDone} of ${state.pressesTotal}`);
+    const isFitting = stage === CalibrationStage.fitting;
+    this.#progress.max = isFitting ? 1 : Math.max(1, state.pressesTotal);
+    this.#progress.value = isFitting ? state.holdShare : state.pressesDone;
+    setText(this.#count, isFitting ? `fit, ${fixed(100 * state.holdShare, 0)} %` : `${state.pressesDone} of ${state.pressesTotal}`);
     this.#say(state);
     setData(this.#words, "level", levelOf(state));
     setData(this.element, "stage", String(stage));
@@ -122,10 +123,11 @@ export class WalkPanel {
   #setButtons({ stage, pressesDone, message }: CalibrationState): void {
     const isPressing = stage === CalibrationStage.pressing;
     const isOver = stage === CalibrationStage.done || stage === CalibrationStage.failed;
-    setHidden(this.#skip, isOver);
-    setHidden(this.#finish, isOver);
+    const isFitting = stage === CalibrationStage.fitting;
+    setHidden(this.#skip, isOver || isFitting);
+    setHidden(this.#finish, isOver || isFitting);
     setHidden(this.#save, !isOver);
-    setHidden(this.#repeat, stage === CalibrationStage.done);
+    setHidden(this.#repeat, isFitting || stage === CalibrationStage.done);
     this.#skip.disabled = !isPressing;
     this.#finish.disabled = !isPressing || pressesDone === 0;
     this.#repeat.disabled = pressesDone === 0 || (!isPressing && stage !== CalibrationStage.failed);

@@ -3,16 +3,27 @@
 import { element, setHidden, setText } from "../dom";
 import type { Stream } from "../stream/stream";
 import type { Suit } from "../suit";
+import type { Theme } from "../theme";
 import { CornerGuide } from "./corner_guide";
-import { makePortList } from "./port_list";
+import { dumpOf } from "./first_bytes";
+import { KnownArrays } from "./known_arrays";
+import { LivePicture } from "./live_picture";
+import { makeSourceChoice } from "./source_choice";
+import { TouchFeed, type Shape } from "./touch_feed";
 
 const LINES = { type: "number", min: 1, max: 1024, step: 1, required: true } as const;
+/** Who types a number has not finished with its first digit. */
+const TYPING_MS = 500;
 
 /** Asks where the array is and how it is made, where nothing is written of it yet: a part of the page for each. */
-export function makeArraySetup(stream: Stream, suit: Suit): HTMLElement[] {
-  const ports = makePortList(stream);
+export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLElement[] {
+  const known = new KnownArrays(stream);
+  const choice = makeSourceChoice(stream, known);
+  const feed = new TouchFeed(stream);
+  const picture = new LivePicture(theme);
   const source = element("p", { class: "dim" });
   const found = element("p", { "data-role": "found" });
+  const bytes = element("pre", { class: "first-bytes", tabindex: 0, "aria-label": "The first bytes", "data-role": "first-bytes", hidden: true });
   const problem = element("p", { class: "attention", role: "alert", "data-role": "setup-problem", hidden: true });
   const name = element("input", { id: "array-name", class: "field", value: "mat", pattern: "[A-Za-z0-9_\\-]+", required: true, autocomplete: "off" });
   const rows = element("input", { id: "array-rows", class: "field", ...LINES });
@@ -20,23 +31,77 @@ export function makeArraySetup(stream: Stream, suit: Suit): HTMLElement[] {
   const pitch = element("input", { id: "array-pitch", class: "field", type: "number", min: 0.05, max: 1000, step: "any", value: 10, required: true });
   const bits = element("input", { id: "array-bits", class: "field", type: "number", min: 1, max: 24, step: 1, value: 12, required: true });
 
+  const tell = (words: string): void => {
+    setText(problem, words);
+    setHidden(problem, false);
+  };
+
   /** Rows and columns are those of the array, which may not be those that are sent. */
   let isSwapped = false;
   const swapLines = (transpose: boolean): void => {
     if (transpose !== isSwapped) [rows.value, cols.value] = [cols.value, rows.value];
     isSwapped = transpose;
   };
-  const sentShape = (): { rows: number; cols: number } | undefined => {
-    const isKnown = rows.checkValidity() && cols.checkValidity() && rows.valueAsNumber > 1 && cols.valueAsNumber > 1;
-    return isKnown ? { rows: rows.valueAsNumber, cols: cols.valueAsNumber } : undefined;
+  const sentShape = (): Shape | undefined => {
+    if (!rows.checkValidity() || !cols.checkValidity()) return undefined;
+    const [first, second] = isSwapped ? [cols, rows] : [rows, cols];
+    return { rows: first.valueAsNumber, cols: second.valueAsNumber };
   };
-  const corners = new CornerGuide(stream, sentShape, ({ transpose }) => swapLines(transpose));
+  const twoCorners = (): Shape | undefined => {
+    const shape = sentShape();
+    return shape !== undefined && shape.rows > 1 && shape.cols > 1 ? shape : undefined;
+  };
+  const corners = new CornerGuide(feed, twoCorners, ({ transpose }) => swapLines(transpose));
+  const watch = (): void => {
+    picture.forget();
+    const shape = sentShape();
+    if (shape === undefined || !stream.services.value.has("/array/watch")) feed.stop();
+    else void feed.watch(shape);
+  };
+  stream.services.follow(watch); // they come after the description
+  let typing = 0;
   for (const input of [rows, cols]) {
     input.addEventListener("input", () => {
       isSwapped = false;
       corners.forget();
+      window.clearTimeout(typing);
+      typing = window.setTimeout(watch, TYPING_MS);
     });
   }
+  feed.latest.follow((touch) => {
+    if (touch === undefined || feed.shape === undefined) return;
+    picture.show(touch, feed.shape, corners.way);
+    if (touch.problem !== "") tell(touch.problem);
+  });
+
+  /** Of a service; what it answers with an error is shown, and the question stays. */
+  async function ask(service: string, request: object): Promise<void> {
+    setHidden(problem, true);
+    try {
+      await stream.callService(service, request);
+    } catch (error) {
+      tell(error instanceof Error ? error.message : String(error));
+    }
+  }
+  const use = async (file: string): Promise<void> => {
+    window.clearTimeout(typing);
+    await ask("/array/use", { file });
+  };
+  const again = element("button", { class: "button", type: "button", "data-role": "listen-again" }, "Listen again");
+  again.addEventListener("click", () => {
+    feed.stop();
+    again.disabled = true;
+    void ask("/source/look", {}).then(async () => {
+      await stream.refresh();
+      again.disabled = false;
+    });
+  });
+  const leave = element("button", { class: "button", type: "button", "data-role": "other-source" }, "Another source");
+  leave.addEventListener("click", () => {
+    feed.stop();
+    known.chosen.value = undefined;
+    void ask("/source/leave", {}).then(() => stream.refresh());
+  });
 
   const field = (words: string, input: HTMLElement): HTMLElement[] => [element("label", { for: input.id }, words), input];
   const form = element(
@@ -45,9 +110,13 @@ export function makeArraySetup(stream: Stream, suit: Suit): HTMLElement[] {
     element("h2", {}, "Which array is this?"),
     source,
     found,
+    bytes,
+    element("div", { class: "setup-row" }, again, leave),
+    known.makeList(({ file }) => void use(file)),
     ...field("Name", name),
     ...field("Rows", rows),
     ...field("Columns", cols),
+    picture.element,
     corners.element,
     ...field("From taxel to taxel [mm]", pitch),
     ...field("Bits of the ADC (10: Arduino Uno, 12: ESP32)", bits),
@@ -65,22 +134,33 @@ export function makeArraySetup(stream: Stream, suit: Suit): HTMLElement[] {
       adc_bits: bits.valueAsNumber,
       ...corners.way,
     };
-    setHidden(problem, true);
-    stream.callService("/array/describe", request).catch((error: unknown) => {
-      setText(problem, error instanceof Error ? error.message : String(error));
-      setHidden(problem, false);
-    });
+    window.clearTimeout(typing);
+    void ask("/array/describe", request);
+  });
+  known.all.follow(() => {
+    if (name.value === name.defaultValue) name.value = name.defaultValue = known.freeName();
   });
   suit.description.follow(({ setup }) => {
-    setHidden(ports, setup?.from !== "");
+    setHidden(choice, setup?.from !== "");
     setHidden(form, setup === undefined || setup.from === "");
-    if (setup === undefined) return;
+    window.clearTimeout(typing);
+    feed.stop();
+    if (setup === undefined || setup.from === "") return;
     setText(source, setup.from);
     setText(found, setup.message);
+    found.classList.toggle("attention", !setup.readable);
+    setText(bytes, dumpOf(setup.bytes));
+    setHidden(bytes, setup.bytes === "");
+    setHidden(again, setup.readable);
+    setHidden(leave, !stream.services.value.has("/source/leave"));
+    setHidden(corners.element, !setup.turnable);
     rows.value = setup.rows === null ? "" : String(setup.rows);
     cols.value = setup.cols === null ? "" : String(setup.cols);
     isSwapped = false;
     corners.forget();
+    setHidden(problem, true);
+    if (known.chosen.value !== undefined) void use(known.chosen.value.file);
+    else watch();
   });
-  return [ports, form];
+  return [choice, form];
 }

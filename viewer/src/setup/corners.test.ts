@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { describe, expect, it } from "vitest";
-import { cornerOf, describeWayRound, wayRound, type Place, type WayRound } from "./corners";
+import { cornerOf, describeWayRound, sentPlace, wayRound } from "./corners";
 
 const ROWS = 12;
 const COLS = 10;
-
-/** Where a taxel of the array is in what a device sends, by the rules of docs/file-formats.md. */
-function sentPlace([row, col]: Place, { transpose, flip_rows, flip_cols }: WayRound): Place {
-  const turnedRow = flip_rows ? ROWS - 1 - row : row;
-  const turnedCol = flip_cols ? COLS - 1 - col : col;
-  return transpose ? [turnedCol, turnedRow] : [turnedRow, turnedCol];
-}
+const SHAPE = { rows: ROWS, cols: COLS };
 
 describe("two corners", () => {
   it("tell every way round in which lines can be sent", () => {
     for (let bits = 0; bits < 8; bits += 1) {
       const way = { transpose: (bits & 1) !== 0, flip_rows: (bits & 2) !== 0, flip_cols: (bits & 4) !== 0 };
-      expect(wayRound(sentPlace([0, 0], way), sentPlace([0, COLS - 1], way))).toEqual(way);
+      expect(wayRound(sentPlace([0, 0], SHAPE, way), sentPlace([0, COLS - 1], SHAPE, way))).toEqual(way);
     }
   });
 

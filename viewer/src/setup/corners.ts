@@ -13,6 +13,13 @@ export interface WayRound {
 
 export const AS_SENT: WayRound = { transpose: false, flip_rows: false, flip_cols: false };
 
+/** Where a taxel of the array is in what its device sends, by the rules of docs/file-formats.md. */
+export function sentPlace([row, col]: Place, { rows, cols }: { rows: number; cols: number }, { transpose, flip_rows, flip_cols }: WayRound): Place {
+  const turnedRow = flip_rows ? rows - 1 - row : row;
+  const turnedCol = flip_cols ? cols - 1 - col : col;
+  return transpose ? [turnedCol, turnedRow] : [turnedRow, turnedCol];
+}
+
 /** The end of a line that a finger means: it may be a quarter of the line off. */
 function endOf(line: number, lines: number): number | undefined {
   const most = Math.floor((lines - 1) / 4);

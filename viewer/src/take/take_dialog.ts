@@ -102,9 +102,9 @@ export class TakeDialog {
     const { stream } = this.#context;
     const toS = this.#pausedAtS ?? stream.latestTimeS;
     const time = toS === undefined ? {} : { from_ms: Math.max(0, Math.floor(1000 * (toS - Number(this.#length.value)))), to_ms: Math.max(0, Math.ceil(1000 * toS)) };
-    const { file, frames } = (await stream.callService("/recordings/save", { ...what, ...time })) as { file: string; frames: number };
-    setText(this.#words, `${file}: ${frames} frames`);
-    saveFrom(fileAddress(stream, file), file);
+    const { file, frames, forces } = (await stream.callService("/recordings/save", { ...what, ...time })) as { file: string; frames: number; forces?: string };
+    setText(this.#words, `${file}: ${frames} frames${forces === undefined ? "" : `; ${forces}: their newtons`}`);
+    for (const name of forces === undefined ? [file] : [file, forces]) saveFrom(fileAddress(stream, name), name);
   }
 
   async #savePicture(ending: string, take: (array: ArrayDescription) => Promise<Picture>): Promise<void> {

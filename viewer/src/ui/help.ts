@@ -15,7 +15,7 @@ const KEYS: readonly (readonly [string, string])[] = [
   ["Arrows", "on the maps: move the cursor; on the suit: turn it"],
   ["Enter", "on the maps: pin the taxel, or set a corner of the region"],
   ["+  \u2212  Home", "on the suit: nearer, farther, all of it"],
-  ["S  R  Enter", "calibration: skip a press, do the last one again, save"],
+  ["N  B  Enter", "calibration: skip to the next press, back to the last one, save"],
   ["K", "recording: play, pause"],
   ["J  L", "recording: a second back, forward"],
   ["D", "light or dark"],

@@ -78,6 +78,15 @@ class ArrayView implements View {
     this.#narrow.addEventListener("change", () => (this.#layoutDue = true));
     context.suit.selected.follow((array) => this.#choose(array));
     for (const panel of this.#panels) panel.end.follow(() => this.#describe());
+    context.paused.follow((isPaused) => this.#stand(isPaused));
+  }
+
+  /** Also where another view is shown now: this one may be opened before the picture goes on. */
+  #stand(isPaused: boolean): void {
+    this.#feeds.stand(isPaused, this.#isShown);
+    if (this.#isShown) return;
+    if (isPaused) this.#follow();
+    else this.#feeds.end();
   }
 
   show(): void {
@@ -89,7 +98,7 @@ class ArrayView implements View {
 
   hide(): void {
     this.#isShown = false;
-    this.#feeds.end();
+    if (!this.#context.paused.value) this.#feeds.end();
     this.#resizing.disconnect();
   }
 
@@ -97,7 +106,7 @@ class ArrayView implements View {
     const array = this.#array;
     if (array === undefined) return;
     if (this.#layoutDue) this.#layOut(array);
-    if (!this.#context.paused.value) this.#decode(array);
+    this.#decode(array);
     if (this.#mapsDue) {
       this.#maps.draw();
       this.#mapsDue = false;

@@ -12,6 +12,8 @@ interface Feed {
   readonly heard: GridFrame;
   readonly held: HeldValues;
   message: DataView | undefined;
+  /** While the picture stands: it has the frame at which it stands. */
+  isHeld: boolean;
 }
 
 const TOPICS = QUANTITIES.filter(({ name }) => name !== "pressure");
@@ -20,10 +22,11 @@ const TOPICS = QUANTITIES.filter(({ name }) => name !== "pressure");
 export class Feeds {
   /** Of each quantity the newest frame that is shown. */
   readonly frames: readonly GridFrame[];
-  readonly #feeds: readonly Feed[] = TOPICS.map(() => ({ frame: emptyGrid(), heard: emptyGrid(), held: new HeldValues(), message: undefined }));
+  readonly #feeds: readonly Feed[] = TOPICS.map(() => ({ frame: emptyGrid(), heard: emptyGrid(), held: new HeldValues(), message: undefined, isHeld: false }));
   readonly #pressure = emptyGrid();
   readonly #ends: (() => void)[] = [];
   #share: TimeShare = "now";
+  #isStanding = false;
 
   constructor() {
     this.frames = [...this.#feeds.map(({ frame }) => frame), this.#pressure];
@@ -32,7 +35,7 @@ export class Feeds {
   follow(stream: Stream, array: ArrayDescription): void {
     this.end();
     TOPICS.forEach(({ name }, index) => {
-      this.#feeds[index]!.message = undefined;
+      if (!this.#feeds[index]!.isHeld) this.#feeds[index]!.message = undefined;
       this.#ends.push(stream.subscribe(`/${array.name}/${name}`, (message) => this.#hear(index, message)));
     });
   }
@@ -41,8 +44,15 @@ export class Feeds {
     for (const end of this.#ends.splice(0)) end();
   }
 
+  /** The picture stands at its present frame; where it `has` none, at the first that comes. */
+  stand(isStanding: boolean, has: boolean): void {
+    this.#isStanding = isStanding;
+    for (const feed of this.#feeds) feed.isHeld = has && feed.frame.rows > 0;
+  }
+
   /** Another array: nothing is known of it. */
   forget(): void {
+    for (const feed of this.#feeds) feed.isHeld = false;
     for (const { values, statuses } of this.frames) {
       values.fill(NaN);
       statuses.fill(0);
@@ -78,10 +88,13 @@ export class Feeds {
 
   #hear(index: number, message: DataView): void {
     const feed = this.#feeds[index]!;
+    if (this.#share !== "now") {
+      read(index, message, feed.heard);
+      feed.held.add(feed.heard, this.#share);
+    }
+    if (this.#isStanding && feed.isHeld) return;
+    feed.isHeld = this.#isStanding;
     feed.message = message;
-    if (this.#share === "now") return;
-    read(index, message, feed.heard);
-    feed.held.add(feed.heard, this.#share);
   }
 
   #press(array: ArrayDescription): number {

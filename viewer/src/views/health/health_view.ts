@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { element, setData, setText } from "../../dom";
-import { count, engineering, fixed } from "../../format";
+import { count, fixed } from "../../format";
 import { type ArrayStatistics, DiagnosticLevel, type HealthStatus, type Statistics } from "../../messages/statistics";
 import type { View, ViewContext, ViewFactory } from "../../view";
 
@@ -11,8 +11,9 @@ const LEVELS: Record<number, string> = { [ok]: "good", [warn]: "warn", [error]: 
 const LEVEL_WORDS: Record<number, string> = { [ok]: "well", [warn]: "warning", [error]: "error", [stale]: "no news" };
 const PERIOD_MS = 500;
 
+/** In one unit, so that rows can be compared; 0 is what nobody has measured. */
 function time(seconds: number): string {
-  return Number.isNaN(seconds) ? fixed(seconds, 0) : engineering(seconds, "s");
+  return known(seconds === 0 ? NaN : 1e3 * seconds, 2, "ms");
 }
 
 function known(value: number, digits: number, unit: string): string {

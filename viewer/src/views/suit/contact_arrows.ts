@@ -32,14 +32,15 @@ export class ContactArrows {
     this.#used = 0;
   }
 
-  /** Writes where the arrow begins to `tail`; false: there are too many. */
-  add({ position, normal, forceN }: Contact, scaleEnd: number, size: number, tail: three.Vector3): boolean {
+  /** `isYTurned`: as asOnMap() has it. Writes where the arrow begins to `tail`; false: there are too many. */
+  add({ position, normal, forceN }: Contact, isYTurned: boolean, scaleEnd: number, size: number, tail: three.Vector3): boolean {
     if (this.#used === MOST_ARROWS) return false;
     const arrow = this.#arrows[this.#used] ?? this.#make();
     this.#used += 1;
     arrow.visible = true;
-    arrow.position.set(position[0]!, position[1]!, position[2]!);
-    this.#direction.set(-normal[0]!, -normal[1]!, -normal[2]!);
+    const sign = isYTurned ? -1 : 1;
+    arrow.position.set(position[0]!, sign * position[1]!, position[2]!);
+    this.#direction.set(-normal[0]!, -sign * normal[1]!, -normal[2]!);
     arrow.quaternion.setFromUnitVectors(DOWN, this.#direction);
     const length = size * LONGEST_SHARE * Math.min(1, forceN / scaleEnd);
     const [shaft, head, second] = arrow.children as [three.Mesh, three.Mesh, three.Mesh];

@@ -69,6 +69,7 @@ export class SuitScene {
   #mannequin: three.Group | undefined;
   readonly #mannequinInk = new three.MeshLambertMaterial();
   #suit: SuitDescription | undefined;
+  #isYTurned = false;
   #size = 1;
   #width = 1;
   #height = 1;
@@ -95,7 +96,9 @@ export class SuitScene {
     this.#scene.add(this.#arrows.group, this.#zones, this.#camera, new three.AmbientLight(0xffffff, 1.6));
   }
 
-  setSuit(suit: SuitDescription): void {
+  /** `isTurned`: y of the suit, as asOnMap() has it; the contacts that come are turned here. */
+  setSuit(suit: SuitDescription, isTurned: boolean): void {
+    this.#isYTurned = isTurned;
     if (this.#cloud !== undefined) {
       this.#scene.remove(this.#cloud.mesh);
       this.#cloud.dispose();
@@ -127,13 +130,20 @@ export class SuitScene {
       this.#mannequin = mannequinOf(suit, this.#size, this.#mannequinInk);
       this.#scene.add(this.#mannequin);
     } else {
-      this.#body = new BodyModel(suit.body, this.fetchFile, () => (this.#isDue = true), this.failed);
+      this.#body = new BodyModel(suit.body, this.fetchFile, () => this.#refit(), this.failed);
       this.#scene.add(this.#body.group);
     }
   }
 
+  /** A mesh has come: all of the body is to be seen, where the user has not turned it. */
+  #refit(): void {
+    if (!this.#isTurned) this.home();
+    this.#isDue = true;
+  }
+
   /** Moves arrays and links to where the server has them now. */
   setTransforms(transforms: readonly Transform[]): void {
+    if (this.#isYTurned) return; // nothing carries it
     for (const transform of transforms) {
       const { child } = transform;
       if (child.startsWith(LINK_PREFIX)) this.#body?.move(child.slice(LINK_PREFIX.length), transform);
@@ -188,7 +198,7 @@ export class SuitScene {
     const side = new three.Vector3().crossVectors(this.#camera.up, facing).normalize();
     const direction = facing.normalize().addScaledVector(side, liesFlat ? 0.25 : 0.6).addScaledVector(this.#camera.up, 0.3).normalize();
     this.#camera.near = 0.01 * this.#size;
-    this.#camera.far = 20 * this.#size;
+    this.#camera.far = 100 * this.#size;
     this.#camera.updateProjectionMatrix();
     this.#fit(direction);
     this.#isDue = true;
@@ -202,12 +212,28 @@ export class SuitScene {
     return mean.divideScalar(Math.max(1, normals.length));
   }
 
-  /** As near as all taxels can be seen, and room for arrows and names around them. */
+  /** The corners of the boxes round the parts of the body. */
+  #bodyCorners(): three.Vector3[] {
+    const corners: three.Vector3[] = [];
+    const dressed = this.#body?.group ?? this.#mannequin;
+    dressed?.updateMatrixWorld(true);
+    dressed?.traverse((part) => {
+      if (!(part instanceof three.Mesh)) return;
+      const geometry = part.geometry as three.BufferGeometry;
+      geometry.computeBoundingBox();
+      const { min, max } = geometry.boundingBox!;
+      for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) for (const z of [min.z, max.z]) corners.push(new three.Vector3(x, y, z).applyMatrix4(part.matrixWorld));
+    });
+    return corners;
+  }
+
+  /** As near as all taxels and the whole body can be seen, and room for arrows and names around them. */
   #fit(direction: three.Vector3): void {
     const target = this.#controls.target.copy(this.#centre);
     const point = new three.Vector3();
     const extent = new three.Box3();
-    let distance = 2 * this.#size;
+    const corners = this.#bodyCorners();
+    let distance = 2 * corners.reduce((farthest, corner) => Math.max(farthest, corner.distanceTo(target)), this.#size);
     for (let attempt = 0; attempt < FIT_ATTEMPTS; ++attempt) {
       this.#camera.position.copy(target).addScaledVector(direction, distance);
       this.#controls.update();
@@ -222,6 +248,7 @@ export class SuitScene {
           }
         }
       }
+      for (const corner of corners) extent.expandByPoint(point.copy(corner).project(this.#camera));
       if (extent.isEmpty()) return;
       extent.getCenter(point);
       const height = distance * Math.tan(three.MathUtils.degToRad(0.5 * this.#camera.fov));
@@ -281,7 +308,7 @@ export class SuitScene {
   #addArrow(contact: Contact, scaleEnd: number): void {
     const tail = this.#tails[this.#arrowCount];
     if (tail === undefined || contact.phase === ContactPhase.release) return;
-    this.#arrows.add(contact, scaleEnd, this.#size, tail);
+    this.#arrows.add(contact, this.#isYTurned, scaleEnd, this.#size, tail);
     this.#forces[this.#arrowCount] = contact.forceN;
     this.#arrowCount += 1;
   }
@@ -296,7 +323,10 @@ export class SuitScene {
   /** Of x, y and z where they point on the picture: right, up and towards the eye. */
   axes(): [number, number, number][] {
     const { elements } = this.#camera.matrixWorldInverse;
-    return [0, 4, 8].map((at) => [elements[at]!, elements[at + 1]!, elements[at + 2]!]);
+    return [0, 4, 8].map((at) => {
+      const sign = this.#isYTurned && at === 4 ? -1 : 1;
+      return [sign * elements[at]!, sign * elements[at + 1]!, sign * elements[at + 2]!];
+    });
   }
 
   get arrowCount(): number {

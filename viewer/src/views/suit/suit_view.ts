@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-import { element, setHidden, setText } from "../../dom";
+import { element, setData, setHidden, setText } from "../../dom";
 import { fixed } from "../../format";
 import { type PointsFrame, readPoints } from "../../messages/grids";
 import { readTransforms } from "../../messages/transforms";
 import { setting } from "../../settings";
 import type { View, ViewContext, ViewFactory } from "../../view";
+import { asOnMap, isLoneAndFlat } from "./as_on_map";
 import { LabelRoom } from "./label_room";
 import { OrientationGizmo } from "./orientation_gizmo";
 import type { SuitScene } from "./suit_scene";
@@ -80,6 +81,11 @@ class SuitView implements View {
   #isLoading = false;
   #message: DataView | undefined;
   #transforms: DataView | undefined;
+  #isPlaced = false;
+  #isShown = false;
+  /** What was drawn last, and what stands while the picture is paused. */
+  #drawn: DataView | undefined;
+  #held: DataView | undefined;
   #unsubscribe: () => void = () => undefined;
   #contactsVersion = -1;
   #labelMs = 0;
@@ -108,23 +114,48 @@ class SuitView implements View {
     context.suit.description.follow(() => this.#describe());
     context.suit.selected.follow((array) => this.#scene?.choose(array === undefined ? -1 : context.suit.indexOf(array.name)));
     context.theme.shown.follow(() => this.#scene?.readColors());
+    context.paused.follow((isPaused) => this.#pause(isPaused));
     this.#end.follow((end) => this.#setScale(end));
   }
 
   show(): void {
     void this.#load();
     this.#resizing.observe(this.#room);
-    const { stream } = this.#context;
-    const ends = [
-      stream.subscribe("/suit/points", (message) => (this.#message = message)),
-      stream.subscribe("/tf", (message) => (this.#transforms = message)),
-    ];
-    this.#unsubscribe = () => ends.forEach((end) => end());
+    this.#isShown = true;
+    this.#follow();
   }
 
   hide(): void {
-    this.#unsubscribe();
+    this.#isShown = false;
+    if (!this.#context.paused.value || this.#held !== undefined) this.#unsubscribe();
     this.#resizing.disconnect();
+  }
+
+  #follow(): void {
+    this.#unsubscribe();
+    const { stream } = this.#context;
+    const ends = [
+      stream.subscribe("/suit/points", (message) => this.#hear(message)),
+      stream.subscribe("/tf", (message) => (this.#transforms = message)),
+    ];
+    this.#unsubscribe = () => ends.splice(0).forEach((end) => end());
+  }
+
+  /** While the picture stands, it is the one of the moment of the pause, also where the view is opened later. */
+  #hear(message: DataView): void {
+    if (this.#context.paused.value) {
+      if (this.#held !== undefined) return;
+      this.#held = message;
+      if (!this.#isShown) this.#unsubscribe();
+    }
+    this.#message = message;
+  }
+
+  #pause(isPaused: boolean): void {
+    this.#held = isPaused && this.#isShown ? this.#message ?? this.#drawn : undefined;
+    if (this.#isShown) return;
+    if (isPaused) this.#follow();
+    else this.#unsubscribe();
   }
 
   draw(nowMs: number): void {
@@ -132,13 +163,16 @@ class SuitView implements View {
     if (scene === undefined) return;
     const { live, paused, display } = this.#context;
     const message = this.#message;
-    if (!paused.value && message !== undefined) {
+    if (message !== undefined) {
       this.#message = undefined;
+      this.#drawn = message;
       readPoints(message, this.#frame);
       scene.setForces(this.#frame);
       display.drawn(this.#frame.stampS);
+      setData(this.element, "stamp", fixed(this.#frame.stampS, 6));
     }
-    if (!paused.value && this.#transforms !== undefined) {
+    if (this.#transforms !== undefined && (!paused.value || !this.#isPlaced)) {
+      this.#isPlaced = true;
       scene.setTransforms(readTransforms(this.#transforms));
       this.#transforms = undefined;
     }
@@ -190,9 +224,11 @@ class SuitView implements View {
 
   #describe(): void {
     const { suit } = this.#context;
-    const { arrays } = suit.description.value;
+    const isTurned = isLoneAndFlat(suit.description.value);
+    const shown = isTurned ? asOnMap(suit.description.value) : suit.description.value;
+    const { arrays } = shown;
     if (this.#scene === undefined || arrays.length === 0) return;
-    this.#scene.setSuit(suit.description.value);
+    this.#scene.setSuit(shown, isTurned);
     this.#scene.setScale(this.#end.value);
     this.#scene.choose(suit.indexOf(suit.selected.value?.name ?? ""));
     for (const label of this.#labels) label.element.remove();
