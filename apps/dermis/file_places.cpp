@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "dermis/files/file_kind.hpp"
+#include "dermis/files/input.hpp"
 #include "dermis/sources/source_name.hpp"
 #include "status_line.hpp"
 
@@ -30,22 +30,20 @@ constexpr std::array<std::string_view, 7> kResults = {"time_s,status,",
                                                       "\x89PNG",
                                                       "<!DOCTYPE html>\n<html lang=\"en\" xmlns="};
 
-std::string first_bytes_of(const std::string& path) {
-  std::array<char, 128> bytes{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), bytes.size());
-  return {bytes.data(), static_cast<std::size_t>(file.gcount())};
-}
-
 bool is_result(std::string_view first_bytes) {
   const auto begins = [&](std::string_view beginning) { return first_bytes.starts_with(beginning); };
   const bool is_drawing = first_bytes.find("<svg") != std::string_view::npos;
   return is_drawing || std::ranges::any_of(kResults, begins);
 }
 
-/// Whether both names are of one file, also through links and where it does not exist yet.
+constexpr std::size_t kLooked = 128;
+
+/// Whether both names are of one file, also through links and where it does not exist yet. A terminal is read and
+/// written at once.
 bool is_same(const std::string& one, const std::string& other) {
+  if (one == other) return true;
   std::error_code error;
+  if (fs::is_character_file(one, error) || fs::is_socket(one, error)) return false;
   if (fs::equivalent(one, other, error)) return true;
   const fs::path whole = fs::weakly_canonical(one, error);
   return !whole.empty() && whole == fs::weakly_canonical(other, error);
@@ -53,7 +51,7 @@ bool is_same(const std::string& one, const std::string& other) {
 
 bool would_be_lost(const std::string& path) {
   std::error_code error;
-  return fs::is_regular_file(path, error) && fs::file_size(path, error) > 0;
+  return path != kStandardOutput && fs::is_regular_file(path, error) && fs::file_size(path, error) > 0;
 }
 
 /// The file of a path or of a source; empty where there is none.
@@ -71,8 +69,7 @@ std::vector<std::string> files_of(const std::vector<std::string>& names) {
 }
 
 std::vector<std::string> written_at(const std::string& path) {
-  const bool is_file = !path.empty() && path != "/dev/stdout";
-  return is_file ? std::vector{path} : std::vector<std::string>();
+  return path.empty() ? std::vector<std::string>() : std::vector{path};
 }
 
 }  // namespace
@@ -104,6 +101,19 @@ void FilePlaces::add_output_folder(const std::string& option, const std::string&
                       }});
 }
 
+Status FilePlaces::check_standard_input() const {
+  std::string reader;
+  for (const Place& input : inputs_) {
+    for (const std::string& path : input.paths()) {
+      if (path != kStandardInput) continue;
+      if (!reader.empty())
+        return bad_input(fmt::format("{}: {} reads the standard input; name a file", input.option, reader));
+      reader = input.option;
+    }
+  }
+  return Done{};
+}
+
 Status FilePlaces::check_distinct() const {
   std::vector<Place> others = inputs_;
   for (const Place& output : outputs_) {
@@ -120,12 +130,13 @@ Status FilePlaces::check_distinct() const {
 }
 
 Status FilePlaces::check(bool is_forced) const {
+  if (Status once = check_standard_input(); !once) return once;
   if (Status distinct = check_distinct(); !distinct) return distinct;
   std::vector<std::string> replaced;
   for (const Place& output : outputs_) {
     for (const std::string& path : output.paths()) {
       if (!would_be_lost(path)) continue;
-      const std::string first_bytes = first_bytes_of(path);
+      const std::string first_bytes = files::first_bytes_of(path, kLooked);
       if (output.is_model && files::kind_of(first_bytes) == files::kSafetensorsKind) continue;
       if (!is_forced && !is_result(first_bytes)) {
         return bad_input(fmt::format("{}: '{}' exists; name another, or replace it with --force", output.option, path));

@@ -10,6 +10,10 @@
 
 namespace dermis::app {
 
+/// What "-" stands for.
+inline constexpr const char* kStandardInput = "/dev/stdin";
+inline constexpr const char* kStandardOutput = "/dev/stdout";
+
 /// The files that a command reads and writes, and the rule that keeps it from overwriting any. What is added must live
 /// as long as this.
 class FilePlaces {
@@ -26,8 +30,8 @@ class FilePlaces {
 
   [[nodiscard]] bool has_outputs() const noexcept { return !outputs_.empty(); }
 
-  /// Fails if an output is an input or another output, by whatever name. Fails if it exists and is neither a table of
-  /// results nor a picture, unless `is_forced`. Says which files will be replaced.
+  /// Fails if an output is an input or another output, by whatever name, or two inputs are the standard input. Fails if
+  /// it exists and is neither a table of results nor a picture, unless `is_forced`. Says which files will be replaced.
   [[nodiscard]] Status check(bool is_forced) const;
 
  private:
@@ -37,6 +41,7 @@ class FilePlaces {
     bool is_model = false;
   };
 
+  [[nodiscard]] Status check_standard_input() const;
   [[nodiscard]] Status check_distinct() const;
 
   std::vector<Place> inputs_;

@@ -56,10 +56,10 @@ void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) 
   if (!uncertainty.relative_sigma_of_unpressed || 2 * uncertainty.unpressed_taxels < array.taxel_count()) return;
   report.remarks.insert(
       report.remarks.begin(),
-      fmt::format("{} of {} taxels were not pressed: their forces are +- {:.0f} %, as taxels differ; five loads of an "
-                  "air bladder over all of them tell each one's gain",
-                  uncertainty.unpressed_taxels, array.taxel_count(),
-                  100.0 * uncertainty.relative_sigma_of_unpressed->back()));
+      fmt::format(
+          "{} of {} taxels were not pressed: their forces are \u00b1 {:.0f} %, as taxels differ; five loads of an "
+          "air bladder over all of them tell each one's gain",
+          uncertainty.unpressed_taxels, array.taxel_count(), 100.0 * uncertainty.relative_sigma_of_unpressed->back()));
 }
 
 }  // namespace

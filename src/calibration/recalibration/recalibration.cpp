@@ -72,7 +72,7 @@ std::string describe(const Recalibration& recalibration) {
   const GainChange& change = recalibration.change;
   const double read = std::expm1(-change.sheet);  // of the force, too much
   std::string text = fmt::format(
-      "the sheet read {:.1f} % {} (+- {:.1f} %): from {}", 100.0 * std::abs(read),
+      "the sheet read {:.1f} % {} (\u00b1 {:.1f} %): from {}", 100.0 * std::abs(read),
       read > 0.0 ? "too much" : "too little", 100.0 * change.sheet_sigma,
       recalibration.presses == 1 ? "one press"
                                  : fmt::format("{} presses on {} taxels", recalibration.presses, recalibration.taxels));
