@@ -78,6 +78,23 @@ from dermis._dermis import (  # noqa: E402
     read_model,
     serve,
 )
+from dermis._copied import copy_well as _copy_well  # noqa: E402
+from dermis._shown import show_well as _show_well  # noqa: E402
+
+_copy_well()
+_show_well()
+
+
+async def _next_frame(source):
+    import asyncio
+
+    while (frame := await asyncio.to_thread(source._poll)) is None:
+        pass
+    return frame
+
+
+Source.__aiter__ = lambda source: source
+Source.__anext__ = _next_frame
 
 
 def evaluate(model, frames, loads):

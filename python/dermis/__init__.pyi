@@ -3,7 +3,7 @@
 """Shapes are (rows, cols), row-major. A path is a str or an os.PathLike."""
 import enum
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import AsyncIterator, Callable, Iterable, Iterator, Sequence
 from types import TracebackType
 from typing import Any, TypeAlias, overload
 
@@ -99,6 +99,7 @@ class RawFrame:
     def sequence(self) -> int | None: ...
     @property
     def lost_before(self) -> int: ...
+    def _repr_png_(self) -> bytes: ...
 
 class ForceFrame:
     """Forces of one frame. The arrays are views (rows, cols); they keep the frame alive."""
@@ -124,6 +125,7 @@ class ForceFrame:
         """Its standard deviation, with the errors that taxels share."""
     def total_of(self, mask: ArrayLike) -> tuple[float, float]:
         """The same of the taxels where mask (rows, cols) is true: newtons, standard deviation."""
+    def _repr_png_(self) -> bytes: ...
 
 class Recording:
     """Frames of one array in memory, from and to any file of frames: .mcap, .csv, .h5, .npy and more.
@@ -148,7 +150,10 @@ class Recording:
         """Raises BadInput where the file exists, unless `force`."""
 
     def __len__(self) -> int: ...
+    @overload
     def __getitem__(self, index: int, /) -> RawFrame: ...
+    @overload
+    def __getitem__(self, frames: slice, /) -> Recording: ...
     @property
     def name(self) -> str: ...
     @property
@@ -169,6 +174,9 @@ class Forces:
     and time_ns (frames,)."""
 
     def __len__(self) -> int: ...
+    def __getitem__(self, frames: slice, /) -> Forces: ...
+    def _repr_png_(self) -> bytes | None:
+        """The strongest frame, for notebooks."""
     @property
     def time_ns(self) -> NDArray[np.int64]: ...
     @property
@@ -186,9 +194,12 @@ class Forces:
     def total_sigma(self) -> NDArray[np.float64]: ...
 
 class Pipeline:
-    """Counts in, newtons out. One for each stream of frames, in their order; raises where two threads use it at once."""
+    """Counts in, newtons out. One for each stream of frames, in their order; raises where two threads use it at once.
+    A copy, also by pickle, is made anew of the model: it has not been tared and remembers nothing."""
 
     def __init__(self, model: Model) -> None: ...
+    @property
+    def model(self) -> Model: ...
     @overload
     def process(self, frame: RawFrame) -> ForceFrame: ...
     @overload
@@ -200,8 +211,17 @@ class Pipeline:
         time_ns: int | None = None,
     ) -> ForceFrame:
         """counts (rows, cols); temperature [C]; supply [V]; time_ns: now, by the host's clock, where it is None."""
-    def run(self, frames: Recording | _Path) -> Forces:
-        """All frames. Other threads run meanwhile."""
+    def run(
+        self,
+        frames: Recording | _Path | ArrayLike,
+        *,
+        time_ns: ArrayLike | None = None,
+        rate_hz: float | None = None,
+        temperature_celsius: ArrayLike | None = None,
+        supply_v: ArrayLike | None = None,
+    ) -> Forces:
+        """All frames. Other threads run meanwhile. Counts (frames, rows, cols) need their times or their rate, as in
+        Recording, and may have what else stands here."""
     @property
     def why_rejected(self) -> str:
         """Of the last frame: what was wrong, and what is expected; '' where it was not rejected."""
@@ -332,9 +352,16 @@ class Source:
 
     def __iter__(self) -> Iterator[RawFrame]: ...
     def __next__(self) -> RawFrame: ...
+    def __aiter__(self) -> AsyncIterator[RawFrame]: ...
+    async def __anext__(self) -> RawFrame: ...
+    def latest(self, timeout_s: float | None = None) -> RawFrame | None:
+        """The newest frame of a device; older ones that wait are passed over. Where none has come since the last call it
+        waits, and raises TimeoutError after timeout_s. Of a file the next frame. None at the end."""
     def __enter__(self) -> Source: ...
     def __exit__(self, *error: type[BaseException] | BaseException | TracebackType | None) -> None: ...
     def close(self) -> None: ...
+    @property
+    def uri(self) -> str: ...
     @property
     def shape(self) -> tuple[int, int] | None:
         """(rows, cols); None where only the first frame will tell."""
