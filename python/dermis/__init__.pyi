@@ -287,6 +287,74 @@ class ContactTracker:
     def process(self, force: ForceFrame) -> list[Contact]: ...
     def forget(self) -> None: ...
 
+class Threat:
+    """A limit and how it stands. Values are in N, Pa or N/s, as the quantity is."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def stands(self) -> bool: ...
+    @property
+    def quantity(self) -> str:
+        """As threats.toml names it, such as 'contact_force'."""
+    @property
+    def limit(self) -> float: ...
+    @property
+    def value(self) -> float:
+        """Of the last frame,"""
+    @property
+    def sigma(self) -> float:
+        """its standard deviation,"""
+    @property
+    def worst(self) -> float:
+        """and the largest since the limit was crossed."""
+    @property
+    def position_m(self) -> tuple[float, float]:
+        """(x, y) in the plane of the array."""
+    @property
+    def crossed_ns(self) -> int: ...
+
+class ThreatMonitor:
+    """Holds forces against the limits of a threats.toml (docs/threats.md). One for each stream of frames. `name`: of the
+    array in the zones; that of the model where it is None."""
+
+    def __init__(self, limits: _Path, model: Model, *, name: str | None = None) -> None: ...
+    def process(self, force: ForceFrame) -> list[Threat]:
+        """Those that began or ended with this frame."""
+    @property
+    def standing(self) -> list[Threat]: ...
+    def reset(self) -> None:
+        """Ends latched threats; they come back where the limit is still exceeded."""
+
+class Recognition:
+    @property
+    def name(self) -> str:
+        """The class, or 'unknown'."""
+    @property
+    def likeliest(self) -> str: ...
+    @property
+    def probabilities(self) -> dict[str, float]: ...
+    @property
+    def unknown_score(self) -> float: ...
+    @property
+    def reason(self) -> str:
+        """Why it is unknown; '' where it is not."""
+    @property
+    def frames(self) -> tuple[int, int]:
+        """First and last of those that were given, from 0."""
+
+class Recogniser:
+    """Names poses and gestures by the classes of `dermis learn --model`, from forces (docs/recognition.md). rate_hz: frames
+    a second; that of the examples where it is None. Frames of a tare are better left out."""
+
+    def __init__(self, classes: _Path, model: Model, *, rate_hz: float | None = None) -> None: ...
+    def process(self, force: ForceFrame) -> Recognition | None:
+        """A pose with every frame; a gesture once it is over, else None."""
+    def finish(self) -> Recognition | None:
+        """The gesture that has not ended when the stream does."""
+    @property
+    def names(self) -> list[str]: ...
+
 class Load:
     """A load that was known while a frame was taken: newtons over all taxels of `where`, or pascals on each of them.
 
@@ -374,6 +442,35 @@ class Source:
 
 def open(uri: _Path, array: ArrayDescription | _Path | None = None) -> Source:
     """A device or the simulator by its URI (docs/devices.md), or a file of frames by its path."""
+
+class SuitArray:
+    """One array of a suit: its source, its model, and what turns its frames into forces and contacts."""
+
+    name: str
+    model: Model
+    source: Source
+    pipeline: Pipeline
+    contacts: ContactTracker
+    def __init__(self, name: str, model: Model, source: Source) -> None: ...
+    def latest(self, timeout_s: float | None = None) -> ForceFrame | None:
+        """As Source.latest()."""
+
+class Suit:
+    """All arrays of a suit.toml (docs/suit.md), by their names. Devices are read in the background. `recording`: of the suit,
+    in place of its sources."""
+
+    arrays: dict[str, SuitArray]
+    def __init__(self, path: _Path, recording: _Path | None = None) -> None: ...
+    def __getitem__(self, name: str) -> SuitArray: ...
+    def __iter__(self) -> Iterator[SuitArray]: ...
+    def __len__(self) -> int: ...
+    def latest(self, timeout_s: float | None = None) -> dict[str, ForceFrame]:
+        """Forces of each array that has not ended; see Source.latest()."""
+    def tare(self, *, force: bool = False) -> None:
+        """All arrays: see Pipeline.tare()."""
+    def close(self) -> None: ...
+    def __enter__(self) -> Suit: ...
+    def __exit__(self, *error: type[BaseException] | BaseException | TracebackType | None) -> None: ...
 
 class Server:
     """`dermis serve` in the background of this process."""

@@ -68,8 +68,7 @@ def _counts_png(self):
 
 
 def _force_png(self):
-    total = f"total {self.total:.3g} \u00b1 {self.total_sigma:.2g} N"
-    return _dermis.picture(self.newtons, "forces", f"{self.time_ns * 1e-9:.3f} s, {total}", "N")
+    return _dermis.picture(self.newtons, "forces", f"{self.time_ns * 1e-9:.3f} s, total {self.total:.3g} N", "N")
 
 
 def _forces_png(self):

@@ -116,6 +116,8 @@ PYBIND11_MODULE(_dermis, module) {
   bind_sources(module);
   bind_serve(module);
   bind_picture(module);
+  bind_threats(module);
+  bind_recognition(module);
 }
 
 }  // namespace dermis::python

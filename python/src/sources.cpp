@@ -9,6 +9,7 @@
 
 #include "bindings.hpp"
 #include "dermis/acquisition/frame_queue.hpp"
+#include "dermis/files/suit_toml.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "frames.hpp"
 
@@ -208,6 +209,16 @@ void bind_sources(py::module_& module) {
         return std::make_unique<Source>(path_of(uri), std::move(description));
       },
       py::arg("uri"), py::arg("array") = py::none());
+  module.def(
+      "read_suit",
+      [](const py::object& path) {
+        py::list arrays;
+        for (const SuitArray& array : value_or_raise(files::read_suit(path_of(path))).arrays) {
+          arrays.append(py::make_tuple(array.name, array.from, array.model));
+        }
+        return arrays;
+      },
+      py::arg("path"));
 }
 
 }  // namespace dermis::python
