@@ -13,6 +13,7 @@
 
 #include "dermis/files/file_kind.hpp"
 #include "dermis/files/input.hpp"
+#include "dermis/files/suit_toml.hpp"
 #include "dermis/sources/source_name.hpp"
 #include "status_line.hpp"
 
@@ -37,6 +38,7 @@ bool is_result(std::string_view first_bytes) {
 }
 
 constexpr std::size_t kLooked = 128;
+constexpr std::size_t kMostToml = std::size_t{1} << 20U;
 
 /// Whether both names are of one file, also through links and where it does not exist yet. A terminal is read and
 /// written at once.
@@ -60,11 +62,32 @@ std::string file_of(const std::string& name) {
   return source ? source->file : std::string();
 }
 
+/// What a suit.toml names, which is read with it; nothing of any other file.
+std::vector<std::string> files_of_suit(const std::string& path) {
+  const Result<std::string> text = files::read_file(path, kMostToml);
+  if (!text) return {};
+  std::vector<std::string> named;
+  const auto read_positions = [&](const std::string& positions) {
+    named.push_back(positions);
+    return files::read_positions(positions);
+  };
+  const Result<SuitDescription> suit = files::suit_from_toml(*text, path, read_positions);
+  if (!suit) return named;
+  named.insert(named.end(), {suit->classes, suit->body});
+  for (const SuitArray& array : suit->arrays) {
+    named.insert(named.end(), {array.model, array.classes, file_of(array.from)});
+  }
+  return named;
+}
+
 std::vector<std::string> files_of(const std::vector<std::string>& names) {
   std::vector<std::string> files;
   for (const std::string& name : names) {
-    if (std::string file = file_of(name); !file.empty()) files.push_back(std::move(file));
+    files.push_back(file_of(name));
+    if (!name.ends_with(".toml")) continue;
+    for (std::string& named : files_of_suit(name)) files.push_back(std::move(named));
   }
+  std::erase(files, "");
   return files;
 }
 
@@ -92,13 +115,17 @@ void FilePlaces::add_model_output(const std::string& option, const std::string& 
 
 void FilePlaces::add_output_folder(const std::string& option, const std::string& folder,
                                    std::vector<std::string> files) {
-  outputs_.push_back({option, [&folder, files = std::move(files)] {
-                        std::vector<std::string> paths;
-                        std::error_code error;
-                        if (fs::exists(fs::path(folder) / "origin.toml", error)) return paths;
-                        for (const std::string& file : files) paths.push_back((fs::path(folder) / file).string());
-                        return paths;
-                      }});
+  const auto paths = [&folder, files = std::move(files)] {
+    std::vector<std::string> some;
+    if (folder.empty()) return some;
+    for (const std::string& file : files) some.push_back((fs::path(folder) / file).string());
+    return some;
+  };
+  const auto was_simulated = [&folder] {
+    std::error_code error;
+    return fs::exists(fs::path(folder) / "origin.toml", error);
+  };
+  outputs_.push_back({option, paths, false, was_simulated});
 }
 
 Status FilePlaces::check_standard_input() const {
@@ -134,6 +161,7 @@ Status FilePlaces::check(bool is_forced) const {
   if (Status distinct = check_distinct(); !distinct) return distinct;
   std::vector<std::string> replaced;
   for (const Place& output : outputs_) {
+    if (output.can_be_made_again && output.can_be_made_again()) continue;
     for (const std::string& path : output.paths()) {
       if (!would_be_lost(path)) continue;
       const std::string first_bytes = files::first_bytes_of(path, kLooked);

@@ -18,7 +18,8 @@ inline constexpr const char* kStandardOutput = "/dev/stdout";
 /// as long as this.
 class FilePlaces {
  public:
-  /// `option` names a file, or a source (docs/devices.md), which may be in a file. Empty: none.
+  /// `option` names a file, or a source (docs/devices.md), which may be in a file; what a suit.toml names is read, too.
+  /// Empty: none.
   void add_input(const std::string& option, const std::string& name);
   void add_input(const std::string& option, const std::vector<std::string>& names);
 
@@ -39,6 +40,7 @@ class FilePlaces {
     std::string option;
     std::function<std::vector<std::string>()> paths;
     bool is_model = false;
+    std::function<bool()> can_be_made_again{};  ///< Empty: it cannot.
   };
 
   [[nodiscard]] Status check_standard_input() const;
