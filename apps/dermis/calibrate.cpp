@@ -252,7 +252,7 @@ Status calibrate(const CalibrateOptions& options) {
   options.json ? print_json(calibration->report, bank, *array, database->circuit_fit)
                : print_text(calibration->report, bank, *array);
   if (!options.json && calibration->model.strip) {
-    fmt::print("positions along the strip: learned from {} touches, +- {:.2f} mm\n", positions->size(),
+    fmt::print("positions along the strip: learned from {} touches, \u00b1 {:.2f} mm\n", positions->size(),
                1e3 * calibration->model.strip->sigma_m);
   }
   return Done{};
@@ -262,10 +262,10 @@ Status calibrate(const CalibrateOptions& options) {
 
 void add_calibrate(Command& command) {
   auto options = std::make_shared<CalibrateOptions>();
-  command.input("--array", options->array, "array.toml: size, pitch and readout circuit").required();
-  command.input("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
+  command.input_file("--array", options->array, "array.toml: size, pitch and readout circuit").required();
+  command.input_file("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
       .required();
-  command.input("--loads", options->loads, "loads.csv: which load pressed where in which frame").required();
+  command.input_file("--loads", options->loads, "loads.csv: which load pressed where in which frame").required();
   command.output_model("--out", options->out, "Model file to write (safetensors)").required();
   command.output_model("--bank", options->bank,
                        "Also train the paper's bank of N-N-N-1 networks and write it here (16x16: minutes, 135 MB)");

@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "commands.hpp"
+#include "dermis/files/force_text.hpp"
 #include "dermis/health/weight_check.hpp"
 #include "dermis/operation/operation.hpp"
 #include "process_all.hpp"
@@ -23,7 +23,7 @@ constexpr int kExitAged = 3;
 struct CheckOptions {
   std::string model;
   std::string in;
-  std::optional<double> weight_n;
+  std::string weight;
 };
 
 /// The zero follows idle taxels, as it does in use.
@@ -37,12 +37,13 @@ Result<WeightFinding> weigh(Operation& operation, double weight_n) {
 }
 
 Result<int> check(const CheckOptions& options) {
-  if (!(*options.weight_n > 0.0 && *options.weight_n <= 1e6))
-    return bad_input("--weight: must be above 0 and at most 1e6 N");
+  const Result<double> weight_n = files::parse_force(options.weight);
+  if (!weight_n) return bad_input("--weight: " + weight_n.error().message);
+  if (!(*weight_n > 0.0 && *weight_n <= 1e6)) return bad_input("--weight: must be above 0 and at most 1e6 N");
   const Result<std::unique_ptr<Operation>> operation =
       operation::open_operation(options.model, options.in, source_options());
   if (!operation) return operation.error();
-  const Result<WeightFinding> finding = weigh(**operation, *options.weight_n);
+  const Result<WeightFinding> finding = weigh(**operation, *weight_n);
   if (!finding) return finding.error();
   if (finding->presses.empty()) return failed(options.in + ": " + health::describe(*finding));
   fmt::print("{}", health::describe(*finding));
@@ -53,11 +54,14 @@ Result<int> check(const CheckOptions& options) {
 
 void add_check(Command& command) {
   auto options = std::make_shared<CheckOptions>();
-  command.input("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
+  command
+      .input_file("--model", options->model,
+                  "Model file of 'dermis calibrate', or array.toml where readings are forces")
       .required();
   command.input("--in", options->in, "Raw counts while the object is put on: frames.csv, a recording or a device")
       .required();
-  command.option("--weight", options->weight_n, "What the object presses with [N]; 100 g are 0.981 N").required();
+  command.option("--weight", options->weight, "What the object presses with: newtons, or its mass as in '200 g'")
+      .required();
   command.action_with_exit_status([options] { return check(*options); });
 }
 

@@ -24,6 +24,7 @@
 #include "dermis/core/nearest_name.hpp"
 #include "dermis/core/version.hpp"
 #include "dermis/files/safetensors.hpp"
+#include "dermis/files/text.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recognition/classes_file.hpp"
@@ -33,24 +34,47 @@
 namespace dermis::app {
 namespace {
 
-/// CLI11 would wrap a negative count round, and names no range.
+/// CLI11 would wrap a negative count round, and names neither range nor mend.
 template <typename Number>
 std::string check_count(const std::string& text) {
   if (text.starts_with('-')) return "must not be negative";
   Number number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc::result_out_of_range) return "";
-  return fmt::format("must be 0 to {}", std::numeric_limits<Number>::max());
+  const char* const text_end = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data(), text_end, number);
+  if (error == std::errc() && end == text_end) return "";
+  const std::string range = fmt::format("0 to {}", std::numeric_limits<Number>::max());
+  if (error == std::errc::result_out_of_range) return "must be " + range;
+  return fmt::format("'{}' is no whole number; write one of {}", text, range);
+}
+
+std::string check_number(const std::string& text) {
+  double number = 0.0;
+  return files::parse_number(text, number) ? "" : fmt::format("'{}' is no number", text);
 }
 
 template <typename Value>
-void check_whole_number(CLI::Option& option, const Value& /*value*/) {
+void check_text(CLI::Option& option, const Value& /*value*/) {
   if constexpr (std::is_unsigned_v<Value>) option.check(check_count<Value>);
+  if constexpr (std::is_floating_point_v<Value>) option.check(check_number);
 }
 
 template <typename Value>
-void check_whole_number(CLI::Option& option, const std::optional<Value>& /*value*/) {
-  check_whole_number(option, Value());
+void check_text(CLI::Option& option, const std::optional<Value>& /*value*/) {
+  check_text(option, Value());
+}
+
+template <typename Value>
+void check_text(CLI::Option& option, const std::vector<Value>& /*value*/) {
+  check_text(option, Value());
+}
+
+/// What "-" means.
+std::function<std::string(std::string)> stream_for_dash(const std::string& stream) {
+  return [stream](const std::string& name) { return name == "-" ? stream : name; };
+}
+
+std::string refuse_dash(const std::string& name) {
+  return name == "-" ? "'-' is no file; name one" : "";
 }
 
 std::string first_line(const std::string& text) {
@@ -115,6 +139,50 @@ void tell_missing_checksums(const CLI::App& command) {
   }
 }
 
+void print(const std::string& text) {
+  fmt::print("{}\n", text);
+}
+
+/// For those who type it in place of --version.
+void add_version(CLI::App& app, Action& chosen) {
+  CLI::App& command = *app.add_subcommand("version", "Show the version");
+  command.group("");
+  command.callback([&chosen] {
+    chosen = []() -> Result<int> {
+      print(DERMIS_VERSION);
+      return 0;
+    };
+  });
+}
+
+/// What --help shows of the command with these names, "circuit" "forward".
+Result<std::string> help_of(const CLI::App& app, const std::vector<std::string>& names) {
+  const CLI::App* command = &app;
+  std::string full_name = app.get_name();
+  for (const std::string& name : names) {
+    const auto commands = command->get_subcommands([&](const CLI::App* each) { return each->get_name() == name; });
+    if (commands.empty()) return bad_input(unknown(name, *command) + " (see dermis --help)");
+    command = commands.front();
+    full_name += " " + name;
+  }
+  return command->get_formatter()->make_help(command, full_name, CLI::AppFormatMode::Normal);
+}
+
+/// For those who type it in place of --help.
+void add_help(CLI::App& app, Action& chosen) {
+  CLI::App& command = *app.add_subcommand("help", "Show what a command takes");
+  command.group("");
+  auto names = std::make_shared<std::vector<std::string>>();
+  command.add_option("command", *names, "Such as run, or circuit forward");
+  command.callback([&app, &chosen, names] {
+    chosen = [text = help_of(app, *names)]() -> Result<int> {
+      if (!text) return text.error();
+      fmt::print("{}", *text);
+      return 0;
+    };
+  });
+}
+
 /// For those who make packages, so --help does not name it.
 void add_reference(CLI::App& app, Action& chosen) {
   CLI::App& command = *app.add_subcommand("reference", "Write the manual pages and the completion of bash and zsh");
@@ -165,7 +233,7 @@ Option Option::needs(Option other) const {
 template <typename Value>
 Option Command::option(const std::string& name, Value& value, const std::string& help) {
   CLI::Option* const option = app_.add_option(name, value, help);
-  check_whole_number(*option, value);
+  check_text(*option, value);
   return Option(option);
 }
 
@@ -185,11 +253,20 @@ Option Command::flag(const std::string& name, bool& value, const std::string& he
 template <typename Value>
 Option Command::input(const std::string& name, Value& value, const std::string& help) {
   places_->files.add_input(name, value);
-  return option(name, value, help);
+  CLI::Option* const option = app_.add_option(name, value, help);
+  option->transform(stream_for_dash(kStandardInput));
+  return Option(option);
 }
 
 template Option Command::input(const std::string&, std::string&, const std::string&);
 template Option Command::input(const std::string&, std::vector<std::string>&, const std::string&);
+
+Option Command::input_file(const std::string& name, std::string& path, const std::string& help) {
+  places_->files.add_input(name, path);
+  CLI::Option* const option = app_.add_option(name, path, help);
+  option->check(refuse_dash);
+  return Option(option);
+}
 
 void Command::add_force() {
   if (places_->files.has_outputs()) return;
@@ -199,20 +276,26 @@ void Command::add_force() {
 Option Command::output(const std::string& name, std::string& path, const std::string& help) {
   add_force();
   places_->files.add_output(name, path);
-  return option(name, path, help);
+  CLI::Option* const option = app_.add_option(name, path, help);
+  option->transform(stream_for_dash(kStandardOutput));
+  return Option(option);
 }
 
 Option Command::output_model(const std::string& name, std::string& path, const std::string& help) {
   add_force();
   places_->files.add_model_output(name, path);
-  return option(name, path, help);
+  CLI::Option* const option = app_.add_option(name, path, help);
+  option->check(refuse_dash);
+  return Option(option);
 }
 
 Option Command::output_folder(const std::string& name, std::string& folder, const std::vector<std::string>& files,
                               const std::string& help) {
   add_force();
   places_->files.add_output_folder(name, folder, files);
-  return option(name, folder, help);
+  CLI::Option* const option = app_.add_option(name, folder, help);
+  option->check(refuse_dash);
+  return Option(option);
 }
 
 Command Command::subcommand(const std::string& name, const std::string& summary) {
@@ -243,6 +326,8 @@ Result<Action> parse_command_line(int argc, char** argv, std::span<const Command
   app.set_version_flag("--version", DERMIS_VERSION);
   app.require_subcommand(0, 1);
   Action chosen;
+  add_version(app, chosen);
+  add_help(app, chosen);
   add_reference(app, chosen);
   for (const CommandEntry& entry : commands) {
     Command command(*app.add_subcommand(entry.name, entry.summary), chosen);

@@ -50,14 +50,19 @@ class Command {
   Option option(const std::string& name, Value& value, const std::string& help);
   Option flag(const std::string& name, bool& value, const std::string& help);
 
-  /// An option that names a file or a source to read. `Value`: std::string, or a std::vector of them.
+  /// An option that names a file or a source to read; "-" is the standard input. `Value`: std::string, or a std::vector
+  /// of them.
   template <typename Value>
   Option input(const std::string& name, Value& value, const std::string& help);
-  /// An option that names a file to write. The action is not called where that would overwrite what is not to be.
+  /// The same for what no stream brings: a model, classes, and whatever is read more than once.
+  Option input_file(const std::string& name, std::string& path, const std::string& help);
+  /// An option that names a file to write; "-" is the standard output. The action is not called where that would
+  /// overwrite what is not to be.
   Option output(const std::string& name, std::string& path, const std::string& help);
-  /// The same for a model or classes. The action keeps earlier ones by keep_earlier_model(), so they are no reason.
+  /// The same for a model or classes, and not "-". The action keeps earlier ones by keep_earlier_model(), so they are
+  /// no reason.
   Option output_model(const std::string& name, std::string& path, const std::string& help);
-  /// The same for these files in a folder.
+  /// The same for these files in a folder, and not "-".
   Option output_folder(const std::string& name, std::string& folder, const std::vector<std::string>& files,
                        const std::string& help);
 

@@ -93,7 +93,9 @@ Status doctor(const DoctorOptions& options) {
 
 void add_doctor(Command& command) {
   auto options = std::make_shared<DoctorOptions>();
-  command.input("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
+  command
+      .input_file("--model", options->model,
+                  "Model file of 'dermis calibrate', or array.toml where readings are forces")
       .required();
   command.input("--in", options->in, "Raw counts: frames.csv, a recording, or the URI of a device").required();
   command.flag("--json", options->json, "Print the result as JSON");

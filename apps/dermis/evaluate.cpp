@@ -9,6 +9,7 @@
 #include "dermis/calibration/evaluation.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
 #include "dermis/report/evaluation_report.hpp"
+#include "dermis/report/wording.hpp"
 #include "evaluate_classes.hpp"
 #include "example_options.hpp"
 #include "interruption.hpp"
@@ -62,9 +63,10 @@ void print_text(const Evaluation& evaluation) {
   fmt::print("{:<20}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "estimator", "median", "p95", "p99", "max", "ghost p99",
              "total rmse");
   for (const calibration::EstimatorResult& result : evaluation.estimators) {
-    fmt::print("{:<20}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", result.name, percent(result.relative_error.median),
-               percent(result.relative_error.p95), percent(result.relative_error.p99),
-               percent(result.relative_error.max), newtons(result.ghost_n.p99), newtons(result.total_rmse_n));
+    fmt::print("{:<20}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", report::estimator_words(result.name),
+               percent(result.relative_error.median), percent(result.relative_error.p95),
+               percent(result.relative_error.p99), percent(result.relative_error.max), newtons(result.ghost_n.p99),
+               newtons(result.total_rmse_n));
   }
   if (evaluation.coverage.count > 0) {
     fmt::print(
@@ -127,13 +129,14 @@ Status evaluate(const EvaluateOptions& options) {
 
 void add_evaluate(Command& command) {
   auto options = std::make_shared<EvaluateOptions>();
-  command.input("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces");
+  command.input_file("--model", options->model,
+                     "Model file of 'dermis calibrate', or array.toml where readings are forces");
   command.input("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames");
   command.input("--loads", options->loads, "loads.csv: the true loads");
-  command.input("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
+  command.input_file("--bank", options->bank, "The paper's bank, of 'dermis calibrate --bank', as one more estimator");
   command.flag("--json", options->json, "Print the result as JSON");
   command.output_folder("--report", options->report, {"index.html"}, "Folder for an HTML report with pictures");
-  command.input(
+  command.input_file(
       "--classes", options->classes,
       "Judge the classes of 'dermis learn', not forces, on labelled examples: --in, or --frames of tared frames.npy");
   add_example_options(command, options->examples);

@@ -7,12 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "dermis/files/file_kind.hpp"
+#include "dermis/files/input.hpp"
+#include "dermis/files/suit_toml.hpp"
 #include "dermis/sources/source_name.hpp"
 #include "status_line.hpp"
 
@@ -30,22 +31,21 @@ constexpr std::array<std::string_view, 7> kResults = {"time_s,status,",
                                                       "\x89PNG",
                                                       "<!DOCTYPE html>\n<html lang=\"en\" xmlns="};
 
-std::string first_bytes_of(const std::string& path) {
-  std::array<char, 128> bytes{};
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), bytes.size());
-  return {bytes.data(), static_cast<std::size_t>(file.gcount())};
-}
-
 bool is_result(std::string_view first_bytes) {
   const auto begins = [&](std::string_view beginning) { return first_bytes.starts_with(beginning); };
   const bool is_drawing = first_bytes.find("<svg") != std::string_view::npos;
   return is_drawing || std::ranges::any_of(kResults, begins);
 }
 
-/// Whether both names are of one file, also through links and where it does not exist yet.
+constexpr std::size_t kLooked = 128;
+constexpr std::size_t kMostToml = std::size_t{1} << 20U;
+
+/// Whether both names are of one file, also through links and where it does not exist yet. A terminal is read and
+/// written at once.
 bool is_same(const std::string& one, const std::string& other) {
+  if (one == other) return true;
   std::error_code error;
+  if (fs::is_character_file(one, error) || fs::is_socket(one, error)) return false;
   if (fs::equivalent(one, other, error)) return true;
   const fs::path whole = fs::weakly_canonical(one, error);
   return !whole.empty() && whole == fs::weakly_canonical(other, error);
@@ -53,7 +53,7 @@ bool is_same(const std::string& one, const std::string& other) {
 
 bool would_be_lost(const std::string& path) {
   std::error_code error;
-  return fs::is_regular_file(path, error) && fs::file_size(path, error) > 0;
+  return path != kStandardOutput && fs::is_regular_file(path, error) && fs::file_size(path, error) > 0;
 }
 
 /// The file of a path or of a source; empty where there is none.
@@ -62,17 +62,37 @@ std::string file_of(const std::string& name) {
   return source ? source->file : std::string();
 }
 
+/// What a suit.toml names, which is read with it; nothing of any other file.
+std::vector<std::string> files_of_suit(const std::string& path) {
+  const Result<std::string> text = files::read_file(path, kMostToml);
+  if (!text) return {};
+  std::vector<std::string> named;
+  const auto read_positions = [&](const std::string& positions) {
+    named.push_back(positions);
+    return files::read_positions(positions);
+  };
+  const Result<SuitDescription> suit = files::suit_from_toml(*text, path, read_positions);
+  if (!suit) return named;
+  named.insert(named.end(), {suit->classes, suit->body});
+  for (const SuitArray& array : suit->arrays) {
+    named.insert(named.end(), {array.model, array.classes, file_of(array.from)});
+  }
+  return named;
+}
+
 std::vector<std::string> files_of(const std::vector<std::string>& names) {
   std::vector<std::string> files;
   for (const std::string& name : names) {
-    if (std::string file = file_of(name); !file.empty()) files.push_back(std::move(file));
+    files.push_back(file_of(name));
+    if (!name.ends_with(".toml")) continue;
+    for (std::string& named : files_of_suit(name)) files.push_back(std::move(named));
   }
+  std::erase(files, "");
   return files;
 }
 
 std::vector<std::string> written_at(const std::string& path) {
-  const bool is_file = !path.empty() && path != "/dev/stdout";
-  return is_file ? std::vector{path} : std::vector<std::string>();
+  return path.empty() ? std::vector<std::string>() : std::vector{path};
 }
 
 }  // namespace
@@ -95,13 +115,30 @@ void FilePlaces::add_model_output(const std::string& option, const std::string& 
 
 void FilePlaces::add_output_folder(const std::string& option, const std::string& folder,
                                    std::vector<std::string> files) {
-  outputs_.push_back({option, [&folder, files = std::move(files)] {
-                        std::vector<std::string> paths;
-                        std::error_code error;
-                        if (fs::exists(fs::path(folder) / "origin.toml", error)) return paths;
-                        for (const std::string& file : files) paths.push_back((fs::path(folder) / file).string());
-                        return paths;
-                      }});
+  const auto paths = [&folder, files = std::move(files)] {
+    std::vector<std::string> some;
+    if (folder.empty()) return some;
+    for (const std::string& file : files) some.push_back((fs::path(folder) / file).string());
+    return some;
+  };
+  const auto was_simulated = [&folder] {
+    std::error_code error;
+    return fs::exists(fs::path(folder) / "origin.toml", error);
+  };
+  outputs_.push_back({option, paths, false, was_simulated});
+}
+
+Status FilePlaces::check_standard_input() const {
+  std::string reader;
+  for (const Place& input : inputs_) {
+    for (const std::string& path : input.paths()) {
+      if (path != kStandardInput) continue;
+      if (!reader.empty())
+        return bad_input(fmt::format("{}: {} reads the standard input; name a file", input.option, reader));
+      reader = input.option;
+    }
+  }
+  return Done{};
 }
 
 Status FilePlaces::check_distinct() const {
@@ -120,12 +157,14 @@ Status FilePlaces::check_distinct() const {
 }
 
 Status FilePlaces::check(bool is_forced) const {
+  if (Status once = check_standard_input(); !once) return once;
   if (Status distinct = check_distinct(); !distinct) return distinct;
   std::vector<std::string> replaced;
   for (const Place& output : outputs_) {
+    if (output.can_be_made_again && output.can_be_made_again()) continue;
     for (const std::string& path : output.paths()) {
       if (!would_be_lost(path)) continue;
-      const std::string first_bytes = first_bytes_of(path);
+      const std::string first_bytes = files::first_bytes_of(path, kLooked);
       if (output.is_model && files::kind_of(first_bytes) == files::kSafetensorsKind) continue;
       if (!is_forced && !is_result(first_bytes)) {
         return bad_input(fmt::format("{}: '{}' exists; name another, or replace it with --force", output.option, path));

@@ -10,11 +10,16 @@
 
 namespace dermis::app {
 
+/// What "-" stands for.
+inline constexpr const char* kStandardInput = "/dev/stdin";
+inline constexpr const char* kStandardOutput = "/dev/stdout";
+
 /// The files that a command reads and writes, and the rule that keeps it from overwriting any. What is added must live
 /// as long as this.
 class FilePlaces {
  public:
-  /// `option` names a file, or a source (docs/devices.md), which may be in a file. Empty: none.
+  /// `option` names a file, or a source (docs/devices.md), which may be in a file; what a suit.toml names is read, too.
+  /// Empty: none.
   void add_input(const std::string& option, const std::string& name);
   void add_input(const std::string& option, const std::vector<std::string>& names);
 
@@ -26,8 +31,8 @@ class FilePlaces {
 
   [[nodiscard]] bool has_outputs() const noexcept { return !outputs_.empty(); }
 
-  /// Fails if an output is an input or another output, by whatever name. Fails if it exists and is neither a table of
-  /// results nor a picture, unless `is_forced`. Says which files will be replaced.
+  /// Fails if an output is an input or another output, by whatever name, or two inputs are the standard input. Fails if
+  /// it exists and is neither a table of results nor a picture, unless `is_forced`. Says which files will be replaced.
   [[nodiscard]] Status check(bool is_forced) const;
 
  private:
@@ -35,8 +40,10 @@ class FilePlaces {
     std::string option;
     std::function<std::vector<std::string>()> paths;
     bool is_model = false;
+    std::function<bool()> can_be_made_again{};  ///< Empty: it cannot.
   };
 
+  [[nodiscard]] Status check_standard_input() const;
   [[nodiscard]] Status check_distinct() const;
 
   std::vector<Place> inputs_;

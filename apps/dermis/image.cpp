@@ -97,8 +97,9 @@ Status image(const ImageOptions& options) {
 void add_image(Command& command) {
   auto options = std::make_shared<ImageOptions>();
   command.input("--in", options->in, "A recording, another file of frames, or the URI of a device").required();
-  command.input("--model", options->model,
-                "Model file, or array.toml where readings are forces: draws newtons and contacts instead of counts");
+  command.input_file(
+      "--model", options->model,
+      "Model file, or array.toml where readings are forces: draws newtons and contacts instead of counts");
   command.output("--out", options->out, "Picture to write: .png or .svg").required();
   const Option frame = command.option("--frame", options->frame, "Number of the frame, from 0");
   const Option at = command.option("--at", options->at_s, "The frame at this time after the first [s]").excludes(frame);

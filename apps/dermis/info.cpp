@@ -7,10 +7,18 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "commands.hpp"
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/file_kind.hpp"
+#include "dermis/files/input.hpp"
+#include "dermis/pipeline/model.hpp"
 #include "dermis/recordings/frame_file_info.hpp"
+#include "dermis/recordings/frame_files.hpp"
+#include "dermis/report/model_facts.hpp"
 #include "shape_options.hpp"
 
 namespace dermis::app {
@@ -57,6 +65,10 @@ Json array_json(const recordings::RecordedArrayInfo& array) {
           {"model_hash", or_null(array.model_hash)}};
 }
 
+void print_json(const Json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
 void print_json(const std::string& file, const FrameFileInfo& info) {
   Json json = {{"file", file},
                {"format", recordings::to_string(info.format)},
@@ -82,7 +94,7 @@ void print_json(const std::string& file, const FrameFileInfo& info) {
   for (const recordings::RecordingTopic& topic : info.topics) {
     json["topics"].push_back({{"name", topic.name}, {"type", topic.type}, {"messages", topic.messages}});
   }
-  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  print_json(json);
 }
 
 std::string mend_of(const FrameFileInfo& info) {
@@ -128,7 +140,58 @@ void print_text(const FrameFileInfo& info) {
   }
 }
 
+/// A model or an array.toml, and what to call it.
+struct Described {
+  const char* format;
+  ArrayDescription array;
+  std::vector<report::Fact> calibration{};
+};
+
+/// Of a file that is one by its content; empty of any other.
+Result<std::optional<Described>> read_described(const std::string& path) {
+  constexpr std::size_t kLooked = 4096;
+  const std::string_view kind = files::kind_of(files::first_bytes_of(path, kLooked));
+  if (recordings::frame_format(path)) return std::optional<Described>();
+  if (kind == files::kTomlKind) {
+    Result<ArrayDescription> array = files::read_array(path);
+    if (!array) return array.error();
+    return std::optional(Described{"description of an array", *std::move(array)});
+  }
+  if (kind != files::kSafetensorsKind) return std::optional<Described>();
+  const Result<pipeline::Model> model = pipeline::read_model(path);
+  if (!model) return model.error();
+  return std::optional(Described{"model", model->array, report::calibration_facts(*model)});
+}
+
+Json json_of(const std::vector<report::Fact>& facts) {
+  Json json = Json::object();
+  for (const auto& [name, text] : facts) json[name] = text;
+  return json;
+}
+
+void print_described(const InfoOptions& options, const Described& described) {
+  const std::vector<report::Fact> array = report::array_facts(described.array);
+  if (options.json) {
+    const Json json = {{"file", options.file},
+                       {"format", described.format},
+                       {"array", json_of(array)},
+                       {"calibration", json_of(described.calibration)},
+                       {"array_toml", files::array_to_toml(described.array)}};
+    return print_json(json);
+  }
+  constexpr const char* kWide = "{:<25}{}\n";
+  fmt::print(kWide, "format", described.format);
+  for (const auto& [name, text] : array) fmt::print(kWide, name, text);
+  for (const auto& [name, text] : described.calibration) fmt::print(kWide, name, text);
+}
+
 Status print_info(const InfoOptions& options) {
+  const Result<std::optional<Described>> described = read_described(options.file);
+  if (!described) return described.error();
+  if (*described) {
+    print_described(options, **described);
+    return Done{};
+  }
   const Result<std::optional<FrameShape>> shape = options.shape.shape();
   if (!shape) return shape.error();
   const Result<FrameFileInfo> info = recordings::frame_file_info(options.file, *shape);
@@ -150,9 +213,7 @@ Status print_info(const InfoOptions& options) {
 
 void add_info(Command& command) {
   auto options = std::make_shared<InfoOptions>();
-  command
-      .option("file", options->file,
-              ".mcap, .csv, .h5, .hdf5, .npy, or a file of another system (docs/file-formats.md)")
+  command.option("file", options->file, "A file of frames (docs/file-formats.md), a model file, or array.toml")
       .required();
   options->shape.add(command);
   command.flag("--json", options->json, "As JSON");

@@ -162,8 +162,8 @@ Status learn(const LearnOptions& options) {
 void add_learn(Command& command) {
   auto options = std::make_shared<LearnOptions>();
   add_example_options(command, options->examples).required();
-  command.input("--model", options->examples.model,
-                "Learn from the forces [N] of --in by this model of its array, or suit.toml of several");
+  command.input_file("--model", options->examples.model,
+                     "Learn from the forces [N] of --in by this model of its array, or suit.toml of several");
   command.input("--frames", options->examples.data.frames,
                 "frames.npy: tared frames, the readings of all arrays side by side");
   command.option("--rate", options->examples.data.rate_hz,

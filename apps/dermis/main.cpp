@@ -36,7 +36,7 @@ constexpr std::array kCommands{
     CommandEntry{"replay", "Play a recording at the pace of its frames, as counts or newtons", add_replay},
     CommandEntry{"emulate", "Play a device from a recording, to develop without hardware", add_emulate},
     CommandEntry{"convert", "Convert frames to another file format, by the ending of the name", add_convert},
-    CommandEntry{"info", "Show what a recording or another file of frames holds", add_info},
+    CommandEntry{"info", "Show what a recording, another file of frames or a model holds", add_info},
     CommandEntry{"recover", "Repair a cut or damaged recording, and say what is lost", add_recover},
     CommandEntry{"image", "Draw a frame as PNG or SVG, or some seconds as an animated PNG", add_image},
     CommandEntry{"top", "Show a live heat map in the terminal, until q or Ctrl-C", add_top},

@@ -46,7 +46,7 @@ Status recalibrate(const RecalibrateOptions& options) {
 
 void add_recalibrate(Command& command) {
   auto options = std::make_shared<RecalibrateOptions>();
-  command.input("--model", options->model, "Model file of 'dermis calibrate'").required();
+  command.input_file("--model", options->model, "Model file of 'dermis calibrate'").required();
   command.input("--frames", options->frames, "Raw counts: frames.csv, a recording or another file of frames")
       .required();
   command.input("--loads", options->loads, "loads.csv: known weights, of which one is enough").required();

@@ -28,7 +28,7 @@ constexpr const char* kHeader =
 
 struct RecogniseOptions {
   RecognitionInput in;
-  std::string out = "/dev/stdout";
+  std::string out = kStandardOutput;
   bool json = false;
 };
 
@@ -93,10 +93,10 @@ Status recognise(const RecogniseOptions& options) {
 
 void add_recognise(Command& command) {
   auto options = std::make_shared<RecogniseOptions>();
-  command.input("--classes", options->in.classes, "Classes of 'dermis learn'").required();
+  command.input_file("--classes", options->in.classes, "Classes of 'dermis learn'").required();
   command.input("--in", options->in.loads.from, "A file of frames, a recording or the URI of a device").required();
-  command.input("--model", options->in.loads.model,
-                "Model for classes that were learned from forces, or suit.toml of several arrays");
+  command.input_file("--model", options->in.loads.model,
+                     "Model for classes that were learned from forces, or suit.toml of several arrays");
   command.flag(
       "--tare", options->in.loads.tare,
       "Take the first second (at least 10 frames) as unloaded; without it and --model, readings must be tared");

@@ -109,8 +109,8 @@ void add_record(Command& command) {
   command.input("--from", options->from, "URI of a device or of the simulator (docs/devices.md), or a file").required();
   command.output("--out", options->out, "Recording to write: .mcap, or another format of frames").required();
   command.input("--array", options->array, "array.toml, to keep with the frames");
-  command.input("--model", options->model,
-                "Record the forces, too: of this model, or array.toml where readings are forces");
+  command.input_file("--model", options->model,
+                     "Record the forces, too: of this model, or array.toml where readings are forces");
   const Option frames = command.option("--frames", options->frames, "Stop after this many frames");
   command
       .option("--seconds", options->seconds,

@@ -46,7 +46,7 @@ Status recover(const RecoverOptions& options) {
 
 void add_recover(Command& command) {
   auto options = std::make_shared<RecoverOptions>();
-  command.input("in", options->in, "Recording (.mcap); it is not changed").required();
+  command.input_file("in", options->in, "Recording (.mcap); it is not changed").required();
   command.output("--out", options->out, "Recording to write (.mcap)").required();
   command.action([options] { return recover(*options); });
 }

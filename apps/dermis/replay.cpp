@@ -21,7 +21,7 @@ struct ReplayOptions {
   std::string recording;
   double speed = 1.0;
   std::string model;
-  std::string out = "/dev/stdout";
+  std::string out = kStandardOutput;
 };
 
 Result<std::unique_ptr<FrameSink>> create_sink(const FrameOutput& output, const FrameShape& shape) {
@@ -89,7 +89,8 @@ void add_replay(Command& command) {
   auto options = std::make_shared<ReplayOptions>();
   command.input("recording", options->recording, "Recording (.mcap) or another file of frames").required();
   command.option("--speed", options->speed, "Factor on the recorded pace; 0: as fast as possible").shows_default();
-  command.input("--model", options->model, "Model file, or array.toml where readings are forces: replays the forces");
+  command.input_file("--model", options->model,
+                     "Model file, or array.toml where readings are forces: replays the forces");
   command.output("--out", options->out, "frames.csv, or forces.csv with --model; or .mcap").shows_default();
   command.action([options] { return replay(*options); });
 }

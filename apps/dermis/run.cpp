@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "dermis/compensation/offset_drift.hpp"
@@ -51,10 +54,24 @@ Status check_outputs(const operation::ForceTablePaths& tables) {
 struct Watches {
   FrameTroubles troubles;
   pipeline::StandingLoadWatch standing;
+  std::size_t skipped = 0;  ///< While the array settled.
 
   explicit Watches(const Operation& operation)
       : troubles(operation.model.array, operation.from), standing(operation.model) {}
 };
+
+/// "200 frames, 3 skipped: forces in forces.csv, contacts in contacts.csv"
+std::string where_frames_went(const Watches& watches, const operation::ForceTablePaths& tables) {
+  std::vector<std::string> places;
+  for (const auto& [what, path] : {std::pair("forces", &tables.forces), std::pair("sigmas", &tables.sigmas),
+                                   std::pair("totals", &tables.totals), std::pair("contacts", &tables.contacts)}) {
+    const bool is_stream = *path == kStandardOutput;
+    if (!path->empty()) places.push_back(fmt::format("{} in {}", what, is_stream ? "the standard output" : *path));
+  }
+  const std::string skipped = watches.skipped > 0 ? fmt::format(", {} skipped", watches.skipped) : "";
+  const std::size_t frames = watches.troubles.frames();
+  return fmt::format("{} frame{}{}: {}", frames, frames == 1 ? "" : "s", skipped, fmt::join(places, ", "));
+}
 
 Status check_tare(const Operation& operation) {
   const pipeline::Tare& tare = operation.pipeline.last_tare();
@@ -77,6 +94,7 @@ Status solve(Operation& operation, preprocessing::PhaseSelector& phase, ForceTab
     if (!more || !*more) break;
     if (phase.select(raw.time, false) != preprocessing::Destination::pipeline) {
       watches.troubles.skip();
+      ++watches.skipped;
       continue;
     }
     operation.pipeline.process(raw, force);
@@ -118,6 +136,7 @@ Status run(const RunOptions& options) {
   if (Status committed = tables->commit(); !committed) return committed;
   if (status) status = troubles.verdict();
   if (!status) return status;
+  say(where_frames_went(watches, options.tables));
   const std::string tared = pipeline::describe((*operation)->pipeline.last_tare(), (*operation)->model.array);
   if (!tared.empty()) say(tared);
   if (const auto load = watches.standing.load()) say(describe_never_released(*load, (*operation)->model.array));
@@ -129,7 +148,9 @@ Status run(const RunOptions& options) {
 
 void add_run(Command& command) {
   auto options = std::make_shared<RunOptions>();
-  command.input("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
+  command
+      .input_file("--model", options->model,
+                  "Model file of 'dermis calibrate', or array.toml where readings are forces")
       .required();
   command
       .input("--in", options->in,

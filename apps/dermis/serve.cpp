@@ -40,11 +40,6 @@ Status check(const ServeOptions& options) {
   if (place.suit.empty() && place.from.empty() && !place.model.empty()) {
     return bad_input("serve: give --from with its --model; without both the page asks for the device");
   }
-  if (place.suit.empty() && place.model.empty() && !place.from.empty()) {
-    const Result<sources::SourceName> from = sources::SourceName::parse(place.from);
-    if (!from) return from.error();
-    if (!from->uri) return bad_input("serve: give the --model of the recording");
-  }
   if (!place.suit.empty() && !place.model.empty()) return bad_input("--model: suit.toml names the models");
   if (!place.suit.empty() && !place.classes.empty()) return bad_input("--classes: suit.toml names the classes");
   const std::string& record = options.session.record;
@@ -88,6 +83,16 @@ std::string address(const stream::ServerOptions& server, std::uint16_t port) {
   return url;
 }
 
+/// Whether somebody has to describe the array. Fails on a source that cannot be served.
+Result<bool> is_of_unknown_array(const serve::SuitPlace& place) {
+  if (!place.suit.empty() || !place.model.empty()) return false;
+  if (place.from.empty()) return true;
+  const Result<sources::SourceName> from = sources::SourceName::parse(place.from);
+  if (!from) return from.error();
+  if (Status can = serve::check_served(*from); !can) return can.error();
+  return !serve::describes_its_array(*from);
+}
+
 /// A user describes the array on the page; its array.toml is served from then on, at the same address.
 Status set_up_array(ServeOptions& options) {
   const Result<std::unique_ptr<serve::ArraySetup>> setup =
@@ -114,7 +119,9 @@ Status serve_suit(ServeOptions& options) {
   const std::span<const stream::Asset> page = viewer::assets();
   options.session.page.assign(page.begin(), page.end());
   options.session.server.notice = say;
-  if (options.place.suit.empty() && options.place.model.empty()) {
+  const Result<bool> is_unknown = is_of_unknown_array(options.place);
+  if (!is_unknown) return is_unknown.error();
+  if (*is_unknown) {
     if (Status set_up = set_up_array(options); !set_up || stop) return set_up;
   }
   Result<serve::ServedSuit> suit = serve::open_suit(options.place, {.stop = &stop, .notice = say});
@@ -137,8 +144,9 @@ void add_serve(Command& command) {
   auto options = std::make_shared<ServeOptions>();
   command.option("--from", options->place.from,
                  "URI of a device or of the simulator, or a recording; without it the page asks where the array is");
-  command.option("--model", options->place.model,
-                 "Its model, or the array.toml of an array to be calibrated; without it the page asks");
+  command.option(
+      "--model", options->place.model,
+      "Its model, or the array.toml of an array to be calibrated; without it the recording tells, or the page asks");
   command.option("--suit", options->place.suit, "suit.toml: several arrays with their sources and models");
   command.option("--classes", options->place.classes,
                  "Classes of 'dermis learn', from newtons: name what touches the array");

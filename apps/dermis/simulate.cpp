@@ -136,7 +136,7 @@ void add_simulate(Command& command) {
   for (const simulation::SceneKind& scene : simulation::scene_kinds()) scenes.emplace_back(scene.name);
   command.option("--scene", options->scene, "What happens to the array").one_of(scenes).required();
   command
-      .output_folder("--out", options->out, {"frames.csv", "loads.csv", "contacts.csv"},
+      .output_folder("--out", options->out, {"frames.csv", "loads.csv", "contacts.csv", "origin.toml"},
                      "Folder for frames.csv, loads.csv, contacts.csv and origin.toml")
       .required();
   command.option("--seed", options->seed, "Seed of contacts, temperatures, supply and noise").shows_default();

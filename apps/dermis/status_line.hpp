@@ -64,7 +64,7 @@ class LiveLine {
   std::chrono::steady_clock::time_point next_plain_ = std::chrono::steady_clock::now() + kPlainPeriod;
 };
 
-/// "1234 frames, 99.8/s +- 0.3 ms, 0 lost, 0 damaged, clock +12 ppm", and how often the device came back.
+/// "1234 frames, 99.8/s ± 0.3 ms, 0 lost, 0 damaged, clock +12 ppm", and how often the device came back.
 [[nodiscard]] std::string summary(std::uint64_t frames, const SourceStatistics& source);
 
 }  // namespace dermis::app

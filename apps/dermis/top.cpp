@@ -135,8 +135,9 @@ Status top(const TopOptions& options) {
 void add_top(Command& command) {
   auto options = std::make_shared<TopOptions>();
   command.input("--from", options->from, "URI of a device or of the simulator, or a recording").required();
-  command.input("--model", options->model,
-                "Model file, or array.toml where readings are forces: shows newtons and contacts instead of counts");
+  command.input_file(
+      "--model", options->model,
+      "Model file, or array.toml where readings are forces: shows newtons and contacts instead of counts");
   command.option("--high", options->high, "End of the colour scale [N, or counts]; by default it grows when needed");
   command.action([options] { return top(*options); });
 }

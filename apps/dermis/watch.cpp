@@ -136,7 +136,9 @@ Result<int> watch(const WatchOptions& options) {
 void add_watch(Command& command) {
   auto options = std::make_shared<WatchOptions>();
   command.input("--threats", options->threats, "threats.toml: the limits").required();
-  command.input("--model", options->model, "Model file of 'dermis calibrate', or array.toml where readings are forces")
+  command
+      .input_file("--model", options->model,
+                  "Model file of 'dermis calibrate', or array.toml where readings are forces")
       .required();
   command.input("--in", options->in, "Raw counts: the URI of a device; a file is read to its end").required();
   command.flag("--json", options->json, "Write threats as JSON lines");

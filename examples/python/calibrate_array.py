@@ -4,7 +4,7 @@
 
     calibrate_array.py folder        array.toml, frames.csv, loads.csv, test.csv and test_loads.csv are in it
 """
-import sys
+import argparse
 from pathlib import Path
 
 import dermis
@@ -33,4 +33,6 @@ def main(folder: str) -> None:
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder")
+    main(parser.parse_args().folder)

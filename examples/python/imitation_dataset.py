@@ -6,6 +6,7 @@
 
 joints.csv: time_s, then one column a joint. Each frame gets the angles between the two lines around it.
 """
+import argparse
 import csv
 import os
 import sys
@@ -68,4 +69,10 @@ def main(session: str, model_path: str, joints: str, out: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("session", help="recording of counts")
+    parser.add_argument("model", help="model file of dermis calibrate")
+    parser.add_argument("joints", help="CSV of joint angles")
+    parser.add_argument("out", help=".npz or .h5 to write")
+    options = parser.parse_args()
+    main(options.session, options.model, options.joints, options.out)

@@ -4,7 +4,7 @@
 
     live_view.py sim:contacts?rate=100 chest.safetensors
 """
-import sys
+import argparse
 import time
 
 import dermis
@@ -37,7 +37,12 @@ def main(uri: str, model_path: str, seconds: float = float("inf")) -> None:
 
 
 if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("uri", help="of a device, the simulator or a recording")
+    parser.add_argument("model", help="model file of dermis calibrate")
+    parser.add_argument("seconds", type=float, nargs="?", default=float("inf"), help="how long; without it until Ctrl-C")
+    options = parser.parse_args()
     try:
-        main(sys.argv[1], sys.argv[2], *map(float, sys.argv[3:]))
+        main(options.uri, options.model, options.seconds)
     except KeyboardInterrupt:
         pass

@@ -4,8 +4,7 @@
 
     robot_sensor.py sim:contacts?rate=100 chest.safetensors
 """
-import sys
-import threading
+import argparse
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,13 +13,11 @@ import dermis
 
 
 class TactileSensor:
-    """The newest forces of an array, read in the background."""
+    """The newest forces of an array."""
 
     def __init__(self, uri: str, model_path: str) -> None:
         self.uri = uri
         self.model = dermis.read_model(model_path)
-        self._newest: dermis.ForceFrame | None = None
-        self._has_frame = threading.Event()
         self._source: dermis.Source | None = None
 
     @property
@@ -32,30 +29,19 @@ class TactileSensor:
         return self._source is not None
 
     def connect(self) -> None:
-        self._stop = False
         self._source = dermis.open(self.uri, self.model.array)
-        self._reader = threading.Thread(target=self._read_all, args=(self._source,), daemon=True)
-        self._reader.start()
-
-    def _read_all(self, source: dermis.Source) -> None:
-        pipeline = dermis.Pipeline(self.model)
-        for raw in source:
-            self._newest = pipeline.process(raw)
-            self._has_frame.set()
-            if self._stop:
-                break
+        self._pipeline = dermis.Pipeline(self.model)
 
     def read(self, timeout_s: float = 1.0) -> NDArray[np.float32]:
         """Newtons (rows, cols) of the newest frame."""
-        if not self._has_frame.wait(timeout_s) or self._newest is None:
-            raise TimeoutError(f"no frame of {self.uri} within {timeout_s} s")
-        return self._newest.newtons
+        raw = self._source.latest(timeout_s) if self._source else None
+        if raw is None:
+            raise ConnectionError(f"{self.uri} has ended or is not connected")
+        return self._pipeline.process(raw).newtons
 
     def disconnect(self) -> None:
         if self._source is None:
             return
-        self._stop = True
-        self._reader.join()
         self._source.close()
         self._source = None
 
@@ -68,4 +54,8 @@ def main(uri: str, model_path: str) -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("uri", help="of a device or of the simulator")
+    parser.add_argument("model", help="model file of dermis calibrate")
+    options = parser.parse_args()
+    main(options.uri, options.model)

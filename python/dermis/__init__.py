@@ -66,9 +66,13 @@ from dermis._dermis import (  # noqa: E402
     Model,
     Pipeline,
     RawFrame,
+    Recogniser,
+    Recognition,
     Recording,
     Server,
     Source,
+    Threat,
+    ThreatMonitor,
     __version__,
     calibrate,
     evaluate_json as _evaluate_json,
@@ -78,6 +82,24 @@ from dermis._dermis import (  # noqa: E402
     read_model,
     serve,
 )
+from dermis._copied import copy_well as _copy_well  # noqa: E402
+from dermis._suit import Suit, SuitArray  # noqa: E402
+from dermis._shown import show_well as _show_well  # noqa: E402
+
+_copy_well()
+_show_well()
+
+
+async def _next_frame(source):
+    import asyncio
+
+    while (frame := await asyncio.to_thread(source._poll)) is None:
+        pass
+    return frame
+
+
+Source.__aiter__ = lambda source: source
+Source.__anext__ = _next_frame
 
 
 def evaluate(model, frames, loads):
@@ -89,6 +111,6 @@ def evaluate(model, frames, loads):
 
 __all__ = [
     "ArrayDescription", "BadInput", "CalibrationReport", "Contact", "ContactTracker", "Error", "Failed", "ForceFrame",
-    "Forces", "FrameStatus", "Load", "Model", "Pipeline", "RawFrame", "Recording", "Server", "Source", "TaxelStatus",
-    "__version__", "calibrate", "circuit", "evaluate", "open", "read_array", "read_loads", "read_model", "serve",
+    "Forces", "FrameStatus", "Load", "Model", "Pipeline", "RawFrame", "Recogniser", "Recognition", "Recording",
+    "Server", "Source", "Suit", "SuitArray", "TaxelStatus", "Threat", "ThreatMonitor", "__version__", "calibrate", "circuit", "evaluate", "open", "read_array", "read_loads", "read_model", "serve",
 ]

@@ -3,7 +3,7 @@
 """Shapes are (rows, cols), row-major. A path is a str or an os.PathLike."""
 import enum
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import AsyncIterator, Callable, Iterable, Iterator, Sequence
 from types import TracebackType
 from typing import Any, TypeAlias, overload
 
@@ -99,6 +99,7 @@ class RawFrame:
     def sequence(self) -> int | None: ...
     @property
     def lost_before(self) -> int: ...
+    def _repr_png_(self) -> bytes: ...
 
 class ForceFrame:
     """Forces of one frame. The arrays are views (rows, cols); they keep the frame alive."""
@@ -124,6 +125,7 @@ class ForceFrame:
         """Its standard deviation, with the errors that taxels share."""
     def total_of(self, mask: ArrayLike) -> tuple[float, float]:
         """The same of the taxels where mask (rows, cols) is true: newtons, standard deviation."""
+    def _repr_png_(self) -> bytes: ...
 
 class Recording:
     """Frames of one array in memory, from and to any file of frames: .mcap, .csv, .h5, .npy and more.
@@ -148,7 +150,10 @@ class Recording:
         """Raises BadInput where the file exists, unless `force`."""
 
     def __len__(self) -> int: ...
+    @overload
     def __getitem__(self, index: int, /) -> RawFrame: ...
+    @overload
+    def __getitem__(self, frames: slice, /) -> Recording: ...
     @property
     def name(self) -> str: ...
     @property
@@ -169,6 +174,9 @@ class Forces:
     and time_ns (frames,)."""
 
     def __len__(self) -> int: ...
+    def __getitem__(self, frames: slice, /) -> Forces: ...
+    def _repr_png_(self) -> bytes | None:
+        """The strongest frame, for notebooks."""
     @property
     def time_ns(self) -> NDArray[np.int64]: ...
     @property
@@ -186,9 +194,12 @@ class Forces:
     def total_sigma(self) -> NDArray[np.float64]: ...
 
 class Pipeline:
-    """Counts in, newtons out. One for each stream of frames, in their order; raises where two threads use it at once."""
+    """Counts in, newtons out. One for each stream of frames, in their order; raises where two threads use it at once.
+    A copy, also by pickle, is made anew of the model: it has not been tared and remembers nothing."""
 
     def __init__(self, model: Model) -> None: ...
+    @property
+    def model(self) -> Model: ...
     @overload
     def process(self, frame: RawFrame) -> ForceFrame: ...
     @overload
@@ -200,8 +211,17 @@ class Pipeline:
         time_ns: int | None = None,
     ) -> ForceFrame:
         """counts (rows, cols); temperature [C]; supply [V]; time_ns: now, by the host's clock, where it is None."""
-    def run(self, frames: Recording | _Path) -> Forces:
-        """All frames. Other threads run meanwhile."""
+    def run(
+        self,
+        frames: Recording | _Path | ArrayLike,
+        *,
+        time_ns: ArrayLike | None = None,
+        rate_hz: float | None = None,
+        temperature_celsius: ArrayLike | None = None,
+        supply_v: ArrayLike | None = None,
+    ) -> Forces:
+        """All frames. Other threads run meanwhile. Counts (frames, rows, cols) need their times or their rate, as in
+        Recording, and may have what else stands here."""
     @property
     def why_rejected(self) -> str:
         """Of the last frame: what was wrong, and what is expected; '' where it was not rejected."""
@@ -266,6 +286,74 @@ class ContactTracker:
     ) -> None: ...
     def process(self, force: ForceFrame) -> list[Contact]: ...
     def forget(self) -> None: ...
+
+class Threat:
+    """A limit and how it stands. Values are in N, Pa or N/s, as the quantity is."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def stands(self) -> bool: ...
+    @property
+    def quantity(self) -> str:
+        """As threats.toml names it, such as 'contact_force'."""
+    @property
+    def limit(self) -> float: ...
+    @property
+    def value(self) -> float:
+        """Of the last frame,"""
+    @property
+    def sigma(self) -> float:
+        """its standard deviation,"""
+    @property
+    def worst(self) -> float:
+        """and the largest since the limit was crossed."""
+    @property
+    def position_m(self) -> tuple[float, float]:
+        """(x, y) in the plane of the array."""
+    @property
+    def crossed_ns(self) -> int: ...
+
+class ThreatMonitor:
+    """Holds forces against the limits of a threats.toml (docs/threats.md). One for each stream of frames. `name`: of the
+    array in the zones; that of the model where it is None."""
+
+    def __init__(self, limits: _Path, model: Model, *, name: str | None = None) -> None: ...
+    def process(self, force: ForceFrame) -> list[Threat]:
+        """Those that began or ended with this frame."""
+    @property
+    def standing(self) -> list[Threat]: ...
+    def reset(self) -> None:
+        """Ends latched threats; they come back where the limit is still exceeded."""
+
+class Recognition:
+    @property
+    def name(self) -> str:
+        """The class, or 'unknown'."""
+    @property
+    def likeliest(self) -> str: ...
+    @property
+    def probabilities(self) -> dict[str, float]: ...
+    @property
+    def unknown_score(self) -> float: ...
+    @property
+    def reason(self) -> str:
+        """Why it is unknown; '' where it is not."""
+    @property
+    def frames(self) -> tuple[int, int]:
+        """First and last of those that were given, from 0."""
+
+class Recogniser:
+    """Names poses and gestures by the classes of `dermis learn --model`, from forces (docs/recognition.md). rate_hz: frames
+    a second; that of the examples where it is None. Frames of a tare are better left out."""
+
+    def __init__(self, classes: _Path, model: Model, *, rate_hz: float | None = None) -> None: ...
+    def process(self, force: ForceFrame) -> Recognition | None:
+        """A pose with every frame; a gesture once it is over, else None."""
+    def finish(self) -> Recognition | None:
+        """The gesture that has not ended when the stream does."""
+    @property
+    def names(self) -> list[str]: ...
 
 class Load:
     """A load that was known while a frame was taken: newtons over all taxels of `where`, or pascals on each of them.
@@ -332,9 +420,16 @@ class Source:
 
     def __iter__(self) -> Iterator[RawFrame]: ...
     def __next__(self) -> RawFrame: ...
+    def __aiter__(self) -> AsyncIterator[RawFrame]: ...
+    async def __anext__(self) -> RawFrame: ...
+    def latest(self, timeout_s: float | None = None) -> RawFrame | None:
+        """The newest frame of a device; older ones that wait are passed over. Where none has come since the last call it
+        waits, and raises TimeoutError after timeout_s. Of a file the next frame. None at the end."""
     def __enter__(self) -> Source: ...
     def __exit__(self, *error: type[BaseException] | BaseException | TracebackType | None) -> None: ...
     def close(self) -> None: ...
+    @property
+    def uri(self) -> str: ...
     @property
     def shape(self) -> tuple[int, int] | None:
         """(rows, cols); None where only the first frame will tell."""
@@ -347,6 +442,35 @@ class Source:
 
 def open(uri: _Path, array: ArrayDescription | _Path | None = None) -> Source:
     """A device or the simulator by its URI (docs/devices.md), or a file of frames by its path."""
+
+class SuitArray:
+    """One array of a suit: its source, its model, and what turns its frames into forces and contacts."""
+
+    name: str
+    model: Model
+    source: Source
+    pipeline: Pipeline
+    contacts: ContactTracker
+    def __init__(self, name: str, model: Model, source: Source) -> None: ...
+    def latest(self, timeout_s: float | None = None) -> ForceFrame | None:
+        """As Source.latest()."""
+
+class Suit:
+    """All arrays of a suit.toml (docs/suit.md), by their names. Devices are read in the background. `recording`: of the suit,
+    in place of its sources."""
+
+    arrays: dict[str, SuitArray]
+    def __init__(self, path: _Path, recording: _Path | None = None) -> None: ...
+    def __getitem__(self, name: str) -> SuitArray: ...
+    def __iter__(self) -> Iterator[SuitArray]: ...
+    def __len__(self) -> int: ...
+    def latest(self, timeout_s: float | None = None) -> dict[str, ForceFrame]:
+        """Forces of each array that has not ended; see Source.latest()."""
+    def tare(self, *, force: bool = False) -> None:
+        """All arrays: see Pipeline.tare()."""
+    def close(self) -> None: ...
+    def __enter__(self) -> Suit: ...
+    def __exit__(self, *error: type[BaseException] | BaseException | TracebackType | None) -> None: ...
 
 class Server:
     """`dermis serve` in the background of this process."""

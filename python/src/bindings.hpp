@@ -30,6 +30,9 @@ void bind_circuit(py::module_& module);
 void bind_calibration(py::module_& module);
 void bind_sources(py::module_& module);
 void bind_serve(py::module_& module);
+void bind_picture(py::module_& module);
+void bind_threats(py::module_& module);
+void bind_recognition(py::module_& module);
 
 /// Throws dermis.BadInput or dermis.Failed with the line of the error.
 [[noreturn]] void raise(const Error& error);

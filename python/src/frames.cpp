@@ -53,23 +53,13 @@ std::vector<std::int64_t> times(const py::object& time_ns, const std::optional<d
 
 Recording make_recording(const py::object& counts, const py::object& time_ns, std::optional<double> rate_hz,
                          const py::object& temperature, const py::object& supply, const py::object& array) {
-  const py::array_t<float> values = numbers<float>(counts, "counts", {-1, -1, -1});
-  Recording recording;
-  const auto frames = static_cast<std::size_t>(values.shape(0));
-  recording.shape = {static_cast<std::size_t>(values.shape(1)), static_cast<std::size_t>(values.shape(2))};
-  recording.counts = copied(values);
-  recording.time_ns = times(time_ns, rate_hz, frames);
-  recording.temperature_celsius = series(temperature, "temperature_celsius", frames);
-  recording.supply_v = series(supply, "supply_v", frames);
-  if (array.is_none()) return recording;
-  const ArrayDescription description = array_of(array);
-  if (FrameShape{description.rows, description.cols} != recording.shape) {
-    throw py::value_error("counts: has frames of " + std::to_string(recording.shape.rows) + "x" +
-                          std::to_string(recording.shape.cols) + " taxels, the array " + description.name + " has " +
-                          std::to_string(description.rows) + "x" + std::to_string(description.cols));
-  }
-  recording.name = description.name;
-  recording.array_toml = files::array_to_toml(description);
+  const std::optional<ArrayDescription> description =
+      array.is_none() ? std::nullopt : std::optional<ArrayDescription>(array_of(array));
+  Recording recording =
+      recording_of(counts, description ? &*description : nullptr, {time_ns, rate_hz, temperature, supply});
+  if (!description) return recording;
+  recording.name = description->name;
+  recording.array_toml = files::array_to_toml(*description);
   return recording;
 }
 
@@ -242,6 +232,56 @@ auto per_taxel(std::vector<Value> Class::*member) {
   };
 }
 
+/// Places of the frames that a slice names.
+std::vector<std::size_t> places_of(const py::slice& slice, std::size_t frames) {
+  py::ssize_t place = 0;
+  py::ssize_t stop = 0;
+  py::ssize_t step = 0;
+  py::ssize_t count = 0;
+  if (!slice.compute(static_cast<py::ssize_t>(frames), &place, &stop, &step, &count)) throw py::error_already_set();
+  std::vector<std::size_t> places(static_cast<std::size_t>(count));
+  for (std::size_t& each : places) each = static_cast<std::size_t>(std::exchange(place, place + step));
+  return places;
+}
+
+/// `each`: values of a frame.
+template <typename T>
+std::vector<T> picked(const std::vector<T>& values, const std::vector<std::size_t>& places, std::size_t each = 1) {
+  std::vector<T> some;
+  some.reserve(places.size() * each);
+  for (const std::size_t place : places) {
+    const auto first = values.begin() + static_cast<std::ptrdiff_t>(place * each);
+    some.insert(some.end(), first, first + static_cast<std::ptrdiff_t>(each));
+  }
+  return some;
+}
+
+Recording part_of_recording(const Recording& whole, const py::slice& slice) {
+  const std::vector<std::size_t> places = places_of(slice, whole.size());
+  return {whole.shape,
+          picked(whole.time_ns, places),
+          picked(whole.temperature_celsius, places),
+          picked(whole.supply_v, places),
+          picked(whole.counts, places, whole.shape.taxel_count()),
+          whole.name,
+          whole.array_toml,
+          whole.model_hash};
+}
+
+Forces part_of_forces(const Forces& whole, const py::slice& slice) {
+  const std::vector<std::size_t> places = places_of(slice, whole.time_ns.size());
+  const std::size_t taxels = whole.shape.taxel_count();
+  Forces part(whole.shape, 0);
+  part.time_ns = picked(whole.time_ns, places);
+  part.status = picked(whole.status, places);
+  part.newtons = picked(whole.newtons, places, taxels);
+  part.sigma_newtons = picked(whole.sigma_newtons, places, taxels);
+  part.taxels = picked(whole.taxels, places, taxels);
+  part.total = picked(whole.total, places);
+  part.total_sigma = picked(whole.total_sigma, places);
+  return part;
+}
+
 void bind_many_frames(py::module_& module) {
   py::class_<Recording>(module, "Recording")
       .def(py::init(&make_recording), py::arg("counts"), py::kw_only(), py::arg("time_ns") = py::none(),
@@ -268,6 +308,7 @@ void bind_many_frames(py::module_& module) {
              recording.read(static_cast<std::size_t>(index), raw.frame);
              return raw;
            })
+      .def("__getitem__", &part_of_recording)
       .def_readonly("name", &Recording::name)
       .def_readonly("model_hash", &Recording::model_hash)
       .def_property_readonly("array",
@@ -298,6 +339,7 @@ void bind_many_frames(py::module_& module) {
 
   py::class_<Forces>(module, "Forces")
       .def("__len__", [](const Forces& forces) { return forces.time_ns.size(); })
+      .def("__getitem__", &part_of_forces)
       .def_property_readonly("time_ns", per_frame(&Forces::time_ns))
       .def_property_readonly("status", per_frame(&Forces::status))
       .def_property_readonly("newtons", per_taxel(&Forces::newtons))
@@ -345,6 +387,20 @@ std::vector<RawFrame> Recording::frames() const {
   std::vector<RawFrame> frames(size());
   for (std::size_t k = 0; k < size(); ++k) read(k, frames[k]);
   return frames;
+}
+
+Recording recording_of(const py::object& counts, const ArrayDescription* array, const FrameSeries& beside) {
+  std::vector<py::ssize_t> shape(3, -1);
+  if (array != nullptr) shape = {-1, static_cast<py::ssize_t>(array->rows), static_cast<py::ssize_t>(array->cols)};
+  const py::array_t<float> values = numbers<float>(counts, "counts", shape);
+  const auto frames = static_cast<std::size_t>(values.shape(0));
+  Recording recording;
+  recording.shape = {static_cast<std::size_t>(values.shape(1)), static_cast<std::size_t>(values.shape(2))};
+  recording.counts = copied(values);
+  recording.time_ns = times(beside.time_ns, beside.rate_hz, frames);
+  recording.temperature_celsius = series(beside.temperature_celsius, "temperature_celsius", frames);
+  recording.supply_v = series(beside.supply_v, "supply_v", frames);
+  return recording;
 }
 
 Recording recording_of(const py::object& object) {

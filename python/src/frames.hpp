@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,6 +42,18 @@ struct Recording {
 
 /// A Recording, or the path of a file of frames.
 Recording recording_of(const py::object& object);
+
+/// What comes beside the counts of frames, as Python gives it: times or a rate, and one number a frame, one for all, or
+/// None.
+struct FrameSeries {
+  py::object time_ns;
+  std::optional<double> rate_hz;
+  py::object temperature_celsius;
+  py::object supply_v;
+};
+
+/// Counts [frames, rows, cols] as a recording. `array`: whose shape they must have; null: any.
+Recording recording_of(const py::object& counts, const ArrayDescription* array, const FrameSeries& beside);
 
 /// The forces of many frames side by side.
 struct Forces {

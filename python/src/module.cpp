@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
+#include <array>
 #include <filesystem>
+#include <limits>
 #include <system_error>
 #include <type_traits>
 
@@ -11,12 +13,21 @@
 namespace dermis::python {
 namespace {
 
+/// "(frames, 12, 10)": a length that may be any is named by its place.
 std::string expected(const std::vector<py::ssize_t>& shape) {
+  static constexpr std::array kLengths = {"frames", "rows", "cols"};
   std::string text = "(";
   for (std::size_t k = 0; k < shape.size(); ++k) {
-    text += (k == 0 ? "" : ", ") + (shape[k] < 0 ? "n" : std::to_string(shape[k]));
+    text += (k == 0 ? "" : ", ") + (shape[k] < 0 ? kLengths.at(k) : std::to_string(shape[k]));
   }
   return text + (shape.size() == 1 ? ",)" : ")");
+}
+
+/// The entries that a numpy.ma array masks are NaN: there is no reading.
+py::object with_nan_for_masked(const py::object& object, const char* name, bool can_be_nan) {
+  if (!py::isinstance(object, py::module_::import("numpy.ma").attr("MaskedArray"))) return object;
+  if (!can_be_nan) throw py::type_error(std::string(name) + ": may not be masked; fill() it");
+  return object.attr("astype")("float64").attr("filled")(std::numeric_limits<double>::quiet_NaN());
 }
 
 bool fits(const py::array& array, const std::vector<py::ssize_t>& shape) {
@@ -42,7 +53,7 @@ std::string shape_text(const py::array& array) {
 
 template <typename T>
 py::array_t<T> numbers(const py::object& object, const char* name, const std::vector<py::ssize_t>& shape) {
-  const py::array array = py::array::ensure(object);
+  const py::array array = py::array::ensure(with_nan_for_masked(object, name, std::is_floating_point_v<T>));
   if (!array) {
     PyErr_Clear();
     throw py::type_error(std::string(name) + ": is no array of numbers");
@@ -104,6 +115,9 @@ PYBIND11_MODULE(_dermis, module) {
   bind_calibration(module);
   bind_sources(module);
   bind_serve(module);
+  bind_picture(module);
+  bind_threats(module);
+  bind_recognition(module);
 }
 
 }  // namespace dermis::python

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bindings.hpp"
+#include "dermis/files/taxel_text.hpp"
 #include "frames.hpp"
 
 namespace dermis::python {
@@ -18,13 +19,25 @@ Nanos steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
+/// What `beside` says belongs to counts alone.
+Recording frames_of(const pipeline::Model& model, const py::object& frames, const FrameSeries& beside) {
+  const bool is_whole = py::isinstance<Recording>(frames) || is_path(frames);
+  if (!is_whole) return recording_of(frames, &model.array, beside);
+  const bool is_more_told = !beside.time_ns.is_none() || beside.rate_hz || !beside.temperature_celsius.is_none() ||
+                            !beside.supply_v.is_none();
+  if (is_more_told) throw py::value_error("frames: a recording has times, temperatures and supplies of its own");
+  return recording_of(frames);
+}
+
 /// A pipeline that says so where two threads of Python use it at once.
 class SharedPipeline {
  public:
-  explicit SharedPipeline(const pipeline::Model& model)
-      : shape_{model.array.rows, model.array.cols},
-        array_(model.array),
-        pipeline_(value_or_raise(pipeline::Pipeline::create(model))) {}
+  explicit SharedPipeline(std::shared_ptr<pipeline::Model> model)
+      : model_(std::move(model)),
+        shape_{model_->array.rows, model_->array.cols},
+        pipeline_(value_or_raise(pipeline::Pipeline::create(*model_))) {}
+
+  [[nodiscard]] std::shared_ptr<pipeline::Model> model() const { return model_; }
 
   ShapedForce process(const py::object& counts, std::optional<double> temperature, std::optional<double> supply,
                       std::optional<std::int64_t> time_ns) {
@@ -42,7 +55,7 @@ class SharedPipeline {
 
   ShapedForce process_frame(const ShapedRaw& raw) {
     const std::unique_lock lock = exclusively();
-    if (raw.shape != shape_) throw py::value_error("the frame has another shape than the array of the model");
+    check_shape("the frame has", raw.shape);
     ShapedForce force{shape_, {}};
     pipeline_.process(raw.frame, force.frame);
     warn_of_tare();
@@ -51,7 +64,7 @@ class SharedPipeline {
 
   Forces run(const Recording& recording) {
     const std::unique_lock lock = exclusively();
-    if (recording.shape != shape_) throw py::value_error("the frames have another shape than the array of the model");
+    check_shape("the frames have", recording.shape);
     Forces forces(shape_, recording.size());
     process_all(recording, forces);
     warn_of_tare();
@@ -97,7 +110,7 @@ class SharedPipeline {
   void warn_of_tare() {
     const pipeline::Tare& tare = pipeline_.last_tare();
     if (!tare.has_ended() || std::exchange(told_tare_, tare.number) == tare.number) return;
-    std::string text = pipeline::describe(tare, array_);
+    std::string text = pipeline::describe(tare, model_->array);
     if (tare.state == pipeline::Tare::State::refused) text = "not tared: " + text + ", or tare(force=True)";
     if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
   }
@@ -108,12 +121,18 @@ class SharedPipeline {
     return lock;
   }
 
+  void check_shape(const std::string& what, const FrameShape& shape) const {
+    if (shape == shape_) return;
+    throw py::value_error(what + " " + files::size_text(shape) + " taxels, the array of the model has " +
+                          files::size_text(shape_));
+  }
+
   [[nodiscard]] std::vector<py::ssize_t> extents() const {
     return {static_cast<py::ssize_t>(shape_.rows), static_cast<py::ssize_t>(shape_.cols)};
   }
 
+  std::shared_ptr<pipeline::Model> model_;
   FrameShape shape_;
-  ArrayDescription array_;
   pipeline::Pipeline pipeline_;
   std::uint64_t told_tare_ = 0;
   RawFrame raw_;
@@ -124,18 +143,19 @@ class SharedPipeline {
 
 void bind_pipeline(py::module_& module) {
   py::class_<SharedPipeline>(module, "Pipeline")
-      .def(py::init([](const pipeline::Model& model) { return std::make_unique<SharedPipeline>(model); }),
-           py::arg("model"))
+      .def(py::init<std::shared_ptr<pipeline::Model>>(), py::arg("model").none(false))
+      .def_property_readonly("model", &SharedPipeline::model)
       .def("process", &SharedPipeline::process_frame, py::arg("frame"))
       .def("process", &SharedPipeline::process, py::arg("counts"), py::arg("temperature") = py::none(),
            py::arg("supply") = py::none(), py::arg("time_ns") = py::none())
       .def(
           "run",
-          [](SharedPipeline& self, const py::object& frames) {
-            if (py::isinstance<Recording>(frames)) return self.run(frames.cast<const Recording&>());
-            return self.run(recording_of(frames));
+          [](SharedPipeline& self, const py::object& frames, const py::object& time_ns, std::optional<double> rate_hz,
+             const py::object& temperature_celsius, const py::object& supply_v) {
+            return self.run(frames_of(*self.model(), frames, {time_ns, rate_hz, temperature_celsius, supply_v}));
           },
-          py::arg("frames"))
+          py::arg("frames"), py::kw_only(), py::arg("time_ns") = py::none(), py::arg("rate_hz") = py::none(),
+          py::arg("temperature_celsius") = py::none(), py::arg("supply_v") = py::none())
       .def_property_readonly("why_rejected", &SharedPipeline::why_rejected)
       .def("tare", &SharedPipeline::tare, py::kw_only(), py::arg("force") = false)
       .def("undo_tare", &SharedPipeline::undo_tare)

@@ -9,6 +9,7 @@
 
 #include "bindings.hpp"
 #include "dermis/acquisition/frame_queue.hpp"
+#include "dermis/files/suit_toml.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "frames.hpp"
 
@@ -24,7 +25,7 @@ constexpr Nanos kLook = std::chrono::milliseconds(50);  // so often Ctrl-C is lo
 /// loses nothing.
 class Source {
  public:
-  Source(const std::string& from, std::optional<ArrayDescription> array) : array_(std::move(array)) {
+  Source(const std::string& from, std::optional<ArrayDescription> array) : uri_(from), array_(std::move(array)) {
     sources::SourceOptions options;
     options.stop = &stop_;
     if (array_) options.array = &*array_;
@@ -48,11 +49,30 @@ class Source {
   ~Source() { close(); }
 
   ShapedRaw next() {
-    if (!source_) throw py::value_error("the source is closed");
     ShapedRaw raw;
-    const bool more = is_live_ ? pop(raw.frame) : read(raw.frame);
-    if (!more) throw py::stop_iteration();
-    raw.shape = shape_.value_or(FrameShape{1, raw.frame.counts.size()});
+    if (!take(raw)) throw py::stop_iteration();
+    return raw;
+  }
+
+  /// The newest frame of a device, or the next of anything else; none at the end.
+  std::optional<ShapedRaw> latest(std::optional<double> timeout_s) {
+    ShapedRaw raw;
+    if (!take(raw, timeout_s)) return std::nullopt;
+    while (is_live_ && queue_->pop(raw.frame, Nanos(0)) == FrameQueue::Pop::frame) continue;
+    return raw;
+  }
+
+  /// The next frame, or none where none comes within kLook. For asyncio, on a thread of its own.
+  std::optional<ShapedRaw> poll() {
+    ShapedRaw raw;
+    check_open();
+    const std::optional<bool> more = is_live_ ? try_pop(raw.frame) : read(raw.frame);
+    if (!more) return std::nullopt;
+    if (!*more) {
+      PyErr_SetNone(PyExc_StopAsyncIteration);
+      throw py::error_already_set();
+    }
+    raw.shape = shape_of(raw.frame);
     return raw;
   }
 
@@ -65,6 +85,7 @@ class Source {
     source_.reset();
   }
 
+  [[nodiscard]] const std::string& uri() const { return uri_; }
   [[nodiscard]] std::optional<FrameShape> shape() const { return shape_; }
   [[nodiscard]] bool is_live() const { return is_live_; }
   [[nodiscard]] std::uint64_t dropped() const { return queue_ ? queue_->statistics().dropped : 0; }
@@ -92,19 +113,47 @@ class Source {
     queue_->close();
   }
 
-  bool pop(RawFrame& frame) {
+  void check_open() const {
+    if (!source_) throw py::value_error("the source is closed");
+  }
+
+  [[nodiscard]] FrameShape shape_of(const RawFrame& frame) const {
+    return shape_.value_or(FrameShape{1, frame.counts.size()});
+  }
+
+  /// False: there are no more.
+  bool take(ShapedRaw& raw, std::optional<double> timeout_s = {}) {
+    check_open();
+    const bool more = is_live_ ? pop(raw.frame, timeout_s) : read(raw.frame);
+    raw.shape = shape_of(raw.frame);
+    return more;
+  }
+
+  /// Without a timeout it waits as long as that takes.
+  bool pop(RawFrame& frame, std::optional<double> timeout_s) {
+    using Clock = std::chrono::steady_clock;
+    const auto end = Clock::now() + std::chrono::duration<double>(timeout_s.value_or(0.0));
     for (;;) {
-      const FrameQueue::Pop popped = [&] {
-        const py::gil_scoped_release release;
-        return queue_->pop(frame, kLook);
-      }();
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      const std::lock_guard lock(mutex_);
-      if (!shape_) shape_ = shape_seen_;
-      if (popped == FrameQueue::Pop::frame) return true;
-      if (popped == FrameQueue::Pop::end && error_) raise(*error_);
-      if (popped == FrameQueue::Pop::end) return false;
+      if (const std::optional<bool> more = try_pop(frame)) return *more;
+      if (!timeout_s || Clock::now() < end) continue;
+      PyErr_SetString(PyExc_TimeoutError, ("'" + uri_ + "': no frame came in time").c_str());
+      throw py::error_already_set();
     }
+  }
+
+  /// Empty where no frame comes within kLook; false: there are no more.
+  std::optional<bool> try_pop(RawFrame& frame) {
+    const FrameQueue::Pop popped = [&] {
+      const py::gil_scoped_release release;
+      return queue_->pop(frame, kLook);
+    }();
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    const std::lock_guard lock(mutex_);
+    if (!shape_) shape_ = shape_seen_;
+    if (popped == FrameQueue::Pop::frame) return true;
+    if (popped == FrameQueue::Pop::timeout) return std::nullopt;
+    if (error_) raise(*error_);
+    return false;
   }
 
   bool read(RawFrame& frame) {
@@ -117,6 +166,7 @@ class Source {
     return value_or_raise(std::move(more));
   }
 
+  std::string uri_;
   std::optional<ArrayDescription> array_;
   std::atomic<bool> stop_ = false;
   std::unique_ptr<FrameSource> source_;  // null: closed
@@ -136,6 +186,8 @@ void bind_sources(py::module_& module) {
   py::class_<Source>(module, "Source")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &Source::next)
+      .def("latest", &Source::latest, py::arg("timeout_s") = py::none())
+      .def("_poll", &Source::poll)
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__", [](Source& source, const py::args&) { source.close(); })
       .def("close", &Source::close)
@@ -145,6 +197,7 @@ void bind_sources(py::module_& module) {
                                if (!shape) return std::nullopt;
                                return std::pair(shape->rows, shape->cols);
                              })
+      .def_property_readonly("uri", &Source::uri)
       .def_property_readonly("is_live", &Source::is_live)
       .def_property_readonly("dropped", &Source::dropped)
       .def("notices", &Source::notices);
@@ -156,6 +209,16 @@ void bind_sources(py::module_& module) {
         return std::make_unique<Source>(path_of(uri), std::move(description));
       },
       py::arg("uri"), py::arg("array") = py::none());
+  module.def(
+      "read_suit",
+      [](const py::object& path) {
+        py::list arrays;
+        for (const SuitArray& array : value_or_raise(files::read_suit(path_of(path))).arrays) {
+          arrays.append(py::make_tuple(array.name, array.from, array.model));
+        }
+        return arrays;
+      },
+      py::arg("path"));
 }
 
 }  // namespace dermis::python

@@ -60,7 +60,7 @@ void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) 
   report.remarks.insert(
       report.remarks.begin(),
       fmt::format(
-          "{} of {} taxels were not pressed: their forces are +- {:.0f} % at best, as taxels differ; five loads of an "
+          "{} of {} taxels were not pressed: their forces are \u00b1 {:.0f} % at best, as taxels differ; five loads of an "
           "air bladder over all of them tell each one's gain",
           uncertainty.unpressed_taxels, array.taxel_count(), 100.0 * *std::min_element(sigma->begin(), sigma->end())));
 }

@@ -27,6 +27,16 @@ Error read_failure(const std::string& name) {
   return failed("cannot read " + in_quotes(name) + ": " + std::strerror(errno));
 }
 
+std::string first_bytes_of(const std::string& path, std::size_t max_bytes) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return {};
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes(max_bytes, '\0');
+  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(file.gcount()));
+  return bytes;
+}
+
 Result<std::string> read_file(const std::string& path, std::size_t max_bytes) {
   constexpr std::size_t kFirstBytes = std::size_t{1} << 20U;
   Result<std::unique_ptr<std::istream>> in = open_input(path);

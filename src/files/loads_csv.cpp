@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "dermis/files/atomic_file.hpp"
+#include "dermis/files/force_text.hpp"
 #include "dermis/files/input.hpp"
 #include "dermis/files/taxel_text.hpp"
 #include "dermis/files/text.hpp"
@@ -54,7 +55,13 @@ Result<std::size_t> parse_frame(std::string_view text, std::size_t frame_count) 
 
 Result<double> parse_value(std::string_view text, LoadKind kind) {
   double value = 0.0;
-  if (!parse_number(text, value)) return bad_input("value " + in_quotes(text) + " is not a number");
+  if (kind == LoadKind::force) {
+    const Result<double> force = parse_force(text);
+    if (!force) return bad_input("value " + force.error().message);
+    value = *force;
+  } else if (!parse_number(text, value)) {
+    return bad_input("value " + in_quotes(text) + " is not a number");
+  }
   if (!(value >= 0.0 && value <= kMostValue)) {
     return bad_input("value " + in_quotes(text) + " must be 0 to 1000000 (N or kPa)");
   }

@@ -73,7 +73,7 @@ std::string describe(const AgeingEvidence& evidence) {
   if (!evidence.gain_spread) {
     return fmt::format("not known yet ({} of {} squares of taxels compared)", evidence.blocks, kLeastBlocks);
   }
-  return fmt::format("{}gains have changed by about {:.0f} % from taxel to taxel (+- {:.0f} %, {} comparisons)",
+  return fmt::format("{}gains have changed by about {:.0f} % from taxel to taxel (\u00b1 {:.0f} %, {} comparisons)",
                      evidence.has_aged() ? "recalibrate: " : "", 100.0 * *evidence.gain_spread,
                      std::max(100.0 * evidence.spread_sigma, 1.0), evidence.comparisons);
 }

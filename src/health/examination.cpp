@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dermis/health/ageing_monitor.hpp"
+#include "dermis/pipeline/frame_troubles.hpp"
 #include "dermis/pipeline/standing_load.hpp"
 #include "dermis/preprocessing/missing_readings.hpp"
 #include "health/findings.hpp"
@@ -86,10 +87,12 @@ class Examination::Implementation {
         offsets_(model.array.taxel_count()),
         ageing_(model),
         standing_(model),
+        troubles_(model.array, ""),
         deviation_(model.array.taxel_count()) {}
 
   void add(const RawFrame& raw, const ForceFrame& force, const pipeline::Pipeline& pipeline) {
     ageing_.add(force);
+    troubles_.add(raw, force, pipeline);
     const std::size_t frame = counted_.frames++;
     const ConductanceFrame& conductance = pipeline.conductance();
     if (has(conductance.status, FrameStatus::rejected)) {
@@ -99,6 +102,7 @@ class Examination::Implementation {
     }
     if (!first_time_) first_time_ = raw.time;
     last_time_ = raw.time;
+    if (troubles_.is_silent(raw, force, pipeline)) return;  // tells nothing of the sheet
     follow_temperature(pipeline.conditioned());
     follow_supply(raw);
     follow(pipeline.line_faults().faults(), frame, model_.array, counted_.faults);
@@ -137,6 +141,10 @@ class Examination::Implementation {
       diagnosis.findings.push_back(pipeline::describe_never_released(*load, model_.array));
     }
     diagnosis.remarks = remarks_on(pipeline.line_faults().suspicions(), model_.array);
+    if (const auto silent = troubles_.silent_frames()) diagnosis.findings.push_back(*silent);
+    if (const auto silence = troubles_.silence()) diagnosis.remarks.push_back(*silence);
+    // Whatever else is found comes of that.
+    if (const auto impossible = troubles_.impossible()) diagnosis.findings = {*impossible};
     return diagnosis;
   }
 
@@ -195,6 +203,7 @@ class Examination::Implementation {
   OffsetMeter offsets_;
   AgeingMonitor ageing_;
   pipeline::StandingLoadWatch standing_;
+  pipeline::FrameTroubles troubles_;
   std::vector<double> deviation_;  // from the unloaded conductance, in standard deviations [taxels]
 };
 

@@ -82,7 +82,7 @@ std::string describe(const WeightFinding& finding) {
   }
   const double change = finding.ratio - 1.0;
   if (finding.has_aged()) {
-    return text + fmt::format("recalibrate: gains have changed by about {:.0f} % (+- {:.0f} %): it reads {}\n",
+    return text + fmt::format("recalibrate: gains have changed by about {:.0f} % (\u00b1 {:.0f} %): it reads {}\n",
                               100.0 * std::abs(change), std::max(100.0 * finding.sigma, 1.0),
                               change > 0.0 ? "too much" : "too little");
   }

@@ -7,12 +7,13 @@
 #include <algorithm>
 
 #include "dermis/preprocessing/conditioner.hpp"
+#include "dermis/preprocessing/temperature_unit.hpp"
 
 namespace dermis::pipeline {
 namespace {
 
 constexpr const char* kMisfit = "do not fit the circuit of the array";
-constexpr double kHottestCelsius = 200.0;  // of a sheet; -73 C, where it is in kelvin
+constexpr const char* kPowered = "is the array connected and powered?";
 
 /// Where the source does not tell it, by the number of the frame.
 std::string place_of(const std::string& prefix, const FrameSource* source, std::size_t number) {
@@ -23,7 +24,10 @@ std::string place_of(const std::string& prefix, const FrameSource* source, std::
 }  // namespace
 
 FrameTroubles::FrameTroubles(const ArrayDescription& array, const std::string& from)
-    : prefix_(from.empty() ? "" : from + ": "), missing_(array), rows_(array.rows) {}
+    : prefix_(from.empty() ? "" : from + ": "),
+      missing_(array),
+      rows_(array.rows),
+      has_counts_(array.readout.quantity == Quantity::counts) {}
 
 void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline,
                         const FrameSource* source) {
@@ -35,6 +39,9 @@ void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipe
   if (is_unsolved && unsolved_++ == 0) first_unsolved_ = place_of(prefix_, source, number_);
   if (is_rejected || is_unsolved) ++lost_;
   if ((is_rejected || is_unsolved) && is_outside) ++lost_outside_;
+  const bool is_zero = std::ranges::all_of(raw.counts, [](float count) { return count == 0.0F; });
+  if (is_zero) ++zero_;
+  if (is_zero && (is_rejected || is_unsolved)) ++lost_zero_;
   if (has(force.status, FrameStatus::line_fault)) ++faulty_;
   add_doubts(raw, force, pipeline);
   if (!is_rejected) return;
@@ -51,26 +58,43 @@ void FrameTroubles::add_doubts(const RawFrame& raw, const ForceFrame& force, con
         *raw.supply_v, least_v, most_v);
   }
   const bool is_clamped = has(force.status, FrameStatus::temperature_clamped);
-  if (is_clamped && *raw.temperature_celsius > kHottestCelsius && kelvin_.frames++ == 0) {
+  if (is_clamped && preprocessing::looks_like_kelvin(*raw.temperature_celsius) && kelvin_.frames++ == 0) {
     kelvin_.what = fmt::format(
         "with a temperature that no sheet has, the first: {:.1f} C: it looks like kelvin, give degrees Celsius",
         *raw.temperature_celsius);
   }
   if (is_silent(raw, force, pipeline) && silent_.frames++ == 0) {
-    silent_.what = "with all readings 0, where untouched taxels read more: is the array connected and powered?";
+    silent_.what = fmt::format("with all readings 0, where untouched taxels read more: {}", kPowered);
   }
 }
 
-/// Whether nothing reads anything, of an array most of whose rows read something where nothing presses.
 bool FrameTroubles::is_silent(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline) const {
   if (has(force.status, FrameStatus::rejected | FrameStatus::saturated)) return false;
-  if (std::any_of(raw.counts.begin(), raw.counts.end(), [](float count) { return count != 0.0F; })) return false;
+  if (std::ranges::any_of(raw.counts, [](float count) { return count != 0.0F; })) return false;
   std::size_t reading = 0;
   for (std::size_t row = 0; row < rows_; ++row) reading += pipeline.line_faults().sees_silent_row(row) ? 1 : 0;
   return 2 * reading > rows_;
 }
 
+std::optional<std::string> FrameTroubles::silent_frames() const {
+  if (silent_.frames == 0) return std::nullopt;
+  return describe(silent_);
+}
+
+std::optional<std::string> FrameTroubles::silence() const {
+  if (!has_counts_ || zero_ < frames_ || frames_ == 0 || silent_.frames > 0) return std::nullopt;
+  return fmt::format("all readings of all {} frames are 0: nothing touches the array, or it is not connected", frames_);
+}
+
+std::optional<std::string> FrameTroubles::impossible() const {
+  for (const Doubt* doubt : {&kelvin_, &silent_}) {
+    if (2 * doubt->frames > frames_) return describe(*doubt);
+  }
+  return std::nullopt;
+}
+
 std::string FrameTroubles::cause() const {
+  if (2 * lost_zero_ > lost_) return fmt::format("all readings are 0: {}", kPowered);
   if (2 * lost_outside_ > lost_) return *missing_.describe_range();
   if (rejected_ > unsolved_) return "the first is rejected, " + first_rejection_;
   return fmt::format("their readings {}, the first at {}", kMisfit, first_unsolved_);
@@ -96,6 +120,7 @@ std::vector<std::string> FrameTroubles::describe() const {
   for (const Doubt* doubt : {&supply_, &kelvin_, &silent_}) {
     if (doubt->frames > 0) lines.push_back(describe(*doubt));
   }
+  if (const auto line = silence()) lines.push_back(*line);
   return lines;
 }
 
@@ -104,9 +129,7 @@ std::string FrameTroubles::describe(const Doubt& doubt) const {
 }
 
 Status FrameTroubles::verdict() const {
-  for (const Doubt* doubt : {&kelvin_, &silent_}) {
-    if (2 * doubt->frames > frames_) return failed(prefix_ + describe(*doubt));
-  }
+  if (const auto why = impossible()) return failed(prefix_ + *why);
   if (2 * lost_ <= frames_) return Done{};
   return failed(fmt::format("{}{} of {} frames have no force: {}", prefix_, lost_, frames_, cause()));
 }

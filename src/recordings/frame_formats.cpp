@@ -59,14 +59,7 @@ Result<FrameFormat> hdf5_format(const std::string& path) {
 /// Of a file that can be read from its beginning again; else nothing.
 std::string first_bytes(const std::string& path) {
   constexpr std::size_t kLooked = 4096;
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path, ignored)) return {};
-  const Result<std::unique_ptr<std::istream>> in = files::open_input(path);
-  if (!in) return {};
-  std::string bytes(kLooked, '\0');
-  (*in)->read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>((*in)->gcount()));
-  return bytes;
+  return files::first_bytes_of(path, kLooked);
 }
 
 /// The first word of a text, without quotes.

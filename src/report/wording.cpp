@@ -69,8 +69,4 @@ std::string estimator_words(std::string name) {
   return replaced(replaced(std::move(name), "_", " "), "lookup", "look-up");
 }
 
-std::string with_signs(std::string text) {
-  return replaced(std::move(text), "+-", "\u00b1");
-}
-
 }  // namespace dermis::report

@@ -6,19 +6,32 @@
 
 #include "dermis/calibration/uncalibrated_model.hpp"
 #include "dermis/files/array_toml.hpp"
+#include "dermis/recordings/frame_files.hpp"
 
 namespace dermis::serve {
 
-Result<ModelOrArray> read_model_or_array(const std::string& path) {
-  if (!path.ends_with(".toml")) {
-    Result<pipeline::Model> model = pipeline::read_model(path);
-    if (!model) return model.error();
-    ArrayDescription array = model->array;
-    return ModelOrArray{*std::move(model), std::move(array)};
-  }
-  Result<ArrayDescription> array = files::read_array(path);
+namespace {
+
+Result<ModelOrArray> uncalibrated(Result<ArrayDescription> array) {
   if (!array) return array.error();
   return ModelOrArray{calibration::uncalibrated_model(*array), *std::move(array)};
+}
+
+}  // namespace
+
+Result<ModelOrArray> read_model_or_array(const std::string& path) {
+  if (path.ends_with(".toml")) return uncalibrated(files::read_array(path));
+  Result<pipeline::Model> model = pipeline::read_model(path);
+  if (!model) return model.error();
+  ArrayDescription array = model->array;
+  return ModelOrArray{*std::move(model), std::move(array)};
+}
+
+Result<ModelOrArray> read_recorded_array(const std::string& recording) {
+  const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(recording);
+  if (!notes) return notes.error();
+  if (notes->array_toml.empty()) return bad_input(recording + ": does not describe its array; name the model of it");
+  return uncalibrated(files::array_from_toml(notes->array_toml, recording));
 }
 
 }  // namespace dermis::serve

@@ -18,6 +18,7 @@
 #include "dermis/files/suit_toml.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recognition/classes_file.hpp"
+#include "dermis/recordings/frame_files.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "dermis/sources/recorded_order.hpp"
 #include "dermis/threats/threat_monitor.hpp"
@@ -49,10 +50,12 @@ class Models {
     ArrayDescription description;
   };
 
-  Result<Known> read(const std::string& path) {
+  /// Without a model, the recording describes its array.
+  Result<Known> read(const SuitArray& array) {
+    const std::string& path = array.model;
     const auto known = read_.find(path);
     if (known != read_.end()) return known->second;
-    Result<ModelOrArray> read = read_model_or_array(path);
+    Result<ModelOrArray> read = path.empty() ? read_recorded_array(array.from) : read_model_or_array(path);
     if (!read) return read.error();
     Known fresh{std::make_shared<const pipeline::Model>(std::move(read->model)), std::move(read->array)};
     read_[path] = fresh;
@@ -164,7 +167,7 @@ Result<RestPlace> place_of(const SuitArray& array, const BodyParts* parts, const
 
 Result<ServedArray> open_array(const SuitArray& described, const Pose& suit_from_array, const Notice& notice,
                                Models& models) {
-  Result<Models::Known> known = models.read(described.model);
+  Result<Models::Known> known = models.read(described);
   if (!known) return known.error();
   const ArrayDescription& array = known->model->array;
   std::string name = described.name.empty() ? topic_name(array.name) : described.name;
@@ -197,29 +200,14 @@ Status open_arrays(const SuitDescription& described, const Notice& notice, std::
   return Done{};
 }
 
-/// What cannot be served, and its mend.
-Status check_live(const SourceName& from) {
-  const auto refuse = [&](const std::string& why) { return bad_input(fmt::format("'{}': {}", from.text, why)); };
-  if (from.kind == SourceKind::recording) return refuse("is a recording of a suit; name its suit.toml, too");
-  if (from.has_times_of_its_own()) {
-    return refuse("has times of its own; make a recording of it first ('dermis record')");
-  }
-  if (from.kind == SourceKind::file) {
-    return refuse(fmt::format(
-        "only devices and recordings are served; make a recording of it first (dermis convert {} it.mcap)", from.text));
-  }
-  if (from.needs_rate()) {
-    return refuse(fmt::format("say how many frames a second it sends, such as {}{}rate=100", from.text,
-                              from.text.find('?') == std::string::npos ? "?" : "&"));
-  }
-  return Done{};
-}
-
 Result<std::unique_ptr<FrameSource>> open_live(const std::string& text, const ServedArray& array,
                                                sources::SourceOptions options) {
   const Result<SourceName> from = SourceName::parse(text);
   if (!from) return from.error();
-  if (Status live = check_live(*from); !live) return live.error();
+  if (Status can = check_served(*from); !can) return can.error();
+  if (from->kind == SourceKind::recording) {
+    return bad_input(fmt::format("'{}': is a recording of a suit; name its suit.toml, too", text));
+  }
   options.array = &array.model->array;
   return sources::open_source(*from, options);
 }
@@ -276,6 +264,28 @@ Status open_sources(const SuitPlace& place, const SuitDescription& described, co
 }
 
 }  // namespace
+
+Status check_served(const SourceName& from) {
+  const auto refuse = [&](const std::string& why) { return bad_input(fmt::format("'{}': {}", from.text, why)); };
+  if (from.has_times_of_its_own()) {
+    return refuse("has times of its own; make a recording of it first ('dermis record')");
+  }
+  if (from.kind == SourceKind::file) {
+    return refuse(fmt::format(
+        "only devices and recordings are served; make a recording of it first (dermis convert {} it.mcap)", from.text));
+  }
+  if (from.needs_rate()) {
+    return refuse(fmt::format("say how many frames a second it sends, such as {}{}rate=100", from.text,
+                              from.text.find('?') == std::string::npos ? "?" : "&"));
+  }
+  return Done{};
+}
+
+bool describes_its_array(const SourceName& from) {
+  if (from.kind != SourceKind::recording) return false;
+  const Result<recordings::FrameNotes> notes = recordings::read_frame_notes(from.text);
+  return notes && !notes->array_toml.empty();
+}
 
 Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, pipeline::Model model) {
   Result<ArraySurface> surface = ArraySurface::create(model.array);

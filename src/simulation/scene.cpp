@@ -9,7 +9,10 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <set>
+#include <string>
 
+#include "dermis/core/nearest_name.hpp"
 #include "simulation/contact_script.hpp"
 #include "simulation/option_range.hpp"
 #include "simulation/touch_place.hpp"
@@ -87,6 +90,13 @@ std::string known_names() {
   return names;
 }
 
+std::string what_is_known(const std::string& name) {
+  std::set<std::string> names;
+  for (const SceneKind& scene : kScenes) names.emplace(scene.name);
+  const std::string nearest = nearest_name(name, names);
+  return nearest.empty() ? "unknown; there are " + known_names() : "unknown; did you mean \"" + nearest + "\"?";
+}
+
 std::string scene_message(std::string_view name, const std::string& problem) {
   return "scene \"" + std::string(name) + "\": " + problem;
 }
@@ -119,7 +129,7 @@ Scene::Scene(Kind kind, const ArrayDescription& array, const EnvironmentOptions&
 Result<Scene> Scene::create(std::string_view name, const ArrayDescription& array, const EnvironmentOptions& environment,
                             std::uint64_t seed, std::optional<std::size_t> frames, const SceneOptions& options) {
   const SceneKind* const found = find_scene(name);
-  if (found == nullptr) return bad_input(scene_message(name, "unknown; there are " + known_names()));
+  if (found == nullptr) return bad_input(scene_message(name, what_is_known(std::string(name))));
   if (Status valid = array.validate(); !valid) return valid.error();
   if (Status valid = environment.validate(); !valid) return valid.error();
   Scene scene(static_cast<Kind>(found - kScenes.data()), array, environment, seed);

@@ -155,11 +155,12 @@ class ThreatMonitor::Implementation {
 };
 
 std::string describe(const ThreatLimit& limit, const ThreatValue& value) {
+  std::string quantity = threat_quantity_names()[static_cast<std::size_t>(limit.quantity)];
+  std::ranges::replace(quantity, '_', ' ');
   const double scale = is_pressure(limit.quantity) ? kKilo : 1.0;
-  return fmt::format("{} {:.1f} +- {:.1f} {}{}, limit {:g}, at x {:.1f} mm, y {:.1f} mm",
-                     threat_quantity_names()[static_cast<std::size_t>(limit.quantity)], scale * value.value,
-                     scale * value.sigma, is_pressure(limit.quantity) ? "k" : "", unit_of(limit.quantity),
-                     scale * limit.limit, kMillimetresPerMetre * value.position.x,
+  return fmt::format("{} {:.1f} \u00b1 {:.1f} {}{}, limit {:g}, at x {:.1f} mm, y {:.1f} mm", quantity,
+                     scale * value.value, scale * value.sigma, is_pressure(limit.quantity) ? "k" : "",
+                     unit_of(limit.quantity), scale * limit.limit, kMillimetresPerMetre * value.position.x,
                      kMillimetresPerMetre * value.position.y);
 }
 

@@ -233,20 +233,30 @@ class FramesFile(SmallArray):
 
 
 class WhatCannotBe(SmallArray):
-    """Frames of another unit, and of an array that is not there: `run` names the mend in its last line, with status 1.
-    Loads that exchange rows and columns: `calibrate` refuses them."""
+    """Frames of another unit, and of an array that is not there: `run` names the mend in its last line, with status 1, and
+    `doctor` as its finding. `calibrate` refuses them, and loads that exchange rows and columns."""
 
-    def assert_named(self, change, words):
-        header, *rows = [line.split(",") for line in (self.contacts / "frames.csv").read_text().splitlines()]
+    def changed(self, path, change):
+        header, *rows = [line.split(",") for line in path.read_text().splitlines()]
         columns = {name: column for column, name in enumerate(header)}
         for row in rows:
             change(row, columns)
-        frames = self.written("frames.csv", "".join(",".join(row) + "\n" for row in [header, *rows]))
+        return self.written("frames.csv", "".join(",".join(row) + "\n" for row in [header, *rows]))
+
+    def assert_named(self, change, words):
+        frames = self.changed(self.contacts / "frames.csv", change)
         result = support.dermis(*self.run_arguments(self.work / "forces.csv", **{"in": frames}))
         self.assertEqual(result.returncode, 1, result.stderr)
         [line] = result.stderr.splitlines()
         for word in (f"dermis: {frames}: 200 of 200 frames ", *words):
             self.assertIn(word, line)
+        doctor = support.dermis("doctor", "--model", self.model, "--in", frames)
+        self.assertEqual(doctor.returncode, 1, doctor.stderr)
+        self.assertIn(words[-1], doctor.stdout.splitlines()[-1])
+        (self.work / "forces.csv").unlink()
+        frames = self.changed(self.calibration / "frames.csv", change)
+        self.refuse(self.calibrate_arguments(self.work / "m", frames=frames),
+                    ["1400 of 1400 loaded frames cannot be: the first is frame 20: ", words[-1]])
 
     def test_temperature_in_kelvin(self):
         def change(row, columns):
@@ -256,13 +266,39 @@ class WhatCannotBe(SmallArray):
     def test_supply_in_millivolts(self):
         def change(row, columns):
             row[columns["supply_v"]] = str(float(row[columns["supply_v"]]) * 1000)
-        self.assert_named(change, ["it looks like millivolts, give volts"])
+        self.assert_named(change, ["looks like millivolts, give volts"])
 
     def test_nothing_but_zeros(self):
         def change(row, columns):
             row[columns["r0c0"]:] = ["0"] * 20
         self.assert_named(change, ["all readings 0", "is the array connected and powered?"])
 
+    def test_zeros_for_some_seconds(self):
+        lost = set(map(str, range(60, 100)))  # seconds: a frame a second
+
+        def change(row, columns):
+            if row[0] in lost:
+                row[columns["r0c0"]:] = ["0"] * 20
+        frames = self.changed(self.contacts / "frames.csv", change)
+        line = "40 of 200 frames with all readings 0, where untouched taxels read more: is the array connected and powered?"
+        result = support.dermis(*self.run_arguments(self.work / "forces.csv", **{"in": frames}))
+        self.assertEqual((result.returncode, result.stderr.splitlines()[-1]), (0, line))
+        doctor = support.dermis("doctor", "--model", self.model, "--in", frames)
+        self.assertEqual((doctor.returncode, doctor.stdout.splitlines()[-1]), (1, line))
+        self.assertNotIn("calibrate again", doctor.stdout)
+
+    def test_zeros_of_an_array_that_may_read_so_are_told(self):
+        bare = self.written("bare.toml", ARRAY.replace('"divider"\ndrive_ohm = 20.0\nload_ohm = 200.0', '"none"'))
+        model = self.work / "bare.safetensors"
+        self.succeed("simulate", "--array", bare, "--scene", "calibration", "--out", self.work / "bare")
+        self.succeed(*self.calibrate_arguments(model, array=bare, frames=self.work / "bare/frames.csv",
+                                               loads=self.work / "bare/loads.csv"))
+        frames = self.written("zeros.csv", "time_s," + ",".join(f"r{k // 5}c{k % 5}" for k in range(20)) + "\n"
+                              + "".join(f"{k},{','.join('0' * 20)}\n" for k in range(100)))
+        result = support.dermis(*self.run_arguments(self.work / "forces.csv", model=model, **{"in": frames}))
+        line = "all readings of all 100 frames are 0: nothing touches the array, or it is not connected"
+        self.assertEqual((result.returncode, result.stderr.splitlines()[-1]), (0, line))
+        self.assertIn(line, support.dermis("doctor", "--model", model, "--in", frames).stdout)
 
     def test_rows_and_columns_of_the_loads_exchanged(self):
         square = self.written("square.toml", ARRAY.replace("cols = 5", "cols = 4"))
@@ -272,7 +308,12 @@ class WhatCannotBe(SmallArray):
                                              frames=self.work / "square/frames.csv",
                                              loads=self.written("loads.csv", exchanged)),
                     ["exchange rows and columns", "r1c0 answers where they name r0c1", "12 of 12 taxels"])
-
+        model = self.work / "square.safetensors"
+        self.succeed(*self.calibrate_arguments(model, array=square, frames=self.work / "square/frames.csv",
+                                               loads=self.work / "square/loads.csv"))
+        for command in ("recalibrate", "evaluate"):
+            self.refuse((command, "--model", model, "--frames", self.work / "square/frames.csv", "--loads",
+                         self.work / "loads.csv"), ["exchange rows and columns", "12 of 12 taxels"])
 
 class EveryCommand(SmallArray):
     """All that read frames, on frames that are missing, cut or beyond the ADC."""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """No command writes onto a file that it reads, by any name of it, and none overwrites what cannot be made again."""
+import itertools
 import os
 import re
 
@@ -20,7 +21,13 @@ COMMANDS = {
     "record": (("--from", "--array", "--model"), ("--out",)),
     "recover": (("in",), ("--out",)),
     "replay": (("recording", "--model"), ("--out",)),
-    "run": (("--model", "--in"), ("--out", "--sigma", "--contacts")),
+    "run": (("--model", "--in"), ("--out", "--sigma", "--totals", "--contacts")),
+}
+# And what is written into a folder.
+FOLDERS = {
+    "simulate": (("--array", "--physics"), "--out", ("frames.csv", "loads.csv", "contacts.csv", "origin.toml")),
+    "evaluate": (("--model", "--frames", "--loads", "--bank", "--classes", "--in", "--labels"), "--report", ("index.html",)),
+    "learn": (("--labels", "--in", "--model", "--splits", "--open"), "--report", ("index.html",)),
 }
 MODELS = {("calibrate", "--out"), ("calibrate", "--bank"), ("learn", "--out"), ("recalibrate", "--out")}
 PROTECTED = {
@@ -44,9 +51,9 @@ def aliases(path, folder):
 
 
 class NothingIsOverwritten(SmallArray):
-    def command(self, command, paths):
+    def command(self, command, paths, *more):
         inputs, outputs = COMMANDS[command]
-        words = command.split()
+        words = [*command.split(), *more]
         for option in inputs + outputs:
             path = paths.get(option, self.work / ("new_" + option.strip("-")))
             words += [option, path] if option.startswith("--") else [path]
@@ -63,7 +70,7 @@ class NothingIsOverwritten(SmallArray):
         commands = re.findall(r"^  (\w+) {2,}", dermis("--help").stdout.split("Subcommands:")[1], re.MULTILINE)
         names = [*(set(commands) - {"circuit"}), "circuit forward", "circuit invert"]
         writing = {name for name in names if "--force" in dermis(*name.split(), "--help").stdout}
-        self.assertEqual(writing, {*COMMANDS, "simulate", "evaluate", "paper"})
+        self.assertEqual(writing, {*COMMANDS, *FOLDERS, "paper"})
 
     def test_an_output_is_no_input(self):
         for command, (inputs, outputs) in COMMANDS.items():
@@ -72,12 +79,55 @@ class NothingIsOverwritten(SmallArray):
                     paths = self.inputs(command)
                     for name, alias in aliases(paths[read], self.work).items():
                         with self.subTest(command=command, read=read, written=written, name=name):
-                            result = self.command(command, {**paths, written: alias})
+                            result = self.command(command, {**paths, written: alias}, "--force")
                             self.assertEqual(result.returncode, 2, result)
                             self.assertEqual(result.stderr, f"dermis: {written}: is the file of {read}; name another\n")
                             self.assertEqual(paths[read].read_bytes(), b"valuable " + read.encode())
                     for path in self.work.iterdir():
                         path.unlink()
+
+    def test_a_folder_is_not_written_over_an_input(self):
+        required = {"simulate": {"--array": self.array, "--scene": "idle"}, "evaluate": {}, "learn": {"--labels": self.array}}
+        folder, link = self.work / "folder", self.work / "link"
+        folder.mkdir()
+        for command, (inputs, option, files) in FOLDERS.items():
+            for read, file in itertools.product(inputs, files):
+                path = folder / file
+                path.write_text("valuable")
+                link.symlink_to(path)
+                for named in (path, link):
+                    with self.subTest(command=command, read=read, file=file, named=named):
+                        options = {**required[command], read: named, option: folder}
+                        result = dermis(command, *itertools.chain(*options.items()), "--force")
+                        self.assertEqual((result.returncode, result.stderr),
+                                         (2, f"dermis: {option}: is the file of {read}; name another\n"))
+                        self.assertEqual(path.read_text(), "valuable")
+                link.unlink()
+                path.unlink()
+
+    def test_no_command_writes_onto_what_its_suit_names(self):
+        named = {"model": "m.safetensors", "classes": "c.safetensors", "body": "body.urdf", "positions": "places.csv",
+                 "a source": "frames.csv"}
+        for name in named.values():
+            self.written(name, "valuable")
+        self.written("places.csv", "x_mm,y_mm,z_mm\n" + "0,0,0\n" * 20)
+        suit = self.written("suit.toml", '[suit]\nbody = "body.urdf"\nclasses = "c.safetensors"\n[[array]]\nname = "a"\n'
+                            f'from = "file:{self.work}/frames.csv?rate=100"\nmodel = "m.safetensors"\n'
+                            'positions_mm = "places.csv"\n')
+        for command in (("recognise", "--classes", self.model, "--in", self.contacts / "frames.csv"),
+                        ("learn", "--labels", self.contacts / "loads.csv", "--in", self.contacts / "frames.csv")):
+            for what, name in named.items():
+                with self.subTest(command[0], what=what):
+                    before = (self.work / name).read_bytes()
+                    result = dermis(*command, "--model", suit, "--out", self.work / "." / name, "--force")
+                    self.assertEqual((result.returncode, result.stderr), (2, "dermis: --out: is the file of --model; name another\n"))
+                    self.assertEqual((self.work / name).read_bytes(), before)
+
+    def test_a_page_in_the_folder_where_one_works_is_nobodys_report(self):
+        self.written("index.html", "notes")
+        result = dermis(*self.evaluate_arguments(), cwd=self.work)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        self.assertEqual((self.work / "index.html").read_text(), "notes")
 
     def test_an_output_is_no_source_that_reads_a_file(self):
         frames = self.written("frames.csv", (self.contacts / "frames.csv").read_text())
@@ -144,13 +194,14 @@ class NothingIsOverwritten(SmallArray):
         self.assertNotEqual(model.read_bytes(), earlier)
 
     def test_tables_and_pictures_are_replaced_and_it_says_so(self):
-        forces, contacts, picture = (self.work / name for name in ("forces.csv", "contacts.csv", "map.png"))
+        forces, contacts, picture, drawing = (self.work / name for name in ("forces.csv", "contacts.csv", "map.png", "map.svg"))
         for arguments, paths in (((*self.run_arguments(forces), "--contacts", contacts), (forces, contacts)),
-                                 (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,))):
+                                 (("image", "--in", self.contacts / "frames.csv", "--out", picture), (picture,)),
+                                 (("image", "--in", self.contacts / "frames.csv", "--out", drawing), (drawing,))):
             self.succeed(*arguments)
             result = dermis(*arguments)
-            self.assertEqual((result.returncode, result.stderr),
-                             (0, "".join(f"'{path}' exists and will be replaced\n" for path in paths)))
+            said = "".join(f"'{path}' exists and will be replaced\n" for path in paths)
+            self.assertEqual((result.returncode, result.stderr[:len(said)]), (0, said))
 
     def test_a_report_is_replaced_and_a_page_of_something_else_is_not(self):
         report = self.work / "report"

@@ -119,7 +119,7 @@ class Serve(SmallArray):
         [array] = json.loads(self.get(address + "suit.json"))["arrays"]
         self.assertEqual(array["classes"], ["lower", "upper"])
         self.assertEqual([(limit["name"], limit["zone"]["rows"]) for limit in array["limits"]], [("edge", [0, 1])])
-        self.assertIn("threat 'edge' on 'small': taxel_force", process.stderr.readline())
+        self.assertIn("threat 'edge' on 'small': taxel force", process.stderr.readline())
         self.end(process)
 
     def test_classes_and_limits_that_do_not_fit(self):
@@ -153,6 +153,31 @@ class Serve(SmallArray):
         process, address = self.serve("--from", f"{recording}#right", "--model", self.model)
         self.end(process)
 
+    def test_a_recording_that_describes_its_array_needs_no_model(self):
+        recording = self.work / "told.mcap"
+        self.succeed("convert", self.contacts / "frames.csv", recording, "--array", self.array)
+        process, address = self.serve("--from", recording)
+        [array] = json.loads(self.get(address + "suit.json"))["arrays"]
+        self.assertEqual((array["name"], array["rows"], array["cols"]), ("small", 4, 5))
+        self.end(process)
+
+    def test_the_array_of_any_other_recording_is_asked_for_as_that_of_a_device(self):
+        recording = self.work / "untold.mcap"
+        self.succeed("convert", self.contacts / "frames.csv", recording)
+        process = subprocess.Popen([support.BINARY, "serve", "--port", "0", "--from", recording], cwd=self.work,
+                                   stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        asked = re.search(r"describe the array at (http://\S+/)", process.stderr.readline())
+        setup = json.loads(self.get(asked[1] + "suit.json"))["setup"]
+        self.assertEqual((setup["from"], setup["rows"], setup["cols"]), (str(recording), 4, 5))
+
+    def test_what_is_neither_device_nor_recording_is_refused_before_anybody_is_asked(self):
+        for source, words in ((self.contacts / "frames.csv", "make a recording of it first"),
+                              ("sim:contacts", "say how many frames a second it sends")):
+            self.refuse(("serve", "--port", 0, "--from", source), [f"'{source}': ", words])
+
     def test_a_recording_that_exists_stays(self):
         recording = self.work / "day.mcap"
         recording.write_bytes(b"an earlier session")
@@ -169,7 +194,7 @@ class Serve(SmallArray):
         frames = self.contacts / "frames.csv"
         self.refuse([*serve, "--model", self.model], ["--from", "--model"])
         self.refuse([*serve, "--host", "0.0.0.0", "--token", "a-long-token"], ["host", "URI"])
-        self.refuse([*serve, "--from", frames], ["--model"])
+        self.refuse([*serve, "--from", frames], ["make a recording of it first"])
         self.refuse([*serve, "--from", LIVE, "--model", self.work / "none.safetensors"], ["none.safetensors"])
         self.refuse([*serve, "--from", frames, "--model", self.model], ["frames.csv", "dermis convert"])
         self.refuse([*serve, "--from", "sim:contacts?rows=4&cols=5", "--model", self.model], ["rate=100"])

@@ -18,6 +18,7 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 BINARY = None
 NOBODY = 65534
 REPLACED = re.compile(r"'.+' (exists and will be replaced|as it was: '.+')")
+WHERE = re.compile(r"\d+ frames?(, \d+ skipped)?: (forces|sigmas|totals|contacts) in .+")  # of run
 PROGRESS = re.compile(r"(.+, )?\w+: \d+ %(, \d+ s left)?")  # "chest, networks: 25 %, 3 s left"
 
 ARRAY = """[array]
@@ -64,8 +65,9 @@ def as_nobody(test):
 
 
 def error_lines(result):
-    """What stderr says besides the progress of long work and the files that were replaced."""
-    return [line for line in result.stderr.splitlines() if not PROGRESS.fullmatch(line) and not REPLACED.fullmatch(line)]
+    """What stderr says besides the progress of long work, the files that were replaced, and where frames went."""
+    usual = (PROGRESS, REPLACED, WHERE)
+    return [line for line in result.stderr.splitlines() if not any(kind.fullmatch(line) for kind in usual)]
 
 
 def files_below(folder):

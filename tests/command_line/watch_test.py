@@ -36,7 +36,7 @@ class Watch(SmallArray):
     def test_a_file_is_read_to_its_end(self):
         result = self.watch(30)
         self.assertEqual((result.returncode, result.stderr), (3, ""))
-        begins = [line for line in result.stdout.splitlines() if "pushed begins: taxel_force" in line]
+        begins = [line for line in result.stdout.splitlines() if "pushed begins: taxel force" in line]
         self.assertGreater(len(begins), 10)
         self.assertIn("N, limit 30, at x ", begins[0])
 

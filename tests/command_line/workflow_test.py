@@ -87,7 +87,7 @@ class Workflow(SmallArray):
 
     def test_evaluation_as_text_names_all_estimators(self):
         text = self.succeed(*self.evaluate_arguments())
-        for name in ("dermis", "raw_lookup", "temperature_lookup", "crosstalk_lookup"):
+        for name in ("dermis", "raw look-up", "temperature look-up", "crosstalk look-up"):
             self.assertIn(f"\n{name} ", text)
 
     def test_report(self):
@@ -195,7 +195,7 @@ class PaperBank(SmallArray):
         estimators = json.loads(self.succeed(*arguments, "--json"))["estimators"]
         self.assertEqual([entry["name"] for entry in estimators][-1], "paper_bank")
         self.assertLess(estimators[-1]["median_relative_error"], 0.25)
-        self.assertIn("\npaper_bank ", self.succeed(*arguments))
+        self.assertIn("\npaper bank ", self.succeed(*arguments))
         self.succeed(*arguments, "--report", self.work / "report")
         self.assertIn("N-N-N-1", (self.work / "report" / "index.html").read_text())
 

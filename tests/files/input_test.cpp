@@ -22,6 +22,17 @@ TEST(Input, a_file_is_read_whole_and_never_beyond_its_limit) {
   EXPECT_EQ(longer.error().message, path + ": is larger than 2999999 bytes");
 }
 
+TEST(Input, first_bytes_are_those_that_there_are) {
+  const support::TemporaryFolder folder;
+  const std::string path = folder.file("a.bin");
+  support::write_bytes(path, "abcdef");
+  EXPECT_EQ(first_bytes_of(path, 4), "abcd");
+  EXPECT_EQ(first_bytes_of(path, 100), "abcdef");
+  EXPECT_EQ(first_bytes_of(folder.file("absent"), 4), "");
+  EXPECT_EQ(first_bytes_of(testing::TempDir(), 4), "");
+  EXPECT_EQ(first_bytes_of("/dev/zero", 4), "") << "would be taken from who reads it";
+}
+
 TEST(Input, what_cannot_be_opened_is_named) {
   const support::TemporaryFolder folder;
   const auto absent = open_input(folder.file("absent"));

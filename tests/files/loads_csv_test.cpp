@@ -111,7 +111,8 @@ TEST(LoadsCsv, refuses_a_reversed_region) {
 }
 
 TEST(LoadsCsv, refuses_a_value_that_is_no_load) {
-  EXPECT_EQ(error_of("0,force,all,1N"), "loads.csv:2: value '1N' is not a number");
+  EXPECT_EQ(error_of("0,force,all,1lb"),
+            "loads.csv:2: value '1lb' is no force; write newtons, or a unit as in 2 N, 200 g or 0.2 kg");
   for (const std::string value : {"-1", "nan", "inf"}) {
     EXPECT_EQ(error_of("0,force,all," + value), "loads.csv:2: value '" + value + "' must be 0 to 1000000 (N or kPa)");
   }

@@ -79,7 +79,7 @@ TEST(WeightCheck, a_gain_that_has_changed_by_a_tenth_is_found_by_one_press) {
   for (const double change : {0.9, 1.1}) {
     const WeightFinding finding = Scale().rest().hold(change * kWeight, 4.0).rest().finding();
     EXPECT_TRUE(finding.has_aged());
-    EXPECT_NE(describe(finding).find("recalibrate: gains have changed by about 10 % (+- 1 %): it reads " +
+    EXPECT_NE(describe(finding).find("recalibrate: gains have changed by about 10 % (\u00b1 1 %): it reads " +
                                      std::string(change > 1.0 ? "too much" : "too little")),
               std::string::npos)
         << describe(finding);

@@ -126,7 +126,12 @@ TEST(FrameTroubles, fails_where_all_readings_are_0_and_untouched_taxels_read_mor
 TEST(FrameTroubles, takes_zeros_of_an_array_that_reads_nothing_where_nothing_presses) {
   const FrameTroubles troubles = troubles_of(pair_of(Quantity::counts), frames_of({{0.0F, 0.0F}, {0.0F, 0.0F}}));
   EXPECT_TRUE(troubles.verdict());
-  EXPECT_TRUE(troubles.describe().empty());
+  EXPECT_FALSE(troubles.impossible());
+  EXPECT_EQ(troubles.describe(),
+            std::vector<std::string>{
+                "all readings of all 2 frames are 0: nothing touches the array, or it is not connected"});
+  EXPECT_FALSE(troubles_of(pair_of(Quantity::counts), frames_of({{0.0F, 0.0F}, {0.0F, 1.0F}})).silence());
+  EXPECT_FALSE(troubles_of(pair_of(Quantity::force), frames_of({{0.0F, 0.0F}})).silence());
 }
 
 TEST(FrameTroubles, says_how_many_frames_were_rejected_and_where_the_first_stands) {

@@ -39,7 +39,8 @@ class Arguments(workspace.CalibratedArray):
         return choose.choice([array, array.T, np.flip(array), np.full((5, 4), choose.choice([np.nan, np.inf, -np.inf, 1e300])),
                               None, True, -1, 2**70, 1.5, float("nan"), "", "\0", "nothing", b"bytes", [], [[1, 2], [3]], {},
                               object(), self.model, self.array, str(self.frames), self.made["model"], self.made["recording"],
-                              self.made["closed"], self.made["force"], (0, 0), (9, 9), (0, 0, 4, 3), (4, 3, 0, 0), lambda *_: 1])
+                              self.made["closed"], self.made["force"], (0, 0), (9, 9), (0, 0, 4, 3), (4, 3, 0, 0), lambda *_: 1,
+                              slice(1, 5), slice(None, None, -1), slice(0, 1, 0), slice(2**70), np.ma.masked_all((5, 4))])
 
     def make(self):
         """Objects of every kind, and what can be called of them."""
@@ -55,7 +56,8 @@ class Arguments(workspace.CalibratedArray):
                 dermis.ContactTracker, dermis.Recording, recording.__getitem__, dermis.Load, dermis.circuit.forward,
                 dermis.circuit.invert, dermis.ArrayDescription.from_toml, model.array.taxel_name, dermis.open, next,
                 dermis.Recording.read, dermis.evaluate, lambda array, loads: dermis.calibrate(array, recording, loads),
-                lambda counts, **more: dermis.Recording(counts, rate_hz=10.0, **more), pipeline.tare, lambda: next(source)]
+                lambda counts, **more: dermis.Recording(counts, rate_hz=10.0, **more), pipeline.tare, lambda: next(source),
+                source.latest, pipeline.run(recording).__getitem__, dermis.ThreatMonitor, dermis.Recogniser, dermis.Suit]
 
     def call_at_random(self, calls, choose, count):
         """How many calls were refused, and the errors that are none of ours."""

@@ -23,6 +23,13 @@ class Examples(workspace.CalibratedArray):
     def uri(self):
         return f"sim:contacts?rate=100&array={self.array}"
 
+    def test_each_example_says_what_it_takes(self):
+        for example in EXAMPLES.glob("*.py"):
+            with self.subTest(example.name):
+                said = self.run_example(example.name, "--help")
+                self.assertIn("usage: " + example.name, said)
+                self.assertIn(example.read_text().split('"""')[1].splitlines()[0], said)
+
     def test_live_view(self):
         self.assertRegex(self.run_example("live_view.py", self.uri(), self.model, 3), r"\d+: \d+\.\d N")
 

@@ -103,9 +103,10 @@ TEST(StatusMessages, gains_that_have_changed_are_a_warning_with_the_evidence) {
   const messages::Diagnosis diagnosis = diagnosis_message("chest", model, {}, ageing);
   EXPECT_EQ(diagnosis.level, Level::warning);
   EXPECT_EQ(diagnosis.message, "recalibrate: gains have changed by about 9 %");
-  EXPECT_EQ(diagnosis.values, (Values{{"gains",
-                                       "recalibrate: gains have changed by about 9 % from taxel to taxel (+- 1 %, 214 "
-                                       "comparisons)"}}));
+  EXPECT_EQ(diagnosis.values,
+            (Values{{"gains",
+                     "recalibrate: gains have changed by about 9 % from taxel to taxel (\u00b1 1 %, 214 "
+                     "comparisons)"}}));
 }
 
 TEST(StatusMessages, faults_of_lines_are_a_warning_each_with_its_place) {

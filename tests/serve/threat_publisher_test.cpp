@@ -126,7 +126,7 @@ TEST_F(Watching, a_threat_is_told_with_the_time_of_its_first_crossing) {
   EXPECT_EQ(threat["limit"], 5.0);
   EXPECT_EQ(threat["unit"], "N");
   ASSERT_EQ(lines_.size(), 1U);
-  EXPECT_TRUE(lines_[0].starts_with("threat 'throat' on 'chest': taxel_force 6.0 +- 0.0 N, limit 5, at x "))
+  EXPECT_TRUE(lines_[0].starts_with("threat 'throat' on 'chest': taxel force 6.0 \u00b1 0.0 N, limit 5, at x "))
       << lines_[0];
 }
 
@@ -160,12 +160,12 @@ TEST_F(Watching, the_health_has_a_row_for_a_threat_while_it_is_there) {
   const messages::Diagnosis there = publisher_->diagnoses().front();
   EXPECT_EQ(there.level, messages::Diagnosis::Level::error);
   EXPECT_EQ(there.name, "threat 'throat' on 'chest'");
-  EXPECT_TRUE(there.message.starts_with("taxel_force 6.0 +- 0.0 N, limit 5, at x ")) << there.message;
+  EXPECT_TRUE(there.message.starts_with("taxel force 6.0 \u00b1 0.0 N, limit 5, at x ")) << there.message;
   EXPECT_EQ(there.values[0], (std::pair<std::string, std::string>{"state", "there"}));
   EXPECT_EQ(there.values[2], (std::pair<std::string, std::string>{"first crossed", "0.020 s"}));
   for (int frame = 0; frame < 60; ++frame) press(0, 0.0F);
   EXPECT_EQ(publisher_->diagnoses().front().values[0].second, "over, until it is reset");
-  EXPECT_TRUE(publisher_->diagnoses().front().values[1].second.starts_with("taxel_force 6.0")) << "the worst";
+  EXPECT_TRUE(publisher_->diagnoses().front().values[1].second.starts_with("taxel force 6.0")) << "the worst";
   ASSERT_TRUE(publisher_->reset("{}"));
   press(0, 0.0F);
   EXPECT_TRUE(publisher_->diagnoses().empty());

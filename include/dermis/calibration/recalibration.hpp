@@ -30,8 +30,8 @@ struct GainChange {
   std::vector<double> taxels;  ///< Of each taxel, that of the sheet included [taxels].
 };
 
-/// What presses say of the gains. Each taxel has changed by x + y: x is common to the sheet, 0 +- 0.1 before any press;
-/// y is its own, 0 +- spread. The most likely values are those of a linear model (Gauss and Markov; kriging): little
+/// What presses say of the gains. Each taxel has changed by x + y: x is common to the sheet, 0 ± 0.1 before any press;
+/// y is its own, 0 ± spread. The most likely values are those of a linear model (Gauss and Markov; kriging): little
 /// evidence moves a gain little, and a taxel that nothing pressed gets x. The spread is the likeliest one, and 0 with
 /// fewer than 5 presses or pressed taxels. Deterministic, thread-safe.
 [[nodiscard]] GainChange change_of(std::span<const KnownPress> presses, std::size_t taxels);
@@ -55,7 +55,7 @@ struct Recalibration {
 /// More are worth a calibration.
 inline constexpr std::size_t kMostPresses = 1000;
 
-/// "the sheet reads 9.1 % too much (+- 2.0 %): from one press"; a sentence more of the spread, if that is known.
+/// "the sheet reads 9.1 % too much (± 2.0 %): from one press"; a sentence more of the spread, if that is known.
 [[nodiscard]] std::string describe(const Recalibration& recalibration);
 
 }  // namespace dermis::calibration

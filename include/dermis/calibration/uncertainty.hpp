@@ -40,7 +40,7 @@ struct UncertaintyReport {
   std::size_t unpressed_taxels = 0;                          ///< How many these are.
 };
 
-/// "readings +- 1.05 counts, supply +- 0.10 %, temperature +- 0.30 C, forces +- 0.2 to 0.4 % beside that".
+/// "readings ± 1.05 counts, supply ± 0.10 %, temperature ± 0.30 C, forces ± 0.2 to 0.4 % beside that".
 [[nodiscard]] std::string describe(const UncertaintyReport& report, const ArrayDescription& array);
 
 /// Fills in the uncertainty of `model`, in its array's readout and in its networks. The noise of the ADC and of the

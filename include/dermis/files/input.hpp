@@ -17,6 +17,9 @@ namespace dermis::files {
 /// To be called right after a stream went bad.
 [[nodiscard]] Error read_failure(const std::string& name);
 
+/// The first bytes of a regular file, at most max_bytes; none where it cannot be read.
+[[nodiscard]] std::string first_bytes_of(const std::string& path, std::size_t max_bytes);
+
 /// All bytes of a file, at most max_bytes.
 [[nodiscard]] Result<std::string> read_file(const std::string& path, std::size_t max_bytes);
 

@@ -26,7 +26,7 @@ struct AgeingEvidence {
   [[nodiscard]] bool has_aged() const noexcept;
 };
 
-/// "recalibrate: gains have changed by about 9 % from taxel to taxel (+- 1 %, 214 comparisons under touches)" if it
+/// "recalibrate: gains have changed by about 9 % from taxel to taxel (± 1 %, 214 comparisons under touches)" if it
 /// has aged, otherwise what is known.
 [[nodiscard]] std::string describe(const AgeingEvidence& evidence);
 

@@ -35,7 +35,7 @@ struct WeightFinding {
 };
 
 /// Lines of text: what was weighed, then "well: reads 1.2 % low, within 4 %" or "recalibrate: gains have changed by
-/// about 9 % (+- 3 %): it reads too much". Without a press one line without an end: what is missing.
+/// about 9 % (± 3 %): it reads too much". Without a press one line without an end: what is missing.
 [[nodiscard]] std::string describe(const WeightFinding& finding);
 
 /// Weighs a known object that is put on an array, once or several times. Of each press the steadiest second counts,

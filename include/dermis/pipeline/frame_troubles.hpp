@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,18 @@ class FrameTroubles {
   /// A line for each kind of trouble that there was.
   [[nodiscard]] std::vector<std::string> describe() const;
 
+  /// What most frames say that cannot be, with the likely mend: a temperature in kelvin, or nothing but zeros of an
+  /// array that reads more.
+  [[nodiscard]] std::optional<std::string> impossible() const;
+
+  /// Whether nothing reads anything, of an array most of whose rows read something where nothing presses.
+  [[nodiscard]] bool is_silent(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline) const;
+  /// How many frames were so, and the likely mend; empty: none.
+  [[nodiscard]] std::optional<std::string> silent_frames() const;
+
+  /// That all frames are nothing but zeros, of an array that may read so where nothing touches it.
+  [[nodiscard]] std::optional<std::string> silence() const;
+
   /// Failed, with what is most likely wrong, where more than half of the frames have no force at all, a
   /// temperature in kelvin, or nothing but zeros.
   [[nodiscard]] Status verdict() const;
@@ -44,7 +57,6 @@ class FrameTroubles {
   };
 
   void add_doubts(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline);
-  [[nodiscard]] bool is_silent(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline) const;
   [[nodiscard]] std::string cause() const;
   [[nodiscard]] std::string describe(const Doubt& doubt) const;
 
@@ -57,9 +69,12 @@ class FrameTroubles {
   std::size_t faulty_ = 0;
   std::size_t lost_ = 0;          ///< Without a force: rejected, or not solved.
   std::size_t lost_outside_ = 0;  ///< Of these, with readings that are none of the ADC.
+  std::size_t zero_ = 0;          ///< Nothing but zeros.
+  std::size_t lost_zero_ = 0;     ///< Of these, without a force.
   std::string first_rejection_;
   std::string first_unsolved_;  ///< Its place.
   std::size_t rows_;            ///< Of the array.
+  bool has_counts_;             ///< Its readings are those of an ADC.
   Doubt supply_;
   Doubt kelvin_;
   Doubt silent_;

@@ -34,7 +34,4 @@ namespace dermis::report {
 /// The name of an estimator for people: "raw_lookup" is "raw look-up".
 [[nodiscard]] std::string estimator_words(std::string name);
 
-/// "+-" as its sign.
-[[nodiscard]] std::string with_signs(std::string text);
-
 }  // namespace dermis::report

@@ -17,6 +17,7 @@
 #include "dermis/serve/worn_body.hpp"
 #include "dermis/sources/guide_voice.hpp"
 #include "dermis/sources/open_source.hpp"
+#include "dermis/sources/source_name.hpp"
 #include "dermis/threats/threat_limits.hpp"
 
 /// An array or a suit served live: the stream of docs/stream.md with its parameters, services and recordings.
@@ -56,10 +57,18 @@ struct ServedSuit {
 /// The same suit, whose frames come from a recording of it. Fails where the recording cannot be read or does not fit.
 [[nodiscard]] Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& recording);
 
+/// Fails, with the mend, on a source that is neither a device nor a recording.
+[[nodiscard]] Status check_served(const sources::SourceName& from);
+
+/// Whether it is a recording that holds the description of its array.
+[[nodiscard]] bool describes_its_array(const sources::SourceName& from);
+
 /// What is to be opened: one source with its model, or a suit.
 struct SuitPlace {
-  std::string from{};     ///< URI or recording; of a suit: a recording of it, or empty for its own sources.
-  std::string model{};    ///< Model file, or the array.toml of an array to be calibrated, where `suit` is empty.
+  std::string from{};  ///< URI or recording; of a suit: a recording of it, or empty for its own sources.
+  /// Model file, or the array.toml of an array to be calibrated, where `suit` is empty. Empty: `from` describes its
+  /// array.
+  std::string model{};
   std::string suit{};     ///< suit.toml
   std::string classes{};  ///< Of `dermis learn`, for one source; a suit.toml names its own. Empty: none.
   std::string threats{};  ///< threats.toml; empty: none.

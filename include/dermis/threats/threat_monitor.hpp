@@ -37,7 +37,7 @@ struct ThreatValue {
   bool operator==(const ThreatValue&) const = default;
 };
 
-/// "contact_force 25.1 +- 0.3 N, limit 20, at x 12.0 mm, y 40.0 mm": for logs; pressures in kPa.
+/// "contact force 25.1 ± 0.3 N, limit 20, at x 12.0 mm, y 40.0 mm": for logs; pressures in kPa.
 [[nodiscard]] std::string describe(const ThreatLimit& limit, const ThreatValue& value);
 
 enum class ThreatPhase : std::uint8_t {

@@ -45,7 +45,7 @@ std::optional<std::string> describe_doubt(const ArrayDescription& array,
   return "these frames do not tell the chosen circuit from " + names + "; " + mend;
 }
 
-/// "18.2 to 22.1 ohm, +-2.6 to 3.1 % each" of the fitted lines of a kind.
+/// "18.2 to 22.1 ohm, ±2.6 to 3.1 % each" of the fitted lines of a kind.
 struct Range {
   double least_ohm = std::numeric_limits<double>::infinity();
   double most_ohm = 0.0;

@@ -14,6 +14,7 @@
 #include "calibration/evaluation/example_choice.hpp"
 #include "calibration/evaluation/judgement.hpp"
 #include "calibration/evaluation/sum_judgement.hpp"
+#include "calibration/labels/label_check.hpp"
 #include "calibration/labels/labels.hpp"
 #include "dermis/calibration/sample_database.hpp"
 #include "dermis/pipeline/frame_troubles.hpp"
@@ -49,6 +50,7 @@ double judged_from(const pipeline::Model& model, const LoadsOfFrames& loads_of) 
 Result<Evaluation> evaluate(const pipeline::Model& model, std::span<const RawFrame> frames, std::span<const Load> loads,
                             FurtherEstimator* further) {
   if (Status checked = check_loads(model.array, frames.size(), loads); !checked) return checked.error();
+  if (const auto exchange = check_labels(model.array, frames, loads, {}).exchange) return bad_input(*exchange);
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
   if (further != nullptr && further->taxel_count() != model.array.taxel_count()) {

@@ -228,17 +228,17 @@ std::string describe(const Explanation& found, const ArrayDescription& array, st
   switch (found.parameters.parts()[place]) {
     case InstrumentPart::offset:
       return fmt::format(
-          "the ADC reads {:+.1f} (+- {:.1f}) counts too much, by what presses tell: taken away "
+          "the ADC reads {:+.1f} (\u00b1 {:.1f}) counts too much, by what presses tell: taken away "
           "(adc_offset_counts)",
           value, error);
     case InstrumentPart::supply:
       return fmt::format(
-          "the supply sags under load, as behind {:.2g} ohm (+- {:.1g}), by what presses tell: undone "
+          "the supply sags under load, as behind {:.2g} ohm (\u00b1 {:.1g}), by what presses tell: undone "
           "(supply_ohm)",
           value * mean_load(readout), error * mean_load(readout));
     case InstrumentPart::curve:
       return fmt::format(
-          "the ADC is bent by {:+.2f} % (+- {:.2f}) of its range in its middle, by what presses tell: undone "
+          "the ADC is bent by {:+.2f} % (\u00b1 {:.2f}) of its range in its middle, by what presses tell: undone "
           "(adc_curve)",
           100.0 * value, 100.0 * error);
     case InstrumentPart::drivers: break;
@@ -306,14 +306,15 @@ InstrumentFit fit_settling(const ArrayDescription& array, std::span<const RawFra
   const std::optional<SettlingEstimate> estimate = measure_settling(fit.array, frames, loads);
   if (estimate && estimate->is_significant()) {
     settling = estimate->share;
-    fit.statements.push_back(
-        fmt::format("each reading keeps {:.2f} % (+- {:.2f}) of the one before it in the scan, which has not settled: "
-                    "undone (adc_settling)",
-                    100.0 * estimate->share, 100.0 * estimate->standard_error));
+    fit.statements.push_back(fmt::format(
+        "each reading keeps {:.2f} % (\u00b1 {:.2f}) of the one before it in the scan, which has not settled: "
+        "undone (adc_settling)",
+        100.0 * estimate->share, 100.0 * estimate->standard_error));
   } else if (is_asked_for) {
-    fit.statements.push_back(estimate ? fmt::format("readings settle: {:.2f} % (+- {:.2f}) is left of the one before",
-                                                    100.0 * estimate->share, 100.0 * estimate->standard_error)
-                                      : "adc_settling cannot be told: press at least 20 taxels, each alone");
+    fit.statements.push_back(estimate
+                                 ? fmt::format("readings settle: {:.2f} % (\u00b1 {:.2f}) is left of the one before",
+                                               100.0 * estimate->share, 100.0 * estimate->standard_error)
+                                 : "adc_settling cannot be told: press at least 20 taxels, each alone");
   }
   return fit;
 }

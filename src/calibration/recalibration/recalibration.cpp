@@ -7,7 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "calibration/labels/label_check.hpp"
 #include "calibration/labels/labels.hpp"
+#include "calibration/labels/reading_check.hpp"
 #include "calibration/recalibration/known_presses.hpp"
 #include "dermis/pipeline/pipeline.hpp"
 
@@ -49,6 +51,8 @@ void scale(const std::vector<double>& log_factors, fusion::ForceNetworks& networ
 Result<Recalibration> recalibrate(const pipeline::Model& model, std::span<const RawFrame> frames,
                                   std::span<const Load> loads) {
   if (Status checked = check_loads(model.array, frames.size(), loads); !checked) return checked.error();
+  if (Status checked = check_readings(model.array, frames, loads); !checked) return checked.error();
+  if (const auto exchange = check_labels(model.array, frames, loads, {}).exchange) return bad_input(*exchange);
   const Result<KnownPresses> gathered = gather(model, frames, loads);
   if (!gathered) return gathered.error();
   const std::vector<KnownPress>& presses = gathered->presses();
@@ -72,7 +76,7 @@ std::string describe(const Recalibration& recalibration) {
   const GainChange& change = recalibration.change;
   const double read = std::expm1(-change.sheet);  // of the force, too much
   std::string text = fmt::format(
-      "the sheet read {:.1f} % {} (+- {:.1f} %): from {}", 100.0 * std::abs(read),
+      "the sheet read {:.1f} % {} (\u00b1 {:.1f} %): from {}", 100.0 * std::abs(read),
       read > 0.0 ? "too much" : "too little", 100.0 * change.sheet_sigma,
       recalibration.presses == 1 ? "one press"
                                  : fmt::format("{} presses on {} taxels", recalibration.presses, recalibration.taxels));

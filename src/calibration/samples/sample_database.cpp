@@ -20,6 +20,7 @@
 #include "calibration/labels/label_check.hpp"
 #include "calibration/labels/labels.hpp"
 #include "calibration/labels/rail_search.hpp"
+#include "calibration/labels/reading_check.hpp"
 #include "calibration/samples/sample_choice.hpp"
 #include "dermis/calibration/parallel.hpp"
 #include "dermis/compensation/crosstalk.hpp"
@@ -287,6 +288,7 @@ Result<SampleDatabase> build_sample_database(const ArrayDescription& array, std:
                                              std::span<const Load> loads, Nanos settle_time,
                                              const std::function<void(double)>& progress) {
   if (Status checked = check_loads(array, frames.size(), loads); !checked) return checked.error();
+  if (Status checked = check_readings(array, frames, loads); !checked) return checked.error();
   ArrayDescription known = array;
   std::optional<std::string> flickering = leave_out_flickering(frames, loads, known);
   LabelCheck labels = check_labels(known, frames, loads, settle_time);

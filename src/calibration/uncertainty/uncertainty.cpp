@@ -218,19 +218,19 @@ void widen(double unexplained_share, fusion::ForceNetworks& networks) {
 
 std::string range_text(const RelativeSigma& sigma) {
   const auto [least, most] = std::minmax_element(sigma.begin(), sigma.end());
-  return fmt::format("+- {:.2f} to {:.2f} % beside that", 100.0 * *least, 100.0 * *most);
+  return fmt::format("\u00b1 {:.2f} to {:.2f} % beside that", 100.0 * *least, 100.0 * *most);
 }
 
 }  // namespace
 
 std::string describe(const UncertaintyReport& report, const ArrayDescription& array) {
   std::string text = report.adc_noise_counts
-                         ? fmt::format("readings +- {:.2f} counts", *report.adc_noise_counts)
-                         : fmt::format("readings +- {:.2f} counts (from the array: unloaded readings do not tell)",
+                         ? fmt::format("readings \u00b1 {:.2f} counts", *report.adc_noise_counts)
+                         : fmt::format("readings \u00b1 {:.2f} counts (from the array: unloaded readings do not tell)",
                                        array.readout.adc_noise_counts);
-  if (report.supply_noise > 0.0) text += fmt::format(", supply +- {:.2f} %", 100.0 * report.supply_noise);
+  if (report.supply_noise > 0.0) text += fmt::format(", supply \u00b1 {:.2f} %", 100.0 * report.supply_noise);
   if (report.temperature_sigma_celsius > 0.0) {
-    text += fmt::format(", temperature +- {:.2f} C", report.temperature_sigma_celsius);
+    text += fmt::format(", temperature \u00b1 {:.2f} C", report.temperature_sigma_celsius);
   }
   if (report.relative_sigma) text += ", forces " + range_text(*report.relative_sigma);
   if (report.relative_sigma_of_shared) {

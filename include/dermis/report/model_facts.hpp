@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <vector>
+
+#include "dermis/core/array_description.hpp"
+#include "dermis/pipeline/model.hpp"
+#include "dermis/report/page.hpp"
+
+/// Arrays and models in words, for pages and terminals.
+namespace dermis::report {
+
+/// Size and pitch, the circuit and its resistances, ADC and supply.
+[[nodiscard]] std::vector<Fact> array_facts(const ArrayDescription& array);
+
+/// Of what a model was made, what it covers, how sure it is, and what its calibration had to say. A model that was not
+/// calibrated has one fact that says so.
+[[nodiscard]] std::vector<Fact> calibration_facts(const pipeline::Model& model);
+
+}  // namespace dermis::report

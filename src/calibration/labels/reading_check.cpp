@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/labels/reading_check.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "dermis/preprocessing/supply_bounds.hpp"
+#include "dermis/preprocessing/temperature_unit.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+/// Frames that something presses.
+std::set<std::size_t> loaded_frames(std::span<const Load> loads) {
+  std::set<std::size_t> loaded;
+  for (const Load& load : loads) {
+    if (load.value > 0.0) loaded.insert(load.frame);
+  }
+  return loaded;
+}
+
+/// A way in which frames cannot be.
+class Trouble {
+ public:
+  void add(std::size_t frame, const std::string& what) {
+    if (frames_++ == 0) first_ = fmt::format("the first is frame {}: {}", frame, what);
+  }
+  [[nodiscard]] Status verdict(std::size_t all) const {
+    if (2 * frames_ <= all) return Done{};
+    return bad_input(fmt::format("{} of {} loaded frames cannot be: {}", frames_, all, first_));
+  }
+
+ private:
+  std::size_t frames_ = 0;
+  std::string first_;
+};
+
+}  // namespace
+
+Status check_readings(const ArrayDescription& array, std::span<const RawFrame> frames, std::span<const Load> loads) {
+  const preprocessing::SupplyBounds supplies(array.readout);
+  const std::set<std::size_t> loaded = loaded_frames(loads);
+  Trouble supply;
+  Trouble temperature;
+  Trouble readings;
+  for (const std::size_t frame : loaded) {
+    const RawFrame& raw = frames[frame];
+    if (raw.supply_v && supplies.is_in_millivolts(*raw.supply_v)) {
+      supply.add(frame, supplies.describe_impossible(*raw.supply_v));
+    }
+    if (raw.temperature_celsius && preprocessing::looks_like_kelvin(*raw.temperature_celsius)) {
+      temperature.add(frame, fmt::format("a temperature of {:.1f} C: it looks like kelvin, give degrees Celsius",
+                                         *raw.temperature_celsius));
+    }
+    if (std::ranges::all_of(raw.counts, [](float count) { return count == 0.0F; })) {
+      readings.add(frame, "all readings 0: is the array connected and powered?");
+    }
+  }
+  for (const Trouble* trouble : {&supply, &temperature, &readings}) {
+    if (Status verdict = trouble->verdict(loaded.size()); !verdict) return verdict;
+  }
+  return Done{};
+}
+
+}  // namespace dermis::calibration
