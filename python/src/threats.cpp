@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bindings.hpp"
-#include "dermis/fusion/contact.hpp"
+#include "dermis/contacts/contact_tracker.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/threats/threat_limits.hpp"
 #include "dermis/threats/threat_monitor.hpp"
@@ -61,7 +61,7 @@ class Monitor {
   threats::ThreatLimits limits_;
   FrameShape shape_;
   ThreatMonitor monitor_;
-  fusion::ContactTracker contacts_;
+  contacts::ContactTracker contacts_;
   ContactReport report_;
 };
 

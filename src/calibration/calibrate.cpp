@@ -57,12 +57,11 @@ void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) 
   const UncertaintyReport& uncertainty = report.uncertainty;
   const auto& sigma = uncertainty.relative_sigma_of_unpressed;
   if (!sigma || 2 * uncertainty.unpressed_taxels < array.taxel_count()) return;
-  report.remarks.insert(
-      report.remarks.begin(),
-      fmt::format(
-          "{} of {} taxels were not pressed: their forces are \u00b1 {:.0f} % at best, as taxels differ; five loads of an "
-          "air bladder over all of them tell each one's gain",
-          uncertainty.unpressed_taxels, array.taxel_count(), 100.0 * *std::min_element(sigma->begin(), sigma->end())));
+  report.remarks.insert(report.remarks.begin(), fmt::format("{} of {} taxels were not pressed: their forces are \u00b1 "
+                                                            "{:.0f} % at best, as taxels differ; five loads of an "
+                                                            "air bladder over all of them tell each one's gain",
+                                                            uncertainty.unpressed_taxels, array.taxel_count(),
+                                                            100.0 * *std::min_element(sigma->begin(), sigma->end())));
 }
 
 }  // namespace
