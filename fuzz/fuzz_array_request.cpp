@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "check_error.hpp"
-#include "serve/array_request.hpp"
+#include "serve/requests/array_request.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/ageing_watch.hpp"
+#include "serve/health/ageing_watch.hpp"
 
 #include <gtest/gtest.h>
 

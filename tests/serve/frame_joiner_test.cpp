@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/frame_joiner.hpp"
+#include "serve/recognition/frame_joiner.hpp"
 
 #include <gtest/gtest.h>
 

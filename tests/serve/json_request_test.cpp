@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/json_request.hpp"
+#include "serve/requests/json_request.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/last_minute.hpp"
+#include "serve/recording/last_minute.hpp"
 
 #include <gtest/gtest.h>
 

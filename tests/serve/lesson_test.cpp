@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/lesson.hpp"
+#include "serve/teaching/lesson.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/live_parameters.hpp"
+#include "serve/parts/live_parameters.hpp"
 
 #include <gtest/gtest.h>
 

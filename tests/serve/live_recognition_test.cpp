@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/live_recognition.hpp"
+#include "serve/recognition/live_recognition.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/recording_services.hpp"
+#include "serve/recording/recording_services.hpp"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@
 #include "calibration/guided/press_recogniser.hpp"
 #include "dermis/core/random.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
-#include "serve/calibration_services.hpp"
+#include "serve/calibration/calibration_services.hpp"
 #include "sources/rehearsal.hpp"
 
 namespace dermis::serve {

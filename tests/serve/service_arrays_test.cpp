@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/service_arrays.hpp"
+#include "serve/suit/service_arrays.hpp"
 
 #include <gtest/gtest.h>
 

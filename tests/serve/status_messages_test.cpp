@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/status_messages.hpp"
+#include "serve/health/status_messages.hpp"
 
 #include <gtest/gtest.h>
 

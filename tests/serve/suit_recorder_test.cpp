@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/suit_recorder.hpp"
+#include "serve/recording/suit_recorder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/teaching_services.hpp"
+#include "serve/teaching/teaching_services.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/threat_publisher.hpp"
+#include "serve/health/threat_publisher.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/touch_finder.hpp"
+#include "serve/setup/touch_finder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "serve/contacts_in_suit.hpp"
-#include "serve/models_in_use.hpp"
+#include "serve/topics/contacts_in_suit.hpp"
+#include "serve/suit/models_in_use.hpp"
 #include "serve/small_suit.hpp"
-#include "serve/suit_json.hpp"
-#include "serve/suit_transforms.hpp"
+#include "serve/suit/suit_json.hpp"
+#include "serve/topics/suit_transforms.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::serve {

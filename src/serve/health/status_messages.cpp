@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/health/status_messages.hpp"
+
+#include <chrono>
+#include <limits>
+#include <utility>
+
+#include "dermis/calibration/uncalibrated_model.hpp"
+#include "dermis/health/fault_words.hpp"
+
+namespace dermis::serve {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+double seconds(Nanos span) {
+  return std::chrono::duration<double>(span).count();
+}
+
+}  // namespace
+
+messages::ArrayStatistics statistics_message(const std::string& name, const live::ArrayStatistics& array) {
+  messages::ArrayStatistics out;
+  out.name = name;
+  out.ended = array.ended;
+  out.error = array.error;
+  out.frames = array.frames;
+  out.rejected = array.rejected;
+  out.lost = array.source.lost_frames;
+  out.damaged = array.source.damaged_frames;
+  out.rate_hz = array.source.rate_hz;
+  out.jitter_s = seconds(array.source.jitter);
+  out.latency_p50_s = array.latency_p50 > Nanos{} ? seconds(array.latency_p50) : kUnknown;
+  out.latency_p99_s = array.latency_p99 > Nanos{} ? seconds(array.latency_p99) : kUnknown;
+  out.temperature_celsius = array.temperature_celsius.value_or(kUnknown);
+  out.supply_v = array.supply_v.value_or(kUnknown);
+  return out;
+}
+
+messages::Diagnosis diagnosis_message(const std::string& name, const pipeline::Model& model,
+                                      const live::ArrayStatistics& statistics, const health::AgeingEvidence& ageing) {
+  messages::Diagnosis diagnosis;
+  diagnosis.name = name;
+  diagnosis.hardware_id = model.array.name;
+  health::Condition condition = health::condition_of(model, statistics.faults, ageing);
+  const bool is_uncalibrated = calibration::is_uncalibrated(model);  // "since calibration" says nothing of it
+  if (!is_uncalibrated) diagnosis.values = std::move(condition.details);
+  if (!statistics.error.empty()) {
+    diagnosis.level = messages::Diagnosis::Level::error;
+    diagnosis.message = statistics.error;
+  } else if (statistics.ended) {
+    diagnosis.level = messages::Diagnosis::Level::stale;
+    diagnosis.message = "the source has ended";
+  } else if (is_uncalibrated) {
+    diagnosis.level = messages::Diagnosis::Level::warning;
+    diagnosis.message = "not calibrated yet: calibrate";
+  } else {
+    const bool is_healthy = statistics.faults.empty() && !ageing.has_aged();
+    if (!is_healthy || statistics.standing) diagnosis.level = messages::Diagnosis::Level::warning;
+    diagnosis.message = std::move(condition.message);
+    if (statistics.standing) {
+      if (is_healthy) diagnosis.message = "lies on something, or was put on: tare";
+      diagnosis.values.emplace_back("standing load", describe_never_released(*statistics.standing, model.array));
+    }
+  }
+  return diagnosis;
+}
+
+namespace {
+
+messages::CalibrationState::Stage stage_of(calibration::GuideStage stage) {
+  using calibration::GuideStage;
+  using Stage = messages::CalibrationState::Stage;
+  switch (stage) {
+    case GuideStage::none: return Stage::none;
+    case GuideStage::unloaded: return Stage::unloaded;
+    case GuideStage::pressing: return Stage::pressing;
+    case GuideStage::fitting: return Stage::fitting;
+    case GuideStage::done: return Stage::done;
+    case GuideStage::failed: return Stage::failed;
+  }
+  return Stage::none;
+}
+
+messages::CalibrationState::Hint hint_of(calibration::GuideHint hint) {
+  using calibration::GuideHint;
+  using Hint = messages::CalibrationState::Hint;
+  switch (hint) {
+    case GuideHint::none: return Hint::none;
+    case GuideHint::press: return Hint::press;
+    case GuideHint::hold: return Hint::hold;
+    case GuideHint::release: return Hint::release;
+    case GuideHint::other_taxel: return Hint::other_taxel;
+    case GuideHint::unsteady: return Hint::unsteady;
+    case GuideHint::too_short: return Hint::too_short;
+    case GuideHint::several: return Hint::several;
+    case GuideHint::one_of_two: return Hint::one_of_two;
+  }
+  return Hint::none;
+}
+
+std::optional<std::uint32_t> taxel_of(std::optional<std::size_t> taxel) {
+  return taxel ? std::optional(static_cast<std::uint32_t>(*taxel)) : std::nullopt;
+}
+
+}  // namespace
+
+messages::CalibrationState calibration_message(CalibrationProgress progress) {
+  messages::CalibrationState state;
+  calibration::GuideState& guide = progress.state;
+  state.array = std::move(progress.array);
+  state.stage = stage_of(guide.stage);
+  state.message = std::move(guide.message);
+  state.taxel = static_cast<std::uint32_t>(guide.taxel);
+  state.weight_n = guide.weight_n;
+  state.reading = guide.reading;
+  state.hold_share = guide.hold_share;
+  state.presses_done = static_cast<std::uint32_t>(guide.presses_done);
+  state.presses_total = static_cast<std::uint32_t>(guide.presses_total);
+  state.median_relative_error = guide.median_relative_error.value_or(kUnknown);
+  state.taxel_presses = std::move(guide.taxel_presses);
+  state.hint = hint_of(guide.hint);
+  state.pressed_taxel = taxel_of(guide.pressed_taxel);
+  state.unpressed_relative_error = guide.unpressed_relative_error.value_or(kUnknown);
+  state.together_with = taxel_of(guide.together_with);
+  state.together_reading = guide.together_reading.value_or(kUnknown);
+  state.missing_taxel = taxel_of(guide.missing_taxel);
+  return state;
+}
+
+}  // namespace dermis::serve

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/health/threat_publisher.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <utility>
+
+namespace dermis::serve {
+namespace {
+
+using threats::ThreatLimit;
+using threats::ThreatPhase;
+using threats::ThreatState;
+
+constexpr Nanos kTellPeriod = std::chrono::milliseconds(500);
+constexpr Nanos kLogPeriod = std::chrono::seconds(1);
+
+/// `last` may be later than `now` where a recording was sought.
+bool is_due(const std::optional<Nanos>& last, Nanos now, Nanos period) {
+  return !last || now < *last || now - *last >= period;
+}
+
+}  // namespace
+
+messages::Threat::State state_of(const ThreatLimit& limit, const ThreatState& state) {
+  using State = messages::Threat::State;
+  switch (state.phase) {
+    case ThreatPhase::clear: return State::clear;
+    case ThreatPhase::crossed: return State::crossed;
+    case ThreatPhase::standing: break;
+  }
+  return state.now.value < limit.release_share * limit.limit ? State::latched : State::active;
+}
+
+messages::Diagnosis diagnosis_of(const std::string& array, const ThreatLimit& limit, const ThreatState& state) {
+  messages::Diagnosis diagnosis;
+  diagnosis.level = messages::Diagnosis::Level::error;
+  diagnosis.name = fmt::format("threat '{}' on '{}'", limit.name, array);
+  diagnosis.hardware_id = array;
+  diagnosis.message = threats::describe(limit, state.now);
+  const bool is_latched = state_of(limit, state) == messages::Threat::State::latched;
+  diagnosis.values = {{"state", is_latched ? "over, until it is reset" : "there"},
+                      {"worst", threats::describe(limit, state.worst)},
+                      {"first crossed", fmt::format("{:.3f} s", std::chrono::duration<double>(state.crossed).count())}};
+  return diagnosis;
+}
+
+Result<std::vector<threats::ThreatMonitor>> threat_monitors(const ServedSuit& suit) {
+  std::vector<threats::ThreatMonitor> monitors;
+  if (!suit.threats) return monitors;
+  for (const ServedArray& array : suit.arrays) {
+    Result<threats::ThreatMonitor> monitor =
+        threats::ThreatMonitor::create(*suit.threats, array.name, array.model->array);
+    if (!monitor) return bad_input(fmt::format("array '{}': {}", array.name, monitor.error().message));
+    monitors.push_back(*std::move(monitor));
+  }
+  return monitors;
+}
+
+ThreatPublisher::ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors,
+                                 stream::Server& server, SuitRecorder& recorder, Log log)
+    : limits_(*suit.threats), topic_("/threat", messages::threat_type(), server, recorder), log_(std::move(log)) {
+  for (std::size_t k = 0; k < monitors.size(); ++k) arrays_.emplace_back(std::move(monitors[k]), suit.arrays[k].name);
+}
+
+void ThreatPublisher::publish(const live::ArrayResult& result) {
+  Watched& watched = arrays_[result.array];
+  const Nanos time = result.force.time;
+  if (watched.is_reset_wanted.exchange(false)) {
+    watched.monitor.reset();
+    tell(watched, time, false);
+  }
+  watched.monitor.process(result.force, result.report);
+  const bool all = is_due(watched.told, time, kTellPeriod);
+  if (all) watched.told = time;
+  tell(watched, time, all);
+}
+
+std::vector<messages::Diagnosis> ThreatPublisher::diagnoses() const {
+  std::vector<messages::Diagnosis> diagnoses;
+  for (const Watched& watched : arrays_) {
+    const std::lock_guard lock(watched.standing_mutex);
+    for (const ThreatState& state : watched.standing) {
+      diagnoses.push_back(diagnosis_of(watched.array, limits_.limits[state.limit], state));
+    }
+  }
+  return diagnoses;
+}
+
+void ThreatPublisher::keep_standing(Watched& watched) {
+  const std::lock_guard lock(watched.standing_mutex);
+  watched.standing.clear();
+  for (const ThreatState& state : watched.monitor.states()) {
+    if (state.phase == ThreatPhase::standing) watched.standing.push_back(state);
+  }
+}
+
+Result<std::string> ThreatPublisher::reset(std::string_view /*request*/) {
+  for (Watched& watched : arrays_) watched.is_reset_wanted = true;
+  return std::string("{}");
+}
+
+/// What began or ended, and where `all`, to clients, how the other limits stand.
+void ThreatPublisher::tell(Watched& watched, Nanos time, bool all) {
+  bool is_news = all;
+  for (const ThreatState& state : watched.monitor.states()) {
+    if (!state.changed && !all) continue;
+    is_news = true;
+    encode(watched, state, time);
+    state.changed ? topic_.publish(time, watched.message) : topic_.show(time, watched.message);
+    if (state.changed && state.phase == ThreatPhase::standing) log(watched, state, time);
+  }
+  if (is_news) keep_standing(watched);
+}
+
+/// One line a second at most: the topic has all of them.
+void ThreatPublisher::log(Watched& watched, const ThreatState& state, Nanos time) const {
+  if (!is_due(watched.logged, time, kLogPeriod)) return;
+  watched.logged = time;
+  const ThreatLimit& limit = limits_.limits[state.limit];
+  log_(fmt::format("threat '{}' on '{}': {}", limit.name, watched.array, threats::describe(limit, state.now)));
+}
+
+void ThreatPublisher::encode(Watched& watched, const ThreatState& state, Nanos time) const {
+  const ThreatLimit& limit = limits_.limits[state.limit];
+  messages::Threat threat;
+  threat.time = time;
+  threat.name = limit.name;
+  threat.array = watched.array;
+  threat.zone = limit.zone;
+  threat.quantity = threats::threat_quantity_names()[static_cast<std::size_t>(limit.quantity)];
+  threat.state = state_of(limit, state);
+  threat.changed = state.changed;
+  threat.crossed = state.crossed;
+  threat.value = state.now.value;
+  threat.sigma = state.now.sigma;
+  threat.worst = state.worst.value;
+  threat.limit = limit.limit;
+  threat.unit = threats::unit_of(limit.quantity);
+  threat.x = state.now.position.x;
+  threat.y = state.now.position.y;
+  messages::encode_threat(threat, watched.message);
+}
+
+}  // namespace dermis::serve

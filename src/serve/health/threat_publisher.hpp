@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/live/live_suit.hpp"
+#include "dermis/messages/live_messages.hpp"
+#include "dermis/serve/served_suit.hpp"
+#include "dermis/threats/threat_monitor.hpp"
+#include "serve/topics/event_topic.hpp"
+
+namespace dermis::serve {
+
+/// One of each array; none where nothing is limited. Fails, as "array 'chest': ...", where a limit does not fit one.
+[[nodiscard]] Result<std::vector<threats::ThreatMonitor>> threat_monitors(const ServedSuit& suit);
+
+/// The topic /threat of docs/stream.md and a line for the log of each threat. Thread-safe: each array on a thread of
+/// its own.
+class ThreatPublisher {
+ public:
+  using Log = std::function<void(const std::string& line)>;
+
+  /// `monitors`: threat_monitors() of the suit, which has limits. The others must outlive it.
+  ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors, stream::Server& server,
+                  SuitRecorder& recorder, Log log);
+
+  void publish(const live::ArrayResult& result);
+
+  /// A status for each threat that is there, as half a second ago or later.
+  [[nodiscard]] std::vector<messages::Diagnosis> diagnoses() const;
+
+  /// The service /threats/reset: latched threats end with the next frame of their array.
+  [[nodiscard]] Result<std::string> reset(std::string_view request);
+
+ private:
+  struct Watched {
+    threats::ThreatMonitor monitor;
+    const std::string& array;
+    std::atomic<bool> is_reset_wanted = false;
+    std::optional<Nanos> told{};    ///< When all limits were.
+    std::optional<Nanos> logged{};  ///< When the last line was.
+    std::vector<std::uint8_t> message{};
+    mutable std::mutex standing_mutex{};
+    std::vector<threats::ThreatState> standing{};  ///< The threats that are there.
+
+    Watched(threats::ThreatMonitor its_monitor, const std::string& its_array)
+        : monitor(std::move(its_monitor)), array(its_array) {}
+  };
+
+  void tell(Watched& watched, Nanos time, bool all);
+  static void keep_standing(Watched& watched);
+  void log(Watched& watched, const threats::ThreatState& state, Nanos time) const;
+  void encode(Watched& watched, const threats::ThreatState& state, Nanos time) const;
+
+  const threats::ThreatLimits& limits_;
+  EventTopic topic_;
+  Log log_;
+  std::deque<Watched> arrays_;
+};
+
+/// A threat that is there, as a status of the array: what is exceeded by how much, since when.
+[[nodiscard]] messages::Diagnosis diagnosis_of(const std::string& array, const threats::ThreatLimit& limit,
+                                               const threats::ThreatState& state);
+
+/// As a message says it.
+[[nodiscard]] messages::Threat::State state_of(const threats::ThreatLimit& limit, const threats::ThreatState& state);
+
+}  // namespace dermis::serve

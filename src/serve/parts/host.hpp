@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/live/live_suit.hpp"
+#include "dermis/serve/served_suit.hpp"
+#include "dermis/serve/session.hpp"
+#include "dermis/stream/server.hpp"
+#include "serve/parts/part_list.hpp"
+#include "serve/suit/models_in_use.hpp"
+
+namespace dermis::serve {
+
+class SuitRecorder;
+class Topics;
+
+/// What the parts of a server share. What one of them asks of all goes through here. Thread-safe as its members are;
+/// they outlive it.
+struct Host {
+  ServedSuit& suit;
+  const SessionOptions& options;
+  ModelsInUse& models;
+  stream::Server& server;
+  live::LiveSuit& live;
+  Topics& topics;
+  SuitRecorder& recorder;
+  PartList& parts;
+
+  /// Takes a model into use for an array, and tells all parts and clients.
+  [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
+  [[nodiscard]] Status use_classes(std::size_t array, recognition::Classes classes);
+
+  /// /suit.json, as the suit is now.
+  void show_suit() const;
+
+  /// By the clock of the recording that is played, else by that of the machine.
+  [[nodiscard]] Nanos now() const;
+
+  void log(const std::string& line) const;
+  /// The log and all clients.
+  void tell_error(const std::string& line) const;
+  void tell(const std::string& line) const;
+};
+
+/// Makes a part; nothing where the suit has no use for it. Errors end the session.
+using PartMaker = Result<std::unique_ptr<Part>>(Host& host);
+
+}  // namespace dermis::serve

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/live/live_suit.hpp"
+#include "dermis/messages/live_messages.hpp"
+#include "dermis/recognition/classes.hpp"
+#include "dermis/stream/server.hpp"
+
+namespace dermis::serve {
+
+/// A parameter with its handlers. Clients can set it where one of the setters is there.
+struct LiveParameter {
+  std::string name;  ///< "/stream/rate_hz"
+  std::function<stream::ParameterValue()> value;
+  std::function<Status(double)> set_number{};
+  std::function<Status(bool, const std::string& client)> set_switch{};
+};
+
+/// One subject of the server in one place: what it offers to clients, what it makes of frames, and what it does when
+/// something changes. Parts know nothing of each other (Host). Ticks and requests each come from one thread, frames
+/// from that of their array.
+class Part {
+ public:
+  static constexpr int kTicksPerSecond = 30;
+
+  Part() = default;
+  Part(const Part&) = delete;
+  Part& operator=(const Part&) = delete;
+  virtual ~Part() = default;
+
+  /// Asked for once, before the server begins.
+  [[nodiscard]] virtual std::vector<stream::Service> services() { return {}; }
+  [[nodiscard]] virtual std::vector<LiveParameter> parameters() { return {}; }
+  /// What else has to happen before clients come. Errors end the session.
+  [[nodiscard]] virtual Status begin() { return Done{}; }
+
+  /// Every frame of every array, with what was made of it.
+  virtual void hear(const live::ArrayResult& /*result*/) {}
+  virtual void tick(std::int64_t /*tick*/) {}
+  /// The array has another model, which is in Host::models.
+  virtual void model_changed(std::size_t /*array*/) {}
+  /// Classes for an array, from its next frame on. Errors: they do not fit.
+  [[nodiscard]] virtual Status use_classes(std::size_t /*array*/, const recognition::Classes& /*classes*/) {
+    return Done{};
+  }
+  /// Adds what is wrong with the arrays.
+  virtual void diagnose(std::vector<messages::Diagnosis>& /*diagnoses*/) const {}
+  /// After the last frame.
+  virtual void end() {}
+};
+
+}  // namespace dermis::serve

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "serve/parts/part.hpp"
+
+namespace dermis::serve {
+
+/// All parts of a server, in the order in which they hear a frame. Thread-safe as Part is, once all are added.
+class PartList {
+ public:
+  void add(std::unique_ptr<Part> part);
+  [[nodiscard]] Status begin();
+
+  void hear(const live::ArrayResult& result) const;
+  void tick(std::int64_t tick) const;
+  void model_changed(std::size_t array) const;
+  [[nodiscard]] Status use_classes(std::size_t array, const recognition::Classes& classes) const;
+  [[nodiscard]] std::vector<messages::Diagnosis> diagnoses() const;
+  void end() const;
+
+  [[nodiscard]] std::vector<stream::Service> services() const;
+  [[nodiscard]] std::vector<stream::Parameter> parameters() const;
+  /// Errors: an unknown name, a value that it cannot have.
+  [[nodiscard]] Status set(const stream::Parameter& parameter, const std::string& client) const;
+
+ private:
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::vector<LiveParameter> parameters_;
+};
+
+}  // namespace dermis::serve

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/recognition/stream_recogniser.hpp"
+#include "serve/recognition/frame_resampler.hpp"
+
+namespace dermis::serve {
+
+/// What touches one array or several at work, from their newtons. Frames are brought to the rate of the examples, of
+/// poses to 30 a second. Allocates only when made. Not thread-safe.
+class LiveRecognition {
+ public:
+  /// `arrays`: side by side in each frame, in this order; `further`: readings beside a frame. Fails where the classes
+  /// do not fit them.
+  [[nodiscard]] static Result<LiveRecognition> create(recognition::Classes classes,
+                                                      std::vector<recognition::SensedArray> arrays,
+                                                      std::size_t further = 0);
+
+  /// The answer where there is one to tell: of a gesture once it is over; of a pose when it changes, and ten times a
+  /// second. `further`: as many as were told to create(). Valid until the next call. Rejected
+  /// frames are passed over.
+  [[nodiscard]] std::optional<recognition::Answer> next(const ForceFrame& force, std::span<const float> further = {});
+
+  [[nodiscard]] const recognition::Classes& classes() const noexcept { return recogniser_.classes(); }
+
+ private:
+  LiveRecognition(recognition::StreamRecogniser recogniser, double rate_hz, std::size_t taxels);
+
+  [[nodiscard]] bool is_news(const recognition::Answer& answer, Nanos time);
+
+  recognition::StreamRecogniser recogniser_;
+  FrameResampler resampler_;
+  /// The pose that was told last.
+  struct Told {
+    std::size_t likeliest = 0;
+    recognition::Verdict verdict = recognition::Verdict::known;
+    Nanos time{};
+  };
+  std::optional<Told> told_{};
+};
+
+}  // namespace dermis::serve

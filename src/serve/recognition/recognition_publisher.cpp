@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/recognition/recognition_publisher.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace dermis::serve {
+
+RecognitionPublisher::RecognitionPublisher(const ServedSuit& suit, stream::Server& server, SuitRecorder& recorder)
+    : server_(server), recorder_(recorder) {
+  for (const ServedArray& array : suit.arrays) arrays_.emplace_back().array = &array;
+}
+
+Status RecognitionPublisher::use(std::size_t array, recognition::Classes classes) {
+  Named& named = arrays_[array];
+  const std::string& name = named.array->name;
+  Result<LiveRecognition> made =
+      LiveRecognition::create(std::move(classes), {recognition::sensed_array(named.array->model->array, name)});
+  if (!made) return bad_input(fmt::format("array '{}': {}", name, made.error().message));
+  if (!named.topic) {
+    named.topic.emplace("/" + name + "/recognition", messages::classification_type(), server_, recorder_);
+  }
+  const std::lock_guard lock(named.next_mutex);
+  named.next = std::make_unique<LiveRecognition>(*std::move(made));
+  named.has_next = true;
+  return Done{};
+}
+
+void RecognitionPublisher::publish(const live::ArrayResult& result) {
+  Named& named = arrays_[result.array];
+  if (named.has_next.load(std::memory_order_acquire)) {
+    const std::lock_guard lock(named.next_mutex);
+    named.recognition = std::move(named.next);
+    named.has_next = false;
+  }
+  if (!named.recognition) return;
+  const std::optional<recognition::Answer> answer = named.recognition->next(result.force);
+  if (!answer) return;
+  results_of(*answer, named.recognition->classes(), named.order, named.results);
+  messages::encode_classification(named.results, result.force.time, named.array->name, named.message);
+  named.topic->publish(result.force.time, named.message);
+}
+
+void results_of(const recognition::Answer& answer, const recognition::Classes& classes, std::vector<std::size_t>& order,
+                std::vector<messages::Hypothesis>& results) {
+  results.clear();
+  if (answer.verdict != recognition::Verdict::known) {
+    results.push_back({"unknown", 1.0});
+    results.push_back({recognition::to_string(answer.verdict), 0.0});
+  }
+  order.resize(classes.names.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    const double more = answer.probabilities[a];
+    const double less = answer.probabilities[b];
+    return more != less ? more > less : a < b;
+  });
+  for (const std::size_t label : order) results.push_back({classes.names[label], answer.probabilities[label]});
+}
+
+}  // namespace dermis::serve

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/live/live_suit.hpp"
+#include "dermis/messages/live_messages.hpp"
+#include "dermis/serve/served_suit.hpp"
+#include "serve/topics/event_topic.hpp"
+#include "serve/recognition/live_recognition.hpp"
+
+namespace dermis::serve {
+
+/// The topics /<array>/recognition of docs/stream.md. Thread-safe: each array on a thread of its own.
+class RecognitionPublisher {
+ public:
+  /// All must outlive it. An array without classes has no topic.
+  RecognitionPublisher(const ServedSuit& suit, stream::Server& server, SuitRecorder& recorder);
+
+  /// Takes classes into use with the next frame of the array. Fails, as "array 'chest': ...", where they do not fit.
+  /// One at a time.
+  [[nodiscard]] Status use(std::size_t array, recognition::Classes classes);
+
+  void publish(const live::ArrayResult& result);
+
+ private:
+  struct Named {
+    const ServedArray* array = nullptr;
+    std::optional<EventTopic> topic{};
+    std::atomic<bool> has_next = false;
+    std::mutex next_mutex{};
+    std::unique_ptr<LiveRecognition> next{};
+    // Of the array's thread alone.
+    std::unique_ptr<LiveRecognition> recognition{};
+    std::vector<std::size_t> order{};
+    std::vector<messages::Hypothesis> results{};
+    std::vector<std::uint8_t> message{};
+  };
+
+  stream::Server& server_;
+  SuitRecorder& recorder_;
+  std::deque<Named> arrays_;
+};
+
+/// Fills `results` with the answer, as docs/stream.md has it; `order` is used for sorting.
+void results_of(const recognition::Answer& answer, const recognition::Classes& classes, std::vector<std::size_t>& order,
+                std::vector<messages::Hypothesis>& results);
+
+}  // namespace dermis::serve

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/recognition/suit_recognition.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "serve/recognition/recognition_publisher.hpp"
+
+namespace dermis::serve {
+namespace {
+
+using nlohmann::json;
+using recognition::Classes;
+
+constexpr std::size_t kMostRequestBytes = 65536;
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+
+/// Where the arrays of the examples are in the suit.
+Result<std::vector<std::size_t>> places_of(const Classes& classes, const std::vector<ServedArray>& arrays) {
+  const std::vector<recognition::SensedArray>& wanted = classes.layout.arrays;
+  if (wanted.size() == 1 && arrays.size() == 1) return std::vector<std::size_t>{0};
+  std::vector<std::size_t> places;
+  for (const recognition::SensedArray& array : wanted) {
+    const auto found =
+        std::find_if(arrays.begin(), arrays.end(), [&](const ServedArray& one) { return one.name == array.name; });
+    if (found == arrays.end()) return bad_input(fmt::format("was learned with '{}', which is not served", array.name));
+    places.push_back(static_cast<std::size_t>(found - arrays.begin()));
+  }
+  return places;
+}
+
+Result<LiveRecognition> recognition_at(const Classes& classes, const std::vector<ServedArray>& arrays,
+                                       const std::vector<std::size_t>& places) {
+  std::vector<recognition::SensedArray> sensed;
+  for (const std::size_t place : places) {
+    sensed.push_back(recognition::sensed_array(arrays[place].model->array, arrays[place].name));
+  }
+  return LiveRecognition::create(classes, std::move(sensed), classes.layout.extras);
+}
+
+FrameJoiner joiner_of(const std::vector<ServedArray>& arrays, const std::vector<std::size_t>& places) {
+  std::vector<std::size_t> taxels;
+  for (const std::size_t place : places) taxels.push_back(arrays[place].model->array.taxel_count());
+  return FrameJoiner(taxels);
+}
+
+}  // namespace
+
+Result<LiveRecognition> recognition_of_suit(const Classes& classes, const std::vector<ServedArray>& arrays) {
+  const Result<std::vector<std::size_t>> places = places_of(classes, arrays);
+  if (!places) return places.error();
+  return recognition_at(classes, arrays, *places);
+}
+
+Result<std::unique_ptr<SuitRecognition>> SuitRecognition::create(const ServedSuit& suit, stream::Server& server,
+                                                                 SuitRecorder& recorder) {
+  const Result<std::vector<std::size_t>> places = places_of(*suit.classes, suit.arrays);
+  if (!places) return places.error();
+  Result<LiveRecognition> recognition = recognition_at(*suit.classes, suit.arrays, *places);
+  if (!recognition) return recognition.error();
+  return std::unique_ptr<SuitRecognition>(
+      new SuitRecognition(*std::move(recognition), suit.arrays, *places, server, recorder));
+}
+
+SuitRecognition::SuitRecognition(LiveRecognition recognition, const std::vector<ServedArray>& arrays,
+                                 std::vector<std::size_t> places, stream::Server& server, SuitRecorder& recorder)
+    : recognition_(std::move(recognition)),
+      places_(std::move(places)),
+      joiner_(joiner_of(arrays, places_)),
+      topic_("/suit/recognition", messages::classification_type(), server, recorder),
+      further_(recognition_.classes().layout.extras, kMissing) {}
+
+void SuitRecognition::publish(const live::ArrayResult& result) {
+  const auto found = std::find(places_.begin(), places_.end(), result.array);
+  if (found == places_.end()) return;
+  if (found != places_.begin()) {
+    joiner_.keep(static_cast<std::size_t>(found - places_.begin()), result.force);
+    return;
+  }
+  read_further(result.force.time);
+  const auto answer = recognition_.next(joiner_.join(result.force), further_);
+  if (!answer) return;
+  results_of(*answer, recognition_.classes(), order_, results_);
+  messages::encode_classification(results_, result.force.time, kSuitFrame, message_);
+  topic_.publish(result.force.time, message_);
+}
+
+/// As they are at the time of a frame.
+void SuitRecognition::read_further(Nanos time) {
+  const std::lock_guard lock(readings_mutex_);
+  if (told_) {
+    further_.swap(*told_);
+    told_.reset();
+    further_time_ = time;
+  }
+  const bool is_near = further_time_ && std::chrono::abs(time - *further_time_) <= recognition::kLongestSilence;
+  if (!is_near) std::fill(further_.begin(), further_.end(), kMissing);
+}
+
+Result<std::string> SuitRecognition::take_readings(std::string_view request) {
+  const json parsed = request.size() <= kMostRequestBytes ? json::parse(request, nullptr, false) : json();
+  const json values = parsed.is_object() ? parsed.value("values", json()) : json();
+  const std::size_t expected = recognition_.classes().layout.extras;
+  if (!values.is_array() || values.size() != expected) {
+    return bad_input(fmt::format("values: must be a list of {}, as the examples had; null: missing", expected));
+  }
+  std::vector<float> readings;
+  for (const json& value : values) {
+    if (!value.is_number() && !value.is_null())
+      return bad_input("values: must be numbers, or null where one is missing");
+    readings.push_back(value.is_null() ? kMissing : value.get<float>());
+  }
+  const std::lock_guard lock(readings_mutex_);
+  told_ = std::move(readings);
+  return std::string("{}");
+}
+
+}  // namespace dermis::serve

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/core/result.hpp"
+#include "dermis/live/live_suit.hpp"
+#include "dermis/messages/live_messages.hpp"
+#include "dermis/serve/served_suit.hpp"
+#include "serve/topics/event_topic.hpp"
+#include "serve/recognition/frame_joiner.hpp"
+#include "serve/recognition/live_recognition.hpp"
+
+namespace dermis::serve {
+
+/// The topic /suit/recognition of docs/stream.md: what touches several arrays together, or one beside further readings.
+/// Thread-safe: each array on a thread of its own.
+class SuitRecognition {
+ public:
+  static constexpr const char* kService = "/recognition/readings";
+
+  /// By the classes of the suit, which must have some. Fails where they do not fit its arrays. `server` and `recorder`
+  /// must outlive it.
+  [[nodiscard]] static Result<std::unique_ptr<SuitRecognition>> create(const ServedSuit& suit, stream::Server& server,
+                                                                       SuitRecorder& recorder);
+
+  void publish(const live::ArrayResult& result);
+
+  /// {"values": [31.5, null, ...]}: the further readings as they are now, in the order of the examples; null: missing.
+  /// They hold for half a second of the frames of the first array.
+  [[nodiscard]] Result<std::string> take_readings(std::string_view request);
+
+ private:
+  SuitRecognition(LiveRecognition recognition, const std::vector<ServedArray>& arrays, std::vector<std::size_t> places,
+                  stream::Server& server, SuitRecorder& recorder);
+
+  void read_further(Nanos time);
+
+  LiveRecognition recognition_;
+  std::vector<std::size_t> places_;  ///< In the suit, of each array of the examples.
+  FrameJoiner joiner_;
+  EventTopic topic_;
+  std::mutex readings_mutex_;
+  std::optional<std::vector<float>> told_{};  ///< Further readings that no frame has seen yet.
+  // Of the thread of the first array alone.
+  std::vector<float> further_;
+  std::optional<Nanos> further_time_{};
+  std::vector<std::size_t> order_{};
+  std::vector<messages::Hypothesis> results_{};
+  std::vector<std::uint8_t> message_{};
+};
+
+/// What the classes of several arrays say of those of a suit, which are known by their names; one may have another name
+/// where the suit has no other array. Fails where they do not fit.
+[[nodiscard]] Result<LiveRecognition> recognition_of_suit(const recognition::Classes& classes,
+                                                          const std::vector<ServedArray>& arrays);
+
+}  // namespace dermis::serve

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/recording/recording_services.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "dermis/calibration/uncalibrated_model.hpp"
+#include "serve/recording/saved_minute.hpp"
+
+namespace dermis::serve {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMostFileName = 255;
+constexpr const char* kMilliseconds = "a whole number of milliseconds since 1970";
+constexpr std::uint64_t kMostMilliseconds = 9'000'000'000'000;  // the year 2255; Nanos end soon after
+
+/// {"from_ms", "to_ms"}; what is missing does not bound.
+Result<Selection> selection_of(const JsonRequest& request) {
+  Selection selection{Nanos::min(), Nanos::max()};
+  for (const auto& [field, end] : {std::pair("from_ms", &selection.first), std::pair("to_ms", &selection.last)}) {
+    const auto time = request.number(field, kMilliseconds);
+    if (!time) return time.error();
+    if (!*time) continue;
+    if (**time > kMostMilliseconds) return bad_field(field, std::string("must be ") + kMilliseconds);
+    *end = std::chrono::milliseconds(**time);
+  }
+  return selection;
+}
+
+std::string file_name(const std::string& path) {
+  return std::filesystem::path(path).filename().string();
+}
+
+}  // namespace
+
+RecordingServices::RecordingServices(const ServedSuit& suit, const SessionOptions& options, SuitRecorder::Arrays arrays,
+                                     const ModelsInUse& models, SuitRecorder& recorder, stream::Server& server,
+                                     std::optional<PlayedRecording::PlayedSuit> played)
+    : folder_(options.recordings.empty() ? options.record : options.recordings),
+      arrays_(std::move(arrays)),
+      models_(models),
+      recorder_(recorder),
+      server_(server),
+      last_minute_(suit.arrays.size()) {
+  if (played) player_.emplace(options, *std::move(played));
+}
+
+std::vector<std::string> RecordingServices::names() const {
+  std::vector<std::string> names = {"/recordings/begin", "/recordings/list", "/recordings/save"};
+  if (player_) names.emplace_back("/recordings/play");
+  return names;
+}
+
+Result<std::string> RecordingServices::call(std::string_view service, std::string_view text) {
+  const std::lock_guard calls(calls_mutex_);
+  const Result<JsonRequest> request = JsonRequest::parse(text);
+  if (!request) return request.error();
+  if (service == "/recordings/begin") return begin(*request);
+  if (service == "/recordings/list") return list();
+  if (service == "/recordings/save") return save(*request);
+  if (service == "/recordings/play" && player_) return play(*request);
+  return bad_input("there is no such service");
+}
+
+Result<std::string> RecordingServices::begin(const JsonRequest& request) {
+  const Result<std::string> name = request.file_name("name");
+  if (!name) return name.error();
+  const Result<std::string> path = folder_.new_path(*name, ".mcap");
+  if (!path) return path.error();
+  if (Status begun = recorder_.begin(*path); !begun) return begun.error();
+  server_.parameters_changed();
+  return json_text(ordered_json{{"file", file_name(*path)}});
+}
+
+/// From now on, clients may also save what it names.
+Result<std::string> RecordingServices::list() {
+  ordered_json answer;
+  answer["folder"] = absolute_path(folder_.path());
+  answer["recording"] = recorder_.recording() ? file_name(recorder_.path()) : "";
+  answer["files"] = ordered_json::array();
+  for (const SavedFile& file : folder_.recordings()) {
+    answer["files"].push_back({{"name", file.name}, {"bytes", file.bytes}, {"changed_s", file.changed_s}});
+    give((std::filesystem::path(folder_.path()) / file.name).string());
+  }
+  return json_text(answer);
+}
+
+void RecordingServices::give(const std::string& path) {
+  server_.set_file("/recordings/" + file_name(path), path);
+}
+
+Result<std::string> RecordingServices::play(const JsonRequest& request) {
+  const Result<std::string> name = request.text("name", kMostFileName);
+  if (!name) return name.error();
+  const Result<std::string> path = folder_.recording(*name);
+  if (!path) return path.error();
+  const Result<std::uint16_t> port = player_->play(*path);
+  if (!port) return port.error();
+  return json_text(ordered_json{{"port", *port}});
+}
+
+/// {"array": "chest"} is a frames.csv of that array, and its forces where it is calibrated; without it all are in a
+/// recording.
+Result<std::string> RecordingServices::save(const JsonRequest& request) {
+  const Result<Selection> selection = selection_of(request);
+  if (!selection) return selection.error();
+  const Result<std::string> name = request.text("array");
+  if (!name) return name.error();
+  const std::vector<recordings::RecordedArray> arrays = arrays_();
+  const auto array = std::ranges::find(arrays, *name, &recordings::RecordedArray::name);
+  if (!name->empty() && array == arrays.end()) return bad_field("array", "there is none of that name");
+  const std::string wanted = name->empty() ? "cut.mcap" : *name + ".csv";
+  const std::string path = recording_name((std::filesystem::path(folder_.path()) / wanted).string(), false,
+                                          std::chrono::system_clock::now());
+  const Result<std::size_t> frames =
+      name->empty()
+          ? save_recording(last_minute_, arrays, *selection, path)
+          : save_csv(last_minute_, static_cast<std::size_t>(array - arrays.begin()), array->shape, *selection, path);
+  if (!frames) return frames.error();
+  give(path);
+  ordered_json answer{{"file", file_name(path)}, {"frames", *frames}};
+  if (!name->empty()) {
+    const Result<std::string> forces =
+        save_forces_of(static_cast<std::size_t>(array - arrays.begin()), *selection, path);
+    if (!forces) return forces.error();
+    if (!forces->empty()) answer["forces"] = file_name(*forces);
+  }
+  return json_text(answer);
+}
+
+/// Beside the counts at `path`, where there is a calibration; returns where.
+Result<std::string> RecordingServices::save_forces_of(std::size_t array, const Selection& selection,
+                                                      const std::string& path) {
+  const std::shared_ptr<const pipeline::Model> model = models_.of(array);
+  if (calibration::is_uncalibrated(*model)) return std::string();
+  const std::string forces = std::filesystem::path(path).replace_extension().string() + "-newtons.csv";
+  if (Status saved = save_forces(last_minute_, array, *model, selection, forces); !saved) return saved.error();
+  give(forces);
+  return forces;
+}
+
+}  // namespace dermis::serve

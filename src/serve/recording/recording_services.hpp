@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dermis/live/live_suit.hpp"
+#include "dermis/stream/server.hpp"
+#include "serve/requests/json_request.hpp"
+#include "serve/recording/last_minute.hpp"
+#include "serve/suit/models_in_use.hpp"
+#include "serve/recording/played_recording.hpp"
+#include "serve/recording/recordings_folder.hpp"
+#include "serve/recording/saved_minute.hpp"
+#include "serve/recording/suit_recorder.hpp"
+
+namespace dermis::serve {
+
+/// The services /recordings/... of docs/stream.md: what clients record, save, play and take away. Thread-safe.
+class RecordingServices {
+ public:
+  /// `options`: of the session; the folder is that of its recording. `arrays`: how they are recorded now. `played`:
+  /// empty where nothing may be played. `models`, `recorder` and `server` must outlive it.
+  RecordingServices(const ServedSuit& suit, const SessionOptions& options, SuitRecorder::Arrays arrays,
+                    const ModelsInUse& models, SuitRecorder& recorder, stream::Server& server,
+                    std::optional<PlayedRecording::PlayedSuit> played);
+
+  /// "/recordings/begin", ...
+  [[nodiscard]] std::vector<std::string> names() const;
+
+  /// Every frame of every array.
+  void feed(const live::ArrayResult& result) { last_minute_.keep(result.array, result.raw); }
+
+  /// JSON in, JSON out. Errors: an unknown service, a request that is wrong; those of a recording.
+  [[nodiscard]] Result<std::string> call(std::string_view service, std::string_view request);
+
+ private:
+  [[nodiscard]] Result<std::string> begin(const JsonRequest& request);
+  [[nodiscard]] Result<std::string> list();
+  [[nodiscard]] Result<std::string> play(const JsonRequest& request);
+  [[nodiscard]] Result<std::string> save(const JsonRequest& request);
+  [[nodiscard]] Result<std::string> save_forces_of(std::size_t array, const Selection& selection,
+                                                   const std::string& path);
+  void give(const std::string& path);
+
+  const RecordingsFolder folder_;
+  const SuitRecorder::Arrays arrays_;
+  const ModelsInUse& models_;
+  SuitRecorder& recorder_;
+  stream::Server& server_;
+  LastMinute last_minute_;
+  std::mutex calls_mutex_;  // One call at a time.
+  std::optional<PlayedRecording> player_;
+};
+
+}  // namespace dermis::serve

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/topics/frame_topics.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "serve/parts/host.hpp"
+#include "serve/session/part_makers.hpp"
+
+namespace dermis::serve {
+namespace {
+
+constexpr std::size_t kBytesOfHeader = 128;
+constexpr std::size_t kBytesOfAPoint = 20;
+constexpr Nanos kPresent = std::chrono::milliseconds(500);
+constexpr double kSlowestHz = 1.0;
+constexpr double kFastestHz = 1000.0;
+
+bool begins_or_ends(const ContactReport& report) {
+  return std::any_of(report.contacts.begin(), report.contacts.end(),
+                     [](const Contact& contact) { return contact.phase != ContactPhase::held; });
+}
+
+/// The stream is thinned, DDS is not.
+Ends ends_of(bool is_due) {
+  return is_due ? Ends::both : Ends::dds;
+}
+
+}  // namespace
+
+FrameTopics::Array::Array(const ServedSuit& suit, std::size_t index)
+    : served(suit.arrays[index]),
+      shape{served.model->array.rows, served.model->array.cols},
+      pitch{served.model->array.row_pitch_m, served.model->array.col_pitch_m},
+      contacts(suit, index) {}
+
+Result<std::unique_ptr<FrameTopics>> FrameTopics::create(const ServedSuit& suit, Topics& topics) {
+  std::unique_ptr<FrameTopics> created(new FrameTopics(suit, topics));
+  if (Status added = created->add_topics(); !added) return added.error();
+  return created;
+}
+
+FrameTopics::FrameTopics(const ServedSuit& suit, Topics& topics) : topics_(topics), points_(suit) {
+  for (std::size_t k = 0; k < suit.arrays.size(); ++k) arrays_.emplace_back(suit, k);
+}
+
+Status FrameTopics::add_topics() {
+  std::size_t taxels = 0;
+  for (Array& array : arrays_) {
+    if (Status added = add_topics_of(array); !added) return added;
+    taxels += array.shape.taxel_count();
+  }
+  const Result<Topic> contacts = topics_.add({"/contacts", "/contacts"}, messages::contacts_type());
+  const Result<Topic> points = topics_.add({"/suit/points", "/suit/points"}, messages::point_cloud_type(),
+                                           kBytesOfHeader + taxels * kBytesOfAPoint);
+  const Result<Topic> wrench = topics_.add({.dds = "/suit/wrench"}, messages::wrench_type());
+  for (const auto* topic : {&contacts, &points, &wrench}) {
+    if (!*topic) return topic->error();
+  }
+  contacts_topic_ = *contacts;
+  points_topic_ = *points;
+  wrench_topic_ = *wrench;
+  return Done{};
+}
+
+Status FrameTopics::add_topics_of(Array& array) {
+  const std::string prefix = "/" + array.served.name;
+  const std::size_t image_bytes = kBytesOfHeader + array.shape.taxel_count() * sizeof(float);
+  const messages::MessageType& image = messages::image_type();
+  const messages::MessageType& grid = messages::grid_type();
+  struct Wanted {
+    Topic& topic;
+    TopicNames names;
+    const messages::MessageType& type;
+  };
+  for (const Wanted& wanted : {Wanted{array.raw, {prefix + "/raw", prefix + "/raw"}, image},
+                               Wanted{array.conductance, {.stream = prefix + "/conductance"}, grid},
+                               Wanted{array.force_grid, {.stream = prefix + "/force"}, grid},
+                               Wanted{array.force, {.dds = prefix + "/force"}, image},
+                               Wanted{array.force_sigma, {.dds = prefix + "/force_sigma"}, image},
+                               Wanted{array.wrench, {.dds = prefix + "/wrench"}, messages::wrench_type()}}) {
+    const Result<Topic> added = topics_.add(wanted.names, wanted.type, image_bytes);
+    if (!added) return added.error();
+    wanted.topic = *added;
+  }
+  return Done{};
+}
+
+std::vector<LiveParameter> FrameTopics::parameters() {
+  const auto set = [this](double value) -> Status {
+    if (!(value >= kSlowestHz && value <= kFastestHz)) return bad_input("/stream/rate_hz: must be 1 to 1000");
+    rate_hz_ = value;
+    return Done{};
+  };
+  return {{.name = "/stream/rate_hz", .value = [this] { return rate_hz_.load(); }, .set_number = set}};
+}
+
+void FrameTopics::hear(const live::ArrayResult& result) {
+  Array& array = arrays_[result.array];
+  const bool due = is_due(array, result.raw.time);
+  publish_images(array, result, due);
+  if (points_topic_.is_wanted(ends_of(due))) points_.keep(result.array, result.force);
+  if (due) last_time_ns_ = result.raw.time.count();
+  publish_contacts(array, result, due);
+  if (topics_.has_dds() && !has(result.force.status, FrameStatus::rejected)) publish_wrench(array, result);
+}
+
+/// Evenly, whatever the jitter of the frames: what was late does not make the next one late. A frame that comes again
+/// is for somebody who has not seen it.
+bool FrameTopics::is_due(Array& array, Nanos time) const noexcept {
+  const Nanos period(static_cast<std::int64_t>(1e9 / rate_hz_));
+  if (array.last == time) return true;
+  const bool went_back = array.last && time < *array.last;
+  const bool due = !array.last || went_back || time >= array.due;
+  if (due) array.due = !went_back && time - array.due < period ? array.due + period : time + period;
+  array.last = time;
+  return due;
+}
+
+void FrameTopics::publish_images(Array& array, const live::ArrayResult& result, bool is_due) {
+  const std::string& frame_id = array.served.name;
+  const std::size_t taxels = array.shape.taxel_count();
+  const Nanos time = result.raw.time;
+  if (array.raw.is_wanted(ends_of(is_due)) && result.raw.counts.size() == taxels) {
+    messages::encode_image(result.raw, array.shape, frame_id, array.message);
+    array.raw.publish(time, array.message, ends_of(is_due));
+  }
+  publish_values(array, array.force, result.force.newtons, result.force.time);
+  publish_values(array, array.force_sigma, result.force.sigma_newtons, result.force.time);
+  if (!is_due) return;
+  const bool has_taxels = result.conductance.siemens.size() == taxels &&
+                          result.conductance.sigma_siemens.size() == taxels &&
+                          result.conductance.taxels.size() == taxels;
+  if (array.conductance.is_wanted() && has_taxels) {
+    messages::encode_conductance_grid(result.conductance, array.shape, array.pitch, frame_id, array.message);
+    array.conductance.publish(time, array.message);
+  }
+  if (array.force_grid.is_wanted()) {
+    messages::encode_grid(result.force, array.shape, array.pitch, frame_id, array.message);
+    array.force_grid.publish(time, array.message);
+  }
+}
+
+void FrameTopics::publish_values(Array& array, const Topic& topic, std::span<const float> values, Nanos time) {
+  if (!topic.is_wanted()) return;
+  messages::encode_value_image(values, time, array.shape, array.served.name, array.message);
+  topic.publish(time, array.message);
+}
+
+/// Clients hear of each contact that begins or ends, also between the frames that are due.
+void FrameTopics::publish_contacts(Array& array, const live::ArrayResult& result, bool is_due) {
+  const Ends ends = ends_of(is_due || begins_or_ends(result.report));
+  const bool is_wanted = contacts_topic_.is_wanted(ends);
+  if (is_wanted || topics_.has_dds()) array.contacts.take(result);
+  if (!is_wanted) return;
+  array.contacts.encode(result, array.message);
+  contacts_topic_.publish(result.raw.time, array.message, ends);
+}
+
+void FrameTopics::publish_wrench(Array& array, const live::ArrayResult& result) {
+  const Nanos time = result.force.time;
+  if (array.wrench.is_wanted()) {
+    messages::encode_wrench(wrench_of(result.contacts, array.served.suit_from_array), time, array.served.name,
+                            array.message);
+    array.wrench.publish(time, array.message);
+  }
+  const std::lock_guard lock(array.press_mutex);
+  array.press = {time, wrench_of(array.contacts.contacts())};
+}
+
+void FrameTopics::tick(std::int64_t /*tick*/) {
+  if (points_topic_.is_wanted()) {
+    const Nanos time(last_time_ns_.load());
+    points_.encode(time, message_);
+    points_topic_.publish(time, message_);
+  }
+  if (wrench_topic_.is_wanted()) publish_suit_wrench();
+}
+
+/// Nothing where an array is silent: without it the sum would be too low.
+void FrameTopics::publish_suit_wrench() {
+  std::vector<Press> presses;
+  for (Array& array : arrays_) {
+    const std::lock_guard lock(array.press_mutex);
+    presses.push_back(array.press);
+  }
+  const std::optional<Nanos> newest = std::ranges::max(presses, {}, &Press::time).time;
+  Wrench sum;
+  for (const Press& press : presses) {
+    if (!press.time || *newest - *press.time > kPresent) return;
+    sum += press.in_suit;
+  }
+  messages::encode_wrench(sum, *newest, kSuitFrame, message_);
+  wrench_topic_.publish(*newest, message_);
+}
+
+Result<std::unique_ptr<Part>> make_frame_topics(Host& host) {
+  Result<std::unique_ptr<FrameTopics>> part = FrameTopics::create(host.suit, host.topics);
+  if (!part) return part.error();
+  return std::unique_ptr<Part>(*std::move(part));
+}
+
+}  // namespace dermis::serve

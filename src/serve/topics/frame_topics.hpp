@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/wrench.hpp"
+#include "dermis/messages/live_messages.hpp"
+#include "dermis/serve/served_suit.hpp"
+#include "serve/parts/part.hpp"
+#include "serve/topics/contacts_in_suit.hpp"
+#include "serve/topics/suit_points.hpp"
+#include "serve/topics/topics.hpp"
+
+namespace dermis::serve {
+
+/// What comes of the frames: the topics of docs/stream.md, thinned to /stream/rate_hz, and all frames as those of
+/// docs/ros.md.
+class FrameTopics final : public Part {
+ public:
+  /// `suit` and `topics` must outlive it. Errors: those of Topics::add().
+  [[nodiscard]] static Result<std::unique_ptr<FrameTopics>> create(const ServedSuit& suit, Topics& topics);
+
+  [[nodiscard]] std::vector<LiveParameter> parameters() override;
+  void hear(const live::ArrayResult& result) override;
+  /// The taxels of the whole suit as they were in the last frames that were published, and what presses on it.
+  void tick(std::int64_t tick) override;
+
+ private:
+  /// What the contacts of an array do to the suit.
+  struct Press {
+    std::optional<Nanos> time{};  // empty: there was no frame yet
+    Wrench in_suit{};
+  };
+
+  /// An array, touched by its thread alone but for its last press.
+  struct Array {
+    const ServedArray& served;
+    FrameShape shape;
+    messages::Pitch pitch;
+    ContactsInSuit contacts;
+    Topic raw{};
+    Topic conductance{};
+    Topic force_grid{};
+    Topic force{};
+    Topic force_sigma{};
+    Topic wrench{};
+    std::optional<Nanos> last{};  // frame that came
+    Nanos due{};
+    std::vector<std::uint8_t> message{};
+    std::mutex press_mutex{};
+    Press press{};
+
+    Array(const ServedSuit& suit, std::size_t index);
+  };
+
+  FrameTopics(const ServedSuit& suit, Topics& topics);
+  [[nodiscard]] Status add_topics();
+  [[nodiscard]] Status add_topics_of(Array& array);
+  [[nodiscard]] bool is_due(Array& array, Nanos time) const noexcept;
+  void publish_images(Array& array, const live::ArrayResult& result, bool is_due);
+  void publish_values(Array& array, const Topic& topic, std::span<const float> values, Nanos time);
+  void publish_contacts(Array& array, const live::ArrayResult& result, bool is_due);
+  void publish_wrench(Array& array, const live::ArrayResult& result);
+  void publish_suit_wrench();
+
+  Topics& topics_;
+  std::deque<Array> arrays_;
+  SuitPoints points_;
+  Topic contacts_topic_;
+  Topic points_topic_;
+  Topic wrench_topic_;
+  std::vector<std::uint8_t> message_;  // of the suit
+  std::atomic<double> rate_hz_{60.0};
+  std::atomic<std::int64_t> last_time_ns_{0};
+};
+
+}  // namespace dermis::serve

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/topics/topics.hpp"
+
+#include <utility>
+
+namespace dermis::serve {
+
+bool Topic::is_wanted(Ends ends) const noexcept {
+  return (ends != Ends::dds && channel_ && server_->has_subscribers(*channel_)) ||
+         (ends != Ends::stream && dds_topic_ && publisher_->has_subscribers(*dds_topic_));
+}
+
+void Topic::publish(Nanos time, std::span<const std::uint8_t> message, Ends ends) const {
+  if (ends != Ends::dds && channel_ && server_->has_subscribers(*channel_)) server_->publish(*channel_, time, message);
+  if (ends == Ends::stream || !dds_topic_) return;
+  if (is_kept_ || publisher_->has_subscribers(*dds_topic_)) publisher_->publish(*dds_topic_, message);
+}
+
+Result<std::unique_ptr<Topics>> Topics::create(stream::Server& server,
+                                               const std::optional<dds::PublisherOptions>& dds) {
+  if (!dds) return std::unique_ptr<Topics>(new Topics(server, nullptr));
+  Result<std::unique_ptr<dds::Publisher>> publisher = dds::Publisher::create(*dds);
+  if (!publisher) return publisher.error();
+  return std::unique_ptr<Topics>(new Topics(server, *std::move(publisher)));
+}
+
+Topics::Topics(stream::Server& server, std::unique_ptr<dds::Publisher> publisher)
+    : server_(server), publisher_(std::move(publisher)) {}
+
+Result<Topic> Topics::add(const TopicNames& names, const messages::MessageType& type, std::size_t message_bytes,
+                          bool is_kept) {
+  Topic topic;
+  topic.server_ = &server_;
+  topic.publisher_ = publisher_.get();
+  topic.is_kept_ = is_kept;
+  if (!names.stream.empty()) topic.channel_ = server_.add_channel(names.stream, type.name, type.definition);
+  if (names.dds.empty() || !publisher_) return topic;
+  const Result<dds::TopicId> added = publisher_->add_topic({names.dds, type, message_bytes, is_kept});
+  if (!added) return added.error();
+  topic.dds_topic_ = *added;
+  return topic;
+}
+
+}  // namespace dermis::serve

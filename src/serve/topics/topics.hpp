@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "dermis/core/frames.hpp"
+#include "dermis/core/result.hpp"
+#include "dermis/dds/publisher.hpp"
+#include "dermis/messages/ros_messages.hpp"
+#include "dermis/stream/server.hpp"
+
+namespace dermis::serve {
+
+/// Who hears a message.
+enum class Ends : std::uint8_t { stream, dds, both };
+
+/// How a topic is called at each end; an end without a name does not have it.
+struct TopicNames {
+  std::string stream{};  ///< docs/stream.md
+  std::string dds{};     ///< docs/ros.md
+};
+
+/// A topic of one type of message.
+class Topic {
+ public:
+  /// Somebody listens at one of these ends.
+  [[nodiscard]] bool is_wanted(Ends ends = Ends::both) const noexcept;
+  /// To those who listen; a topic that is kept also where nobody does.
+  void publish(Nanos time, std::span<const std::uint8_t> message, Ends ends = Ends::both) const;
+
+ private:
+  friend class Topics;
+  stream::Server* server_ = nullptr;
+  dds::Publisher* publisher_ = nullptr;
+  std::optional<stream::ChannelId> channel_;
+  std::optional<dds::TopicId> dds_topic_;
+  bool is_kept_ = false;
+};
+
+/// The sink of all messages, with two ends: clients of the stream, and nodes of ROS 2 where they are wanted. Thread-safe
+/// but for add(), which for an end of DDS must come before the first message.
+class Topics {
+ public:
+  /// `server` must outlive it. Without `dds` there is the stream alone. Errors: those of dds::Publisher.
+  [[nodiscard]] static Result<std::unique_ptr<Topics>> create(stream::Server& server,
+                                                              const std::optional<dds::PublisherOptions>& dds);
+
+  /// `message_bytes` and `is_kept`: dds::Topic. Errors: those of dds::Publisher; none without DDS.
+  [[nodiscard]] Result<Topic> add(const TopicNames& names, const messages::MessageType& type,
+                                  std::size_t message_bytes = 1024, bool is_kept = false);
+
+  /// Messages that the network of DDS did not take.
+  [[nodiscard]] std::uint64_t left_out() const noexcept { return publisher_ ? publisher_->left_out() : 0; }
+  [[nodiscard]] bool has_dds() const noexcept { return publisher_ != nullptr; }
+
+ private:
+  Topics(stream::Server& server, std::unique_ptr<dds::Publisher> publisher);
+
+  stream::Server& server_;
+  std::unique_ptr<dds::Publisher> publisher_;  // null: none is wanted
+};
+
+}  // namespace dermis::serve
