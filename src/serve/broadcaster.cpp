@@ -62,18 +62,18 @@ void Broadcaster::publish_images(Channels& channels, const live::ArrayResult& re
   const Nanos time = result.raw.time;
   if (server_.has_subscribers(channels.raw) && result.raw.counts.size() == channels.shape.taxel_count()) {
     messages::encode_image(result.raw, channels.shape, frame_id, message);
-    server_.publish(channels.raw, time, message);
+    server_.publish(channels.raw, time, message, stream::MessageKind::picture);
   }
   const bool has_taxels = result.conductance.siemens.size() == channels.shape.taxel_count() &&
                           result.conductance.sigma_siemens.size() == channels.shape.taxel_count() &&
                           result.conductance.taxels.size() == channels.shape.taxel_count();
   if (server_.has_subscribers(channels.conductance) && has_taxels) {
     messages::encode_conductance_grid(result.conductance, channels.shape, channels.pitch, frame_id, message);
-    server_.publish(channels.conductance, time, message);
+    server_.publish(channels.conductance, time, message, stream::MessageKind::picture);
   }
   if (server_.has_subscribers(channels.force)) {
     messages::encode_grid(result.force, channels.shape, channels.pitch, frame_id, message);
-    server_.publish(channels.force, time, message);
+    server_.publish(channels.force, time, message, stream::MessageKind::picture);
   }
 }
 
@@ -81,13 +81,14 @@ void Broadcaster::publish_contacts(Channels& channels, const live::ArrayResult& 
   if (!server_.has_subscribers(contacts_)) return;
   channels.contacts.take(result);
   channels.contacts.encode(result, channels.message);
-  server_.publish(contacts_, result.raw.time, channels.message);
+  const auto kind = begins_or_ends(result.report) ? stream::MessageKind::event : stream::MessageKind::picture;
+  server_.publish(contacts_, result.raw.time, channels.message, kind);
 }
 
 void Broadcaster::publish_points() {
   if (!server_.has_subscribers(points_channel_)) return;
   points_.encode(last_time(), points_message_);
-  server_.publish(points_channel_, last_time(), points_message_);
+  server_.publish(points_channel_, last_time(), points_message_, stream::MessageKind::picture);
 }
 
 }  // namespace dermis::serve
