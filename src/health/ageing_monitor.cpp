@@ -15,6 +15,7 @@ namespace dermis::health {
 namespace {
 
 constexpr double kLeastSpread = 0.05;  // of gains: less is not worth a calibration
+constexpr double kLeastPercent = 0.5;  // that is told
 constexpr double kSigmas = 3.0;
 constexpr std::size_t kLeastBlocks = 16;
 constexpr float kMostWeight = 8.0F;  // of the touches that a square remembers of each way
@@ -73,9 +74,14 @@ std::string describe(const AgeingEvidence& evidence) {
   if (!evidence.gain_spread) {
     return fmt::format("not known yet ({} of {} squares of taxels compared)", evidence.blocks, kLeastBlocks);
   }
+  const double sigma_percent = std::max(100.0 * evidence.spread_sigma, 1.0);
+  if (100.0 * *evidence.gain_spread < kLeastPercent) {
+    return fmt::format("gains have not changed from taxel to taxel (\u00b1 {:.0f} %, {} comparisons)", sigma_percent,
+                       evidence.comparisons);
+  }
   return fmt::format("{}gains have changed by about {:.0f} % from taxel to taxel (\u00b1 {:.0f} %, {} comparisons)",
-                     evidence.has_aged() ? "recalibrate: " : "", 100.0 * *evidence.gain_spread,
-                     std::max(100.0 * evidence.spread_sigma, 1.0), evidence.comparisons);
+                     evidence.has_aged() ? "recalibrate: " : "", 100.0 * *evidence.gain_spread, sigma_percent,
+                     evidence.comparisons);
 }
 
 AgeingMonitor::AgeingMonitor(const pipeline::Model& model)

@@ -78,9 +78,20 @@ Status Client::receive(std::span<const std::uint8_t> bytes, bool is_text) {
   return Done{};
 }
 
-void Client::publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, ServerStatistics& statistics) {
+void Client::begin_moment() {
+  if (takes_pictures_) moment_bytes_ = queue_.binary_bytes() - moment_begin_;
+  moment_begin_ = queue_.binary_bytes();
+  takes_pictures_ = is_asking_ || taken_.is_open(moment_begin_, moment_bytes_);
+}
+
+void Client::publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, MessageKind kind,
+                     ServerStatistics& statistics) {
   const auto subscription = subscription_of_.find(channel);
   if (subscription == subscription_of_.end()) return;
+  if (kind == MessageKind::picture && !takes_pictures_) {
+    ++statistics.dropped;
+    return;
+  }
   statistics.dropped += queue_.push_data(subscription->second, log_time, bytes);
   ++statistics.messages;
 }
@@ -122,8 +133,23 @@ void Client::handle(const Unsubscribe& request) {
   }
 }
 
+void Client::handle(const Taken& taken) {
+  taken_.take(taken.bytes, queue_.binary_bytes(), TakenWindow::Clock::now());
+}
+
+/// Until it is answered, nothing else of the client is read.
+void Client::ask(Question question) {
+  is_asking_ = true;
+  ask_([question = std::move(question)]() -> Answer {
+    return [answer = question()](Client& client) {
+      client.is_asking_ = false;
+      answer(client);
+    };
+  });
+}
+
 void Client::handle(const GetParameters& request) {
-  ask_([&offer = offer_, request]() -> Answer {
+  ask([&offer = offer_, request]() -> Answer {
     const Names names(request.names.begin(), request.names.end());
     return [text = parameter_values_text(parameters_of(offer, names), request.id)](Client& client) {
       client.queue_.push_text(text);
@@ -132,7 +158,7 @@ void Client::handle(const GetParameters& request) {
 }
 
 void Client::handle(const SetParameters& request) {
-  ask_([&offer = offer_, request, address = address_]() -> Answer {
+  ask([&offer = offer_, request, address = address_]() -> Answer {
     const std::vector<std::string> errors = set_parameters(offer, request.parameters, address);
     Names names;
     for (const Parameter& parameter : request.parameters) names.insert(parameter.name);
@@ -146,7 +172,7 @@ void Client::handle(const SetParameters& request) {
 }
 
 void Client::handle(const FollowParameters& request) {
-  ask_([&offer = offer_, request]() -> Answer {
+  ask([&offer = offer_, request]() -> Answer {
     return [request, all = parameters_of(offer, {})](Client& client) { client.follow(request, all); };
   });
 }
@@ -170,7 +196,7 @@ void Client::handle(const ServiceCall& request) {
     return queue_.push_text(service_failure_text(request, "there is no such service"));
   }
   if (request.encoding != "json") return queue_.push_text(service_failure_text(request, "the encoding must be 'json'"));
-  ask_([&offer = offer_, request]() -> Answer {
+  ask([&offer = offer_, request]() -> Answer {
     const Result<std::string> answer = offer.services[request.service].call(request.request);
     return [request, answer](Client& client) {
       if (!answer) return client.queue_.push_text(service_failure_text(request, answer.error().message));
@@ -181,7 +207,7 @@ void Client::handle(const ServiceCall& request) {
 
 void Client::handle(const PlaybackRequest& request) {
   if (!offer_.playback) return;
-  ask_([&offer = offer_, request]() -> Answer {
+  ask([&offer = offer_, request]() -> Answer {
     return [request, status = offer.playback->control(request.command)](Client& client) {
       client.send_playback(status, request);
     };

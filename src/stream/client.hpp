@@ -16,6 +16,7 @@
 #include "dermis/stream/server.hpp"
 #include "stream/foxglove_protocol.hpp"
 #include "stream/outgoing_queue.hpp"
+#include "stream/taken_window.hpp"
 
 namespace dermis::stream {
 
@@ -38,7 +39,7 @@ using Question = std::function<Answer()>;
 using Ask = std::function<void(Question)>;
 
 /// One client of the stream, as the protocol has it: what it asked for and what waits for it. Knows no socket.
-/// Not thread-safe.
+/// Not thread-safe. Many members: what it follows, what waits, and how far it is.
 class Client {
  public:
   /// `offer` must outlive it and its questions. `address`: "127.0.0.1:53412". `is_sdk`: speaks foxglove.sdk.v1, which
@@ -57,8 +58,11 @@ class Client {
   /// A message of the client, which asks once at most. An error: it does not speak the protocol.
   [[nodiscard]] Status receive(std::span<const std::uint8_t> bytes, bool is_text);
 
+  /// Messages of one moment come: pictures among them are left out where the client is behind.
+  void begin_moment();
   /// Queues the message where the client has subscribed to the channel; messages and drops are counted on.
-  void publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, ServerStatistics& statistics);
+  void publish(ChannelId channel, Nanos log_time, const SharedBytes& bytes, MessageKind kind,
+               ServerStatistics& statistics);
   void send_parameters(std::span<const Parameter> all);
   /// `answered`: the request that it answers, if it answers one.
   void send_playback(const PlaybackStatus& status, const PlaybackRequest& answered = {});
@@ -77,6 +81,8 @@ class Client {
   void handle(const FollowParameters& request);
   void handle(const ServiceCall& request);
   void handle(const PlaybackRequest& request);
+  void handle(const Taken& taken);
+  void ask(Question question);
   void follow(const FollowParameters& request, std::span<const Parameter> all);
 
   const Offer& offer_;
@@ -90,6 +96,11 @@ class Client {
   std::map<std::uint32_t, ChannelId> channel_of_;       // by subscription
   std::map<ChannelId, std::uint32_t> subscription_of_;  // by channel; one each
   std::set<std::string, std::less<>> followed_;
+  TakenWindow taken_;
+  bool takes_pictures_ = true;      // of the present moment
+  std::uint64_t moment_begin_ = 0;  // of queue_.binary_bytes()
+  std::uint64_t moment_bytes_ = 0;  // of the last moment whose pictures it took
+  bool is_asking_ = false;          // what it tells meanwhile is not read
 };
 
 }  // namespace dermis::stream

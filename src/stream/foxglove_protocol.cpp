@@ -157,6 +157,12 @@ Result<ClientRequest> parse_follow_parameters(const json& message, bool follow) 
   return ClientRequest(FollowParameters{std::move(*names), follow});
 }
 
+Result<ClientRequest> parse_taken(const json& message) {
+  const auto bytes = message.find("bytes");
+  if (bytes == message.end() || !bytes->is_number_unsigned()) return bad_input("'taken' without its bytes");
+  return ClientRequest(Taken{bytes->get<std::uint64_t>()});
+}
+
 /// Reads a binary message; what does not fit reads as 0 or empty, and good() is false from then on.
 class BinaryReader {
  public:
@@ -286,6 +292,7 @@ Result<ClientRequest> parse_text_request(std::string_view text) {
   if (operation == "setParameters") return parse_set_parameters(message);
   if (operation == "subscribeParameterUpdates") return parse_follow_parameters(message, true);
   if (operation == "unsubscribeParameterUpdates") return parse_follow_parameters(message, false);
+  if (operation == "taken") return parse_taken(message);
   if (operation.empty()) return bad_input("a JSON object without 'op'");
   return ClientRequest(OtherRequest{});
 }

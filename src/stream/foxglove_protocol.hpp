@@ -57,11 +57,15 @@ struct PlaybackRequest {
   PlaybackCommand command{};
   std::string id{};  ///< Given back with the status that answers it.
 };
+/// What the client has taken of binary messages so far; an extension of ours (docs/stream.md).
+struct Taken {
+  std::uint64_t bytes = 0;
+};
 /// A request of a capability that is not offered: ignored.
 struct OtherRequest {};
 
 using ClientRequest = std::variant<OtherRequest, Subscribe, Unsubscribe, GetParameters, SetParameters, FollowParameters,
-                                   ServiceCall, PlaybackRequest>;
+                                   ServiceCall, PlaybackRequest, Taken>;
 
 [[nodiscard]] Result<ClientRequest> parse_text_request(std::string_view text);
 [[nodiscard]] Result<ClientRequest> parse_binary_request(std::span<const std::uint8_t> bytes);

@@ -21,10 +21,12 @@ std::size_t OutgoingQueue::push_data(std::uint32_t subscription, Nanos log_time,
   std::size_t dropped = 0;
   while (!data_.empty() && data_bytes_ + size > most_data_bytes_) {
     data_bytes_ -= data_.front().size();
+    binary_bytes_ -= data_.front().size();
     data_.pop_front();
     ++dropped;
   }
   data_bytes_ += size;
+  binary_bytes_ += size;
   data_.push_back(std::move(message));
   return dropped;
 }
@@ -34,6 +36,7 @@ void OutgoingQueue::push_text(std::string_view text) {
 }
 
 void OutgoingQueue::push_binary(std::vector<std::uint8_t> bytes) {
+  binary_bytes_ += bytes.size();
   push_control({false, {}, std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes))});
 }
 

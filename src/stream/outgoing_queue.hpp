@@ -42,6 +42,8 @@ class OutgoingQueue {
   /// What is not data, and what it costs to keep: grows without end where a client asks and never reads.
   [[nodiscard]] std::size_t control_bytes() const noexcept { return control_bytes_; }
   [[nodiscard]] std::size_t data_bytes() const noexcept { return data_bytes_; }
+  /// Of all binary messages so far that were not dropped, data and others.
+  [[nodiscard]] std::uint64_t binary_bytes() const noexcept { return binary_bytes_; }
 
   /// The next to be sent; the queue must not be empty.
   [[nodiscard]] OutgoingMessage pop();
@@ -52,6 +54,7 @@ class OutgoingQueue {
   std::size_t most_data_bytes_;
   std::size_t data_bytes_ = 0;
   std::size_t control_bytes_ = 0;
+  std::uint64_t binary_bytes_ = 0;
   std::deque<OutgoingMessage> control_;
   std::deque<OutgoingMessage> data_;
 };

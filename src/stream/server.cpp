@@ -57,6 +57,7 @@ struct Published {
   ChannelId channel = 0;
   Nanos log_time{};
   SharedBytes bytes;
+  MessageKind kind = MessageKind::event;
 };
 
 }  // namespace
@@ -87,7 +88,7 @@ class Server::Implementation final : public SessionOwner {
   [[nodiscard]] std::uint64_t subscriptions() const noexcept {
     return subscriptions_.so_far.load(std::memory_order_relaxed);
   }
-  void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message);
+  void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message, MessageKind kind);
 
   /// Runs `send` for each client, on the server's thread.
   template <typename Send>
@@ -284,10 +285,11 @@ void Server::Implementation::change_subscribers(ChannelId channel, int change) {
   if (change > 0) subscriptions_.so_far.fetch_add(1, std::memory_order_relaxed);
 }
 
-void Server::Implementation::publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message) {
+void Server::Implementation::publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message,
+                                     MessageKind kind) {
   if (!has_subscribers(channel)) return;
   Published published{channel, log_time,
-                      std::make_shared<const std::vector<std::uint8_t>>(message.begin(), message.end())};
+                      std::make_shared<const std::vector<std::uint8_t>>(message.begin(), message.end()), kind};
   {
     const std::lock_guard lock(shared_.mutex);
     if (shared_.waiting_bytes + message.size() > kMostWaitingBytes) {
@@ -312,8 +314,9 @@ void Server::Implementation::hand_out() {
   const auto sessions = std::vector(connected_.clients.begin(), connected_.clients.end());
   for (const auto& session : sessions) {
     if (session->client() == nullptr) continue;  // its handshake goes on
+    session->client()->begin_moment();
     for (const Published& message : published) {
-      session->client()->publish(message.channel, message.log_time, message.bytes, handed);
+      session->client()->publish(message.channel, message.log_time, message.bytes, message.kind, handed);
     }
     session->flush();
   }
@@ -402,8 +405,8 @@ std::uint64_t Server::subscriptions() const noexcept {
   return implementation_->subscriptions();
 }
 
-void Server::publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message) {
-  implementation_->publish(channel, log_time, message);
+void Server::publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message, MessageKind kind) {
+  implementation_->publish(channel, log_time, message, kind);
 }
 
 void Server::parameters_changed() {

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -11,6 +14,7 @@
 
 #include "stream/budget.hpp"
 #include "stream/notice_limiter.hpp"
+#include "stream/taken_window.hpp"
 
 namespace dermis::stream {
 namespace {
@@ -42,6 +46,55 @@ TEST(OutgoingQueue, holds_one_message_however_large) {
   EXPECT_EQ(queue.push_data(1, Nanos(0), bytes_of(3000)), 1U);
   EXPECT_EQ(queue.pop().bytes->size(), 3000U);
   EXPECT_TRUE(queue.empty());
+}
+
+using Milliseconds = std::chrono::milliseconds;
+
+TEST(TakenWindow, is_open_to_a_client_that_tells_nothing) {
+  EXPECT_TRUE(TakenWindow().is_open(1'000'000'000, 1000));
+}
+
+/// A client at the end of a line, which tells every 50 ms what came.
+struct Line {
+  TakenWindow window;
+  double arrived = 0.0;
+  std::uint64_t sent = 0;
+  int tick = 0;
+
+  /// Sends `message` bytes every 10 ms while the window is open; returns how long what is sent last will take [s].
+  double send(double seconds, double bytes_per_second, std::uint64_t message) {
+    double longest = 0.0;
+    for (const int end = tick + static_cast<int>(100 * seconds); tick < end; ++tick) {
+      arrived = std::min(static_cast<double>(sent), arrived + 0.01 * bytes_per_second);
+      const TakenWindow::Clock::time_point now(Milliseconds(10 * tick));
+      if (tick % 5 == 0) window.take(static_cast<std::uint64_t>(arrived), sent, now);
+      if (!window.is_open(sent, message)) continue;
+      sent += message;
+      longest = std::max(longest, (static_cast<double>(sent) - arrived) / bytes_per_second);
+    }
+    return longest;
+  }
+};
+
+TEST(TakenWindow, keeps_what_is_on_its_way_young_and_the_line_full) {
+  for (const double rate : {12.5e3, 94e3, 10e6}) {
+    Line line;
+    line.send(2.0, rate, 2500);
+    const std::uint64_t before = line.sent;
+    EXPECT_LT(line.send(4.0, rate, 2500), 0.5) << rate;
+    EXPECT_GT(static_cast<double>(line.sent - before), 0.75 * std::min(4.0 * rate, 400.0 * 2500)) << rate;
+  }
+}
+
+TEST(TakenWindow, notices_within_seconds_that_a_line_has_become_slow_or_fast) {
+  Line line;
+  line.send(4.0, 10e6, 2500);
+  line.send(6.0, 12.5e3, 2500);
+  EXPECT_LT(line.send(4.0, 12.5e3, 2500), 0.5);
+  line.send(2.0, 10e6, 2500);
+  const std::uint64_t before = line.sent;
+  line.send(1.0, 10e6, 2500);
+  EXPECT_GT(line.sent - before, 90U * 2500);
 }
 
 struct StreamClient : testing::Test {
@@ -81,14 +134,43 @@ TEST_F(StreamClient, gets_what_it_subscribed_to_under_its_own_ids) {
   say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2},{"id":7,"channelId":3}]})");
   EXPECT_EQ(subscribers[2], 1);
   ServerStatistics statistics;
-  client.publish(2, Nanos(1), bytes_of(4), statistics);
-  client.publish(4, Nanos(1), bytes_of(4), statistics);
+  client.publish(2, Nanos(1), bytes_of(4), MessageKind::event, statistics);
+  client.publish(4, Nanos(1), bytes_of(4), MessageKind::event, statistics);
   EXPECT_EQ(statistics.messages, 1U);
   EXPECT_EQ(client.queue().pop().header->at(1), 5);
   say(R"({"op":"unsubscribe","subscriptionIds":[5,99]})");
-  client.publish(2, Nanos(1), bytes_of(4), statistics);
+  client.publish(2, Nanos(1), bytes_of(4), MessageKind::event, statistics);
   EXPECT_TRUE(client.queue().empty());
   EXPECT_EQ(subscribers[2], 0);
+}
+
+TEST_F(StreamClient, that_is_behind_gets_events_and_no_pictures_until_it_has_taken_them) {
+  say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2}]})");
+  say(R"({"op":"taken","bytes":0})");
+  ServerStatistics statistics;
+  const auto show = [&] {
+    client.begin_moment();
+    client.publish(2, Nanos(1), bytes_of(5000), MessageKind::picture, statistics);
+  };
+  for (int moment = 0; moment < 100; ++moment) show();
+  const std::uint64_t messages = statistics.messages;
+  EXPECT_LT(messages, 10U);
+  EXPECT_EQ(statistics.dropped, 100 - messages);
+  client.publish(2, Nanos(1), bytes_of(5000), MessageKind::event, statistics);
+  EXPECT_EQ(statistics.messages, messages + 1);
+  say(R"({"op":"taken","bytes":)" + std::to_string(client.queue().binary_bytes()) + "}");
+  show();
+  EXPECT_EQ(statistics.messages, messages + 2);
+}
+
+TEST_F(StreamClient, that_tells_nothing_gets_all) {
+  say(R"({"op":"subscribe","subscriptions":[{"id":5,"channelId":2}]})");
+  ServerStatistics statistics;
+  for (int moment = 0; moment < 100; ++moment) {
+    client.begin_moment();
+    client.publish(2, Nanos(1), bytes_of(5000), MessageKind::picture, statistics);
+  }
+  EXPECT_EQ(statistics.messages, 100U);
 }
 
 TEST_F(StreamClient, subscribes_to_a_channel_once) {

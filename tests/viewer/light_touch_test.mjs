@@ -135,3 +135,14 @@ it("plots the force on a region that was drawn, and events", async () => {
     await page.locator(".summary[data-region='']").waitFor();
   });
 });
+
+it("selects no words where somebody drags across the maps", async () => {
+  await showMaps(async (page) => {
+    const maps = await part(page, "maps").boundingBox();
+    await page.mouse.move(maps.x + 30, maps.y + 12);
+    await page.mouse.down();
+    await page.mouse.move(maps.x + maps.width - 30, maps.y + maps.height - 20, { steps: 8 });
+    await page.mouse.up();
+    assert.equal(await page.evaluate(() => getSelection().toString()), "");
+  });
+});

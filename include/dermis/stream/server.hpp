@@ -48,6 +48,11 @@ struct ServerOptions {
 
 using ChannelId = std::uint32_t;
 
+enum class MessageKind : std::uint8_t {
+  event,    ///< Says what happened: who is behind gets it all the same.
+  picture,  ///< How it is now: who is behind is better served by the next one.
+};
+
 /// The value of a parameter; monostate: not set.
 using ParameterValue = std::variant<std::monostate, bool, double, std::string, std::vector<double>>;
 
@@ -124,7 +129,9 @@ class Server {
   [[nodiscard]] std::uint64_t subscriptions() const noexcept;
 
   /// Queues a message for all subscribers of the channel and returns at once; copies the bytes, once for all clients.
-  void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message);
+  /// Of pictures, clients that tell what they have taken get as many as they can take.
+  void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message,
+               MessageKind kind = MessageKind::event);
 
   /// Tells the clients that follow them that parameters have changed.
   void parameters_changed();

@@ -11,15 +11,10 @@ const TRAIL_STEP_S = 1 / 24;
 
 /** Where something has been: the last so many points, 24 a second. */
 export class Trail {
-  readonly #xs: Float32Array;
-  readonly #ys: Float32Array;
+  readonly #xs = new Float32Array(TRAIL_POINTS);
+  readonly #ys = new Float32Array(TRAIL_POINTS);
   #count = 0;
   #lastS = -Infinity;
-
-  constructor(points = TRAIL_POINTS) {
-    this.#xs = new Float32Array(points);
-    this.#ys = new Float32Array(points);
-  }
 
   clear(): void {
     this.#count = 0;

@@ -13,8 +13,6 @@ import { ForceHistory } from "./force_history";
 import { RegionForce } from "./region_force";
 import { ThreatBoard } from "./threat_board";
 
-const CENTRE_POINTS = 240;
-
 /** What is known of one array, whatever is shown. */
 export class ArrayLive {
   readonly contacts = new ContactsFrame();
@@ -22,8 +20,8 @@ export class ArrayLive {
   version = 0;
   readonly total = new ForceHistory();
   readonly slots = new ContactSlots();
-  /** Where the centre of pressure has been in the last ten seconds, as long as something touches. */
-  readonly centre = new Trail(CENTRE_POINTS);
+  /** Where the centre of pressure has been in the last two seconds, as long as something touches. */
+  readonly centre = new Trail();
 
   /** The force of each contact, at its place: what /contacts tells of the suit, in the plane of the array. */
   addCentre(): void {

@@ -32,6 +32,8 @@ interface Topic {
 
 const LIVE_BEFORE_BACKOFF_RESETS_MS = 2000;
 const SILENCE_MS = 10000;
+/** So often the server is told what has come, and sends no more than that. */
+const TAKEN_MS = 50;
 
 /**
  * The connection to the server: comes back by itself with back-off, and subscribes to the same topics again. Nothing is
@@ -64,6 +66,9 @@ export class Stream {
   #attempts = 0;
   #liveSinceMs = 0;
   #lastMessageMs = 0;
+  /** Of binary messages on this connection. */
+  #taken = 0;
+  #takenTimer = 0;
 
   constructor(base: URL, onSuit: (suit: SuitDescription) => void) {
     this.#base = base;
@@ -198,6 +203,8 @@ export class Stream {
       this.#socket.close();
       this.#socket = undefined;
     }
+    window.clearTimeout(this.#takenTimer);
+    this.#takenTimer = this.#taken = 0;
     this.#channels.clear();
     for (const topic of this.#topics.values()) topic.channelId = undefined;
     this.#calls.failAll("the connection was lost");
@@ -222,6 +229,8 @@ export class Stream {
       return;
     }
     this.bytes += data.byteLength;
+    this.#taken += data.byteLength;
+    if (this.#takenTimer === 0) this.#takenTimer = window.setTimeout(() => this.#tellTaken(), TAKEN_MS);
     const message = new DataView(data);
     switch (message.getUint8(0)) {
       case protocol.ServerOpcode.messageData: {
@@ -270,7 +279,13 @@ export class Stream {
     }
   }
 
+  #tellTaken(): void {
+    this.#takenTimer = 0;
+    this.#send({ op: "taken", bytes: this.#taken });
+  }
+
   #begun(info: protocol.ServerInfo): void {
+    this.#tellTaken();
     this.reconnects += 1;
     this.#liveSinceMs = performance.now();
     this.playback.value = undefined;

@@ -34,10 +34,13 @@ export class ConnectionPill {
     const { stream, live, suit, paused } = this.#context;
     const connection = stream.connection.value;
     setData(document.documentElement, "connection", connection.kind);
+    const { setup } = suit.description.value;
+    const problem = live.statistics.value?.arrays.find(({ name }) => name === suit.selected.value?.name)?.error ?? "";
     const [level, words] = connectionWords({
       connection,
       nowMs,
-      isAsked: suit.description.value.setup !== undefined,
+      isAsked: setup !== undefined,
+      isUnreadable: setup === undefined ? problem !== "" : setup.from !== "" && !setup.readable,
       isPaused: paused.value,
       playback: stream.playback.value?.status,
       silenceS: live.delay.silenceS(nowMs),
@@ -45,5 +48,6 @@ export class ConnectionPill {
     });
     setData(this.element, "level", level);
     setText(this.#words, words);
+    this.element.title = problem === "" ? "Connect now" : problem;
   }
 }

@@ -4,7 +4,7 @@ import { expect, it } from "vitest";
 import { PlaybackStatus } from "../stream/protocol";
 import { connectionWords, type LinkState } from "./connection_words";
 
-const LIVE: LinkState = { connection: { kind: "live" }, nowMs: 0, isAsked: false, isPaused: false, playback: undefined, silenceS: 0.1, lateS: 0 };
+const LIVE: LinkState = { connection: { kind: "live" }, nowMs: 0, isAsked: false, isUnreadable: false, isPaused: false, playback: undefined, silenceS: 0.1, lateS: 0 };
 
 it.each<[Partial<LinkState>, string, string]>([
   [{}, "good", "Live"],
@@ -16,6 +16,8 @@ it.each<[Partial<LinkState>, string, string]>([
   [{ silenceS: 3.2, lateS: 4 }, "warn", "No frames for 3 s"],
   [{ silenceS: NaN, lateS: NaN }, "warn", "Waiting for frames"],
   [{ isAsked: true }, "warn", "Waiting for your answer"],
+  [{ isAsked: true, isUnreadable: true }, "bad", "Not readable"],
+  [{ isUnreadable: true, silenceS: 9 }, "bad", "Not readable"],
   [{ connection: { kind: "connecting" } }, "warn", "Connecting"],
   [{ connection: { kind: "wrong token" } }, "bad", "Wrong token"],
   [{ connection: { kind: "retrying", wasLive: true, atMs: 1500 } }, "bad", "Lost, again in 2 s"],

@@ -10,6 +10,8 @@ export interface LinkState {
   nowMs: number;
   /** The server asks where the array is or how it is made. */
   isAsked: boolean;
+  /** What comes makes no frames. */
+  isUnreadable: boolean;
   /** The picture of this page stands. */
   isPaused: boolean;
   /** Of a recording; undefined: what is served is live. */
@@ -39,7 +41,8 @@ export function connectionWords(state: LinkState): [Level, string] {
   }
 }
 
-function liveWords({ isAsked, isPaused, playback, silenceS, lateS }: LinkState): [Level, string] {
+function liveWords({ isAsked, isUnreadable, isPaused, playback, silenceS, lateS }: LinkState): [Level, string] {
+  if (isUnreadable) return ["bad", "Not readable"];
   if (isAsked) return ["warn", "Waiting for your answer"];
   if (isPaused || playback === PlaybackStatus.paused) return ["good", "Paused"];
   if (playback === PlaybackStatus.ended) return ["good", "At its end"];

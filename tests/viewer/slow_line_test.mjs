@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+// Usage: node slow_line_test.mjs path/to/dermis
+// The page over lines of 100 kbit/s, of 750 kbit/s and without limit: its frames are young, and the pill says how it is.
+import assert from "node:assert/strict";
+import { createServer, connect } from "node:net";
+import { it } from "node:test";
+import { writeFileSync } from "node:fs";
+import { arrayToml, assertUnhurt, becomes, bench, browser, openPage, useBench } from "./harness.mjs";
+
+const TICK_MS = 20;
+const HELD_BYTES = 4096;
+const SETTLE_MS = 8000;
+const LOOK_MS = 4000;
+
+useBench(() => writeFileSync(bench.path("whole.toml"), arrayToml("whole", 16, 16)));
+
+/** A line to a server, over which `kbits` pass in a second. It holds some kilobytes, as a modem does. */
+async function lineTo(port) {
+  const line = { kbits: Infinity, port: 0, close: () => undefined };
+  const server = createServer((client) => {
+    const upstream = connect({ port, host: "127.0.0.1" });
+    let waiting = Buffer.alloc(0);
+    const pass = (most) => {
+      if (client.destroyed || waiting.length === 0) return;
+      client.write(waiting.subarray(0, most));
+      waiting = waiting.subarray(most);
+      if (waiting.length < HELD_BYTES) upstream.resume();
+    };
+    const timer = setInterval(() => pass((line.kbits * 125 * TICK_MS) / 1000), TICK_MS);
+    upstream.on("data", (piece) => {
+      waiting = Buffer.concat([waiting, piece]);
+      if (line.kbits === Infinity) pass(waiting.length);
+      else if (waiting.length >= HELD_BYTES) upstream.pause();
+    });
+    client.on("data", (piece) => upstream.write(piece));
+    const end = () => {
+      clearInterval(timer);
+      client.destroy();
+      upstream.destroy();
+    };
+    for (const socket of [client, upstream]) socket.on("error", end).on("close", end);
+  });
+  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
+  line.port = server.address().port;
+  line.close = () => server.close();
+  return line;
+}
+
+/** In the page: how old each new frame on the maps is, and every word of the pill meanwhile. */
+async function watchAges(lookMs) {
+  const ages = [];
+  const words = new Set();
+  let last = "";
+  const begin = Date.now();
+  while (Date.now() - begin < lookMs) {
+    const { stamp } = document.querySelector("[data-view=array]").dataset;
+    if (stamp !== last && last !== "") ages.push(Date.now() / 1000 - Number(stamp));
+    last = stamp;
+    words.add(document.querySelector("[data-role=connection]").textContent);
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+  return { oldest: Math.max(...ages), frames: ages.length, words: [...words] };
+}
+
+for (const [kbits, oldestS, leastFrames] of [[100, 1, 4], [750, 1, 20], [Infinity, 0.5, 20]]) {
+  it(`shows frames that are no older than ${oldestS} s at ${kbits} kbit/s, and says how it is`, async () => {
+    const server = await bench.serve("--port", "0", "--from", "sim:contacts?rate=100", "--model", bench.path("whole.toml"));
+    const line = await lineTo(server.port);
+    try {
+      const page = await openPage(browser, `http://127.0.0.1:${line.port}/#/array`);
+      await becomes(page, "live");
+      await page.locator("[data-role=highest-taxel]", { hasText: /r\d+c\d+/ }).waitFor();
+      line.kbits = kbits;
+      const says = (words) => page.locator("[data-role=connection]", { hasText: words }).waitFor({ timeout: 1000 });
+      await page.waitForTimeout(SETTLE_MS);
+      const { oldest, frames, words } = await page.evaluate(watchAges, LOOK_MS);
+      console.log(`# ${kbits} kbit/s: ${oldest} s, ${frames} frames`);
+      assert.ok(oldest <= oldestS, `${oldest} s`);
+      assert.ok(frames >= leastFrames, `${frames} frames`);
+      assert.deepEqual(words, ["Live"]);
+      await page.locator("[data-role=pause]").click();
+      await says("Paused");
+      await page.locator("[data-role=pause]").click();
+      await says("Live");
+      assertUnhurt(page);
+      await page.close();
+    } finally {
+      line.close();
+      await server.stop();
+    }
+  });
+}
+
+it("says that what comes is not readable, and why", async () => {
+  const device = createServer((socket) => {
+    const timer = setInterval(() => socket.destroyed || socket.write("x".repeat(4000)), 20);
+    socket.on("error", () => undefined);
+    socket.on("close", () => clearInterval(timer));
+  });
+  await new Promise((listening) => device.listen(0, "127.0.0.1", listening));
+  const server = await bench.serve("--port", "0", "--from", `tcp://127.0.0.1:${device.address().port}`, "--model", bench.path("whole.toml"));
+  try {
+    const page = await openPage(browser, `${server.url}#/array`);
+    await page.locator("[data-role=connection]", { hasText: "Not readable" }).waitFor();
+    assert.match(await page.locator("[data-role=connection]").getAttribute("title"), /these bytes are of no known protocol/);
+    await page.locator("[data-tab=health]").click();
+    const faults = page.locator("[data-role=faults]", { hasText: "these bytes are of no known protocol" });
+    await faults.waitFor();
+    assert.doesNotMatch(await faults.textContent(), /dead/);
+    assertUnhurt(page);
+    await page.close();
+  } finally {
+    await server.stop();
+    device.close();
+  }
+});
