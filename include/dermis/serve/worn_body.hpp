@@ -8,8 +8,8 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "dermis/core/body.hpp"
@@ -55,9 +55,9 @@ class WornBody {
   [[nodiscard]] const std::vector<BodyFile>& files() const noexcept { return parts_->files; }
   [[nodiscard]] const std::string& link_of(std::size_t array) const { return body().links[arrays_[array].link].name; }
 
-  /// Of a JSON object of the names and positions of sensor_msgs/JointState: {"name": ["elbow"], "position": [1.2]}
-  /// [rad] or [m]. Joints that are not named stay. Errors: another text, a joint that is not there; nothing moves then.
-  [[nodiscard]] Status set_joints(std::string_view request);
+  /// Joints by their names, at positions [rad] or [m]. Joints that are not named stay. Errors: lists of two lengths, a
+  /// joint that is not there, a position that is not finite; nothing moves then.
+  [[nodiscard]] Status set_joints(std::span<const std::string> names, std::span<const double> positions);
 
   /// Rises with each set_joints().
   [[nodiscard]] std::uint64_t version() const noexcept { return version_; }

@@ -7,8 +7,10 @@
 #include "dermis/calibration/plan_request.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "dermis/files/loads_csv.hpp"
+#include "serve/parts/part_makers.hpp"
 #include "serve/requests/json_request.hpp"
 #include "serve/suit/saved_files.hpp"
+#include "serve/topics/topics.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -19,11 +21,6 @@ using calibration::GuideHint;
 using calibration::GuideStage;
 
 constexpr const char* kNoCalibration = "no calibration is going on; begin with /calibration/start";
-
-Result<std::string> answer(const Status& status) {
-  if (!status) return status.error();
-  return std::string("{}");
-}
 
 /// What `dermis calibrate` needs to make the model again, or a better one.
 Status write_data(const std::string& path, const ArrayDescription& array, const GuidedData& data) {
@@ -44,13 +41,26 @@ sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_ti
 }
 
 CalibrationServices::CalibrationServices(ServiceArrays arrays, UseModel use_model,
-                                         std::shared_ptr<sources::GuideVoice> guide_voice)
-    : arrays_(std::move(arrays)), use_model_(std::move(use_model)), guide_voice_(std::move(guide_voice)) {}
+                                         std::shared_ptr<sources::GuideVoice> guide_voice, MayBegin may_begin,
+                                         Tell tell)
+    : arrays_(std::move(arrays)),
+      use_model_(std::move(use_model)),
+      guide_voice_(std::move(guide_voice)),
+      may_begin_(std::move(may_begin)),
+      tell_(std::move(tell)) {}
 
-const std::vector<std::string>& CalibrationServices::names() {
-  static const std::vector<std::string> kNames = {"/calibration/start",  "/calibration/skip", "/calibration/repeat",
-                                                  "/calibration/finish", "/calibration/save", "/calibration/cancel"};
-  return kNames;
+std::vector<stream::Service> CalibrationServices::services() {
+  return {{"/calibration/start", [this](std::string_view request) { return start(request); }},
+          {"/calibration/skip", [this](std::string_view) { return take(&GuidedCalibration::skip); }},
+          {"/calibration/repeat", [this](std::string_view) { return take(&GuidedCalibration::repeat); }},
+          {"/calibration/finish", [this](std::string_view) { return take(&GuidedCalibration::finish); }},
+          {"/calibration/save", [this](std::string_view) { return save(); }},
+          {"/calibration/cancel", [this](std::string_view) { return cancel(); }}};
+}
+
+void CalibrationServices::tick(std::int64_t tick) {
+  if (!tell_ || tick % 3 != 0) return;
+  if (std::optional<CalibrationProgress> now = progress()) tell_(*std::move(now));
 }
 
 std::shared_ptr<GuidedCalibration> CalibrationServices::guide() const {
@@ -71,20 +81,17 @@ void CalibrationServices::say_what_to_do() const {
   guide_voice_->say(words_of(last_.guide ? last_.guide->state() : calibration::GuideState{}, last_.hold_time));
 }
 
-Result<std::string> CalibrationServices::call(std::string_view service, std::string_view request) {
-  const std::lock_guard calls(calls_mutex_);
-  if (service == "/calibration/start") return start(request);
-  if (service == "/calibration/save") return save();
-  if (service == "/calibration/cancel") return cancel();
+Result<std::string> CalibrationServices::take(Step step) {
   const auto present = guide();
   if (!present) return bad_input(kNoCalibration);
-  if (service == "/calibration/skip") return answer(present->skip());
-  if (service == "/calibration/repeat") return answer(present->repeat());
-  if (service == "/calibration/finish") return answer(present->finish());
-  return bad_input("there is no such service");
+  if (Status taken = (*present.*step)(); !taken) return taken.error();
+  return std::string("{}");
 }
 
 Result<std::string> CalibrationServices::start(std::string_view text) {
+  if (may_begin_) {
+    if (Status may = may_begin_(); !may) return may.error();
+  }
   const Result<calibration::PlanRequest> request = calibration::plan_request_from_json(text);
   if (!request) return request.error();
   const Result<std::size_t> array = arrays_.find(request->array);
@@ -148,6 +155,29 @@ std::optional<CalibrationProgress> CalibrationServices::progress() const {
   if (last_.guide) progress.state = last_.guide->state();
   if (!last_.saved_file.empty()) progress.state.message += " Saved as " + last_.saved_file + " and in use.";
   return progress;
+}
+
+Result<std::unique_ptr<Part>> make_calibration(Host& host) {
+  const auto use_model = [&host](std::size_t array, const std::shared_ptr<const pipeline::Model>& model) {
+    return host.use_model(array, model);
+  };
+  const auto may_begin = [&host]() -> Status {
+    const auto& playback = host.suit.playback;
+    if (!playback || playback->status().state != PlaybackStatus::State::ended) return Done{};
+    return bad_input("the recording has ended: play it from its beginning, then begin");
+  };
+  const Result<Topic> topic = host.topics.add({.stream = "/calibration"}, messages::calibration_state_type());
+  if (!topic) return topic.error();
+  const auto tell = [&host, topic = *topic,
+                     message = std::vector<std::uint8_t>()](CalibrationProgress progress) mutable {
+    if (!topic.is_wanted()) return;
+    messages::CalibrationState state = calibration_message(std::move(progress));
+    state.time = host.now();
+    messages::encode_calibration_state(state, kSuitFrame, message);
+    topic.publish(state.time, message);
+  };
+  return std::unique_ptr<Part>(
+      std::make_unique<CalibrationServices>(service_arrays(host.suit), use_model, host.suit.guide, may_begin, tell));
 }
 
 }  // namespace dermis::serve

@@ -18,36 +18,37 @@
 #include "dermis/core/result.hpp"
 #include "dermis/pipeline/model.hpp"
 #include "dermis/sources/guide_voice.hpp"
+#include "serve/calibration/calibration_message.hpp"
+#include "serve/parts/part.hpp"
 #include "serve/suit/service_arrays.hpp"
 
 namespace dermis::serve {
-
-/// What there is to tell of the calibration that is going on.
-struct CalibrationProgress {
-  std::string array;
-  calibration::GuideState state;  ///< Stage `none` after a calibration was cancelled.
-};
 
 /// What a calibration asks for, as it is said to a simulated hand.
 [[nodiscard]] sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time);
 
 /// The services /calibration/... of docs/stream.md: one guided calibration at a time. Thread-safe.
-class CalibrationServices {
+class CalibrationServices final : public Part {
  public:
   /// Takes a new model into use for an array that is at work.
   using UseModel = std::function<Status(std::size_t array, std::shared_ptr<const pipeline::Model>)>;
 
+  /// Whether a calibration may begin now; the error says why not.
+  using MayBegin = std::function<Status()>;
+  /// Is told of the calibration ten times a second, once one was started.
+  using Tell = std::function<void(CalibrationProgress)>;
+
   /// `guide_voice`: what the calibration asks for is said to it, for simulated hands.
-  CalibrationServices(ServiceArrays arrays, UseModel use_model, std::shared_ptr<sources::GuideVoice> guide_voice);
+  CalibrationServices(ServiceArrays arrays, UseModel use_model, std::shared_ptr<sources::GuideVoice> guide_voice,
+                      MayBegin may_begin = {}, Tell tell = {});
 
-  /// "/calibration/start", ...
-  [[nodiscard]] static const std::vector<std::string>& names();
+  /// "/calibration/start", ... Errors: a request that is wrong or comes at the wrong time.
+  [[nodiscard]] std::vector<stream::Service> services() override;
+  /// Costs next to nothing while no calibration goes on.
+  void hear(const live::ArrayResult& result) override { feed(result.array, result.raw); }
+  void tick(std::int64_t tick) override;
 
-  /// Every frame of every array; costs next to nothing while no calibration goes on.
   void feed(std::size_t array, const RawFrame& raw);
-
-  /// JSON in, JSON out. Errors: an unknown service, a request that is wrong or comes at the wrong time.
-  [[nodiscard]] Result<std::string> call(std::string_view service, std::string_view request);
 
   /// Empty until a calibration was started.
   [[nodiscard]] std::optional<CalibrationProgress> progress() const;
@@ -63,7 +64,10 @@ class CalibrationServices {
   };
 
   [[nodiscard]] std::shared_ptr<calibration::GuidedCalibration> guide() const;
+  using Step = Status (calibration::GuidedCalibration::*)();
+
   Result<std::string> start(std::string_view request);
+  Result<std::string> take(Step step);
   Result<std::string> save();
   Result<std::string> cancel();
   void replace(Calibration calibration);
@@ -72,7 +76,8 @@ class CalibrationServices {
   const ServiceArrays arrays_;
   const UseModel use_model_;
   const std::shared_ptr<sources::GuideVoice> guide_voice_;
-  std::mutex calls_mutex_;    ///< One call at a time.
+  const MayBegin may_begin_;
+  const Tell tell_;
   std::future<void> ending_;  ///< A calibration whose last fit is waited for.
   std::atomic<std::size_t> active_array_{kNone};
   mutable std::mutex mutex_;  ///< Of what follows; never held for long, because frames wait for it.

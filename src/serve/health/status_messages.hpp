@@ -8,7 +8,6 @@
 #include "dermis/live/live_suit.hpp"
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/pipeline/model.hpp"
-#include "serve/calibration/calibration_services.hpp"
 
 /// What is known of an array at work, as messages say it.
 namespace dermis::serve {
@@ -20,7 +19,5 @@ namespace dermis::serve {
 [[nodiscard]] messages::Diagnosis diagnosis_message(const std::string& array, const pipeline::Model& model,
                                                     const live::ArrayStatistics& statistics,
                                                     const health::AgeingEvidence& ageing = {});
-
-[[nodiscard]] messages::CalibrationState calibration_message(CalibrationProgress progress);
 
 }  // namespace dermis::serve

@@ -8,56 +8,69 @@
 #include <algorithm>
 #include <utility>
 
+#include "serve/parts/part_makers.hpp"
+
 namespace dermis::serve {
 namespace {
 
 constexpr std::chrono::minutes kUndoFor{1};
-constexpr std::string_view kTare = "/tare";
 
 }  // namespace
 
-Tares::Tares(const ServedSuit& suit, live::LiveSuit& live) : suit_(suit), live_(live), zeros_(suit.arrays.size()) {}
+Tares::Tares(const ServedSuit& suit, live::LiveSuit& live, Tell tell)
+    : suit_(suit), live_(live), tell_(std::move(tell)), zeros_(suit.arrays.size()) {}
 
-std::vector<stream::Parameter> Tares::parameters() const {
-  const std::lock_guard lock(mutex_);
-  std::vector<std::string> refusals;
-  for (const Zero& zero : zeros_) {
-    if (!zero.refusal.empty()) refusals.push_back(zero.refusal);
-  }
-  const bool all_tared = std::all_of(zeros_.begin(), zeros_.end(), [](const Zero& zero) { return zero.is_tared; });
-  std::vector<stream::Parameter> all = {{"/tare", all_tared},
-                                        {"/tare/force", false},
-                                        {"/tare/undo", std::any_of(zeros_.begin(), zeros_.end(), can_be_undone)},
-                                        {"/tare/refused", fmt::format("{}", fmt::join(refusals, "; "))},
-                                        {"/tare/log", fmt::format("{}", fmt::join(log_, "\n"))}};
+std::vector<LiveParameter> Tares::parameters() {
+  const auto locked = [this](auto value) {
+    return [this, value]() -> stream::ParameterValue {
+      const std::lock_guard lock(mutex_);
+      return value();
+    };
+  };
+  const auto command = [this](void (Tares::*run)(const std::string&)) {
+    return [this, run](bool, const std::string& client) -> Status {
+      const std::lock_guard lock(mutex_);
+      (this->*run)(client);
+      return Done{};
+    };
+  };
+  std::vector<LiveParameter> all = {
+      tare_of("/tare", 0, zeros_.size()),
+      {.name = "/tare/force", .value = [] { return false; }, .set_switch = command(&Tares::force)},
+      {.name = "/tare/undo",
+       .value = locked([this] { return std::any_of(zeros_.begin(), zeros_.end(), can_be_undone); }),
+       .set_switch = command(&Tares::undo)},
+      {.name = "/tare/refused", .value = locked([this] { return refusals(); })},
+      {.name = "/tare/log", .value = locked([this] { return fmt::format("{}", fmt::join(log_, "\n")); })}};
   for (std::size_t k = 0; k < zeros_.size(); ++k) {
-    all.push_back({"/" + suit_.arrays[k].name + "/tare", zeros_[k].is_tared});
+    all.push_back(tare_of("/" + suit_.arrays[k].name + "/tare", k, k + 1));
   }
   return all;
 }
 
-bool Tares::set(const std::string& name, bool value, const std::string& client) {
-  const std::lock_guard lock(mutex_);
-  if (name == "/tare/force") {
-    force(client);
-  } else if (name == "/tare/undo") {
-    undo(client);
-  } else {
-    if (!name.ends_with(kTare)) return false;
-    const std::vector<std::size_t> arrays = arrays_of(name.substr(0, name.size() - kTare.size()));
-    for (const std::size_t k : arrays) value ? tare(k, pipeline::TareOver::drift, client) : reset(k, client);
-    return !arrays.empty();
-  }
-  return true;
+/// Of the arrays [first, end): on where all of them are tared.
+LiveParameter Tares::tare_of(const std::string& name, std::size_t first, std::size_t end) {
+  const auto value = [this, first, end] {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t k = first; k < end; ++k) {
+      if (!zeros_[k].is_tared) return false;
+    }
+    return true;
+  };
+  const auto set = [this, first, end](bool on, const std::string& client) -> Status {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t k = first; k < end; ++k) on ? tare(k, pipeline::TareOver::drift, client) : reset(k, client);
+    return Done{};
+  };
+  return {.name = name, .value = value, .set_switch = set};
 }
 
-/// Of "/chest" that one, of "" all.
-std::vector<std::size_t> Tares::arrays_of(const std::string& prefix) const {
-  std::vector<std::size_t> arrays;
-  for (std::size_t k = 0; k < zeros_.size(); ++k) {
-    if (prefix.empty() || prefix == "/" + suit_.arrays[k].name) arrays.push_back(k);
+std::string Tares::refusals() const {
+  std::vector<std::string> refusals;
+  for (const Zero& zero : zeros_) {
+    if (!zero.refusal.empty()) refusals.push_back(zero.refusal);
   }
-  return arrays;
+  return fmt::format("{}", fmt::join(refusals, "; "));
 }
 
 void Tares::tare(std::size_t array, pipeline::TareOver over, const std::string& client) {
@@ -135,9 +148,22 @@ void Tares::log(const std::string& what) {
   news_.push_back(std::move(line));
 }
 
-void Tares::forget(std::size_t array) {
+void Tares::tick(std::int64_t /*tick*/) {
+  const std::vector<std::string> news = follow();
+  if (tell_ && !news.empty()) tell_(news);
+}
+
+void Tares::model_changed(std::size_t array) {
   const std::lock_guard lock(mutex_);
   zeros_[array] = {};
+}
+
+Result<std::unique_ptr<Part>> make_tares(Host& host) {
+  return std::unique_ptr<Part>(
+      std::make_unique<Tares>(host.suit, host.live, [&host](const std::vector<std::string>& lines) {
+        for (const std::string& line : lines) host.tell(line);
+        host.server.parameters_changed();
+      }));
 }
 
 }  // namespace dermis::serve

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -14,29 +15,30 @@
 #include "dermis/core/result.hpp"
 #include "dermis/live/live_suit.hpp"
 #include "dermis/serve/served_suit.hpp"
-#include "dermis/stream/server.hpp"
+#include "serve/parts/part.hpp"
 
 namespace dermis::serve {
 
-/// The zeros of the arrays, as clients set them by the parameters of docs/stream.md. set() and follow() by one thread
-/// each, the rest by any.
-class Tares {
+/// The zeros of the arrays, as clients set them by the parameters of docs/stream.md.
+class Tares final : public Part {
  public:
   static constexpr std::size_t kMostLines = 20;
 
-  /// Both must outlive it.
-  Tares(const ServedSuit& suit, live::LiveSuit& live);
+  /// Is told the lines of follow(), where there are some.
+  using Tell = std::function<void(const std::vector<std::string>& lines)>;
 
-  [[nodiscard]] std::vector<stream::Parameter> parameters() const;
-  /// False: no parameter of a tare is called so.
-  [[nodiscard]] bool set(const std::string& name, bool value, const std::string& client);
+  /// `suit` and `live` must outlive it.
+  Tares(const ServedSuit& suit, live::LiveSuit& live, Tell tell = {});
+
+  /// "/tare", "/tare/force", ... and "/chest/tare" of each array.
+  [[nodiscard]] std::vector<LiveParameter> parameters() override;
+  void tick(std::int64_t tick) override;
+  /// It begins at its own zero.
+  void model_changed(std::size_t array) override;
 
   /// What clients have done to zeros, as far as it is done, a line each: "2026-11-22 10:15:00 UTC: chest was tared by
   /// 127.0.0.1:53412". To be called again and again.
   [[nodiscard]] std::vector<std::string> follow();
-
-  /// The array has another model, which begins at its own zero.
-  void forget(std::size_t array);
 
  private:
   using Clock = std::chrono::system_clock;
@@ -50,7 +52,8 @@ class Tares {
     std::optional<Clock::time_point> taken;  // by the last, which was not undone
   };
 
-  [[nodiscard]] std::vector<std::size_t> arrays_of(const std::string& prefix) const;
+  [[nodiscard]] LiveParameter tare_of(const std::string& name, std::size_t first, std::size_t end);
+  [[nodiscard]] std::string refusals() const;
   void tare(std::size_t array, pipeline::TareOver over, const std::string& client);
   void force(const std::string& client);
   void reset(std::size_t array, const std::string& client);
@@ -61,6 +64,7 @@ class Tares {
 
   const ServedSuit& suit_;
   live::LiveSuit& live_;
+  const Tell tell_;
   mutable std::mutex mutex_;       // of the following
   std::vector<Zero> zeros_;        // of each array
   std::deque<std::string> log_;    // the newest first

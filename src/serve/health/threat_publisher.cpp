@@ -7,6 +7,8 @@
 #include <chrono>
 #include <utility>
 
+#include "serve/parts/part_makers.hpp"
+
 namespace dermis::serve {
 namespace {
 
@@ -59,13 +61,20 @@ Result<std::vector<threats::ThreatMonitor>> threat_monitors(const ServedSuit& su
   return monitors;
 }
 
-ThreatPublisher::ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors,
-                                 stream::Server& server, SuitRecorder& recorder, Log log)
-    : limits_(*suit.threats), topic_("/threat", messages::threat_type(), server, recorder), log_(std::move(log)) {
+ThreatPublisher::ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors, Topics& topics,
+                                 SuitRecorder& recorder, Log log)
+    : limits_(*suit.threats), topic_("/threat", messages::threat_type(), topics, recorder), log_(std::move(log)) {
   for (std::size_t k = 0; k < monitors.size(); ++k) arrays_.emplace_back(std::move(monitors[k]), suit.arrays[k].name);
 }
 
-void ThreatPublisher::publish(const live::ArrayResult& result) {
+std::vector<stream::Service> ThreatPublisher::services() {
+  return {{"/threats/reset", [this](std::string_view) -> Result<std::string> {
+             for (Watched& watched : arrays_) watched.is_reset_wanted = true;
+             return std::string("{}");
+           }}};
+}
+
+void ThreatPublisher::hear(const live::ArrayResult& result) {
   Watched& watched = arrays_[result.array];
   const Nanos time = result.force.time;
   if (watched.is_reset_wanted.exchange(false)) {
@@ -78,15 +87,13 @@ void ThreatPublisher::publish(const live::ArrayResult& result) {
   tell(watched, time, all);
 }
 
-std::vector<messages::Diagnosis> ThreatPublisher::diagnoses() const {
-  std::vector<messages::Diagnosis> diagnoses;
+void ThreatPublisher::diagnose(std::vector<messages::Diagnosis>& diagnoses) const {
   for (const Watched& watched : arrays_) {
     const std::lock_guard lock(watched.standing_mutex);
     for (const ThreatState& state : watched.standing) {
       diagnoses.push_back(diagnosis_of(watched.array, limits_.limits[state.limit], state));
     }
   }
-  return diagnoses;
 }
 
 void ThreatPublisher::keep_standing(Watched& watched) {
@@ -95,11 +102,6 @@ void ThreatPublisher::keep_standing(Watched& watched) {
   for (const ThreatState& state : watched.monitor.states()) {
     if (state.phase == ThreatPhase::standing) watched.standing.push_back(state);
   }
-}
-
-Result<std::string> ThreatPublisher::reset(std::string_view /*request*/) {
-  for (Watched& watched : arrays_) watched.is_reset_wanted = true;
-  return std::string("{}");
 }
 
 /// What began or ended, and where `all`, to clients, how the other limits stand.
@@ -142,6 +144,15 @@ void ThreatPublisher::encode(Watched& watched, const ThreatState& state, Nanos t
   threat.x = state.now.position.x;
   threat.y = state.now.position.y;
   messages::encode_threat(threat, watched.message);
+}
+
+Result<std::unique_ptr<Part>> make_threats(Host& host) {
+  if (!host.suit.threats) return std::unique_ptr<Part>();
+  Result<std::vector<threats::ThreatMonitor>> monitors = threat_monitors(host.suit);
+  if (!monitors) return monitors.error();
+  return std::unique_ptr<Part>(std::make_unique<ThreatPublisher>(host.suit, *std::move(monitors), host.topics,
+                                                                 host.recorder,
+                                                                 [&host](const std::string& line) { host.log(line); }));
 }
 
 }  // namespace dermis::serve

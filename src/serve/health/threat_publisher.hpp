@@ -18,6 +18,7 @@
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
 #include "dermis/threats/threat_monitor.hpp"
+#include "serve/parts/part.hpp"
 #include "serve/topics/event_topic.hpp"
 
 namespace dermis::serve {
@@ -27,21 +28,19 @@ namespace dermis::serve {
 
 /// The topic /threat of docs/stream.md and a line for the log of each threat. Thread-safe: each array on a thread of
 /// its own.
-class ThreatPublisher {
+class ThreatPublisher final : public Part {
  public:
   using Log = std::function<void(const std::string& line)>;
 
   /// `monitors`: threat_monitors() of the suit, which has limits. The others must outlive it.
-  ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors, stream::Server& server,
+  ThreatPublisher(const ServedSuit& suit, std::vector<threats::ThreatMonitor> monitors, Topics& topics,
                   SuitRecorder& recorder, Log log);
 
-  void publish(const live::ArrayResult& result);
-
-  /// A status for each threat that is there, as half a second ago or later.
-  [[nodiscard]] std::vector<messages::Diagnosis> diagnoses() const;
-
-  /// The service /threats/reset: latched threats end with the next frame of their array.
-  [[nodiscard]] Result<std::string> reset(std::string_view request);
+  /// "/threats/reset": latched threats end with the next frame of their array.
+  [[nodiscard]] std::vector<stream::Service> services() override;
+  void hear(const live::ArrayResult& result) override;
+  /// Each threat that is there, as half a second ago or later.
+  void diagnose(std::vector<messages::Diagnosis>& diagnoses) const override;
 
  private:
   struct Watched {

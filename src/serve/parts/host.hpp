@@ -25,7 +25,7 @@ class Topics;
 /// they outlive it.
 struct Host {
   ServedSuit& suit;
-  const SessionOptions& options;
+  const SessionOptions options;
   ModelsInUse& models;
   stream::Server& server;
   live::LiveSuit& live;

@@ -8,21 +8,32 @@
 #include <numeric>
 #include <utility>
 
+#include "serve/parts/part_makers.hpp"
+
 namespace dermis::serve {
 
-RecognitionPublisher::RecognitionPublisher(const ServedSuit& suit, stream::Server& server, SuitRecorder& recorder)
-    : server_(server), recorder_(recorder) {
+RecognitionPublisher::RecognitionPublisher(const ServedSuit& suit, Topics& topics, SuitRecorder& recorder)
+    : topics_(topics), recorder_(recorder) {
   for (const ServedArray& array : suit.arrays) arrays_.emplace_back().array = &array;
 }
 
-Status RecognitionPublisher::use(std::size_t array, recognition::Classes classes) {
+Status RecognitionPublisher::begin() {
+  for (std::size_t k = 0; k < arrays_.size(); ++k) {
+    const std::optional<recognition::Classes>& classes = arrays_[k].array->classes;
+    if (!classes) continue;
+    if (Status used = use_classes(k, *classes); !used) return used;
+  }
+  return Done{};
+}
+
+Status RecognitionPublisher::use_classes(std::size_t array, const recognition::Classes& classes) {
   Named& named = arrays_[array];
   const std::string& name = named.array->name;
   Result<LiveRecognition> made =
-      LiveRecognition::create(std::move(classes), {recognition::sensed_array(named.array->model->array, name)});
+      LiveRecognition::create(classes, {recognition::sensed_array(named.array->model->array, name)});
   if (!made) return bad_input(fmt::format("array '{}': {}", name, made.error().message));
   if (!named.topic) {
-    named.topic.emplace("/" + name + "/recognition", messages::classification_type(), server_, recorder_);
+    named.topic.emplace("/" + name + "/recognition", messages::classification_type(), topics_, recorder_);
   }
   const std::lock_guard lock(named.next_mutex);
   named.next = std::make_unique<LiveRecognition>(*std::move(made));
@@ -30,7 +41,7 @@ Status RecognitionPublisher::use(std::size_t array, recognition::Classes classes
   return Done{};
 }
 
-void RecognitionPublisher::publish(const live::ArrayResult& result) {
+void RecognitionPublisher::hear(const live::ArrayResult& result) {
   Named& named = arrays_[result.array];
   if (named.has_next.load(std::memory_order_acquire)) {
     const std::lock_guard lock(named.next_mutex);
@@ -60,6 +71,10 @@ void results_of(const recognition::Answer& answer, const recognition::Classes& c
     return more != less ? more > less : a < b;
   });
   for (const std::size_t label : order) results.push_back({classes.names[label], answer.probabilities[label]});
+}
+
+Result<std::unique_ptr<Part>> make_recognition(Host& host) {
+  return std::unique_ptr<Part>(std::make_unique<RecognitionPublisher>(host.suit, host.topics, host.recorder));
 }
 
 }  // namespace dermis::serve

@@ -16,22 +16,23 @@
 #include "dermis/live/live_suit.hpp"
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
-#include "serve/topics/event_topic.hpp"
+#include "serve/parts/part.hpp"
 #include "serve/recognition/live_recognition.hpp"
+#include "serve/topics/event_topic.hpp"
 
 namespace dermis::serve {
 
 /// The topics /<array>/recognition of docs/stream.md. Thread-safe: each array on a thread of its own.
-class RecognitionPublisher {
+class RecognitionPublisher final : public Part {
  public:
   /// All must outlive it. An array without classes has no topic.
-  RecognitionPublisher(const ServedSuit& suit, stream::Server& server, SuitRecorder& recorder);
+  RecognitionPublisher(const ServedSuit& suit, Topics& topics, SuitRecorder& recorder);
 
-  /// Takes classes into use with the next frame of the array. Fails, as "array 'chest': ...", where they do not fit.
-  /// One at a time.
-  [[nodiscard]] Status use(std::size_t array, recognition::Classes classes);
-
-  void publish(const live::ArrayResult& result);
+  /// Takes the classes into use that the suit names.
+  [[nodiscard]] Status begin() override;
+  /// Errors: "array 'chest': ...", where they do not fit.
+  [[nodiscard]] Status use_classes(std::size_t array, const recognition::Classes& classes) override;
+  void hear(const live::ArrayResult& result) override;
 
  private:
   struct Named {
@@ -47,7 +48,7 @@ class RecognitionPublisher {
     std::vector<std::uint8_t> message{};
   };
 
-  stream::Server& server_;
+  Topics& topics_;
   SuitRecorder& recorder_;
   std::deque<Named> arrays_;
 };

@@ -7,15 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "serve/parts/part_makers.hpp"
 #include "serve/recognition/recognition_publisher.hpp"
 
 namespace dermis::serve {
 namespace {
 
-using nlohmann::json;
 using recognition::Classes;
 
 constexpr std::size_t kMostRequestBytes = 65536;
@@ -58,25 +57,25 @@ Result<LiveRecognition> recognition_of_suit(const Classes& classes, const std::v
   return recognition_at(classes, arrays, *places);
 }
 
-Result<std::unique_ptr<SuitRecognition>> SuitRecognition::create(const ServedSuit& suit, stream::Server& server,
+Result<std::unique_ptr<SuitRecognition>> SuitRecognition::create(const ServedSuit& suit, Topics& topics,
                                                                  SuitRecorder& recorder) {
   const Result<std::vector<std::size_t>> places = places_of(*suit.classes, suit.arrays);
   if (!places) return places.error();
   Result<LiveRecognition> recognition = recognition_at(*suit.classes, suit.arrays, *places);
   if (!recognition) return recognition.error();
   return std::unique_ptr<SuitRecognition>(
-      new SuitRecognition(*std::move(recognition), suit.arrays, *places, server, recorder));
+      new SuitRecognition(*std::move(recognition), suit.arrays, *places, topics, recorder));
 }
 
 SuitRecognition::SuitRecognition(LiveRecognition recognition, const std::vector<ServedArray>& arrays,
-                                 std::vector<std::size_t> places, stream::Server& server, SuitRecorder& recorder)
+                                 std::vector<std::size_t> places, Topics& topics, SuitRecorder& recorder)
     : recognition_(std::move(recognition)),
       places_(std::move(places)),
       joiner_(joiner_of(arrays, places_)),
-      topic_("/suit/recognition", messages::classification_type(), server, recorder),
+      topic_("/suit/recognition", messages::classification_type(), topics, recorder),
       further_(recognition_.classes().layout.extras, kMissing) {}
 
-void SuitRecognition::publish(const live::ArrayResult& result) {
+void SuitRecognition::hear(const live::ArrayResult& result) {
   const auto found = std::find(places_.begin(), places_.end(), result.array);
   if (found == places_.end()) return;
   if (found != places_.begin()) {
@@ -103,22 +102,24 @@ void SuitRecognition::read_further(Nanos time) {
   if (!is_near) std::fill(further_.begin(), further_.end(), kMissing);
 }
 
-Result<std::string> SuitRecognition::take_readings(std::string_view request) {
-  const json parsed = request.size() <= kMostRequestBytes ? json::parse(request, nullptr, false) : json();
-  const json values = parsed.is_object() ? parsed.value("values", json()) : json();
-  const std::size_t expected = recognition_.classes().layout.extras;
-  if (!values.is_array() || values.size() != expected) {
-    return bad_input(fmt::format("values: must be a list of {}, as the examples had; null: missing", expected));
-  }
-  std::vector<float> readings;
-  for (const json& value : values) {
-    if (!value.is_number() && !value.is_null())
-      return bad_input("values: must be numbers, or null where one is missing");
-    readings.push_back(value.is_null() ? kMissing : value.get<float>());
-  }
+std::vector<stream::Service> SuitRecognition::services() {
+  if (further_.empty()) return {};
+  return {service("/recognition/readings", *this, &SuitRecognition::take_readings, kMostRequestBytes)};
+}
+
+Result<std::string> SuitRecognition::take_readings(const JsonRequest& request) {
+  Result<std::vector<double>> readings = request.numbers_or_null("values", further_.size());
+  if (!readings) return readings.error();
   const std::lock_guard lock(readings_mutex_);
-  told_ = std::move(readings);
+  told_.emplace(readings->begin(), readings->end());
   return std::string("{}");
+}
+
+Result<std::unique_ptr<Part>> make_suit_recognition(Host& host) {
+  if (!host.suit.classes) return std::unique_ptr<Part>();
+  Result<std::unique_ptr<SuitRecognition>> part = SuitRecognition::create(host.suit, host.topics, host.recorder);
+  if (!part) return part.error();
+  return std::unique_ptr<Part>(*std::move(part));
 }
 
 }  // namespace dermis::serve

@@ -15,32 +15,33 @@
 #include "dermis/live/live_suit.hpp"
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/serve/served_suit.hpp"
-#include "serve/topics/event_topic.hpp"
+#include "serve/parts/part.hpp"
 #include "serve/recognition/frame_joiner.hpp"
 #include "serve/recognition/live_recognition.hpp"
+#include "serve/requests/json_request.hpp"
+#include "serve/topics/event_topic.hpp"
 
 namespace dermis::serve {
 
 /// The topic /suit/recognition of docs/stream.md: what touches several arrays together, or one beside further readings.
 /// Thread-safe: each array on a thread of its own.
-class SuitRecognition {
+class SuitRecognition final : public Part {
  public:
-  static constexpr const char* kService = "/recognition/readings";
-
-  /// By the classes of the suit, which must have some. Fails where they do not fit its arrays. `server` and `recorder`
+  /// By the classes of the suit, which must have some. Fails where they do not fit its arrays. `topics` and `recorder`
   /// must outlive it.
-  [[nodiscard]] static Result<std::unique_ptr<SuitRecognition>> create(const ServedSuit& suit, stream::Server& server,
+  [[nodiscard]] static Result<std::unique_ptr<SuitRecognition>> create(const ServedSuit& suit, Topics& topics,
                                                                        SuitRecorder& recorder);
 
-  void publish(const live::ArrayResult& result);
-
-  /// {"values": [31.5, null, ...]}: the further readings as they are now, in the order of the examples; null: missing.
-  /// They hold for half a second of the frames of the first array.
-  [[nodiscard]] Result<std::string> take_readings(std::string_view request);
+  /// "/recognition/readings" where the examples had further readings: {"values": [31.5, null, ...]}, as they are now,
+  /// in the order of the examples; null: missing. They hold for half a second of the frames of the first array.
+  [[nodiscard]] std::vector<stream::Service> services() override;
+  void hear(const live::ArrayResult& result) override;
 
  private:
   SuitRecognition(LiveRecognition recognition, const std::vector<ServedArray>& arrays, std::vector<std::size_t> places,
-                  stream::Server& server, SuitRecorder& recorder);
+                  Topics& topics, SuitRecorder& recorder);
+
+  [[nodiscard]] Result<std::string> take_readings(const JsonRequest& request);
 
   void read_further(Nanos time);
 

@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "dermis/calibration/uncalibrated_model.hpp"
+#include "serve/parts/part_makers.hpp"
+#include "serve/recording/recorded_arrays.hpp"
 #include "serve/recording/saved_minute.hpp"
 
 namespace dermis::serve {
@@ -51,21 +53,30 @@ RecordingServices::RecordingServices(const ServedSuit& suit, const SessionOption
   if (played) player_.emplace(options, *std::move(played));
 }
 
-std::vector<std::string> RecordingServices::names() const {
-  std::vector<std::string> names = {"/recordings/begin", "/recordings/list", "/recordings/save"};
-  if (player_) names.emplace_back("/recordings/play");
-  return names;
+std::vector<stream::Service> RecordingServices::services() {
+  std::vector<stream::Service> services = {service("/recordings/begin", *this, &RecordingServices::begin),
+                                           service("/recordings/list", *this, &RecordingServices::list),
+                                           service("/recordings/save", *this, &RecordingServices::save)};
+  if (player_) services.push_back(service("/recordings/play", *this, &RecordingServices::play));
+  return services;
 }
 
-Result<std::string> RecordingServices::call(std::string_view service, std::string_view text) {
-  const std::lock_guard calls(calls_mutex_);
-  const Result<JsonRequest> request = JsonRequest::parse(text);
-  if (!request) return request.error();
-  if (service == "/recordings/begin") return begin(*request);
-  if (service == "/recordings/list") return list();
-  if (service == "/recordings/save") return save(*request);
-  if (service == "/recordings/play" && player_) return play(*request);
-  return bad_input("there is no such service");
+std::vector<LiveParameter> RecordingServices::parameters() {
+  return {{.name = "/recording",
+           .value = [this] { return recorder_.recording(); },
+           .set_switch = [this](bool on, const std::string&) { return switch_recorder(on); }},
+          {.name = "/recording/file", .value = [this] { return recorder_.path(); }}};
+}
+
+Status RecordingServices::switch_recorder(bool on) {
+  if (!on) recorder_.stop();
+  if (!on || recorder_.recording()) return Done{};
+  return recorder_.begin();
+}
+
+void RecordingServices::hear(const live::ArrayResult& result) {
+  recorder_.write(result.array, result.raw);
+  last_minute_.keep(result.array, result.raw);
 }
 
 Result<std::string> RecordingServices::begin(const JsonRequest& request) {
@@ -79,7 +90,7 @@ Result<std::string> RecordingServices::begin(const JsonRequest& request) {
 }
 
 /// From now on, clients may also save what it names.
-Result<std::string> RecordingServices::list() {
+Result<std::string> RecordingServices::list(const JsonRequest& /*request*/) {
   ordered_json answer;
   answer["folder"] = absolute_path(folder_.path());
   answer["recording"] = recorder_.recording() ? file_name(recorder_.path()) : "";
@@ -143,6 +154,21 @@ Result<std::string> RecordingServices::save_forces_of(std::size_t array, const S
   if (Status saved = save_forces(last_minute_, array, *model, selection, forces); !saved) return saved.error();
   give(forces);
   return forces;
+}
+
+Result<std::unique_ptr<Part>> make_recording(Host& host) {
+  const auto arrays = [&host] { return recorded_arrays(host.suit, host.models); };
+  const auto played = [&host](const std::string& recording) -> Result<ServedSuit> {
+    Result<ServedSuit> suit = played_suit(host.suit, recording);
+    if (!suit) return suit;
+    for (std::size_t k = 0; k < suit->arrays.size(); ++k) suit->arrays[k].model = host.models.of(k);
+    return suit;
+  };
+  // What is played itself plays no other.
+  std::optional<PlayedRecording::PlayedSuit> player;
+  if (!host.suit.playback) player = played;
+  return std::unique_ptr<Part>(std::make_unique<RecordingServices>(host.suit, host.options, arrays, host.models,
+                                                                   host.recorder, host.server, std::move(player)));
 }
 
 }  // namespace dermis::serve

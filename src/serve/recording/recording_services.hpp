@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,18 +10,19 @@
 
 #include "dermis/live/live_suit.hpp"
 #include "dermis/stream/server.hpp"
-#include "serve/requests/json_request.hpp"
+#include "serve/parts/part.hpp"
 #include "serve/recording/last_minute.hpp"
-#include "serve/suit/models_in_use.hpp"
 #include "serve/recording/played_recording.hpp"
 #include "serve/recording/recordings_folder.hpp"
 #include "serve/recording/saved_minute.hpp"
 #include "serve/recording/suit_recorder.hpp"
+#include "serve/requests/json_request.hpp"
+#include "serve/suit/models_in_use.hpp"
 
 namespace dermis::serve {
 
 /// The services /recordings/... of docs/stream.md: what clients record, save, play and take away. Thread-safe.
-class RecordingServices {
+class RecordingServices final : public Part {
  public:
   /// `options`: of the session; the folder is that of its recording. `arrays`: how they are recorded now. `played`:
   /// empty where nothing may be played. `models`, `recorder` and `server` must outlive it.
@@ -30,22 +30,19 @@ class RecordingServices {
                     const ModelsInUse& models, SuitRecorder& recorder, stream::Server& server,
                     std::optional<PlayedRecording::PlayedSuit> played);
 
-  /// "/recordings/begin", ...
-  [[nodiscard]] std::vector<std::string> names() const;
-
-  /// Every frame of every array.
-  void feed(const live::ArrayResult& result) { last_minute_.keep(result.array, result.raw); }
-
-  /// JSON in, JSON out. Errors: an unknown service, a request that is wrong; those of a recording.
-  [[nodiscard]] Result<std::string> call(std::string_view service, std::string_view request);
+  /// "/recordings/begin", ... Errors: a request that is wrong; those of a recording.
+  [[nodiscard]] std::vector<stream::Service> services() override;
+  [[nodiscard]] std::vector<LiveParameter> parameters() override;
+  void hear(const live::ArrayResult& result) override;
 
  private:
   [[nodiscard]] Result<std::string> begin(const JsonRequest& request);
-  [[nodiscard]] Result<std::string> list();
+  [[nodiscard]] Result<std::string> list(const JsonRequest& request);
   [[nodiscard]] Result<std::string> play(const JsonRequest& request);
   [[nodiscard]] Result<std::string> save(const JsonRequest& request);
   [[nodiscard]] Result<std::string> save_forces_of(std::size_t array, const Selection& selection,
                                                    const std::string& path);
+  [[nodiscard]] Status switch_recorder(bool on);
   void give(const std::string& path);
 
   const RecordingsFolder folder_;
@@ -54,7 +51,6 @@ class RecordingServices {
   SuitRecorder& recorder_;
   stream::Server& server_;
   LastMinute last_minute_;
-  std::mutex calls_mutex_;  // One call at a time.
   std::optional<PlayedRecording> player_;
 };
 

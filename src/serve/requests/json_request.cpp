@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <utility>
 
 namespace dermis::serve {
@@ -20,9 +21,11 @@ bool is_plain(char c) {
 
 JsonRequest::JsonRequest(json object) : object_(std::move(object)) {}
 
-Result<JsonRequest> JsonRequest::parse(std::string_view text) {
-  json parsed = text.size() <= kMostBytes ? json::parse(text, nullptr, false) : json();
-  if (!parsed.is_object()) return bad_input("the request is no JSON object of at most 4 KiB");
+Result<JsonRequest> JsonRequest::parse(std::string_view text, std::size_t most_bytes) {
+  json parsed = text.size() <= most_bytes ? json::parse(text, nullptr, false) : json();
+  if (!parsed.is_object()) {
+    return bad_input("the request is no JSON object of at most " + std::to_string(most_bytes / 1024) + " KiB");
+  }
   return JsonRequest(std::move(parsed));
 }
 
@@ -59,6 +62,42 @@ Result<bool> JsonRequest::flag(const char* field) const {
   if (found == object_.end()) return false;
   if (!found->is_boolean()) return bad_field(field, "must be true or false");
   return found->get<bool>();
+}
+
+Result<std::vector<std::string>> JsonRequest::texts(const char* field) const {
+  const auto found = object_.find(field);
+  if (found == object_.end() || !found->is_array()) return bad_field(field, "must be a list of texts");
+  std::vector<std::string> texts;
+  for (const json& value : *found) {
+    if (!value.is_string()) return bad_field(field, "must be a list of texts");
+    texts.push_back(value.get<std::string>());
+  }
+  return texts;
+}
+
+Result<std::vector<double>> JsonRequest::numbers(const char* field) const {
+  const auto found = object_.find(field);
+  if (found == object_.end() || !found->is_array()) return bad_field(field, "must be a list of numbers");
+  std::vector<double> numbers;
+  for (const json& value : *found) {
+    if (!value.is_number() || !std::isfinite(value.get<double>())) return bad_field(field, "must be a list of numbers");
+    numbers.push_back(value.get<double>());
+  }
+  return numbers;
+}
+
+Result<std::vector<double>> JsonRequest::numbers_or_null(const char* field, std::size_t count) const {
+  const auto found = object_.find(field);
+  if (found == object_.end() || !found->is_array() || found->size() != count) {
+    return bad_field(field, "must be a list of " + std::to_string(count) + ", as the examples had; null: missing");
+  }
+  std::vector<double> numbers;
+  for (const json& value : *found) {
+    if (!value.is_number() && !value.is_null())
+      return bad_field(field, "must be numbers, or null where one is missing");
+    numbers.push_back(value.is_null() ? std::nan("") : value.get<double>());
+  }
+  return numbers;
 }
 
 }  // namespace dermis::serve

@@ -8,18 +8,20 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dermis/core/result.hpp"
+#include "dermis/stream/server.hpp"
 
 namespace dermis::serve {
 
-/// What a client sends with the call of a service: a JSON object of at most 4 KiB.
+/// The call of a service by a client: a JSON object of at most 4 KiB where nothing else is said.
 class JsonRequest {
  public:
   static constexpr std::size_t kMostBytes = 4096;
   static constexpr std::size_t kMostNameBytes = 60;
 
-  [[nodiscard]] static Result<JsonRequest> parse(std::string_view text);
+  [[nodiscard]] static Result<JsonRequest> parse(std::string_view text, std::size_t most_bytes = kMostBytes);
 
   /// A text without control characters, commas and quotes; empty where there is no such field.
   [[nodiscard]] Result<std::string> text(const char* field, std::size_t most_bytes = kMostNameBytes) const;
@@ -29,6 +31,12 @@ class JsonRequest {
   [[nodiscard]] Result<std::optional<std::uint64_t>> number(const char* field, const char* wanted) const;
   /// True or false; false where there is no such field.
   [[nodiscard]] Result<bool> flag(const char* field) const;
+  /// A list of texts of any content.
+  [[nodiscard]] Result<std::vector<std::string>> texts(const char* field) const;
+  /// A list of finite numbers.
+  [[nodiscard]] Result<std::vector<double>> numbers(const char* field) const;
+  /// A list of `count` numbers; null is NaN.
+  [[nodiscard]] Result<std::vector<double>> numbers_or_null(const char* field, std::size_t count) const;
 
  private:
   explicit JsonRequest(nlohmann::json object);
@@ -40,6 +48,18 @@ class JsonRequest {
 template <typename Json>
 [[nodiscard]] std::string json_text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A service that a member answers. `owner` must outlive it.
+template <typename Owner>
+[[nodiscard]] stream::Service service(const char* name, Owner& owner,
+                                      Result<std::string> (Owner::*answer)(const JsonRequest&),
+                                      std::size_t most_bytes = JsonRequest::kMostBytes) {
+  return {name, [&owner, answer, most_bytes](std::string_view text) -> Result<std::string> {
+            const Result<JsonRequest> request = JsonRequest::parse(text, most_bytes);
+            if (!request) return request.error();
+            return (owner.*answer)(*request);
+          }};
 }
 
 }  // namespace dermis::serve

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dermis/recognition/learning.hpp"
+#include "serve/parts/part_makers.hpp"
 
 namespace dermis::serve {
 namespace {
@@ -17,28 +18,26 @@ using nlohmann::json;
 TeachingServices::TeachingServices(ServiceArrays arrays, UseClasses use_classes)
     : use_classes_(std::move(use_classes)), lesson_(std::move(arrays)) {}
 
-const std::vector<std::string>& TeachingServices::names() {
-  static const std::vector<std::string> kNames = {"/recognition/listen",     "/recognition/examples",
-                                                  "/recognition/throw_away", "/recognition/saved",
-                                                  "/recognition/load",       "/recognition/train"};
-  return kNames;
+std::vector<stream::Service> TeachingServices::services() {
+  return {of_array("/recognition/listen", &TeachingServices::listen),
+          of_array("/recognition/examples", &TeachingServices::examples),
+          of_array("/recognition/throw_away", &TeachingServices::throw_away),
+          of_array("/recognition/saved", &TeachingServices::saved),
+          of_array("/recognition/load", &TeachingServices::load),
+          of_array("/recognition/train", &TeachingServices::train)};
 }
 
-Result<std::string> TeachingServices::call(std::string_view service, std::string_view text) {
-  const std::lock_guard calls(calls_mutex_);
-  const Result<JsonRequest> request = JsonRequest::parse(text);
-  if (!request) return request.error();
-  const Result<std::string> name = request->text("array");
-  if (!name) return name.error();
-  const Result<std::size_t> array = lesson_.arrays().find(*name);
-  if (!array) return array.error();
-  if (service == "/recognition/listen") return listen(*array, *request);
-  if (service == "/recognition/examples") return examples(*array, *request);
-  if (service == "/recognition/throw_away") return throw_away(*array, *request);
-  if (service == "/recognition/saved") return json_text(json{{"files", lesson_.saved_files(*array)}});
-  if (service == "/recognition/load") return load(*array, *request);
-  if (service == "/recognition/train") return train(*array);
-  return bad_input("there is no such service");
+/// All requests name their array: {"array": "chest"}.
+stream::Service TeachingServices::of_array(const char* name, Answer answer) {
+  return {name, [this, answer](std::string_view text) -> Result<std::string> {
+            const Result<JsonRequest> request = JsonRequest::parse(text);
+            if (!request) return request.error();
+            const Result<std::string> array_name = request->text("array");
+            if (!array_name) return array_name.error();
+            const Result<std::size_t> array = lesson_.arrays().find(*array_name);
+            if (!array) return array.error();
+            return (this->*answer)(*array, *request);
+          }};
 }
 
 Result<std::string> TeachingServices::listen(std::size_t array, const JsonRequest& request) {
@@ -51,7 +50,7 @@ Result<std::string> TeachingServices::listen(std::size_t array, const JsonReques
   return std::string("{}");
 }
 
-Result<std::string> TeachingServices::examples(std::size_t array, const JsonRequest& request) const {
+Result<std::string> TeachingServices::examples(std::size_t array, const JsonRequest& request) {
   const Result<std::optional<std::uint64_t>> known = request.number("known", "the id of an example, or 0");
   if (!known) return known.error();
   const LessonState state = lesson_.state(array, known->value_or(0));
@@ -73,6 +72,10 @@ Result<std::string> TeachingServices::throw_away(std::size_t array, const JsonRe
   return std::string("{}");
 }
 
+Result<std::string> TeachingServices::saved(std::size_t array, const JsonRequest& /*request*/) {
+  return json_text(json{{"files", lesson_.saved_files(array)}});
+}
+
 Result<std::string> TeachingServices::load(std::size_t array, const JsonRequest& request) {
   const Result<std::string> file = request.text("file", JsonRequest::kMostBytes);
   if (!file) return file.error();
@@ -81,7 +84,7 @@ Result<std::string> TeachingServices::load(std::size_t array, const JsonRequest&
   return json_text(json{{"examples", *loaded}});
 }
 
-Result<std::string> TeachingServices::train(std::size_t array) {
+Result<std::string> TeachingServices::train(std::size_t array, const JsonRequest& /*request*/) {
   Result<LearnedLesson> lesson = lesson_.learn(array);
   if (!lesson) return lesson.error();
   recognition::Learned& learned = lesson->learned;
@@ -92,6 +95,13 @@ Result<std::string> TeachingServices::train(std::size_t array) {
                        {"advice", recognition::advice(learned)}};
   if (Status used = use_classes_(array, std::move(learned.classes)); !used) return used.error();
   return json_text(answer);
+}
+
+Result<std::unique_ptr<Part>> make_teaching(Host& host) {
+  return std::unique_ptr<Part>(std::make_unique<TeachingServices>(
+      service_arrays(host.suit), [&host](std::size_t array, recognition::Classes classes) {
+        return host.use_classes(array, std::move(classes));
+      }));
 }
 
 }  // namespace dermis::serve

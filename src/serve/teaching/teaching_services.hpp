@@ -4,44 +4,43 @@
 
 #include <cstddef>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "dermis/core/result.hpp"
 #include "dermis/recognition/classes.hpp"
+#include "serve/parts/part.hpp"
 #include "serve/requests/json_request.hpp"
 #include "serve/teaching/lesson.hpp"
 
 namespace dermis::serve {
 
 /// The services /recognition/... of docs/stream.md: the lesson of the arrays for clients. Thread-safe.
-class TeachingServices {
+class TeachingServices final : public Part {
  public:
   /// Takes new classes into use for an array that is at work.
   using UseClasses = std::function<Status(std::size_t array, recognition::Classes)>;
 
   TeachingServices(ServiceArrays arrays, UseClasses use_classes);
 
-  /// "/recognition/listen", ...
-  [[nodiscard]] static const std::vector<std::string>& names();
-
-  /// Every frame of every array; costs next to nothing while nobody teaches.
-  void feed(const live::ArrayResult& result) { lesson_.feed(result); }
-
-  /// JSON in, JSON out. Errors: an unknown service, a request that is wrong or comes at the wrong time.
-  [[nodiscard]] Result<std::string> call(std::string_view service, std::string_view request);
+  /// "/recognition/listen", ... Errors: a request that is wrong or comes at the wrong time.
+  [[nodiscard]] std::vector<stream::Service> services() override;
+  /// Costs next to nothing while nobody teaches.
+  void hear(const live::ArrayResult& result) override { lesson_.feed(result); }
 
  private:
+  using Answer = Result<std::string> (TeachingServices::*)(std::size_t array, const JsonRequest& request);
+
+  [[nodiscard]] stream::Service of_array(const char* name, Answer answer);
   [[nodiscard]] Result<std::string> listen(std::size_t array, const JsonRequest& request);
-  [[nodiscard]] Result<std::string> examples(std::size_t array, const JsonRequest& request) const;
+  [[nodiscard]] Result<std::string> examples(std::size_t array, const JsonRequest& request);
   [[nodiscard]] Result<std::string> throw_away(std::size_t array, const JsonRequest& request);
+  [[nodiscard]] Result<std::string> saved(std::size_t array, const JsonRequest& request);
   [[nodiscard]] Result<std::string> load(std::size_t array, const JsonRequest& request);
-  [[nodiscard]] Result<std::string> train(std::size_t array);
+  [[nodiscard]] Result<std::string> train(std::size_t array, const JsonRequest& request);
 
   const UseClasses use_classes_;
-  std::mutex calls_mutex_;  ///< One call at a time.
   Lesson lesson_;
 };
 

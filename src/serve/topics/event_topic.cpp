@@ -6,16 +6,11 @@
 
 namespace dermis::serve {
 
-EventTopic::EventTopic(std::string name, const messages::MessageType& type, stream::Server& server,
-                       SuitRecorder& recorder)
-    : name_(std::move(name)),
-      type_(type),
-      server_(server),
-      recorder_(recorder),
-      channel_(server.add_channel(name_, type.name, type.definition)) {}
+EventTopic::EventTopic(std::string name, const messages::MessageType& type, Topics& topics, SuitRecorder& recorder)
+    : name_(std::move(name)), type_(type), topic_(topics.add({.stream = name_}, type).value()), recorder_(recorder) {}
 
 void EventTopic::show(Nanos time, std::span<const std::uint8_t> message) {
-  if (server_.has_subscribers(channel_)) server_.publish(channel_, time, message);
+  topic_.publish(time, message, Ends::stream);
 }
 
 void EventTopic::publish(Nanos time, std::span<const std::uint8_t> message) {

@@ -8,16 +8,16 @@
 
 #include "dermis/core/frames.hpp"
 #include "dermis/messages/ros_messages.hpp"
-#include "dermis/stream/server.hpp"
 #include "serve/recording/suit_recorder.hpp"
+#include "serve/topics/topics.hpp"
 
 namespace dermis::serve {
 
 /// A topic of messages that belong to no frame: they go to clients and into recordings. Thread-safe.
 class EventTopic {
  public:
-  /// `type`, `server` and `recorder` must outlive it.
-  EventTopic(std::string name, const messages::MessageType& type, stream::Server& server, SuitRecorder& recorder);
+  /// `type`, `topics` and `recorder` must outlive it.
+  EventTopic(std::string name, const messages::MessageType& type, Topics& topics, SuitRecorder& recorder);
 
   /// To clients alone.
   void show(Nanos time, std::span<const std::uint8_t> message);
@@ -27,9 +27,8 @@ class EventTopic {
  private:
   std::string name_;
   const messages::MessageType& type_;
-  stream::Server& server_;
+  Topic topic_;
   SuitRecorder& recorder_;
-  stream::ChannelId channel_;
 };
 
 }  // namespace dermis::serve

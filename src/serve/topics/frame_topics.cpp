@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "serve/parts/host.hpp"
-#include "serve/session/part_makers.hpp"
+#include "serve/parts/part_makers.hpp"
 
 namespace dermis::serve {
 namespace {
+
+using stream::MessageKind;
 
 constexpr std::size_t kBytesOfHeader = 128;
 constexpr std::size_t kBytesOfAPoint = 20;
@@ -125,7 +127,7 @@ void FrameTopics::publish_images(Array& array, const live::ArrayResult& result, 
   const Nanos time = result.raw.time;
   if (array.raw.is_wanted(ends_of(is_due)) && result.raw.counts.size() == taxels) {
     messages::encode_image(result.raw, array.shape, frame_id, array.message);
-    array.raw.publish(time, array.message, ends_of(is_due));
+    array.raw.publish(time, array.message, ends_of(is_due), MessageKind::picture);
   }
   publish_values(array, array.force, result.force.newtons, result.force.time);
   publish_values(array, array.force_sigma, result.force.sigma_newtons, result.force.time);
@@ -135,11 +137,11 @@ void FrameTopics::publish_images(Array& array, const live::ArrayResult& result, 
                           result.conductance.taxels.size() == taxels;
   if (array.conductance.is_wanted() && has_taxels) {
     messages::encode_conductance_grid(result.conductance, array.shape, array.pitch, frame_id, array.message);
-    array.conductance.publish(time, array.message);
+    array.conductance.publish(time, array.message, Ends::both, MessageKind::picture);
   }
   if (array.force_grid.is_wanted()) {
     messages::encode_grid(result.force, array.shape, array.pitch, frame_id, array.message);
-    array.force_grid.publish(time, array.message);
+    array.force_grid.publish(time, array.message, Ends::both, MessageKind::picture);
   }
 }
 
@@ -151,12 +153,13 @@ void FrameTopics::publish_values(Array& array, const Topic& topic, std::span<con
 
 /// Clients hear of each contact that begins or ends, also between the frames that are due.
 void FrameTopics::publish_contacts(Array& array, const live::ArrayResult& result, bool is_due) {
-  const Ends ends = ends_of(is_due || begins_or_ends(result.report));
+  const bool is_event = begins_or_ends(result.report);
+  const Ends ends = ends_of(is_due || is_event);
   const bool is_wanted = contacts_topic_.is_wanted(ends);
   if (is_wanted || topics_.has_dds()) array.contacts.take(result);
   if (!is_wanted) return;
   array.contacts.encode(result, array.message);
-  contacts_topic_.publish(result.raw.time, array.message, ends);
+  contacts_topic_.publish(result.raw.time, array.message, ends, is_event ? MessageKind::event : MessageKind::picture);
 }
 
 void FrameTopics::publish_wrench(Array& array, const live::ArrayResult& result) {
@@ -174,7 +177,7 @@ void FrameTopics::tick(std::int64_t /*tick*/) {
   if (points_topic_.is_wanted()) {
     const Nanos time(last_time_ns_.load());
     points_.encode(time, message_);
-    points_topic_.publish(time, message_);
+    points_topic_.publish(time, message_, Ends::both, MessageKind::picture);
   }
   if (wrench_topic_.is_wanted()) publish_suit_wrench();
 }

@@ -11,8 +11,10 @@ bool Topic::is_wanted(Ends ends) const noexcept {
          (ends != Ends::stream && dds_topic_ && publisher_->has_subscribers(*dds_topic_));
 }
 
-void Topic::publish(Nanos time, std::span<const std::uint8_t> message, Ends ends) const {
-  if (ends != Ends::dds && channel_ && server_->has_subscribers(*channel_)) server_->publish(*channel_, time, message);
+void Topic::publish(Nanos time, std::span<const std::uint8_t> message, Ends ends, stream::MessageKind kind) const {
+  if (ends != Ends::dds && channel_ && server_->has_subscribers(*channel_)) {
+    server_->publish(*channel_, time, message, kind);
+  }
   if (ends == Ends::stream || !dds_topic_) return;
   if (is_kept_ || publisher_->has_subscribers(*dds_topic_)) publisher_->publish(*dds_topic_, message);
 }
@@ -29,14 +31,14 @@ Topics::Topics(stream::Server& server, std::unique_ptr<dds::Publisher> publisher
     : server_(server), publisher_(std::move(publisher)) {}
 
 Result<Topic> Topics::add(const TopicNames& names, const messages::MessageType& type, std::size_t message_bytes,
-                          bool is_kept) {
+                          Keep keep) {
   Topic topic;
   topic.server_ = &server_;
   topic.publisher_ = publisher_.get();
-  topic.is_kept_ = is_kept;
+  topic.is_kept_ = keep == Keep::last;
   if (!names.stream.empty()) topic.channel_ = server_.add_channel(names.stream, type.name, type.definition);
   if (names.dds.empty() || !publisher_) return topic;
-  const Result<dds::TopicId> added = publisher_->add_topic({names.dds, type, message_bytes, is_kept});
+  const Result<dds::TopicId> added = publisher_->add_topic({names.dds, type, message_bytes, topic.is_kept_});
   if (!added) return added.error();
   topic.dds_topic_ = *added;
   return topic;

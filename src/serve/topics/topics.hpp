@@ -32,7 +32,8 @@ class Topic {
   /// Somebody listens at one of these ends.
   [[nodiscard]] bool is_wanted(Ends ends = Ends::both) const noexcept;
   /// To those who listen; a topic that is kept also where nobody does.
-  void publish(Nanos time, std::span<const std::uint8_t> message, Ends ends = Ends::both) const;
+  void publish(Nanos time, std::span<const std::uint8_t> message, Ends ends = Ends::both,
+               stream::MessageKind kind = stream::MessageKind::event) const;
 
  private:
   friend class Topics;
@@ -43,17 +44,21 @@ class Topic {
   bool is_kept_ = false;
 };
 
-/// The sink of all messages, with two ends: clients of the stream, and nodes of ROS 2 where they are wanted. Thread-safe
-/// but for add(), which for an end of DDS must come before the first message.
+/// The sink of all messages, with two ends: clients of the stream, and nodes of ROS 2 where they are wanted.
+/// Thread-safe but for add(), which for an end of DDS must come before the first message.
 class Topics {
  public:
   /// `server` must outlive it. Without `dds` there is the stream alone. Errors: those of dds::Publisher.
   [[nodiscard]] static Result<std::unique_ptr<Topics>> create(stream::Server& server,
                                                               const std::optional<dds::PublisherOptions>& dds);
 
-  /// `message_bytes` and `is_kept`: dds::Topic. Errors: those of dds::Publisher; none without DDS.
+  static constexpr std::size_t kMessageBytes = 1024;
+  /// Nodes that come later get the last message, or none.
+  enum class Keep : std::uint8_t { none, last };
+
+  /// `message_bytes` and `keep`: as dds::Topic has them. Errors: those of dds::Publisher; none without DDS.
   [[nodiscard]] Result<Topic> add(const TopicNames& names, const messages::MessageType& type,
-                                  std::size_t message_bytes = 1024, bool is_kept = false);
+                                  std::size_t message_bytes = kMessageBytes, Keep keep = Keep::none);
 
   /// Messages that the network of DDS did not take.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return publisher_ ? publisher_->left_out() : 0; }

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/recording/recorded_arrays.hpp"
+
+#include <memory>
+
+#include "dermis/files/array_toml.hpp"
+#include "dermis/files/content_hash.hpp"
+
+namespace dermis::serve {
+
+std::vector<recordings::RecordedArray> recorded_arrays(const ServedSuit& suit, const ModelsInUse& models) {
+  std::vector<recordings::RecordedArray> recorded;
+  for (std::size_t k = 0; k < suit.arrays.size(); ++k) {
+    const ServedArray& array = suit.arrays[k];
+    const std::shared_ptr<const pipeline::Model> model = models.of(k);
+    const ArrayDescription& description = model->array;
+    recordings::RecordedArray& one = recorded.emplace_back();
+    one.name = array.name;
+    one.shape = {description.rows, description.cols};
+    one.array_toml = files::array_to_toml(description);
+    one.pitch = {description.row_pitch_m, description.col_pitch_m};
+    const Result<std::string> hash = files::content_hash(array.model_path);
+    if (hash && !models.is_new(k)) one.model_hash = *hash;
+  }
+  return recorded;
+}
+
+}  // namespace dermis::serve
