@@ -17,6 +17,7 @@
 #include "calibration/simulated_user.hpp"
 #include "dermis/files/array_toml.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "serve/part_calls.hpp"
 #include "support/hand_made_model.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -42,7 +43,7 @@ class Calibrations : public testing::Test {
  protected:
   /// The answer, or the line of the error.
   std::string call(const std::string& service, const std::string& request = "{}") {
-    const Result<std::string> answer = services_.call("/calibration/" + service, request);
+    const Result<std::string> answer = serve::call(services_, "/calibration/" + service, request);
     return answer ? *answer : answer.error().message;
   }
 
@@ -162,7 +163,7 @@ TEST_F(Calibrations, say_when_the_new_model_cannot_be_used) {
 TEST(CalibrationServices, the_only_array_needs_no_name) {
   CalibrationServices services(ServiceArrays({{"chest", array_of(2, 2), ""}}), use_none,
                                std::make_shared<sources::GuideVoice>());
-  EXPECT_TRUE(services.call("/calibration/start", "{}"));
+  EXPECT_TRUE(call(services, "/calibration/start", "{}"));
   EXPECT_EQ(services.progress()->array, "chest");
 }
 
@@ -171,7 +172,7 @@ TEST(CalibrationServices, a_hand_that_listens_is_told_what_to_press) {
   voice->listen();
   CalibrationServices services(ServiceArrays({{"chest", array_of(2, 2), ""}}), use_none, voice);
   ASSERT_TRUE(
-      services.call("/calibration/start", R"({"taxels": [3], "weights_n": [2], "unloaded_s": 0.2, "hold_s": 0.25})"));
+      call(services, "/calibration/start", R"({"taxels": [3], "weights_n": [2], "unloaded_s": 0.2, "hold_s": 0.25})"));
   EXPECT_FALSE(voice->words().press);
   EXPECT_EQ(voice->words().hold_time, std::chrono::milliseconds(250));
   calibration::HandledArray handled(array_of(2, 2), {}, kSeed);
@@ -180,7 +181,7 @@ TEST(CalibrationServices, a_hand_that_listens_is_told_what_to_press) {
   }
   EXPECT_EQ(voice->words().taxel, 3U);
   EXPECT_EQ(voice->words().weight_n, 2.0);
-  ASSERT_TRUE(services.call("/calibration/cancel", "{}"));
+  ASSERT_TRUE(call(services, "/calibration/cancel", "{}"));
   EXPECT_FALSE(voice->words().press);
 }
 

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include <string>
 
 namespace dermis::serve {
@@ -55,6 +57,31 @@ TEST(JsonRequest, a_number_is_whole_and_not_below_0) {
   for (const char* const text : {R"({"id": -1})", R"({"id": 0.5})", R"({"id": "7"})"}) {
     EXPECT_EQ(JsonRequest::parse(text)->number("id", "one").error().message, "id: must be one") << text;
   }
+}
+
+TEST(JsonRequest, lists_hold_one_kind_of_value) {
+  const auto request = JsonRequest::parse(R"({"name": ["a", "b"], "position": [1, 2.5], "mixed": ["a", 1, null]})");
+  EXPECT_EQ(request->texts("name").value(), (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(request->numbers("position").value(), (std::vector<double>{1.0, 2.5}));
+  for (const char* const field : {"mixed", "none"}) {
+    EXPECT_EQ(request->texts(field).error().message, std::string(field) + ": must be a list of texts");
+    EXPECT_EQ(request->numbers(field).error().message, std::string(field) + ": must be a list of numbers");
+  }
+}
+
+TEST(JsonRequest, null_is_a_missing_number_where_some_may_be_missing) {
+  const auto request = JsonRequest::parse(R"({"values": [1, null]})");
+  const std::vector<double> values = request->numbers_or_null("values", 2).value();
+  EXPECT_EQ(values[0], 1.0);
+  EXPECT_TRUE(std::isnan(values[1]));
+  EXPECT_EQ(request->numbers_or_null("values", 3).error().message,
+            "values: must be a list of 3, as the examples had; null: missing");
+}
+
+TEST(JsonRequest, larger_requests_are_read_where_it_is_said) {
+  const std::string large = R"({"name": ")" + std::string(5000, 'a') + ""}";
+  EXPECT_EQ(JsonRequest::parse(large).error().message, "the request is no JSON object of at most 4 KiB");
+  EXPECT_TRUE(JsonRequest::parse(large, 8192));
 }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "dermis/core/random.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 #include "serve/calibration/calibration_services.hpp"
+#include "serve/part_calls.hpp"
 #include "sources/rehearsal.hpp"
 
 namespace dermis::serve {
@@ -79,8 +80,8 @@ Walk rehearse(const ArrayDescription& array, std::uint64_t seed) {
   CalibrationServices services(
       ServiceArrays({{"hand", without_circuit(array), ""}}),
       [](std::size_t, const std::shared_ptr<const pipeline::Model>&) { return Done{}; }, voice);
-  EXPECT_TRUE(services.call("/calibration/start",
-                            R"({"taxels": {"stride": 2}, "weights_n": [2, 6, 20], "unloaded_s": 1, "hold_s": 0.4})"));
+  EXPECT_TRUE(call(services, "/calibration/start",
+                   R"({"taxels": {"stride": 2}, "weights_n": [2, 6, 20], "unloaded_s": 1, "hold_s": 0.4})"));
   sources::Rehearsal rehearsal = *sources::Rehearsal::create(array, seed, kRateHz, voice);
   RawFrame frame;
   Walk walk;

@@ -14,9 +14,9 @@
 #include "dermis/files/array_toml.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recordings/suit_recording.hpp"
-#include "serve/suit/models_in_use.hpp"
 #include "serve/named_touches.hpp"
 #include "serve/small_suit.hpp"
+#include "serve/suit/models_in_use.hpp"
 #include "serve/suit/suit_json.hpp"
 #include "support/temporary_folder.hpp"
 

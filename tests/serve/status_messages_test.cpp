@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dermis/calibration/uncalibrated_model.hpp"
+#include "serve/calibration/calibration_message.hpp"
 #include "support/hand_made_model.hpp"
 
 namespace dermis::serve {

@@ -17,6 +17,7 @@
 
 #include "messages/read_by_definition.hpp"
 #include "serve/named_touches.hpp"
+#include "serve/part_calls.hpp"
 #include "serve/small_suit.hpp"
 #include "serve/stream_client.hpp"
 
@@ -70,6 +71,8 @@ recognition::Classes by_elbow() {
   return classes_named([](bool, bool is_bent) { return is_bent ? "bent" : "straight"; });
 }
 
+constexpr const char* kReadings = "/recognition/readings";
+
 /// A suit whose arrays come in another order than in the examples, and a client that listens.
 class NamedSuit : public testing::Test {
  protected:
@@ -81,7 +84,8 @@ class NamedSuit : public testing::Test {
     Result<std::unique_ptr<stream::Server>> created = stream::Server::create(options, {});
     ASSERT_TRUE(created) << created.error().message;
     server_ = *std::move(created);
-    auto made = SuitRecognition::create(suit_, *server_, recorder_);
+    topics_ = Topics::create(*server_, {}).value();
+    auto made = SuitRecognition::create(suit_, *topics_, recorder_);
     ASSERT_TRUE(made) << made.error().message;
     recognition_ = *std::move(made);
     end_ = server_->add_channel("/end", "none", "");
@@ -92,7 +96,7 @@ class NamedSuit : public testing::Test {
 
   void see(std::size_t array, bool is_pressed) {
     const ForceFrame force = force_frame(time_, frame_of(random_, is_pressed));
-    recognition_->publish({array, {}, {}, force, {}, {}});
+    recognition_->hear({array, {}, {}, force, {}, {}});
   }
 
   /// What is told last while one array is pressed for so long.
@@ -116,6 +120,7 @@ class NamedSuit : public testing::Test {
   Nanos time_{};
   ServedSuit suit_;
   std::unique_ptr<stream::Server> server_;
+  std::unique_ptr<Topics> topics_;
   SuitRecorder recorder_{"", [] { return std::vector<recordings::RecordedArray>{}; },
                          [](const std::string& why) { ADD_FAILURE() << why; }};
   stream::ChannelId end_ = 0;
@@ -130,24 +135,24 @@ TEST_F(NamedSuit, is_named_by_all_its_arrays_in_the_order_of_the_examples) {
 
 TEST_F(NamedSuit, is_named_by_the_further_readings_that_a_client_tells) {
   name_by(by_elbow());
-  EXPECT_TRUE(recognition_->take_readings(R"({"values": [90]})"));
+  EXPECT_TRUE(call(*recognition_, kReadings, R"({"values": [90]})"));
   EXPECT_EQ(told(true, std::chrono::milliseconds(400)), "bent");
-  EXPECT_TRUE(recognition_->take_readings(R"({"values": [10]})"));
+  EXPECT_TRUE(call(*recognition_, kReadings, R"({"values": [10]})"));
   EXPECT_EQ(told(true, std::chrono::milliseconds(400)), "straight");
   EXPECT_EQ(told(true), "unknown") << "half a second later nobody knows";
 }
 
 TEST_F(NamedSuit, refuses_readings_that_are_not_those_of_the_examples) {
   name_by(by_elbow());
-  for (const char* const request : {"", "[90]", "{}", R"({"values": 90})", R"({"values": [90, 10]})"}) {
-    const Result<std::string> taken = recognition_->take_readings(request);
+  for (const char* const request : {"{}", R"({"values": 90})", R"({"values": [90, 10]})"}) {
+    const Result<std::string> taken = call(*recognition_, kReadings, request);
     ASSERT_FALSE(taken) << request;
     EXPECT_EQ(taken.error().message, "values: must be a list of 1, as the examples had; null: missing") << request;
   }
-  const Result<std::string> taken = recognition_->take_readings(R"({"values": ["bent"]})");
+  const Result<std::string> taken = call(*recognition_, kReadings, R"({"values": ["bent"]})");
   ASSERT_FALSE(taken);
   EXPECT_EQ(taken.error().message, "values: must be numbers, or null where one is missing");
-  EXPECT_TRUE(recognition_->take_readings(R"({"values": [null]})"));
+  EXPECT_TRUE(call(*recognition_, kReadings, R"({"values": [null]})"));
 }
 
 TEST(SuitRecognition, refuses_classes_of_an_array_that_is_not_served) {

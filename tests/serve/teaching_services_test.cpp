@@ -19,6 +19,7 @@
 #include "dermis/files/csv_table.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "serve/named_touches.hpp"
+#include "serve/part_calls.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::serve {
@@ -31,7 +32,7 @@ class Teaching : public testing::Test {
  protected:
   json call(const std::string& service, json request = json::object()) {
     request["array"] = "skin";
-    const Result<std::string> answer = services_.call(service, request.dump());
+    const Result<std::string> answer = serve::call(services_, service, request.dump());
     return answer ? json::parse(*answer) : json(answer.error().message);
   }
 
@@ -49,7 +50,7 @@ class Teaching : public testing::Test {
     const ForceFrame force = force_frame(time_, dermis::serve::touch(random_, true, newtons));
     ContactReport report;
     report.total_force_n = newtons;
-    services_.feed({1, {}, {}, force, report, {}});
+    services_.hear({1, {}, {}, force, report, {}});
   }
 
   void teach(const std::string& name, double seconds, int count, const std::string& session = "1") {
@@ -151,7 +152,7 @@ class AnotherDay : public Teaching {
  protected:
   json call_again(const std::string& service, json request = json::object()) {
     request["array"] = "skin";
-    const Result<std::string> answer = again_.call(service, request.dump());
+    const Result<std::string> answer = serve::call(again_, service, request.dump());
     return answer ? json::parse(*answer) : json(answer.error().message);
   }
 
@@ -205,9 +206,9 @@ TEST_F(Teaching, what_cannot_be_done_gives_a_line) {
             "class: must have at most 60 bytes, without commas and quotes");
   EXPECT_EQ(call("/recognition/listen", {{"class", 7}}), "class: must be a text");
   EXPECT_EQ(call("/recognition/examples", {{"known", -1}}), "known: must be the id of an example, or 0");
-  EXPECT_EQ(services_.call("/recognition/train", "[]").error().message,
+  EXPECT_EQ(serve::call(services_, "/recognition/train", "[]").error().message,
             "the request is no JSON object of at most 4 KiB");
-  EXPECT_EQ(services_.call("/recognition/train", R"({"array": "none"})").error().message,
+  EXPECT_EQ(serve::call(services_, "/recognition/train", R"({"array": "none"})").error().message,
             "array: there is none of that name");
   teach("tap", 0.1, 3);
   EXPECT_TRUE(call("/recognition/train").is_string()) << "a single class";

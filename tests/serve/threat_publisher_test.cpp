@@ -14,6 +14,7 @@
 #include "dermis/recordings/mcap.hpp"
 #include "messages/read_by_definition.hpp"
 #include "serve/named_touches.hpp"
+#include "serve/part_calls.hpp"
 #include "serve/small_suit.hpp"
 #include "serve/stream_client.hpp"
 #include "support/temporary_folder.hpp"
@@ -55,7 +56,8 @@ class Watching : public testing::Test {
     ASSERT_TRUE(recorder_.begin());
     auto monitors = threat_monitors(suit_);
     ASSERT_TRUE(monitors) << monitors.error().message;
-    publisher_.emplace(suit_, *std::move(monitors), *server_, recorder_,
+    topics_ = Topics::create(*server_, {}).value();
+    publisher_.emplace(suit_, *std::move(monitors), *topics_, recorder_,
                        [this](const std::string& line) { lines_.push_back(line); });
     end_ = server_->add_channel("/end", "none", "");
     const auto none = [] { return std::vector<stream::Parameter>{}; };
@@ -69,7 +71,7 @@ class Watching : public testing::Test {
     std::vector<float> forces(kRows * kCols);
     forces[taxel] = newtons;
     const ForceFrame force = force_frame(time_, forces);
-    publisher_->publish({0, {}, {}, force, {}, {}});
+    publisher_->hear({0, {}, {}, force, {}, {}});
   }
 
   /// What was said since the last call.
@@ -95,6 +97,7 @@ class Watching : public testing::Test {
   const std::atomic<bool> stop_ = false;
   ServedSuit suit_;
   std::unique_ptr<stream::Server> server_;
+  std::unique_ptr<Topics> topics_;
   SuitRecorder recorder_{folder_.file("rec.mcap"),
                          [] {
                            return std::vector<recordings::RecordedArray>{{.name = "chest", .shape = {kRows, kCols}}};
@@ -146,7 +149,7 @@ TEST_F(Watching, a_latched_threat_stands_until_it_is_reset) {
   const std::vector<json> all = heard();
   EXPECT_EQ(all.back()["name"], "throat");
   EXPECT_EQ(all.back()["state"], kLatched);
-  ASSERT_TRUE(publisher_->reset("{}"));
+  ASSERT_TRUE(call(*publisher_, "/threats/reset", "{}"));
   press(0, 0.0F);
   EXPECT_EQ(changes("throat"), std::vector<int>{kClear});
 }
@@ -154,21 +157,21 @@ TEST_F(Watching, a_latched_threat_stands_until_it_is_reset) {
 TEST_F(Watching, the_health_has_a_row_for_a_threat_while_it_is_there) {
   watch(true);
   press(0, 1.0F);
-  EXPECT_TRUE(publisher_->diagnoses().empty());
+  EXPECT_TRUE(diagnoses_of(*publisher_).empty());
   press(0, 6.0F);
-  ASSERT_EQ(publisher_->diagnoses().size(), 1U);
-  const messages::Diagnosis there = publisher_->diagnoses().front();
+  ASSERT_EQ(diagnoses_of(*publisher_).size(), 1U);
+  const messages::Diagnosis there = diagnoses_of(*publisher_).front();
   EXPECT_EQ(there.level, messages::Diagnosis::Level::error);
   EXPECT_EQ(there.name, "threat 'throat' on 'chest'");
   EXPECT_TRUE(there.message.starts_with("taxel force 6.0 \u00b1 0.0 N, limit 5, at x ")) << there.message;
   EXPECT_EQ(there.values[0], (std::pair<std::string, std::string>{"state", "there"}));
   EXPECT_EQ(there.values[2], (std::pair<std::string, std::string>{"first crossed", "0.020 s"}));
   for (int frame = 0; frame < 60; ++frame) press(0, 0.0F);
-  EXPECT_EQ(publisher_->diagnoses().front().values[0].second, "over, until it is reset");
-  EXPECT_TRUE(publisher_->diagnoses().front().values[1].second.starts_with("taxel force 6.0")) << "the worst";
-  ASSERT_TRUE(publisher_->reset("{}"));
+  EXPECT_EQ(diagnoses_of(*publisher_).front().values[0].second, "over, until it is reset");
+  EXPECT_TRUE(diagnoses_of(*publisher_).front().values[1].second.starts_with("taxel force 6.0")) << "the worst";
+  ASSERT_TRUE(call(*publisher_, "/threats/reset", "{}"));
   press(0, 0.0F);
-  EXPECT_TRUE(publisher_->diagnoses().empty());
+  EXPECT_TRUE(diagnoses_of(*publisher_).empty());
 }
 
 TEST_F(Watching, all_limits_are_told_twice_a_second_and_a_line_is_logged_once_a_second) {

@@ -12,10 +12,10 @@
 #include <string>
 #include <vector>
 
-#include "serve/topics/contacts_in_suit.hpp"
-#include "serve/suit/models_in_use.hpp"
 #include "serve/small_suit.hpp"
+#include "serve/suit/models_in_use.hpp"
 #include "serve/suit/suit_json.hpp"
+#include "serve/topics/contacts_in_suit.hpp"
 #include "serve/topics/suit_transforms.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -34,9 +34,8 @@ BodyParts arm() {
   return {*make_body(std::move(body)), {}};
 }
 
-std::string bent() {
-  return R"({"name": ["elbow"], "position": [)" + std::to_string(0.5 * std::numbers::pi) + "]}";
-}
+const std::vector<std::string> kElbow = {"elbow"};
+const std::vector<double> kBent = {0.5 * std::numbers::pi};
 
 /// Two arrays: one on the trunk, one on the forearm.
 ServedSuit worn_suit() {
@@ -50,7 +49,7 @@ TEST(WornBody, a_joint_moves_the_arrays_that_hang_from_it) {
   const ServedSuit suit = worn_suit();
   EXPECT_EQ(suit.body->move_of(1), Pose{});
   EXPECT_EQ(suit.body->suit_from_array(1).translation, (Vector3{1.5, 0.0, 0.0}));
-  ASSERT_TRUE(suit.body->set_joints(bent()));
+  ASSERT_TRUE(suit.body->set_joints(kElbow, kBent));
   EXPECT_EQ(suit.body->move_of(0), Pose{}) << "the trunk stands";
   EXPECT_NEAR(suit.body->suit_from_array(1).translation.x, 1.0, 1e-6);
   EXPECT_NEAR(suit.body->suit_from_array(1).translation.y, 0.5, 1e-6);
@@ -61,14 +60,16 @@ TEST(WornBody, a_joint_moves_the_arrays_that_hang_from_it) {
   EXPECT_EQ(suit.body->version(), 1U);
 }
 
-TEST(WornBody, a_request_that_is_wrong_moves_nothing) {
+TEST(WornBody, joints_that_are_wrong_move_nothing) {
   const ServedSuit suit = worn_suit();
-  for (const char* const request :
-       {"", "[]", "{}", R"({"name": ["elbow"]})", R"({"name": ["elbow"], "position": []})",
-        R"({"name": ["knee"], "position": [1]})", R"({"name": ["elbow"], "position": ["far"]})",
-        R"({"name": ["elbow", "knee"], "position": [1, 1]})", R"({"name": [7], "position": [1]})"}) {
-    const Status set = suit.body->set_joints(request);
-    ASSERT_FALSE(set.has_value()) << request;
+  struct Wrong {
+    std::vector<std::string> names;
+    std::vector<double> positions;
+  };
+  for (const Wrong& wrong : {Wrong{{"elbow"}, {}}, Wrong{{"knee"}, {1.0}}, Wrong{{"elbow", "knee"}, {1.0, 1.0}},
+                             Wrong{{"elbow"}, {std::nan("")}}}) {
+    const Status set = suit.body->set_joints(wrong.names, wrong.positions);
+    ASSERT_FALSE(set.has_value()) << wrong.names.back();
     EXPECT_EQ(set.error().message.find('\n'), std::string::npos);
   }
   EXPECT_EQ(suit.body->suit_from_links(), suit.body->rest());
@@ -86,7 +87,7 @@ TEST(WornBody, contacts_are_where_their_array_is_now) {
   ContactsInSuit in_suit(suit, 1);
   in_suit.take(result);
   EXPECT_EQ(in_suit.contacts().data(), contacts.data()) << "at rest nothing is copied";
-  ASSERT_TRUE(suit.body->set_joints(bent()));
+  ASSERT_TRUE(suit.body->set_joints(kElbow, kBent));
   in_suit.take(result);
   const SuitContact& now = in_suit.contacts().front();
   EXPECT_NEAR(now.place.position.x, 1.0, 1e-6);
@@ -107,7 +108,7 @@ TEST(WornBody, clients_are_told_its_links_and_where_they_are) {
   EXPECT_EQ(body["links"][1]["pose"]["position"], (std::vector<double>{1.0, 0.0, 0.0}));
   EXPECT_EQ(body["links"][0]["visuals"][0]["solid"], "sphere");
   EXPECT_EQ(body["links"][0]["visuals"][0]["size"], std::vector<double>{0.1});
-  ASSERT_TRUE(suit.body->set_joints(bent()));
+  ASSERT_TRUE(suit.body->set_joints(kElbow, kBent));
   const std::vector<messages::Transform> transforms = suit_transforms(suit);
   ASSERT_EQ(transforms.size(), 4U);
   EXPECT_EQ(transforms[1].child, "arm");

@@ -23,8 +23,8 @@
 #include "dermis/sources/recorded_order.hpp"
 #include "dermis/threats/threat_monitor.hpp"
 #include "serve/recognition/live_recognition.hpp"
-#include "serve/suit/model_or_array.hpp"
 #include "serve/recognition/suit_recognition.hpp"
+#include "serve/suit/model_or_array.hpp"
 
 namespace dermis::serve {
 namespace {

@@ -17,8 +17,8 @@
 
 #include "dermis/files/array_toml.hpp"
 #include "serve/requests/array_request.hpp"
-#include "serve/setup/first_look.hpp"
 #include "serve/requests/json_request.hpp"
+#include "serve/setup/first_look.hpp"
 #include "serve/setup/known_arrays.hpp"
 #include "serve/setup/source_choice.hpp"
 #include "serve/setup/touch_watch.hpp"

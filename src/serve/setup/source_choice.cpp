@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "dermis/acquisition/serial_ports.hpp"
-#include "serve/requests/json_request.hpp"
 #include "serve/recording/recordings_folder.hpp"
+#include "serve/requests/json_request.hpp"
 
 namespace dermis::serve {
 namespace {

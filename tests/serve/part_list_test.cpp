@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/parts/live_parameters.hpp"
+#include "serve/parts/part_list.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,13 @@
 #include <utility>
 #include <vector>
 
+#include "serve/health/live_settings.hpp"
+#include "serve/health/tares.hpp"
+#include "serve/recording/recording_services.hpp"
+#include "serve/recording/suit_recorder.hpp"
 #include "serve/small_suit.hpp"
+#include "serve/topics/frame_topics.hpp"
+#include "serve/topics/topics.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace dermis::serve {
@@ -34,19 +40,26 @@ class Parameters : public testing::Test {
     stream::ServerOptions options;
     options.port = 0;
     server_ = stream::Server::create(options, {}).value();
-    broadcaster_.emplace(suit_, *server_);
-    parameters_.emplace(suit_, *live_, *broadcaster_, recorder_);
+    topics_ = Topics::create(*server_, {}).value();
+    parts_.add(std::make_unique<LiveSettingsPart>(*live_));
+    auto tares = std::make_unique<Tares>(suit_, *live_);
+    tares_ = tares.get();
+    parts_.add(std::move(tares));
+    parts_.add(FrameTopics::create(suit_, *topics_).value());
+    parts_.add(std::make_unique<RecordingServices>(
+        suit_, options_, [] { return std::vector<recordings::RecordedArray>(); }, models_, recorder_, *server_,
+        std::nullopt));
   }
 
   std::map<std::string, ParameterValue> all() const {
     std::map<std::string, ParameterValue> values;
-    for (const stream::Parameter& parameter : parameters_->all()) values[parameter.name] = parameter.value;
+    for (const stream::Parameter& parameter : parts_.parameters()) values[parameter.name] = parameter.value;
     return values;
   }
 
   /// The line of the error; empty where there is none.
   std::string set(const std::string& name, const ParameterValue& value) {
-    const Status set = parameters_->set({name, value}, "1.2.3.4:5");
+    const Status set = parts_.set({name, value}, "1.2.3.4:5");
     return set ? "" : set.error().message;
   }
 
@@ -60,8 +73,11 @@ class Parameters : public testing::Test {
                          [](const std::string& why) { ADD_FAILURE() << why; }};
   std::unique_ptr<live::LiveSuit> live_;
   std::unique_ptr<stream::Server> server_;
-  std::optional<Broadcaster> broadcaster_;
-  std::optional<LiveParameters> parameters_;
+  std::unique_ptr<Topics> topics_;
+  const SessionOptions options_;
+  const ModelsInUse models_{suit_};
+  PartList parts_;
+  Tares* tares_ = nullptr;
 };
 
 TEST_F(Parameters, begin_with_the_defaults) {
@@ -94,7 +110,6 @@ TEST_F(Parameters, are_as_they_were_set) {
   for (const auto& [name, value] : wanted) EXPECT_EQ(now.at(name), value) << name;
   EXPECT_EQ(live_->settings().contacts.onset_force_n, 1.5);
   EXPECT_FALSE(live_->settings().drift.track);
-  EXPECT_EQ(broadcaster_->rate_hz(), 30.0);
 }
 
 TEST_F(Parameters, that_are_wrong_are_refused_in_one_line_and_change_nothing) {
@@ -136,11 +151,11 @@ TEST_F(Parameters, the_tare_of_the_suit_is_that_of_all_its_arrays) {
 
 TEST_F(Parameters, say_who_has_reset_a_tare) {
   EXPECT_EQ(set("/left/tare", false), "");
-  const std::vector<std::string> news = parameters_->tares().follow();
+  const std::vector<std::string> news = tares_->follow();
   ASSERT_EQ(news.size(), 1U);
   EXPECT_TRUE(news[0].ends_with(" UTC: left got back the zero of its calibration by 1.2.3.4:5")) << news[0];
   EXPECT_EQ(all().at("/tare/log"), ParameterValue(news[0]));
-  EXPECT_TRUE(parameters_->tares().follow().empty()) << "each line is told once";
+  EXPECT_TRUE(tares_->follow().empty()) << "each line is told once";
 }
 
 TEST_F(Parameters, keep_the_last_twenty_lines_of_the_log) {
@@ -151,7 +166,7 @@ TEST_F(Parameters, keep_the_last_twenty_lines_of_the_log) {
 
 TEST_F(Parameters, an_array_with_another_model_is_not_tared) {
   EXPECT_EQ(set("/tare", true), "");
-  parameters_->tares().forget(1);
+  parts_.model_changed(1);
   EXPECT_EQ(all().at("/left/tare"), ParameterValue(true));
   EXPECT_EQ(all().at("/right/tare"), ParameterValue(false));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "serve/topics/broadcaster.hpp"
+#include "serve/topics/frame_topics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -50,8 +50,8 @@ struct Frame {
   [[nodiscard]] live::ArrayResult result() const { return {0, raw, conductance, force, report, contacts}; }
 };
 
-/// A broadcaster of one array, and the channel "/end" behind all that it publishes.
-class Broadcasting : public testing::Test {
+/// The topics of one array, and the channel "/end" behind all that it publishes.
+class TopicsOfFrames : public testing::Test {
  protected:
   void SetUp() override {
     stream::ServerOptions options;
@@ -59,7 +59,8 @@ class Broadcasting : public testing::Test {
     Result<std::unique_ptr<stream::Server>> created = stream::Server::create(options, {});
     ASSERT_TRUE(created) << created.error().message;
     server_ = *std::move(created);
-    broadcaster_.emplace(suit_, *server_);
+    topics_ = Topics::create(*server_, {}).value();
+    frame_topics_ = FrameTopics::create(suit_, *topics_).value();
     end_ = server_->add_channel("/end", "none", "");
     server_->start({[] { return std::vector<stream::Parameter>{}; },
                     [](const stream::Parameter&, const std::string&) { return Done{}; }});
@@ -85,94 +86,94 @@ class Broadcasting : public testing::Test {
   const std::atomic<bool> stop_ = false;
   const ServedSuit suit_ = small_suit({"chest"}, stop_);
   std::unique_ptr<stream::Server> server_;
-  std::optional<Broadcaster> broadcaster_;
+  std::unique_ptr<Topics> topics_;
+  std::unique_ptr<FrameTopics> frame_topics_;
   stream::ChannelId end_ = 0;
   std::unique_ptr<StreamClient> client_;
 };
 
-TEST_F(Broadcasting, a_fast_array_is_streamed_evenly_at_the_rate_that_is_set) {
+TEST_F(TopicsOfFrames, a_fast_array_is_streamed_evenly_at_the_rate_that_is_set) {
   listen_to({"/chest/force"});
-  broadcaster_->set_rate_hz(100.0);
-  for (std::int64_t k = 0; k < 1000; ++k) broadcaster_->publish(Frame(k * kMillisecond).result());
+  ASSERT_TRUE(frame_topics_->parameters().front().set_number(100.0));
+  for (std::int64_t k = 0; k < 1000; ++k) frame_topics_->hear(Frame(k * kMillisecond).result());
   const std::vector<std::int64_t> times = heard()["/chest/force"];
   ASSERT_EQ(times.size(), 100U);
   for (std::size_t k = 0; k < times.size(); ++k) EXPECT_EQ(times[k], static_cast<std::int64_t>(10 * k));
 }
 
-TEST_F(Broadcasting, every_frame_of_a_slow_array_is_streamed) {
+TEST_F(TopicsOfFrames, every_frame_of_a_slow_array_is_streamed) {
   listen_to({"/chest/force"});
-  for (std::int64_t k = 0; k < 20; ++k) broadcaster_->publish(Frame(k * 40 * kMillisecond).result());
+  for (std::int64_t k = 0; k < 20; ++k) frame_topics_->hear(Frame(k * 40 * kMillisecond).result());
   EXPECT_EQ(heard()["/chest/force"].size(), 20U);
 }
 
-TEST_F(Broadcasting, a_frame_that_was_late_does_not_make_the_next_one_late) {
+TEST_F(TopicsOfFrames, a_frame_that_was_late_does_not_make_the_next_one_late) {
   listen_to({"/chest/force"});
-  broadcaster_->set_rate_hz(100.0);
-  for (const std::int64_t time : {0, 10, 23, 30, 40}) broadcaster_->publish(Frame(time * kMillisecond).result());
+  ASSERT_TRUE(frame_topics_->parameters().front().set_number(100.0));
+  for (const std::int64_t time : {0, 10, 23, 30, 40}) frame_topics_->hear(Frame(time * kMillisecond).result());
   EXPECT_EQ(heard()["/chest/force"], (std::vector<std::int64_t>{0, 10, 23, 30, 40}));
 }
 
-TEST_F(Broadcasting, a_recording_that_was_sought_back_goes_on_at_once) {
+TEST_F(TopicsOfFrames, a_recording_that_was_sought_back_goes_on_at_once) {
   listen_to({"/chest/force"});
-  for (const std::int64_t time : {10'000, 10'001, 500, 501}) broadcaster_->publish(Frame(time * kMillisecond).result());
+  for (const std::int64_t time : {10'000, 10'001, 500, 501}) frame_topics_->hear(Frame(time * kMillisecond).result());
   EXPECT_EQ(heard()["/chest/force"], (std::vector<std::int64_t>{10'000, 500}));
 }
 
-TEST_F(Broadcasting, a_frame_that_comes_again_is_streamed_again) {
+TEST_F(TopicsOfFrames, a_frame_that_comes_again_is_streamed_again) {
   listen_to({"/chest/force"});
-  for (const std::int64_t time : {10'000, 10'001, 10'001}) broadcaster_->publish(Frame(time * kMillisecond).result());
+  for (const std::int64_t time : {10'000, 10'001, 10'001}) frame_topics_->hear(Frame(time * kMillisecond).result());
   EXPECT_EQ(heard()["/chest/force"], (std::vector<std::int64_t>{10'000, 10'001}));
 }
 
-TEST_F(Broadcasting, the_beginning_and_the_end_of_a_contact_are_never_left_out) {
+TEST_F(TopicsOfFrames, the_beginning_and_the_end_of_a_contact_are_never_left_out) {
   listen_to({"/contacts", "/chest/force"});
   const std::vector<ContactPhase> phases = {ContactPhase::held, ContactPhase::onset, ContactPhase::held,
                                             ContactPhase::release, ContactPhase::held};
   for (std::size_t k = 0; k < phases.size(); ++k) {
     Frame frame(static_cast<std::int64_t>(k) * kMillisecond);
     frame.add_contact(phases[k]);
-    broadcaster_->publish(frame.result());
+    frame_topics_->hear(frame.result());
   }
   auto times = heard();
   EXPECT_EQ(times["/contacts"], (std::vector<std::int64_t>{0, 1, 3}));
   EXPECT_EQ(times["/chest/force"], (std::vector<std::int64_t>{0}));
 }
 
-TEST_F(Broadcasting, a_client_gets_the_topics_that_it_asked_for) {
+TEST_F(TopicsOfFrames, a_client_gets_the_topics_that_it_asked_for) {
   listen_to({"/chest/raw", "/chest/conductance"});
-  broadcaster_->publish(Frame(kMillisecond).result());
-  broadcaster_->publish_points();
+  frame_topics_->hear(Frame(kMillisecond).result());
+  frame_topics_->tick(0);
   const auto times = heard();
   EXPECT_EQ(times.size(), 2U);
   EXPECT_EQ(times.at("/chest/raw"), (std::vector<std::int64_t>{1}));
   EXPECT_EQ(times.at("/chest/conductance"), (std::vector<std::int64_t>{1}));
 }
 
-TEST_F(Broadcasting, frames_without_the_right_number_of_taxels_are_not_shown) {
+TEST_F(TopicsOfFrames, frames_without_the_right_number_of_taxels_are_not_shown) {
   listen_to({"/chest/raw", "/chest/conductance"});
   Frame damaged(kMillisecond);
   damaged.raw.counts.pop_back();
   damaged.conductance.taxels.clear();
-  broadcaster_->publish(damaged.result());
+  frame_topics_->hear(damaged.result());
   EXPECT_TRUE(heard().empty());
 }
 
-TEST_F(Broadcasting, the_points_are_those_of_the_last_frame_that_was_streamed) {
+TEST_F(TopicsOfFrames, the_points_are_those_of_the_last_frame_that_was_streamed) {
   listen_to({"/suit/points"});
-  broadcaster_->publish(Frame(5 * kMillisecond).result());
-  broadcaster_->publish(Frame(6 * kMillisecond).result());
-  EXPECT_EQ(broadcaster_->last_time(), 5 * kMillisecond);
-  broadcaster_->publish_points();
+  frame_topics_->hear(Frame(5 * kMillisecond).result());
+  frame_topics_->hear(Frame(6 * kMillisecond).result());
+  frame_topics_->tick(0);
   EXPECT_EQ(heard()["/suit/points"], (std::vector<std::int64_t>{5}));
 }
 
-TEST_F(Broadcasting, what_nobody_asked_for_is_not_even_encoded) {
+TEST_F(TopicsOfFrames, what_nobody_asked_for_is_not_even_encoded) {
   if (!support::kAllocationsAreCounted) GTEST_SKIP() << "a sanitizer owns malloc";
   std::vector<Frame> frames;
   for (std::int64_t k = 0; k < 100; ++k) frames.emplace_back(k * 20 * kMillisecond);
   const support::AllocationGuard guard;
-  for (const Frame& frame : frames) broadcaster_->publish(frame.result());
-  broadcaster_->publish_points();
+  for (const Frame& frame : frames) frame_topics_->hear(frame.result());
+  frame_topics_->tick(0);
   EXPECT_EQ(guard.count(), 0U) << "no message was made";
 }
 
