@@ -6,7 +6,6 @@
 
 #include "dermis/core/version.hpp"
 #include "dermis/paper/feed_forward.hpp"
-#include "dermis/paper/half_network_bank.hpp"
 #include "dermis/paper/network_bank.hpp"
 #include "dermis/paper/training.hpp"
 #include "engine.hpp"
@@ -17,7 +16,6 @@ namespace {
 
 using paper::BankStep;
 using paper::FeedForward;
-using paper::HalfNetworkBank;
 using paper::NetworkBank;
 using paper::PackedSamples;
 
@@ -72,26 +70,6 @@ class Dermis final : public Engine {
   }
 
   std::optional<Run> bank_frame(const BankProblem& problem) override { return evaluate(problem, 1); }
-  /// Beside the check of its outputs, how far they are from those of the bank in single precision.
-  std::optional<Run> bank_frame_16bit(const BankProblem& problem) override {
-    const std::shared_ptr<NetworkBank> whole = filled_bank(problem);
-    auto half = std::make_shared<Result<HalfNetworkBank>>(HalfNetworkBank::from(*whole));
-    std::vector<float> expected(problem.networks);
-    std::vector<float> outputs(problem.networks);
-    double error = 0.0;
-    for (std::size_t k = problem.batch; k-- > 0;) {
-      const std::span<const float> frame = std::span(problem.frames).subspan(k * problem.size(), problem.size());
-      whole->evaluate(frame, expected);
-      half->value().evaluate(frame, outputs);
-      error = std::fmax(error, reference::max_deviation(reference::as_double(outputs), reference::as_double(expected)));
-    }
-    Check check = check_outputs(problem, 1, outputs);
-    check.tolerance = 2e-4;
-    const auto evaluate = [half, outputs, frame = std::span(problem.frames).first(problem.size())]() mutable {
-      half->value().evaluate(frame, outputs);
-    };
-    return Run{evaluate, check, "binary16 weights", {}, {{"max_error_of_full_scale", error}}};
-  }
 
   std::optional<Run> bank_batch(const BankProblem& problem) override { return evaluate(problem, problem.batch); }
 

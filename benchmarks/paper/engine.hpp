@@ -51,7 +51,6 @@ class Engine {
   virtual std::optional<Run> levenberg_marquardt_step(const PeaksProblem&) { return std::nullopt; }
   virtual std::optional<Run> taxel_mlp(const TaxelProblem&) { return std::nullopt; }
   virtual std::optional<Run> bank_frame(const BankProblem&) { return std::nullopt; }
-  virtual std::optional<Run> bank_frame_16bit(const BankProblem&) { return std::nullopt; }
   virtual std::optional<Run> bank_batch(const BankProblem&) { return std::nullopt; }
   virtual std::optional<Run> bank_training(const BankProblem&, Rule) { return std::nullopt; }
 };

@@ -46,10 +46,6 @@ class MachineLimit final : public Engine {
 
   std::optional<Run> bank_frame(const BankProblem& problem) override { return reading(problem.all_parameters.size()); }
 
-  std::optional<Run> bank_frame_16bit(const BankProblem& problem) override {
-    return reading(problem.all_parameters.size() / 2);
-  }
-
   std::optional<Run> bank_batch(const BankProblem& problem) override {
     return bank_computing(problem, problem.operations(problem.batch));
   }

@@ -122,7 +122,6 @@ class Program {
         compete({name, threads, "ms", 1e3}, prepare);
       };
       compete_on_bank("bank_frame", [&](Engine& engine) { return engine.bank_frame(problem); });
-      compete_on_bank("bank_frame_16bit", [&](Engine& engine) { return engine.bank_frame_16bit(problem); });
       compete_on_bank("bank_batch64", [&](Engine& engine) { return engine.bank_batch(problem); });
       compete_on_bank("bank_train_sgd",
                       [&](Engine& engine) { return engine.bank_training(problem, Rule::gradient_descent); });

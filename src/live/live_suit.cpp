@@ -112,10 +112,6 @@ Status LiveSuit::set_model(std::size_t array, const std::shared_ptr<const pipeli
   return implementation_->at(array).set_model(*model);
 }
 
-std::size_t LiveSuit::array_count() const noexcept {
-  return implementation_->workers().size();
-}
-
 ArrayStatistics LiveSuit::statistics(std::size_t array) const {
   return implementation_->at(array).statistics();
 }

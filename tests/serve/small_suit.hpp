@@ -43,12 +43,11 @@ inline ServedSuit small_suit(const std::vector<std::string>& names, const std::a
   ServedSuit suit;
   for (const std::string& name : names) {
     const auto model = std::make_shared<const pipeline::Model>(support::hand_made_model(kRows, kCols));
-    suit.arrays.push_back({name,
-                           std::make_unique<UntouchedArray>(model->array, stop),
-                           model,
-                           ArraySurface::create(model->array).value(),
-                           {},
-                           model->array});
+    suit.arrays.push_back({.name = name,
+                           .source = std::make_unique<UntouchedArray>(model->array, stop),
+                           .model = model,
+                           .surface = ArraySurface::create(model->array).value(),
+                           .description = model->array});
   }
   return suit;
 }

@@ -110,7 +110,6 @@ class LiveSuit {
   /// ids, faults and tare begin anew.
   [[nodiscard]] Status set_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
 
-  [[nodiscard]] std::size_t array_count() const noexcept;
   [[nodiscard]] ArrayStatistics statistics(std::size_t array) const;
 
  private:

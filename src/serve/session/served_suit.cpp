@@ -173,9 +173,13 @@ Result<ServedArray> open_array(const SuitArray& described, const Pose& suit_from
   std::string name = described.name.empty() ? topic_name(array.name) : described.name;
   Result<ArraySurface> surface = ArraySurface::create(array, described.shape, suit_from_array, described.mirrored);
   if (!surface) return bad_input(fmt::format("array '{}': {}", name, surface.error().message));
-  ServedArray served{std::move(name),     nullptr,         std::move(known->model),
-                     *std::move(surface), suit_from_array, std::move(known->description),
-                     described.model};
+  ServedArray served{.name = std::move(name),
+                     .source = nullptr,
+                     .model = std::move(known->model),
+                     .surface = *std::move(surface),
+                     .suit_from_array = suit_from_array,
+                     .description = std::move(known->description),
+                     .model_path = described.model};
   if (Status read = read_classes_of_array(described.classes, notice, served); !read) return read.error();
   return served;
 }
@@ -293,12 +297,11 @@ Result<ServedSuit> suit_of_one(std::unique_ptr<FrameSource> source, pipeline::Mo
   ArrayDescription description = model.array;
   std::string name = topic_name(description.name);
   ServedSuit suit;
-  suit.arrays.push_back({std::move(name),
-                         std::move(source),
-                         std::make_shared<const pipeline::Model>(std::move(model)),
-                         *std::move(surface),
-                         {},
-                         std::move(description)});
+  suit.arrays.push_back({.name = std::move(name),
+                         .source = std::move(source),
+                         .model = std::make_shared<const pipeline::Model>(std::move(model)),
+                         .surface = *std::move(surface),
+                         .description = std::move(description)});
   return suit;
 }
 
@@ -306,8 +309,14 @@ Result<ServedSuit> played_suit(const ServedSuit& suit, const std::string& record
   ServedSuit played;
   played.name = suit.name;
   for (const ServedArray& array : suit.arrays) {
-    played.arrays.push_back({array.name, nullptr, array.model, array.surface, array.suit_from_array, array.description,
-                             array.model_path, array.classes});
+    played.arrays.push_back({.name = array.name,
+                             .source = nullptr,
+                             .model = array.model,
+                             .surface = array.surface,
+                             .suit_from_array = array.suit_from_array,
+                             .description = array.description,
+                             .model_path = array.model_path,
+                             .classes = array.classes});
   }
   played.classes = suit.classes;
   played.threats = suit.threats;
