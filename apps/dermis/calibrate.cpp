@@ -42,6 +42,10 @@ double seconds_since(Clock::time_point start) {
 
 constexpr double kPoorFit = 0.1;  // relative error
 constexpr std::uint64_t kBankSeed = 1;
+// Single presses hide what is wrong with circuit and ADC: each law takes it in.
+constexpr const char* kProofPresses =
+    "less than eight presses on two to six taxels: whether circuit and ADC are as described is not told; add some, "
+    "such as twenty of a known weight over two to four taxels of a row";
 
 struct CalibrateOptions {
   std::string array;
@@ -79,23 +83,14 @@ void print_bank(const BankTrainingReport& bank, const ArrayDescription& array) {
   }
 }
 
-/// Single presses hide what is wrong with circuit and ADC: each law takes it in.
-void ask_for_presses_on_several(const ArrayDescription& array, const std::vector<Load>& loads) {
-  if (array.readout.circuit == Circuit::none) return;
-  std::map<std::size_t, std::size_t> pressed;  // taxels in each frame
-  for (const Load& load : loads) pressed[load.frame] += load.value > 0.0 ? load.where.taxel_count() : 0;
-  if (std::any_of(pressed.begin(), pressed.end(), [](const auto& frame) { return frame.second > 1; })) return;
-  fmt::print(
-      "no press on several taxels tells whether circuit and ADC are as described: add some, such as twenty of a known "
-      "weight over two to four taxels of a row\n");
-}
-
 void print_text(const CalibrationReport& report, const std::optional<BankTrainingReport>& bank,
                 const ArrayDescription& array) {
   const calibration::TrainingReport& training = report.training;
   fmt::print("{} labelled frames, {} rejected{}\n", report.frames, report.frames_rejected,
              report.frames_rejected > 0 ? " (" + report.first_rejection + ")" : "");
   for (const std::string& remark : report.remarks) fmt::print("{}\n", remark);
+  for (const std::string& doubt : report.doubts) fmt::print("{}\n", doubt);
+  if (report.lacks_proof) fmt::print("{}\n", kProofPresses);
   for (const std::string& statement : report.circuit) fmt::print("{}\n", statement);
   fmt::print("{}\n", training.choice);
   if (!report.memory.empty()) fmt::print("{}\n", report.memory);
@@ -154,6 +149,8 @@ void print_json(const CalibrationReport& report, const std::optional<BankTrainin
   nlohmann::ordered_json json = {{"frames", report.frames},
                                  {"frames_rejected", report.frames_rejected},
                                  {"remarks", report.remarks},
+                                 {"doubts", report.doubts},
+                                 {"lacks_proof", report.lacks_proof},
                                  {"networks", training.choice},
                                  {"own_networks", training.own_networks},
                                  {"shared_networks", training.shared_networks},
@@ -254,7 +251,6 @@ Status calibrate(const CalibrateOptions& options) {
   }
   options.json ? print_json(calibration->report, bank, *array, database->circuit_fit)
                : print_text(calibration->report, bank, *array);
-  if (!options.json) ask_for_presses_on_several(calibration->model.array, *loads);
   if (!options.json && calibration->model.strip) {
     fmt::print("positions along the strip: learned from {} touches, \u00b1 {:.2f} mm\n", positions->size(),
                1e3 * calibration->model.strip->sigma_m);

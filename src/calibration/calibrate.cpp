@@ -5,6 +5,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <mutex>
 #include <optional>
@@ -46,6 +47,7 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
                              : "not an input (less than 3 C apart, or missing in many frames)";
   if (!report.memory.empty()) facts["memory"] = report.memory;
   if (!report.remarks.empty()) facts["remarks"] = fmt::format("{}", fmt::join(report.remarks, "; "));
+  if (!report.doubts.empty()) facts[pipeline::kDoubts] = fmt::format("{}", fmt::join(report.doubts, "; "));
   if (!report.circuit.empty()) facts["circuit"] = fmt::format("{}", fmt::join(report.circuit, "; "));
   return facts;
 }
@@ -53,13 +55,13 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
 /// What most of the array is worth, before anything else is said.
 void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) {
   const UncertaintyReport& uncertainty = report.uncertainty;
-  if (!uncertainty.relative_sigma_of_unpressed || 2 * uncertainty.unpressed_taxels < array.taxel_count()) return;
-  report.remarks.insert(
-      report.remarks.begin(),
-      fmt::format(
-          "{} of {} taxels were not pressed: their forces are \u00b1 {:.0f} %, as taxels differ; five loads of an "
-          "air bladder over all of them tell each one's gain",
-          uncertainty.unpressed_taxels, array.taxel_count(), 100.0 * uncertainty.relative_sigma_of_unpressed->back()));
+  const auto& sigma = uncertainty.relative_sigma_of_unpressed;
+  if (!sigma || 2 * uncertainty.unpressed_taxels < array.taxel_count()) return;
+  report.remarks.insert(report.remarks.begin(), fmt::format("{} of {} taxels were not pressed: their forces are \u00b1 "
+                                                            "{:.0f} % at best, as taxels differ; five loads of an "
+                                                            "air bladder over all of them tell each one's gain",
+                                                            uncertainty.unpressed_taxels, array.taxel_count(),
+                                                            100.0 * *std::min_element(sigma->begin(), sigma->end())));
 }
 
 }  // namespace
@@ -112,6 +114,8 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   report.frames_rejected = database.frames_rejected;
   report.first_rejection = database.first_rejection;
   report.remarks = database.remarks;
+  report.doubts = database.doubts;
+  report.lacks_proof = database.lacks_proof;
   calibration.model.array = database.array;
   calibration.model.supply = database.supply;
   calibration.model.networks = training->networks;

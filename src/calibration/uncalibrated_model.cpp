@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "calibration/circuit_fit/circuit_choice.hpp"
+#include "calibration/circuit_fit/circuit_trial.hpp"
 #include "dermis/pipeline/direct_model.hpp"
 
 namespace dermis::calibration {

@@ -2,7 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "compensation/shared_errors.hpp"
 
+#include <cassert>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "compensation/readout_parts.hpp"
 #include "compensation/sensed_line.hpp"
@@ -21,21 +24,38 @@ bool has_grounded_lines(const Readout& readout) {
 
 }  // namespace
 
-/// What variance() finds of a frame, by lines.
+/// What all sums of a frame share.
 struct SharedErrors::Frame {
-  std::vector<double> driven_sum;       // sum_j G_ij [driven]
-  std::vector<double> driven_gain;      // a [driven]
-  std::vector<double> own_gain;         // (S D^-1)_ii [driven]
+  std::vector<double> siemens;       // G_ij [driven, sensed]
+  std::vector<double> driven_sum;    // sum_j G_ij [driven]
+  std::vector<double> driven_gain;   // a [driven]
+  std::vector<double> own_gain;      // (S D^-1)_ii [driven]
+  std::vector<double> sensed_sum;    // sum_i G_ij [sensed]
+  std::vector<double> sensed_gain;   // 1 / w [sensed]
+  std::vector<double> sensed_shunt;  // eta [sensed]
+  std::vector<double> sensed_taken;  // one loaded: sum_i (1 + G_ij Rd_i) y_ij / w_j [sensed]
+  std::vector<std::size_t> doubted;  // taxels that are estimated
+  double own_gains = 0.0;            // sum_i (S D^-1)_ii^2
+  double reading_gains = 0.0;        // sum_j 1 / (gain_j w_j)^2
+
+  [[nodiscard]] std::span<const double> of_driven(std::size_t i) const {
+    const std::size_t sensed = sensed_sum.size();
+    return std::span(siemens).subspan(i * sensed, sensed);
+  }
+};
+
+/// A sum by lines.
+struct SharedErrors::Sum {
+  WeightedConductances of;
   std::vector<double> driven_weighted;  // u [driven]
-  std::vector<double> sensed_sum;       // sum_i G_ij [sensed]
-  std::vector<double> sensed_gain;      // 1 / w [sensed]
-  std::vector<double> sensed_shunt;     // eta [sensed]
   std::vector<double> sensed_weighted;  // sum_i c_ij G_ij [sensed]
-  std::vector<double> sensed_taken;     // one loaded: sum_i (1 + G_ij Rd_i) y_ij / w_j [sensed]
+  std::vector<bool> is_driven;          // a taxel of the sum is on the line [driven]
+  std::vector<double> lift;             // L_ik of a driver k [driven]
 };
 
 SharedErrors::SharedErrors(const ArrayDescription& array)
-    : driven_step_(driven_axis(array) == Axis::row ? array.cols : 1),
+    : lines_(array.taxel_count()),
+      driven_step_(driven_axis(array) == Axis::row ? array.cols : 1),
       sensed_step_(driven_axis(array) == Axis::row ? 1 : array.cols),
       tells_noise_(has_grounded_lines(array.readout)),
       one_loaded_(array.readout.idle_columns == IdleColumns::floating || array.readout.circuit == Circuit::flexitac),
@@ -44,6 +64,9 @@ SharedErrors::SharedErrors(const ArrayDescription& array)
       sensed_ohm_(array.sensed_lines()),
       reading_siemens_(array.sensed_lines(), 1.0),
       correlation_(array.readout.drive_error_correlation) {
+  for (std::size_t driven = 0; driven < driven_ohm_.size(); ++driven) {
+    for (std::size_t sensed = 0; sensed < sensed_ohm_.size(); ++sensed) lines_[at(driven, sensed)] = {driven, sensed};
+  }
   const Readout& readout = array.readout;
   if (readout.circuit == Circuit::none) return;
   driven_ohm_ = readout.drive_ohm;
@@ -55,40 +78,45 @@ SharedErrors::SharedErrors(const ArrayDescription& array)
   if (tells_noise_ && !is_absent(readout.drive_error_ohm)) drive_error_ohm_ = readout.drive_error_ohm;
 }
 
-double SharedErrors::variance(const ConductanceErrors& errors, std::span<const double> weight) const noexcept {
+void SharedErrors::variances(const ConductanceErrors& errors, std::span<const WeightedConductances> sums,
+                             std::span<double> variances) const noexcept {
+  assert(sums.size() == variances.size());
   thread_local Frame frame;
-  find_lines(errors, weight, frame);
-  return noise(errors, weight, frame) + supply(errors, weight, frame) + estimated_taxels(errors, frame) +
-         drivers(errors, weight, frame);
+  thread_local Sum sum;
+  find_lines(errors, frame);
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    weigh(frame, sums[k], sum);
+    variances[k] = noise(errors, frame, sum) + supply(errors, frame, sum) + estimated_taxels(errors, frame, sum) +
+                   drivers(frame, sum);
+  }
 }
 
-void SharedErrors::find_lines(const ConductanceErrors& errors, std::span<const double> weight,
-                              Frame& frame) const noexcept {
-  frame.driven_sum.assign(driven_ohm_.size(), 0.0);
-  frame.driven_gain.assign(driven_ohm_.size(), 1.0);
-  frame.driven_weighted.assign(driven_ohm_.size(), 0.0);
-  frame.sensed_sum.assign(sensed_ohm_.size(), 0.0);
-  frame.sensed_weighted.assign(sensed_ohm_.size(), 0.0);
+void SharedErrors::find_lines(const ConductanceErrors& errors, Frame& frame) const noexcept {
+  const std::size_t sensed = sensed_ohm_.size();
+  frame.siemens.resize(driven_ohm_.size() * sensed);
+  frame.driven_sum.resize(driven_ohm_.size());
+  frame.driven_gain.resize(driven_ohm_.size());
+  frame.sensed_sum.assign(sensed, 0.0);
   for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
-    for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
-      const double siemens = errors.siemens[at(i, j)];
-      const double weighted = weight[at(i, j)] * siemens;
-      frame.driven_sum[i] += siemens;
-      frame.driven_weighted[i] += driven_ohm_[i] * weighted;
-      frame.sensed_sum[j] += siemens;
-      frame.sensed_weighted[j] += weighted;
-    }
-    frame.driven_gain[i] += driven_ohm_[i] * frame.driven_sum[i];
+    double* const siemens = &frame.siemens[i * sensed];
+    for (std::size_t j = 0; j < sensed; ++j) siemens[j] = errors.siemens[at(i, j)];
+    for (std::size_t j = 0; j < sensed; ++j) frame.sensed_sum[j] += siemens[j];
+    frame.driven_sum[i] = std::reduce(siemens, siemens + sensed);
+    frame.driven_gain[i] = 1.0 + driven_ohm_[i] * frame.driven_sum[i];
   }
-  find_columns(errors, frame);
+  find_sensed_lines(frame);
+  find_own_gains(frame);
+  frame.doubted.clear();
+  for (std::size_t k = 0; k < errors.doubt_siemens.size(); ++k) {
+    if (errors.doubt_siemens[k] != 0.0F) frame.doubted.push_back(k);
+  }
 }
 
 /// With one load w depends on y, which is G w / a here.
-void SharedErrors::find_columns(const ConductanceErrors& errors, Frame& frame) const noexcept {
+void SharedErrors::find_sensed_lines(Frame& frame) const noexcept {
   frame.sensed_gain.assign(sensed_ohm_.size(), 1.0);
   frame.sensed_shunt.assign(sensed_ohm_.size(), 0.0);
   frame.sensed_taken.assign(sensed_ohm_.size(), 0.0);
-  frame.own_gain = frame.driven_gain;
   for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
     const double sum = frame.sensed_sum[j];
     frame.sensed_gain[j] += sensed_ohm_[j] * sum;
@@ -96,70 +124,108 @@ void SharedErrors::find_columns(const ConductanceErrors& errors, Frame& frame) c
     if (!one_loaded_ || !(sum > 0.0)) continue;
     frame.sensed_shunt[j] = 1.0 / sum;
     for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
-      const double siemens = errors.siemens[at(i, j)];
+      const double siemens = frame.of_driven(i)[j];
       const double dropped = driven_ohm_[i] * siemens * siemens / frame.driven_gain[i];
       frame.sensed_gain[j] += dropped / sum;
       frame.sensed_taken[j] += siemens / frame.driven_gain[i] + dropped;
     }
   }
+}
+
+void SharedErrors::find_own_gains(Frame& frame) const noexcept {
+  const auto shunted = [](double siemens, double shunt) { return siemens * siemens * shunt; };
+  frame.own_gain.resize(driven_ohm_.size());
+  frame.own_gains = 0.0;
   for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
-    for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
-      const double siemens = errors.siemens[at(i, j)];
-      frame.own_gain[i] -= driven_ohm_[i] * siemens * siemens * frame.sensed_shunt[j];
-    }
+    const std::span<const double> siemens = frame.of_driven(i);
+    const double returned =
+        std::transform_reduce(siemens.begin(), siemens.end(), frame.sensed_shunt.begin(), 0.0, std::plus<>(), shunted);
+    frame.own_gain[i] = frame.driven_gain[i] - driven_ohm_[i] * returned;
+    frame.own_gains += frame.own_gain[i] * frame.own_gain[i];
+  }
+  frame.reading_gains = 0.0;
+  for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
+    frame.reading_gains += std::pow(reading_siemens_[j] * frame.sensed_gain[j], 2);
   }
 }
 
-double SharedErrors::noise(const ConductanceErrors& errors, std::span<const double> weight,
-                           const Frame& frame) const noexcept {
-  double variance = 0.0;
-  for (std::size_t k = 0; k < errors.noise_siemens.size(); ++k) {
-    variance += std::pow(weight[k] * static_cast<double>(errors.noise_siemens[k]), 2);
+void SharedErrors::weigh(const Frame& frame, const WeightedConductances& of, Sum& sum) const noexcept {
+  sum.of = of;
+  sum.driven_weighted.assign(driven_ohm_.size(), 0.0);
+  sum.sensed_weighted.assign(sensed_ohm_.size(), 0.0);
+  sum.is_driven.assign(driven_ohm_.size(), false);
+  for (std::size_t k = 0; k < of.taxels.size(); ++k) {
+    const auto [i, j] = lines_[of.taxels[k]];
+    const double weighted = of.weight[k] * frame.of_driven(i)[j];
+    sum.driven_weighted[i] += driven_ohm_[i] * weighted;
+    sum.sensed_weighted[j] += weighted;
+    sum.is_driven[i] = true;
   }
-  if (!tells_noise_) return variance;
-  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
-    for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
-      const double alone = errors.sigma_ratio * reading_siemens_[j] * frame.own_gain[i] * frame.sensed_gain[j];
-      const double through_sensed = sensed_ohm_[j] * frame.sensed_weighted[j];
-      const double shift = alone * (weight[at(i, j)] + frame.driven_weighted[i] + through_sensed);
-      variance += shift * shift;
-    }
-  }
-  return variance;
 }
 
-double SharedErrors::supply(const ConductanceErrors& errors, std::span<const double> weight,
-                            const Frame& frame) const noexcept {
+/// sum_ij r_i^2 q_j^2 (c_ij + u_i + v_j)^2 with r_i = (S D^-1)_ii and q_j = sigma / (gain_j w_j). Where c_ij is 0, the
+/// sum over i and that over j are told apart.
+double SharedErrors::noise(const ConductanceErrors& errors, const Frame& frame, const Sum& sum) const noexcept {
+  double independent = 0.0;
+  if (!errors.noise_siemens.empty()) {
+    for (std::size_t k = 0; k < sum.of.taxels.size(); ++k) {
+      independent += std::pow(sum.of.weight[k] * static_cast<double>(errors.noise_siemens[sum.of.taxels[k]]), 2);
+    }
+  }
+  if (!tells_noise_) return independent;
+  double by_driven = 0.0;         // sum_i r_i^2 u_i
+  double by_driven_square = 0.0;  // sum_i r_i^2 u_i^2
+  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
+    const double shift = frame.own_gain[i] * frame.own_gain[i] * sum.driven_weighted[i];
+    by_driven += shift;
+    by_driven_square += shift * sum.driven_weighted[i];
+  }
+  double by_sensed = 0.0;         // sum_j q_j^2 v_j
+  double by_sensed_square = 0.0;  // sum_j q_j^2 v_j^2
+  for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
+    const double through_sensed = sensed_ohm_[j] * sum.sensed_weighted[j];
+    const double shift = std::pow(reading_siemens_[j] * frame.sensed_gain[j], 2) * through_sensed;
+    by_sensed += shift;
+    by_sensed_square += shift * through_sensed;
+  }
+  double variance =
+      by_driven_square * frame.reading_gains + 2.0 * by_driven * by_sensed + frame.own_gains * by_sensed_square;
+  for (std::size_t k = 0; k < sum.of.taxels.size(); ++k) {
+    const auto [i, j] = lines_[sum.of.taxels[k]];
+    const double alone = reading_siemens_[j] * frame.own_gain[i] * frame.sensed_gain[j];
+    const double through_lines = sum.driven_weighted[i] + sensed_ohm_[j] * sum.sensed_weighted[j];
+    variance += alone * alone * sum.of.weight[k] * (sum.of.weight[k] + 2.0 * through_lines);
+  }
+  return independent + errors.sigma_ratio * errors.sigma_ratio * variance;
+}
+
+double SharedErrors::supply(const ConductanceErrors& errors, const Frame& frame, const Sum& sum) const noexcept {
   const double sigma = std::hypot(supply_noise_, errors.supply_doubt);
   if (sigma == 0.0) return 0.0;
   double shift = 0.0;
-  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
-    for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
-      const double weighted = weight[at(i, j)] * static_cast<double>(errors.siemens[at(i, j)]);
-      shift += weighted * frame.driven_gain[i] * frame.sensed_gain[j];
-    }
+  for (std::size_t k = 0; k < sum.of.taxels.size(); ++k) {
+    const auto [i, j] = lines_[sum.of.taxels[k]];
+    shift += sum.of.weight[k] * frame.of_driven(i)[j] * frame.driven_gain[i] * frame.sensed_gain[j];
   }
   return sigma * sigma * shift * shift;
 }
 
-double SharedErrors::estimated_taxels(const ConductanceErrors& errors, const Frame& frame) const noexcept {
+double SharedErrors::estimated_taxels(const ConductanceErrors& errors, const Frame& frame,
+                                      const Sum& sum) const noexcept {
   double variance = 0.0;
-  for (std::size_t k = 0; k < errors.doubt_siemens.size(); ++k) {
-    if (errors.doubt_siemens[k] == 0.0F) continue;
-    const std::size_t i = k / driven_step_ % driven_ohm_.size();
-    const std::size_t j = k / sensed_step_ % sensed_ohm_.size();
-    const double shift = frame.driven_weighted[i] + sensed_ohm_[j] * frame.sensed_weighted[j];
-    variance += std::pow(static_cast<double>(errors.doubt_siemens[k]) * shift, 2);
+  for (const std::size_t taxel : frame.doubted) {
+    const auto [i, j] = lines_[taxel];
+    const double shift = sum.driven_weighted[i] + sensed_ohm_[j] * sum.sensed_weighted[j];
+    variance += std::pow(static_cast<double>(errors.doubt_siemens[taxel]) * shift, 2);
   }
   return variance;
 }
 
-double SharedErrors::drivers(const ConductanceErrors& errors, std::span<const double> weight,
-                             const Frame& frame) const noexcept {
+double SharedErrors::drivers(const Frame& frame, Sum& sum) const noexcept {
   double common = 0.0;
   double square = 0.0;
   for (std::size_t k = 0; k < drive_error_ohm_.size(); ++k) {
-    const double shift = drive_error_ohm_[k] * driver_shift(k, errors, weight, frame);
+    const double shift = drive_error_ohm_[k] * driver_shift(k, frame, sum);
     common += shift;
     square += shift * shift;
   }
@@ -168,31 +234,42 @@ double SharedErrors::drivers(const ConductanceErrors& errors, std::span<const do
 
 /// sum_i L_ik (sum_j c_ij p_kj + u_i sum_j p_kj) + sum_j (sum_i c_ij G_ij) c_kj - sum_j c_kj G_kj^2; DriverError names
 /// the symbols.
-double SharedErrors::driver_shift(std::size_t driver, const ConductanceErrors& errors, std::span<const double> weight,
-                                  const Frame& frame) const noexcept {
+double SharedErrors::driver_shift(std::size_t driver, const Frame& frame, Sum& sum) const noexcept {
+  const std::span<const double> of_driver = frame.of_driven(driver);
   const double gain = frame.driven_gain[driver];
+  find_lifts(driver, frame, sum);
   double shift = 0.0;
-  double sum_of_lifts = 0.0;
   for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
-    double lift = i == driver ? frame.driven_sum[driver] : 0.0;  // L_ik
-    double weighted = frame.driven_weighted[i] * frame.driven_sum[driver] / gain;
-    for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
-      const double of_driver = errors.siemens[at(driver, j)];
-      lift -= static_cast<double>(errors.siemens[at(i, j)]) * frame.sensed_shunt[j] * of_driver;
-      weighted += weight[at(i, j)] * of_driver / gain;
-    }
-    sum_of_lifts += lift;
-    shift += lift * weighted;
+    shift += sum.lift[i] * sum.driven_weighted[i] * frame.driven_sum[driver] / gain;
+  }
+  for (std::size_t k = 0; k < sum.of.taxels.size(); ++k) {
+    const auto [i, j] = lines_[sum.of.taxels[k]];
+    shift += sum.lift[i] * sum.of.weight[k] * of_driver[j] / gain;
+    if (i == driver) shift -= sum.of.weight[k] * of_driver[j] * of_driver[j];
+  }
+  double sum_of_lifts = frame.driven_sum[driver];
+  for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
+    sum_of_lifts -= frame.sensed_sum[j] * frame.sensed_shunt[j] * of_driver[j];
   }
   for (std::size_t j = 0; j < sensed_ohm_.size(); ++j) {
-    const double siemens = errors.siemens[at(driver, j)];
-    shift -= weight[at(driver, j)] * siemens * siemens;
     const double taken = frame.sensed_taken[j];
-    const double of_one_load = taken > 0.0 ? siemens * siemens / (gain * taken) : 0.0;
-    const double share = one_loaded_ ? of_one_load : sensed_ohm_[j] * siemens / gain * sum_of_lifts;
-    shift += frame.sensed_weighted[j] * share;
+    const double of_one_load = taken > 0.0 ? of_driver[j] * of_driver[j] / (gain * taken) : 0.0;
+    const double share = one_loaded_ ? of_one_load : sensed_ohm_[j] * of_driver[j] / gain * sum_of_lifts;
+    shift += sum.sensed_weighted[j] * share;
   }
   return shift;
+}
+
+/// L_ik = [i = k] sum_j G_kj - sum_j G_ij eta_j G_kj, of the lines that the sum counts.
+void SharedErrors::find_lifts(std::size_t driver, const Frame& frame, Sum& sum) const noexcept {
+  const std::span<const double> of_driver = frame.of_driven(driver);
+  sum.lift.assign(driven_ohm_.size(), 0.0);
+  for (std::size_t i = 0; i < driven_ohm_.size(); ++i) {
+    if (!sum.is_driven[i]) continue;
+    const std::span<const double> siemens = frame.of_driven(i);
+    for (std::size_t j = 0; j < siemens.size(); ++j) sum.lift[i] -= siemens[j] * frame.sensed_shunt[j] * of_driver[j];
+    if (i == driver) sum.lift[i] += frame.driven_sum[driver];
+  }
 }
 
 }  // namespace dermis::compensation

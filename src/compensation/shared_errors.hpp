@@ -25,30 +25,36 @@ class SharedErrors final : public CircuitErrors {
  public:
   explicit SharedErrors(const ArrayDescription& array);
 
-  /// Whether variance() tells the noise of readings; otherwise ConductanceErrors::noise_siemens has to.
+  /// Whether variances() tells the noise of readings; otherwise ConductanceErrors::noise_siemens has to.
   [[nodiscard]] bool tells_noise() const noexcept { return tells_noise_; }
 
-  [[nodiscard]] double variance(const ConductanceErrors& errors,
-                                std::span<const double> weight) const noexcept override;
+  void variances(const ConductanceErrors& errors, std::span<const WeightedConductances> sums,
+                 std::span<double> variances) const noexcept override;
 
  private:
   struct Frame;
+  struct Sum;
+  struct Lines {
+    std::size_t driven;
+    std::size_t sensed;
+  };
 
   [[nodiscard]] std::size_t at(std::size_t driven, std::size_t sensed) const noexcept {
     return driven * driven_step_ + sensed * sensed_step_;
   }
-  void find_lines(const ConductanceErrors& errors, std::span<const double> weight, Frame& frame) const noexcept;
-  void find_columns(const ConductanceErrors& errors, Frame& frame) const noexcept;
-  [[nodiscard]] double noise(const ConductanceErrors& errors, std::span<const double> weight,
-                             const Frame& frame) const noexcept;
-  [[nodiscard]] double supply(const ConductanceErrors& errors, std::span<const double> weight,
-                              const Frame& frame) const noexcept;
-  [[nodiscard]] double estimated_taxels(const ConductanceErrors& errors, const Frame& frame) const noexcept;
-  [[nodiscard]] double drivers(const ConductanceErrors& errors, std::span<const double> weight,
-                               const Frame& frame) const noexcept;
-  [[nodiscard]] double driver_shift(std::size_t driver, const ConductanceErrors& errors, std::span<const double> weight,
-                                    const Frame& frame) const noexcept;
+  void find_lines(const ConductanceErrors& errors, Frame& frame) const noexcept;
+  void find_sensed_lines(Frame& frame) const noexcept;
+  void find_own_gains(Frame& frame) const noexcept;
+  void weigh(const Frame& frame, const WeightedConductances& of, Sum& sum) const noexcept;
+  [[nodiscard]] double noise(const ConductanceErrors& errors, const Frame& frame, const Sum& sum) const noexcept;
+  [[nodiscard]] double supply(const ConductanceErrors& errors, const Frame& frame, const Sum& sum) const noexcept;
+  [[nodiscard]] double estimated_taxels(const ConductanceErrors& errors, const Frame& frame,
+                                        const Sum& sum) const noexcept;
+  [[nodiscard]] double drivers(const Frame& frame, Sum& sum) const noexcept;
+  [[nodiscard]] double driver_shift(std::size_t driver, const Frame& frame, Sum& sum) const noexcept;
+  void find_lifts(std::size_t driver, const Frame& frame, Sum& sum) const noexcept;
 
+  std::vector<Lines> lines_;  // [taxels]
   std::size_t driven_step_;
   std::size_t sensed_step_;
   bool tells_noise_;

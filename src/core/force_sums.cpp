@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 #include "dermis/core/force_sums.hpp"
 
+#include <cassert>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 #include "dermis/core/frames.hpp"
@@ -11,19 +13,7 @@
 namespace dermis {
 namespace {
 
-/// Every taxel is in it, or those of a list.
-class Region {
- public:
-  explicit Region(std::size_t taxels) : size_(taxels) {}
-  explicit Region(std::span<const std::size_t> taxels) : taxels_(taxels.data()), size_(taxels.size()) {}
-
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  [[nodiscard]] std::size_t operator[](std::size_t k) const noexcept { return taxels_ == nullptr ? k : taxels_[k]; }
-
- private:
-  const std::size_t* taxels_ = nullptr;
-  std::size_t size_;
-};
+using Region = std::span<const std::size_t>;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
@@ -32,40 +22,75 @@ double square(double value) {
 }
 
 /// Of a frame that tells forces and standard deviations alone: errors count as independent.
-TotalForce independent_total(const ForceFrame& force, const Region& region) {
+TotalForce independent_total(const ForceFrame& force, Region region) {
   TotalForce total;
   double variance = 0.0;
-  for (std::size_t k = 0; k < region.size(); ++k) {
-    const double newtons = force.newtons[region[k]];
+  for (const std::size_t taxel : region) {
+    const double newtons = force.newtons[taxel];
     if (std::isnan(newtons)) {
       ++total.left_out;
       continue;
     }
     total.newtons += newtons;
-    variance += square(force.sigma_newtons[region[k]]);
+    variance += square(force.sigma_newtons[taxel]);
   }
   total.sigma_newtons = std::sqrt(variance);
   return total;
 }
 
-double conductance_variance(const ConductanceErrors& errors, std::span<const double> weight) {
-  if (errors.circuit) return errors.circuit->variance(errors, weight);
-  double variance = 0.0;
-  for (std::size_t taxel = 0; taxel < errors.noise_siemens.size(); ++taxel) {
-    variance += square(weight[taxel] * static_cast<double>(errors.noise_siemens[taxel]));
+/// What sums of forces make of conductances. Its memory is kept from call to call.
+class ConductanceSums {
+ public:
+  void clear(std::span<const Region> regions) {
+    const auto add_size = [](std::size_t sum, Region region) { return sum + region.size(); };
+    const std::size_t taxels = std::accumulate(regions.begin(), regions.end(), std::size_t{0}, add_size);
+    taxels_.clear();
+    weight_.clear();
+    sums_.clear();
+    taxels_.reserve(taxels);  // sums_ points into them
+    weight_.reserve(taxels);
   }
-  return variance;
-}
+  void begin_sum() { sums_.push_back({{taxels_.data() + taxels_.size(), 0}, {weight_.data() + weight_.size(), 0}}); }
+  void add(std::size_t taxel, double weight) {
+    taxels_.push_back(taxel);
+    weight_.push_back(weight);
+    WeightedConductances& sum = sums_.back();
+    sum = {{sum.taxels.data(), sum.taxels.size() + 1}, {sum.weight.data(), sum.weight.size() + 1}};
+  }
+  /// Of each sum.
+  [[nodiscard]] std::span<const double> variances(const ConductanceErrors& errors) {
+    variances_.assign(sums_.size(), 0.0);
+    if (taxels_.empty()) return variances_;  // a rejected frame may have no conductances
+    if (errors.circuit) {
+      errors.circuit->variances(errors, sums_, variances_);
+    } else if (!errors.noise_siemens.empty()) {
+      for (std::size_t k = 0; k < sums_.size(); ++k) variances_[k] = independent_variance(errors, sums_[k]);
+    }
+    return variances_;
+  }
 
-/// docs/derivations.md, "Sums of forces".
-TotalForce signed_total(const ForceSums& sums, const Region& region) {
-  thread_local std::vector<double> weight;  // d total / d conductance
-  weight.assign(sums.newtons.size(), 0.0);
+ private:
+  static double independent_variance(const ConductanceErrors& errors, const WeightedConductances& sum) {
+    double variance = 0.0;
+    for (std::size_t k = 0; k < sum.taxels.size(); ++k) {
+      variance += square(sum.weight[k] * static_cast<double>(errors.noise_siemens[sum.taxels[k]]));
+    }
+    return variance;
+  }
+
+  std::vector<std::size_t> taxels_;
+  std::vector<double> weight_;  // d total / d conductance
+  std::vector<WeightedConductances> sums_;
+  std::vector<double> variances_;
+};
+
+/// Without the errors of conductances.
+TotalForce material_total(const ForceSums& sums, Region region, ConductanceSums& conductances) {
   TotalForce total;
   double variance = 0.0;
   double per_celsius = 0.0;
-  for (std::size_t k = 0; k < region.size(); ++k) {
-    const std::size_t taxel = region[k];
+  conductances.begin_sum();
+  for (const std::size_t taxel : region) {
     if (std::isnan(sums.newtons[taxel])) {
       ++total.left_out;
       continue;
@@ -73,29 +98,51 @@ TotalForce signed_total(const ForceSums& sums, const Region& region) {
     total.newtons += static_cast<double>(sums.newtons[taxel]);
     variance += static_cast<double>(sums.own_variance[taxel]);
     per_celsius += static_cast<double>(sums.newtons_per_celsius[taxel]);
-    weight[taxel] = static_cast<double>(sums.newtons_per_siemens[taxel]);
+    conductances.add(taxel, static_cast<double>(sums.newtons_per_siemens[taxel]));
   }
-  if (total.left_out == region.size()) return total;  // a rejected frame may have no conductances
   variance += square(per_celsius * sums.temperature_sigma) + square(sums.gain_sigma * total.newtons);
-  variance += conductance_variance(sums.conductances, weight);
   total.sigma_newtons = std::sqrt(variance);
   return total;
 }
 
-TotalForce total_of(const ForceFrame& force, const Region& region) {
-  TotalForce total = force.sums.newtons.empty() ? independent_total(force, region) : signed_total(force.sums, region);
-  if (region.size() > 0 && total.left_out == region.size()) total.newtons = total.sigma_newtons = kNothing;
-  return total;
+/// docs/derivations.md, "Sums of forces".
+void find_signed_totals(const ForceSums& sums, std::span<const Region> regions, std::span<TotalForce> totals) {
+  thread_local ConductanceSums conductances;
+  conductances.clear(regions);
+  for (std::size_t k = 0; k < regions.size(); ++k) totals[k] = material_total(sums, regions[k], conductances);
+  const std::span<const double> variances = conductances.variances(sums.conductances);
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    totals[k].sigma_newtons = std::sqrt(square(totals[k].sigma_newtons) + variances[k]);
+  }
 }
 
 }  // namespace
 
 TotalForce ForceFrame::total() const noexcept {
-  return total_of(*this, Region(newtons.size()));
+  thread_local std::vector<std::size_t> all;
+  all.resize(newtons.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return total(all);
 }
 
 TotalForce ForceFrame::total(std::span<const std::size_t> taxels) const noexcept {
-  return total_of(*this, Region(taxels));
+  TotalForce total;
+  find_totals({&taxels, 1}, {&total, 1});
+  return total;
+}
+
+void ForceFrame::find_totals(std::span<const std::span<const std::size_t>> regions,
+                             std::span<TotalForce> totals) const noexcept {
+  assert(totals.size() == regions.size());
+  if (sums.newtons.empty()) {
+    for (std::size_t k = 0; k < regions.size(); ++k) totals[k] = independent_total(*this, regions[k]);
+  } else {
+    find_signed_totals(sums, regions, totals);
+  }
+  for (std::size_t k = 0; k < regions.size(); ++k) {
+    if (regions[k].empty() || totals[k].left_out < regions[k].size()) continue;
+    totals[k].newtons = totals[k].sigma_newtons = kNothing;
+  }
 }
 
 }  // namespace dermis

@@ -51,6 +51,8 @@ class ContactTracker::Implementation {
     expected_.reserve(kMostContacts);
     held_.reserve(kMostContacts);
     touched_.reserve(array.taxel_count());
+    regions_.reserve(array.taxel_count() + 1);
+    totals_.reserve(array.taxel_count() + 1);
   }
 
   void process(const ForceFrame& force, ContactReport& report) noexcept {
@@ -63,14 +65,14 @@ class ContactTracker::Implementation {
     areas_.find(force, pressed_sigma(), held_);
     found_.clear();
     touched_.clear();
+    regions_.clear();
     for (const std::span<std::uint32_t> taxels : areas_.areas()) add(force, taxels);
+    find_sigmas(force);
     keep_strongest();
     tracks_.update(force, found_, report.contacts);
     add_up(report);
     // What contacts have in common adds up; what they have not, does so in squares.
-    if (report.centre_of_pressure) {
-      report.sigma_total_n = std::max(report.sigma_total_n, force.total(touched_).sigma_newtons);
-    }
+    if (report.centre_of_pressure) report.sigma_total_n = std::max(report.sigma_total_n, totals_.back().sigma_newtons);
   }
 
   void forget() noexcept { tracks_.forget(); }
@@ -108,14 +110,17 @@ class ContactTracker::Implementation {
     }
     if (!can_go_on(force, taxels)) return;
     found_.push_back({measured.contact, measured.peak, measured.profile(), is_strong(force, taxels, 1.0)});
-    found_.back().contact.sigma_force_n = sigma_of_sum(force, taxels);
+    const std::size_t before = touched_.size();
+    touched_.insert(touched_.end(), taxels.begin(), taxels.end());
+    regions_.push_back(std::span<const std::size_t>(touched_).subspan(before));
   }
 
   /// With what the taxels' errors have in common.
-  [[nodiscard]] double sigma_of_sum(const ForceFrame& force, std::span<const std::uint32_t> taxels) {
-    const std::size_t before = touched_.size();
-    touched_.insert(touched_.end(), taxels.begin(), taxels.end());
-    return force.total(std::span<const std::size_t>(touched_).subspan(before)).sigma_newtons;
+  void find_sigmas(const ForceFrame& force) {
+    regions_.emplace_back(touched_);
+    totals_.resize(regions_.size());
+    force.find_totals(regions_, totals_);
+    for (std::size_t k = 0; k < found_.size(); ++k) found_[k].contact.sigma_force_n = totals_[k].sigma_newtons;
   }
 
   struct Parting {
@@ -243,7 +248,9 @@ class ContactTracker::Implementation {
   // [expected]: the taxel it is on
   std::vector<std::uint32_t> held_;
   std::vector<FoundContact> found_;
-  std::vector<std::size_t> touched_;  // taxels of all that were found
+  std::vector<std::size_t> touched_;                   // taxels of all that were found
+  std::vector<std::span<const std::size_t>> regions_;  // those of each, and all of them last
+  std::vector<TotalForce> totals_;                     // of the regions
 };
 
 ContactTracker::ContactTracker(const ArrayDescription& array, const ContactOptions& options,

@@ -90,6 +90,8 @@ std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline:
     found.emplace_back(
         "the supply leaves the calibrated range: forces are less sure; check its meter, or calibrate there");
   }
+  const auto doubts = model.provenance.find(pipeline::kDoubts);
+  if (doubts != model.provenance.end()) found.push_back("since the calibration: " + doubts->second);
   return found;
 }
 

@@ -50,7 +50,7 @@ TEST(GuideMessages, tell_what_to_do_with_a_single_taxel) {
 TEST(GuideMessages, name_both_taxels_of_a_pair) {
   const GuideState state = pair(20.0);
   EXPECT_EQ(words(state, GuideHint::press),
-            "The circuit is not certain yet. Put 20 N (2.04 kg) on r1c1 and as much on r3c2.");
+            "To be sure of the circuit, put 20 N (2.04 kg) on r1c1 and as much on r3c2.");
   EXPECT_EQ(words(state, GuideHint::hold), "Hold both still.");
   EXPECT_EQ(words(state, GuideHint::release), "r1c1 and r3c2 are done. Take both off.");
   EXPECT_EQ(words(state, GuideHint::other_taxel), "That is r1c2: put 20 N (2.04 kg) on r1c1 and as much on r3c2.");

@@ -126,7 +126,7 @@ TEST(GuidedCalibration, walks_a_sloppy_person_to_a_model_as_good_as_that_of_a_ca
   session.walk(*sloppy);
   const GuideState state = sloppy->state();
   ASSERT_EQ(state.stage, GuideStage::done) << state.message;
-  EXPECT_EQ(state.presses_done, plan.press_count());
+  EXPECT_EQ(state.presses_done, plan.press_count() + 8);
   EXPECT_GT(session.user.wrong_taxels, 3U);
   EXPECT_GT(session.user.short_presses, 1U);
   for (const GuideHint hint : {GuideHint::press, GuideHint::hold, GuideHint::release, GuideHint::other_taxel,
@@ -345,6 +345,19 @@ TEST(GuidedCalibration, finds_the_loads_of_an_array_whose_circuit_is_unknown) {
   ASSERT_TRUE(state.median_relative_error);
   EXPECT_LT(*state.median_relative_error, 0.1);
   EXPECT_FALSE(guide->calibration()->model.array.has_unknown_circuit());
+}
+
+TEST(GuidedCalibration, asks_for_eight_pairs_as_a_proof_of_a_circuit_that_is_given) {
+  const ArrayDescription array = reference_array(6, 6);
+  CalibrationPlan plan;
+  plan.taxels = {6, 7, 8, 9, 18, 19, 20, 21, 30, 31, 32, 33};
+  plan.weights_n = {5.0, 20.0};
+  const auto guide = begin(array, plan);
+  session_of(array).walk(*guide);
+  const GuideState state = guide->state();
+  ASSERT_EQ(state.stage, GuideStage::done) << state.message;
+  EXPECT_EQ(state.presses_done, plan.press_count() + 8);
+  EXPECT_FALSE(guide->calibration()->report.lacks_proof);
 }
 
 /// An array whose circuit is not told by single presses.

@@ -6,7 +6,8 @@
 
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <span>
+#include <vector>
 
 #include "dermis/core/frames.hpp"
 
@@ -18,9 +19,18 @@ constexpr float kNoForce = std::numeric_limits<float>::quiet_NaN();
 /// Whose variance is (sum of weight * siemens)^2: one factor is wrong for all.
 class OneFactor final : public CircuitErrors {
  public:
-  [[nodiscard]] double variance(const ConductanceErrors& errors,
-                                std::span<const double> weight) const noexcept override {
-    return std::pow(std::inner_product(weight.begin(), weight.end(), errors.siemens.begin(), 0.0), 2);
+  void variances(const ConductanceErrors& errors, std::span<const WeightedConductances> sums,
+                 std::span<double> variances) const noexcept override {
+    for (std::size_t k = 0; k < sums.size(); ++k) variances[k] = std::pow(weighted(errors, sums[k]), 2);
+  }
+
+ private:
+  static double weighted(const ConductanceErrors& errors, const WeightedConductances& sum) {
+    double weighted = 0.0;
+    for (std::size_t k = 0; k < sum.taxels.size(); ++k) {
+      weighted += sum.weight[k] * static_cast<double>(errors.siemens[sum.taxels[k]]);
+    }
+    return weighted;
   }
 };
 
@@ -71,6 +81,19 @@ TEST(ForceSums, the_circuit_sees_the_region_alone) {
   EXPECT_NEAR(force.total().sigma_newtons, 6.0, 1e-7);
   const std::vector<std::size_t> taxels{0, 1};
   EXPECT_NEAR(force.total(taxels).sigma_newtons, 3.0, 1e-7);
+}
+
+TEST(ForceSums, several_regions_at_once_are_as_each_alone) {
+  ForceFrame force = signed_frame();
+  force.sums.conductances.siemens = {1.0F, 1.0F, 1.0F};
+  force.sums.conductances.circuit = std::make_shared<const OneFactor>();
+  const std::vector<std::size_t> some{2, 0};
+  const std::vector<std::size_t> none;
+  const std::vector<std::size_t> one{1};
+  const std::vector<std::span<const std::size_t>> regions{some, none, one};
+  std::vector<TotalForce> totals(3);
+  force.find_totals(regions, totals);
+  for (std::size_t k = 0; k < regions.size(); ++k) EXPECT_EQ(totals[k], force.total(regions[k])) << k;
 }
 
 TEST(ForceSums, noise_without_a_circuit_is_independent) {

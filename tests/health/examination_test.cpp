@@ -116,6 +116,12 @@ TEST(Examination, gains_that_have_changed_are_found_by_touches) {
   EXPECT_LT(*fresh.ageing.gain_spread, 0.02);
 }
 
+TEST(Examination, what_the_calibration_doubted_is_a_finding) {
+  Measurement measurement;
+  measurement.model.provenance[pipeline::kDoubts] = "drive_ohm is not as given";
+  EXPECT_TRUE(says(examine(measurement), "since the calibration: drive_ohm is not as given"));
+}
+
 TEST(Examination, an_array_as_it_was_calibrated_is_healthy) {
   const Diagnosis diagnosis = examine(Measurement());
   EXPECT_TRUE(diagnosis.is_healthy()) << diagnosis.findings.front();

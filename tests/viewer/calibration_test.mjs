@@ -94,7 +94,7 @@ it("shows both taxels of a pair, names what is wrong with it, and ends by itself
     await part(page, "quiet").fill("0.4");
     await part(page, "start").click();
 
-    await hears(page, /circuit is not certain yet\. Put 20 N \(2\.04 kg\) on r\dc\d and as much on r\dc\d/);
+    await hears(page, /To be sure of the circuit, put 20 N \(2\.04 kg\) on r\dc\d and as much on r\dc\d/);
     const [first, second] = (await page.locator(".calibration-picture canvas").getAttribute("aria-label")).match(/press (r\dc\d) and (r\dc\d)$/).slice(1);
     assert.notEqual(first, second);
     assert.match(await page.locator(".readings").textContent(), /Reading of r\dc\d.*Reading of r\dc\d/);

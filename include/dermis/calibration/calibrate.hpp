@@ -29,6 +29,8 @@ struct CalibrationReport {
   std::size_t frames_rejected = 0;
   std::string first_rejection;
   std::vector<std::string> remarks;        ///< On labels and readings: SampleDatabase::remarks.
+  std::vector<std::string> doubts;         ///< On circuit and ADC: SampleDatabase::doubts.
+  bool lacks_proof = false;                ///< SampleDatabase::lacks_proof.
   std::vector<std::string> circuit;        ///< What the fit of an unknown circuit found; empty where all was given.
   std::vector<PressPair> telling_presses;  ///< Would tell circuits apart that the frames do not; see CircuitFit.
   std::string memory;                      ///< What the material remembers, a sentence; empty: nothing was learned.

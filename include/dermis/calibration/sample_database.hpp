@@ -51,6 +51,10 @@ struct SampleDatabase {
   std::size_t frames_rejected = 0;
   std::string first_rejection;       ///< "frame 17: a supply of 0 V or less"; empty when none.
   std::vector<std::string> remarks;  ///< What is wrong with labels and readings, what is left out, a sentence each.
+  /// Where circuit and ADC are not as described and stay so: forces are less sure, a sentence each.
+  std::vector<std::string> doubts;
+  /// Too few presses on two to six taxels tell whether circuit and ADC are as described; eight are needed.
+  bool lacks_proof = false;
   /// What circuit and ADC leave of presses on several taxels beside what single ones tell, relative; 0: nothing.
   double unexplained_share = 0.0;
   std::optional<CircuitFit> circuit_fit;  ///< Where resistances or the circuit were unknown; `array` holds its result.

@@ -30,6 +30,12 @@ struct ConductanceErrors {
   std::shared_ptr<const CircuitErrors> circuit;  ///< Null: noise_siemens are independent.
 };
 
+/// sum_k weight_k G_k over some taxels of a frame, each of them once.
+struct WeightedConductances {
+  std::span<const std::size_t> taxels;
+  std::span<const double> weight;  ///< [taxels]
+};
+
 /// How errors of readings, supply and drivers spread over the taxels of a circuit. Immutable, so thread-safe.
 class CircuitErrors {
  public:
@@ -38,9 +44,9 @@ class CircuitErrors {
   CircuitErrors& operator=(const CircuitErrors&) = delete;
   virtual ~CircuitErrors() = default;
 
-  /// Variance of sum_i weight_i G_i, to first order. Allocates nothing after the first call of a thread.
-  [[nodiscard]] virtual double variance(const ConductanceErrors& errors,
-                                        std::span<const double> weight) const noexcept = 0;
+  /// Variance of each of `sums` of one frame, to first order. Allocates nothing after the first call of a thread.
+  virtual void variances(const ConductanceErrors& errors, std::span<const WeightedConductances> sums,
+                         std::span<double> variances) const noexcept = 0;
 };
 
 /// What sums of forces need beside the forces. Each vector has the size taxels, or all are empty.

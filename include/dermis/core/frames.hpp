@@ -129,6 +129,9 @@ struct ForceFrame {
 
   /// The same of some taxels: their indices, each once.
   [[nodiscard]] TotalForce total(std::span<const std::size_t> taxels) const noexcept;
+
+  /// The same of several regions, one total each; what they have in common is found once.
+  void find_totals(std::span<const std::span<const std::size_t>> regions, std::span<TotalForce> totals) const noexcept;
 };
 
 }  // namespace dermis

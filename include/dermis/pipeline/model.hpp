@@ -31,6 +31,9 @@ struct Model {
   std::map<std::string, std::string> provenance;  ///< Hashes, counts and statistics of the calibration, as text.
 };
 
+/// The provenance that says in what circuit and ADC are not as described; missing: nothing was noticed.
+inline constexpr const char* kDoubts = "doubts";
+
 /// Of a model file.
 inline constexpr files::FileFormat kModelFormat{"dermis model 3", "dermis model 2",
                                                 "is not a dermis model; write one with 'dermis calibrate'"};

@@ -23,7 +23,4 @@ struct CircuitChoice {
 /// for the taxels. Errors: no kind explains the frames.
 [[nodiscard]] Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames);
 
-/// `array` with readings that are taken as proportional to conductance.
-[[nodiscard]] ArrayDescription without_circuit(const ArrayDescription& array);
-
 }  // namespace dermis::calibration

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "calibration/circuit_fit/circuit_choice.hpp"
+#include "calibration/circuit_fit/circuit_trial.hpp"
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/circuit_statements.hpp"
 #include "calibration/circuit_fit/resistance_fit.hpp"

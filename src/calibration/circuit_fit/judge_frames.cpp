@@ -60,7 +60,10 @@ void add(const JudgedReading& reading, float variance, FrameMisfit& misfit) {
     misfit.pressed_square += square;
     misfit.pressed_readings += 1.0;
   }
-  if (reading.taxel == JudgedReading::Taxel::crossed) misfit.crossed_square += square;
+  if (reading.taxel == JudgedReading::Taxel::crossed) {
+    misfit.crossed_square += square;
+    misfit.crossed_readings += 1.0;
+  }
 }
 
 void add_beside(const JudgedReading& reading, const JudgedReading& other, FrameMisfit& misfit) {
@@ -158,6 +161,7 @@ FrameMisfit& FrameMisfit::operator+=(const FrameMisfit& other) {
   pressed_square += other.pressed_square;
   pressed_readings += other.pressed_readings;
   crossed_square += other.crossed_square;
+  crossed_readings += other.crossed_readings;
   return *this;
 }
 

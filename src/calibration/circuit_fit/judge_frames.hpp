@@ -31,6 +31,7 @@ struct FrameMisfit {
   double pressed_square = 0.0;
   double pressed_readings = 0.0;
   double crossed_square = 0.0;
+  double crossed_readings = 0.0;
 
   FrameMisfit& operator+=(const FrameMisfit& other);
 };

@@ -80,7 +80,7 @@ std::string describe_press(const GuideState& state, const ArrayDescription& arra
   const std::string press = fmt::format("{} on {}", weight, is_pair ? first + " and as much on " + second : first);
   switch (state.hint) {
     case GuideHint::none:
-    case GuideHint::press: return (is_pair ? "The circuit is not certain yet. Put " : "Put ") + press + ".";
+    case GuideHint::press: return (is_pair ? "To be sure of the circuit, put " : "Put ") + press + ".";
     case GuideHint::hold: return is_pair ? "Hold both still." : "Hold still.";
     case GuideHint::release: return here + (is_pair ? " are done. Take both off." : " is done. Take it off.");
     case GuideHint::other_taxel:
@@ -111,6 +111,7 @@ std::string describe_result(const Calibration& calibration, const GuideState& st
     text += fmt::format(" The circuit is not certain: {}, add these frames to the saved ones and calibrate again.",
                         describe(telling, calibration.model.array));
   }
+  for (const std::string& doubt : calibration.report.doubts) text += " Doubtful: " + doubt + ".";
   text += fmt::format(" Forces above {:g} N are extrapolated, less and less surely, to eight times as much.",
                       training.heaviest_newtons);
   return text + describe_temperature(training, presses);

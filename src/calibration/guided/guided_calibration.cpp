@@ -10,6 +10,7 @@
 #include "calibration/guided/guide_messages.hpp"
 #include "calibration/guided/press_recogniser.hpp"
 #include "calibration/guided/press_sequence.hpp"
+#include "calibration/guided/proof_presses.hpp"
 #include "calibration/guided/touch_sense.hpp"
 #include "dermis/preprocessing/conditioner.hpp"
 
@@ -55,6 +56,7 @@ class GuidedCalibration::Implementation {
   void keep_press();
   void ask_for_next();
   void start_fit(bool is_last);
+  void ask_for_proof();
   void start_last_fit();
   void fail(std::string why);
   void accept_fit(GuideFitter::Outcome outcome);
@@ -118,8 +120,15 @@ void GuidedCalibration::Implementation::keep_press() {
 }
 
 void GuidedCalibration::Implementation::ask_for_next() {
+  ask_for_proof();
   if (!presses_.advance()) return start_last_fit();
   recogniser_->expect(presses_.taxels());
+}
+
+/// After the plan's presses. An unknown kind of circuit is found first: others may tell it.
+void GuidedCalibration::Implementation::ask_for_proof() {
+  if (presses_.has_open() || presses_.has_pairs() || array_.readout.circuit == Circuit::automatic) return;
+  presses_.ask_for(proof_presses(array_, presses_.kept()));
 }
 
 void GuidedCalibration::Implementation::start_last_fit() {

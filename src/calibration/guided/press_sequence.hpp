@@ -31,6 +31,10 @@ class PressSequence {
   /// Asks for these, too, after the others.
   void ask_for(std::vector<PressPair> pairs);
   [[nodiscard]] bool has_pairs() const noexcept { return !pairs_.empty(); }
+  /// One is neither kept nor skipped.
+  [[nodiscard]] bool has_open() const noexcept {
+    return std::find(steps_.begin(), steps_.end(), Step::open) != steps_.end();
+  }
 
   void keep(std::vector<RawFrame> frames);
   void skip() { steps_[step_] = Step::skipped; }

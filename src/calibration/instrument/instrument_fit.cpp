@@ -31,10 +31,7 @@ constexpr int kSteps = 4;                 // of Gauss-Newton
 constexpr double kLimit = 4.0;            // sigmas from which on a press is an outlier
 constexpr double kEvidence = 30.0;        // squares that a part must explain
 constexpr double kPerParameter = 6.0;     // and so many more for each parameter beyond the first
-constexpr const char* kNoPresses =
-    "adc_offset_counts and supply_ohm cannot be told: press several taxels at once, such as twenty times a known "
-    "weight "
-    "over two to four taxels of a row";
+constexpr const char* kNoPresses = "adc_offset_counts and supply_ohm cannot be told";
 constexpr double kWorthAFit = 0.5;  // of that, as one step foretells it
 constexpr double kMostPressesShare = 0.9;
 constexpr const char* kNothing = "adc_offset_counts and supply_ohm are nothing, as far as presses tell";
@@ -280,7 +277,7 @@ void notice(const Judge& judge, const Explanation& applied, InstrumentFit& fit) 
   const double square = judge.square_of_totals(applied.residuals);
   if (square <= kNoticed) return;
   fit.unexplained = std::max(fit.unexplained, judge.largest_difference(applied.residuals));
-  fit.statements.push_back(fmt::format(
+  fit.doubts.push_back(fmt::format(
       "presses on several taxels do not add up: they scatter {:.1f} times as much as single ones tell, {:.1f} % of the "
       "force; circuit or ADC are not as described, and forces are said to be so much less sure",
       std::sqrt(square), 100.0 * fit.unexplained));
@@ -301,7 +298,7 @@ ArrayDescription without_unknown_instrument(ArrayDescription array) {
 
 InstrumentFit fit_settling(const ArrayDescription& array, std::span<const RawFrame> frames,
                            std::span<const Load> loads) {
-  InstrumentFit fit{array, {}, 0.0};
+  InstrumentFit fit{.array = array, .statements = {}, .doubts = {}};
   std::optional<double>& settling = fit.array.readout.adc_errors.settling;
   const bool is_asked_for = settling && std::isnan(*settling);
   if (settling && !is_asked_for) return fit;
@@ -324,14 +321,15 @@ InstrumentFit fit_settling(const ArrayDescription& array, std::span<const RawFra
 
 Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<const RawFrame> frames,
                                      std::span<const Load> loads, Nanos settle_time, bool is_asked_for) {
-  InstrumentFit fit{array, {}, 0.0};
+  InstrumentFit fit{.array = array, .statements = {}, .doubts = {}};
   const Result<CircuitFrames> labelled = circuit_frames(array, frames, loads, settle_time);
   if (!labelled) return labelled.error();
   const std::optional<std::string> dead_zone = describe_dead_zone(*labelled);
-  if (dead_zone) fit.statements.push_back(*dead_zone);
+  if (dead_zone) fit.doubts.push_back(*dead_zone);
   Judge judge(array, *labelled);
   if (judge.presses().several.size() < kLeastPresses) {
     if (is_asked_for) fit.statements.emplace_back(kNoPresses);
+    fit.lacks_proof = true;
     return fit;
   }
   std::optional<Explanation> best = explain(judge, {array, {}});
@@ -339,7 +337,8 @@ Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<co
   const auto explain_more = [&] { return dead_zone ? std::nullopt : best_beside(judge, array, *best); };
   while (std::optional<Explanation> better = explain_more()) best = std::move(better);
   for (std::size_t place = 0; place < best->parameters.parts().size(); ++place) {
-    fit.statements.push_back(describe(*best, array, place));
+    const bool is_applied = best->parameters.parts()[place] != InstrumentPart::drivers;
+    (is_applied ? fit.statements : fit.doubts).push_back(describe(*best, array, place));
   }
   if (is_asked_for && best->parameters.count() == 0) fit.statements.emplace_back(kNothing);
   const Explanation applied = without_drivers(judge, array, *best);

@@ -16,10 +16,13 @@ namespace dermis::calibration {
 /// In what an instrument is not as its description says, and what is left.
 struct InstrumentFit {
   ArrayDescription array;               ///< With what was found.
-  std::vector<std::string> statements;  ///< What was found, and what nothing explains, a sentence each.
+  std::vector<std::string> statements;  ///< What was found, a sentence each.
+  std::vector<std::string> doubts;      ///< What is not as described and stays so, a sentence each.
   /// By how much presses on several taxels differ from single ones beyond chance and beyond all that was found,
   /// relative; 0: they agree, or there are none.
   double unexplained = 0.0;
+  /// Too few presses on several taxels tell whether the instrument is as described.
+  bool lacks_proof = false;
 };
 
 /// The description says "fit" of its ADC or its supply.

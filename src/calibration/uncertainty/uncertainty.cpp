@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "calibration/uncertainty/error_budget.hpp"
 #include "calibration/uncertainty/relative_sigma_fit.hpp"
@@ -101,13 +104,62 @@ void add_uncertainty_of_networks(const std::vector<JudgedLoad>& loads, VarianceP
   }
 }
 
-/// What one load does not tell of the law: ln(load / newtons) times the uncertainty of its exponent.
-void add_uncertainty_of_line(const fusion::ForceNetworks& networks, VarianceProfile& profile) {
-  const double log_range =
-      std::log(static_cast<double>(networks.sigma_knots_newtons[1] / networks.sigma_knots_newtons[0]));
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// About their mean.
+double sum_of_squares(const std::vector<double>& values) {
+  const double mean = mean_of(values);
+  double sum = 0.0;
+  for (const double value : values) sum += std::pow(value - mean, 2);
+  return sum;
+}
+
+/// Relative, and never nothing.
+double mean_square_error(const std::vector<TestedLoad>& loads) {
+  constexpr double kLeast = 1e-8;
+  double sum = 0.0;
+  for (const TestedLoad& load : loads) sum += std::pow(load.error_n / load.newtons, 2);
+  return std::max(sum / static_cast<double>(std::max<std::size_t>(loads.size(), 1)), kLeast);
+}
+
+/// How surely single presses tell the exponent of the law that taxels share.
+struct ExponentEvidence {
+  double mean_log_newtons = 0.0;  ///< Where the exponent has no part in forces.
+  double variance = 0.0;          ///< Of the exponent, relative.
+};
+
+/// A line through ln(newtons): about the mean of each taxel by the scatter of its presses, of the means by that of
+/// taxels.
+ExponentEvidence exponent_evidence(const ForceTraining& training) {
+  std::map<std::size_t, std::vector<double>> log_newtons;  // of each taxel
+  for (const TestedLoad& load : training.tested_unpressed) {
+    log_newtons[load.taxels.front()].push_back(std::log(load.newtons));
+  }
+  std::vector<double> means;
+  double within = 0.0;
+  for (const auto& [taxel, logs] : log_newtons) {
+    means.push_back(mean_of(logs));
+    within += sum_of_squares(logs);
+  }
+  const double of_presses = mean_square_error(training.tested_shared);
+  const double of_taxels = mean_square_error(training.tested_unpressed);
+  const double told = within / of_presses + sum_of_squares(means) / of_taxels;
+  return {mean_of(means), 1.0 / (told + 1.0 / (kUnlearnedExponent * kUnlearnedExponent))};
+}
+
+/// What few loads do not tell of the law.
+void add_uncertainty_of_exponent(const ForceTraining& training, const fusion::ForceNetworks& networks,
+                                 VarianceProfile& profile) {
+  const ExponentEvidence evidence = exponent_evidence(training);
+  const auto [lightest, heaviest] = networks.sigma_knots_newtons;
+  const double log_lightest = std::log(static_cast<double>(lightest));
+  const double log_heaviest = std::log(static_cast<double>(heaviest));
   for (std::size_t k = 0; k < profile.size(); ++k) {
-    const double share_of_range = 1.0 - static_cast<double>(k) / static_cast<double>(profile.size() - 1);
-    profile[k] += std::pow(kUnlearnedExponent * log_range * share_of_range, 2);
+    const double share = static_cast<double>(k) / static_cast<double>(profile.size() - 1);
+    const double log_newtons = std::lerp(log_lightest, log_heaviest, share);
+    profile[k] += evidence.variance * std::pow(log_newtons - evidence.mean_log_newtons, 2);
   }
 }
 
@@ -145,7 +197,7 @@ void fit_material(const JudgedLoads& judged, const ForceTraining& training, fusi
   const std::set<std::size_t> unpressed = unpressed_taxels(training);
   if (!judged.unpressed.empty() && !unpressed.empty()) {
     VarianceProfile profile = likeliest_profile(judged.unpressed, report.supply_noise);
-    if (training.report.is_one_load) add_uncertainty_of_line(networks, profile);
+    add_uncertainty_of_exponent(training, networks, profile);
     report.relative_sigma_of_unpressed = set_relative_sigma(unpressed, profile, networks);
     report.unpressed_taxels = unpressed.size();
   }

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "calibration/circuit_fit/circuit_doubt.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_trial.hpp"
+#include "calibration/circuit_fit/frame_selection.hpp"
+
+namespace dermis::calibration {
+namespace {
+
+using Trials = std::vector<CircuitTrial>;
+
+const double kLikely = 2.0 * std::log(100.0);  // odds of a hundred to one tell resistances from others
+
+/// Frames by which the description is judged.
+std::size_t affordable(const ArrayDescription& array) {
+  constexpr std::size_t kTaxels = 40'000;
+  constexpr std::size_t kMost = 400;
+  return std::clamp(kTaxels / array.taxel_count(), few_frames(array.taxel_count()), kMost);
+}
+
+/// Idle taxels on the lines of a press show crosstalk; others show what else there is.
+bool leaves_crosstalk(const CircuitTrial& described) {
+  constexpr double kMuch = 1.1;  // of squares on pressed lines, over those elsewhere
+  constexpr double kSure = 5.0;  // standard deviations
+  if (!described.fit) return true;
+  const FrameMisfit misfit = misfit_of(described.readings);
+  const double others = misfit.readings - misfit.crossed_readings - misfit.pressed_readings;
+  const double of_others = misfit.square - misfit.crossed_square - misfit.pressed_square;
+  if (others < 1.0 || misfit.crossed_readings < 1.0 || of_others <= 0.0) return false;
+  const double ratio = misfit.crossed_square / misfit.crossed_readings / (of_others / others);
+  return ratio > kMuch && ratio - 1.0 > kSure * std::sqrt(2.0 / misfit.crossed_readings + 2.0 / others);
+}
+
+/// Nothing is known of it but its ADC.
+ArrayDescription without_readout(ArrayDescription array) {
+  Readout unknown;
+  unknown.circuit = Circuit::automatic;
+  unknown.adc_bits = array.readout.adc_bits;
+  unknown.adc_noise_counts = array.readout.adc_noise_counts;
+  unknown.adc_reference_v = array.readout.adc_reference_v;
+  unknown.supply_v = array.readout.supply_v;
+  unknown.pressure_raises_reading = array.readout.pressure_raises_reading;
+  array.readout = std::move(unknown);
+  return array;
+}
+
+bool is_same_kind(const Readout& a, const Readout& b) {
+  return a.circuit == b.circuit && a.idle_rows == b.idle_rows && a.idle_columns == b.idle_columns;
+}
+
+double sum_of(const std::vector<double>& ohms) {
+  return std::accumulate(ohms.begin(), ohms.end(), 0.0);
+}
+
+/// Mean driver over mean load: all that single presses tell of resistances. 0 without a circuit.
+double drive_over_load(const ArrayDescription& array) {
+  const Readout& readout = array.readout;
+  if (readout.drive_ohm.empty()) return 0.0;
+  const double loads_per_driver =
+      static_cast<double>(readout.load_ohm.size()) / static_cast<double>(readout.drive_ohm.size());
+  return loads_per_driver * sum_of(readout.drive_ohm) / sum_of(readout.load_ohm);
+}
+
+/// Parts differ, and forces hardly do.
+bool are_alike(double ratio, double other) {
+  constexpr double kFactor = 2.0;
+  constexpr double kNothing = 0.003;
+  return std::max(ratio, other) <= kFactor * std::min(ratio, other) + kNothing;
+}
+
+/// A circuit of the same kind explains more, with far other resistances.
+bool has_other_resistances(const CircuitTrial& described, const CircuitTrial& free) {
+  if (!described.fit || !free.fit) return false;
+  if (are_alike(drive_over_load(described.fit->array), drive_over_load(free.fit->array))) return false;
+  const auto [of_free, of_described] = compare(free, described);
+  const double scale = std::max(1.0, of_free.square / of_free.readings);
+  return of_free.square + kLikely * scale < of_described.square;
+}
+
+double highest_counts(const ArrayDescription& array, const CircuitFrames& frames) {
+  double highest = 0.0;
+  for (const CircuitFrame& frame : frames.frames) {
+    highest = std::max(highest, *std::max_element(frame.ratio.begin(), frame.ratio.end()));
+  }
+  return highest * array.readout.full_scale_counts();
+}
+
+/// The same circuit with the common ADC of the least bits that gives all readings, where that is a smaller one.
+std::optional<ArrayDescription> with_smaller_adc(ArrayDescription array, double highest_counts) {
+  for (const int bits : {8, 10, 12, 14, 16}) {
+    if (bits >= array.readout.adc_bits) break;
+    if (highest_counts > std::exp2(bits) - 1.0) continue;
+    array.readout.adc_bits = bits;
+    return array;
+  }
+  return std::nullopt;
+}
+
+/// As `smaller` would read the counts of `array`.
+CircuitFrames rescaled(CircuitFrames frames, const ArrayDescription& array, const ArrayDescription& smaller) {
+  const double scale = array.readout.full_scale_counts() / smaller.readout.full_scale_counts();
+  for (CircuitFrame& frame : frames.frames) {
+    for (double& ratio : frame.ratio) ratio *= scale;
+    frame.sigma_ratio *= scale;
+    frame.said_sigma *= scale;
+  }
+  return frames;
+}
+
+/// "divider, idle rows grounded" and what the frames do not tell from it.
+std::string names_of_best(const Trials& rivals, const CircuitTrial& best) {
+  std::string names = '"' + best.name + '"';
+  for (const CircuitTrial& rival : rivals) {
+    if (rival.name != best.name && rival.fit && !is_surely_less(best, rival)) names += " or \"" + rival.name + '"';
+  }
+  return names;
+}
+
+std::string describe(const Trials& rivals, const CircuitTrial& best, const ArrayDescription& array, double highest) {
+  if (best.array.readout.adc_bits != array.readout.adc_bits) {
+    return fmt::format(
+        "no reading is above {:.0f} counts, and these frames fit an ADC of {} bits better than {}: check adc_bits",
+        highest, best.array.readout.adc_bits, array.readout.adc_bits);
+  }
+  if (is_same_kind(best.array.readout, array.readout)) {
+    return fmt::format(
+        "these frames fit drivers of {:.2g} times the loads better than the {:.2g} of array.toml: check "
+        "drive_ohm and load_ohm, or write \"fit\"",
+        drive_over_load(best.fit->array), drive_over_load(array));
+  }
+  return fmt::format(
+      "these frames fit {} better than the circuit of array.toml: check readout, or write circuit = \"auto\"",
+      names_of_best(rivals, best));
+}
+
+}  // namespace
+
+std::optional<std::string> doubt_circuit(const ArrayDescription& array, const CircuitFrames& frames) {
+  if (array.has_unknown_circuit()) return std::nullopt;
+  const CircuitTrial described{.name = "array.toml", .array = array, .frames = &frames};
+  Trials rivals = trials_of_all_kinds(without_readout(array), frames);
+  Trials trials{described};
+  std::copy_if(rivals.begin(), rivals.end(), std::back_inserter(trials),
+               [&](const CircuitTrial& rival) { return is_same_kind(rival.array.readout, array.readout); });
+  fit_trials(affordable(array), trials);
+  const bool are_resistances_others = has_other_resistances(trials.front(), trials.back());
+  if (!are_resistances_others && !leaves_crosstalk(trials.front())) return std::nullopt;
+
+  const double highest = highest_counts(array, frames);
+  const std::optional<ArrayDescription> smaller = with_smaller_adc(array, highest);
+  const CircuitFrames of_smaller = smaller ? rescaled(frames, array, *smaller) : CircuitFrames();
+  if (smaller) rivals.push_back({.name = "a smaller ADC", .array = *smaller, .frames = &of_smaller});
+  rivals.push_back(described);
+  fit_trials(affordable(array), rivals);
+  const CircuitTrial judged = std::move(rivals.back());
+  rivals.pop_back();
+  const CircuitTrial& best = *std::min_element(rivals.begin(), rivals.end(), has_less);
+  if (!best.fit || (!are_resistances_others && !is_surely_less(best, judged))) return std::nullopt;
+  return describe(rivals, best, array, highest);
+}
+
+}  // namespace dermis::calibration

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "dermis/core/array_description.hpp"
+
+namespace dermis::calibration {
+
+/// A sentence where another circuit, other resistances or another ADC explain the frames surely better than what the
+/// description says. Only frames in which idle taxels on pressed lines read what the described circuit does not explain
+/// are worth the search. Empty: there is none; the kind of the circuit is not given.
+[[nodiscard]] std::optional<std::string> doubt_circuit(const ArrayDescription& array, const CircuitFrames& frames);
+
+}  // namespace dermis::calibration

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/circuit_fit/circuit_frames.hpp"
+#include "calibration/circuit_fit/common_ratio.hpp"
+#include "calibration/circuit_fit/judge_frames.hpp"
+#include "dermis/core/array_description.hpp"
+
+namespace dermis::calibration {
+
+/// A circuit, and what it makes of the frames.
+struct CircuitTrial {
+  std::string name;                       ///< "divider, idle rows floating"
+  ArrayDescription array;                 ///< Unknown resistances are kFitOhm.
+  const CircuitFrames* frames = nullptr;  ///< Those of the array's ADC.
+  std::optional<CommonRatio> fit = {};    ///< Empty: it cannot give them, or is not resolved.
+  double noise_share = 0.0;               ///< 0: it is resolved.
+  bool is_rough = false;                  ///< What its lines differ by could not be compared.
+  JudgedReadings readings = {};
+  FrameMisfit misfit = {std::numeric_limits<double>::infinity()};  ///< Of the readings that tell.
+
+  [[nodiscard]] bool is_unresolved() const { return noise_share > 0.0; }
+};
+
+/// One of each kind. Of resistances those are kept that `array` gives for all drivers, or all loads.
+[[nodiscard]] std::vector<CircuitTrial> trials_of_all_kinds(const ArrayDescription& array, const CircuitFrames& frames);
+
+/// `array` with readings that are taken as proportional to conductance.
+[[nodiscard]] ArrayDescription without_circuit(const ArrayDescription& array);
+
+/// Fits `most` frames with one resistance for all drivers and one for all loads, and judges all by the same scatter.
+void fit_trials(std::size_t most, std::vector<CircuitTrial>& trials);
+
+/// The same; circuits that leave nearly the same are fitted once more, with resistances of each line's own.
+void fit_trials_and_lines(std::size_t most, std::vector<CircuitTrial>& trials);
+
+/// What two circuits leave of the readings that tell in both.
+struct TrialComparison {
+  FrameMisfit first;
+  FrameMisfit second;
+};
+[[nodiscard]] TrialComparison compare(const CircuitTrial& first, const CircuitTrial& second);
+
+/// The sum of squares by which a circuit must be better to be told from another: readings that no circuit explains to
+/// their noise count for less.
+[[nodiscard]] double sure_square(const FrameMisfit& best);
+
+[[nodiscard]] bool has_less(const CircuitTrial& a, const CircuitTrial& b);
+
+/// A thousand to one. With lines whose differences could not be compared the odds must be far better.
+[[nodiscard]] bool is_surely_less(const CircuitTrial& better, const CircuitTrial& worse);
+
+/// By a few frames, which leave the laws nearly free: they may take as much as they have terms.
+[[nodiscard]] bool is_refuted(const CircuitTrial& worse, const CircuitTrial& better);
+
+}  // namespace dermis::calibration
