@@ -26,8 +26,8 @@ std::string place_of(const std::string& prefix, const FrameSource* source, std::
 FrameTroubles::FrameTroubles(const ArrayDescription& array, const std::string& from)
     : prefix_(from.empty() ? "" : from + ": "),
       missing_(array),
-      rows_(array.rows),
-      has_counts_(array.readout.quantity == Quantity::counts) {}
+      zero_(array.readout.quantity == Quantity::counts ? std::optional<std::size_t>(0) : std::nullopt),
+      rows_(array.rows) {}
 
 void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline,
                         const FrameSource* source) {
@@ -37,11 +37,13 @@ void FrameTroubles::add(const RawFrame& raw, const ForceFrame& force, const Pipe
   const bool is_rejected = has(force.status, FrameStatus::rejected);
   const bool is_unsolved = has(force.status, FrameStatus::not_converged);
   if (is_unsolved && unsolved_++ == 0) first_unsolved_ = place_of(prefix_, source, number_);
-  if (is_rejected || is_unsolved) ++lost_;
-  if ((is_rejected || is_unsolved) && is_outside) ++lost_outside_;
   const bool is_zero = std::ranges::all_of(raw.counts, [](float count) { return count == 0.0F; });
-  if (is_zero) ++zero_;
-  if (is_zero && (is_rejected || is_unsolved)) ++lost_zero_;
+  if (is_zero && zero_) ++*zero_;
+  if (is_rejected || is_unsolved) {
+    ++lost_.frames;
+    lost_.outside += is_outside ? 1 : 0;
+    lost_.zero += is_zero ? 1 : 0;
+  }
   if (has(force.status, FrameStatus::line_fault)) ++faulty_;
   add_doubts(raw, force, pipeline);
   if (!is_rejected) return;
@@ -82,7 +84,7 @@ std::optional<std::string> FrameTroubles::silent_frames() const {
 }
 
 std::optional<std::string> FrameTroubles::silence() const {
-  if (!has_counts_ || zero_ < frames_ || frames_ == 0 || silent_.frames > 0) return std::nullopt;
+  if (!zero_ || *zero_ < frames_ || frames_ == 0 || silent_.frames > 0) return std::nullopt;
   return fmt::format("all readings of all {} frames are 0: nothing touches the array, or it is not connected", frames_);
 }
 
@@ -94,8 +96,8 @@ std::optional<std::string> FrameTroubles::impossible() const {
 }
 
 std::string FrameTroubles::cause() const {
-  if (2 * lost_zero_ > lost_) return fmt::format("all readings are 0: {}", kPowered);
-  if (2 * lost_outside_ > lost_) return *missing_.describe_range();
+  if (2 * lost_.zero > lost_.frames) return fmt::format("all readings are 0: {}", kPowered);
+  if (2 * lost_.outside > lost_.frames) return *missing_.describe_range();
   if (rejected_ > unsolved_) return "the first is rejected, " + first_rejection_;
   return fmt::format("their readings {}, the first at {}", kMisfit, first_unsolved_);
 }
@@ -109,7 +111,7 @@ std::vector<std::string> FrameTroubles::describe() const {
   if (const auto range = missing_.describe_range()) lines.push_back(*range);
   if (unsolved_ > 0) {
     lines.push_back(fmt::format("{} of {} frames without forces: their readings {}, the first at {}", unsolved_,
-                                frames_, 2 * lost_outside_ > lost_ ? "lie outside of the ADC" : kMisfit,
+                                frames_, 2 * lost_.outside > lost_.frames ? "lie outside of the ADC" : kMisfit,
                                 first_unsolved_));
   }
   if (faulty_ > 0) {
@@ -130,8 +132,8 @@ std::string FrameTroubles::describe(const Doubt& doubt) const {
 
 Status FrameTroubles::verdict() const {
   if (const auto why = impossible()) return failed(prefix_ + *why);
-  if (2 * lost_ <= frames_) return Done{};
-  return failed(fmt::format("{}{} of {} frames have no force: {}", prefix_, lost_, frames_, cause()));
+  if (2 * lost_.frames <= frames_) return Done{};
+  return failed(fmt::format("{}{} of {} frames have no force: {}", prefix_, lost_.frames, frames_, cause()));
 }
 
 }  // namespace dermis::pipeline

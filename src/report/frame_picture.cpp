@@ -206,7 +206,7 @@ class Painter {
       const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(kBarSteps);
       brush.fill({left, top}, kBarWidth, step, sequential_colour(share));
     }
-    brush.text(Anchor::start, {left, kTop - 5.0}, 8.0, kInk, picture_.unit);
+    brush.text(Anchor::start, {left, kTop - 9.0}, 8.0, kInk, picture_.unit);  // above the tick at the end
     for (const double tick : linear_ticks(0.0, picture_.high, kMostTicks)) {
       const double y = kTop + bar_height() * (1.0 - tick / picture_.high);
       const double right = left + kBarWidth;

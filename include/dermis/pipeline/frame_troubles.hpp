@@ -56,6 +56,13 @@ class FrameTroubles {
     std::string what;  ///< "with a supply outside of the calibration, the first: 6.5 V"
   };
 
+  /// Frames without a force: rejected, or not solved.
+  struct Lost {
+    std::size_t frames = 0;
+    std::size_t outside = 0;  ///< Of these, with readings that are none of the ADC,
+    std::size_t zero = 0;     ///< and with nothing but zeros.
+  };
+
   void add_doubts(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline);
   [[nodiscard]] std::string cause() const;
   [[nodiscard]] std::string describe(const Doubt& doubt) const;
@@ -67,14 +74,11 @@ class FrameTroubles {
   std::size_t rejected_ = 0;
   std::size_t unsolved_ = 0;
   std::size_t faulty_ = 0;
-  std::size_t lost_ = 0;          ///< Without a force: rejected, or not solved.
-  std::size_t lost_outside_ = 0;  ///< Of these, with readings that are none of the ADC.
-  std::size_t zero_ = 0;          ///< Nothing but zeros.
-  std::size_t lost_zero_ = 0;     ///< Of these, without a force.
+  Lost lost_;
+  std::optional<std::size_t> zero_;  ///< Nothing but zeros; empty where readings are forces, of which 0 is one.
   std::string first_rejection_;
   std::string first_unsolved_;  ///< Its place.
   std::size_t rows_;            ///< Of the array.
-  bool has_counts_;             ///< Its readings are those of an ADC.
   Doubt supply_;
   Doubt kelvin_;
   Doubt silent_;
