@@ -3,16 +3,63 @@
 // Usage: node layout_test.mjs path/to/dermis
 // Measures the boxes of all texts and controls of each view: nothing is cut, nothing lies over something else.
 import assert from "node:assert/strict";
+import { writeFileSync } from "node:fs";
+import { createServer } from "node:net";
 import { it } from "node:test";
-import { assertUnhurt, becomes, bench, browser, openPage, useBench, VIEWS } from "./harness.mjs";
+import { arrayToml, assertUnhurt, becomes, bench, browser, openPage, readCsv, useBench, VIEWS, WAIT_MS } from "./harness.mjs";
 
 const SIZES = [
   { width: 390, height: 844 },
   { width: 1280, height: 720 },
-  { width: 1920, height: 1080 },
+  { width: 1440, height: 900 },
 ];
+const ARRAYS = ["chest", "back", "left_arm", "right_arm", "left_shoulder"];
+const CONTACTS = 12;
+const SIDE = 16;
 
-useBench();
+useBench(() => {
+  const array = ["--array", bench.path("whole.toml")];
+  writeFileSync(bench.path("whole.toml"), arrayToml("whole", SIDE, SIDE));
+  bench.run("simulate", ...array, "--scene", "idle", "--frames", "1", "--out", bench.path("idle"));
+  bench.run("simulate", ...array, "--scene", "calibration", "--out", bench.path("whole"));
+  const samples = ["--frames", bench.path("whole/frames.csv"), "--loads", bench.path("whole/loads.csv")];
+  bench.run("calibrate", ...array, ...samples, "--out", bench.path("whole.safetensors"));
+});
+
+/** A device that sends an array with twelve contacts at once, 50 times a second. */
+async function crowdedDevice() {
+  const [idle] = readCsv(bench.path("idle/frames.csv"));
+  const rest = Object.keys(idle).filter((column) => column.startsWith("r")).map((column) => Number(idle[column]));
+  const pressed = new Set(Array.from({ length: CONTACTS }, (_, contact) => SIDE * (2 + 5 * Math.floor(contact / 4)) + 2 + 4 * (contact % 4)));
+  const server = createServer((socket) => {
+    const timer = setInterval(() => {
+      const counts = rest.map((count, taxel) => Math.max(0, Math.round(count + (pressed.has(taxel) ? 400 : 0) + Math.random())));
+      if (!socket.destroyed) socket.write(`${counts.join(",")}\n`);
+    }, 20);
+    socket.on("error", () => undefined);
+    socket.on("close", () => clearInterval(timer));
+  });
+  await new Promise((listening) => server.listen(0, "127.0.0.1", listening));
+  return server;
+}
+
+/** Serves a suit of five arrays, the first of them with twelve contacts. */
+async function serveCrowd() {
+  const device = await crowdedDevice();
+  const array = (name, index) => `[[array]]
+name = "${name}"
+from = "${index === 0 ? `tcp://127.0.0.1:${device.address().port}?rows=${SIDE}&cols=${SIDE}` : `sim:contacts?rate=100&seed=${index}`}"
+model = "${index === 0 ? "whole" : "model"}.safetensors"
+base_from_array = {translation_mm = [${180 * index}, 0, 0]}
+`;
+  writeFileSync(bench.path("suit.toml"), `[suit]\n${ARRAYS.map(array).join("\n")}`);
+  const server = await bench.serve("--port", "0", "--suit", "suit.toml");
+  const stop = async () => {
+    await server.stop();
+    device.close();
+  };
+  return { url: server.url, stop };
+}
 
 /** In the page: what is wrong with its boxes, a line each. */
 function faultsOfBoxes() {
@@ -75,6 +122,34 @@ function faultsOfBoxes() {
   return [...new Set(faults)];
 }
 
+/** Before the page: keeps where the labels of contacts are written on the maps since they were drawn anew. */
+function keepLabels() {
+  window.labels = [];
+  const pen = CanvasRenderingContext2D.prototype;
+  const { clearRect, fillText } = pen;
+  pen.clearRect = function (...area) {
+    window.labels = [];
+    return clearRect.apply(this, area);
+  };
+  pen.fillText = function (text, x, y, ...rest) {
+    if (text.startsWith("#")) window.labels.push({ text, left: x, right: x + this.measureText(text).width, top: y - 8, bottom: y + 8 });
+    return fillText.call(this, text, x, y, ...rest);
+  };
+}
+
+/** In the page: labels of contacts that lie over one another. */
+function faultsOfLabels() {
+  const { labels } = window;
+  if (labels.length < 4) return [`${labels.length} contacts have labels`];
+  return labels.flatMap((one, index) =>
+    labels.slice(index + 1).flatMap((other) => {
+      const width = Math.min(one.right, other.right) - Math.max(one.left, other.left);
+      const height = Math.min(one.bottom, other.bottom) - Math.max(one.top, other.top);
+      return width > 0 && height > 0 ? [`${one.text} lies over ${other.text}`] : [];
+    }),
+  );
+}
+
 /** Views with all that a user can bring into them. */
 const fill = {
   array: async (page) => {
@@ -111,13 +186,16 @@ it("shows the whole guide to somebody with a telephone beside the mat", async ()
 
 for (const size of SIZES) {
   for (const colorScheme of ["light", "dark"]) {
-    it(`cuts nothing and lays nothing over another at ${size.width} px, ${colorScheme}`, async () => {
-      const server = await bench.serve("--port", "0", "--from", "sim:contacts?rate=100", ...bench.model);
+    it(`cuts nothing and lays nothing over another at ${size.width} px, ${colorScheme}, with five arrays and twelve contacts`, async () => {
+      const server = await serveCrowd();
       try {
         const page = await openPage(browser, server.url);
+        await page.addInitScript(keepLabels);
+        await page.reload();
         await page.emulateMedia({ colorScheme });
         await page.setViewportSize(size);
         await becomes(page, "live");
+        await page.waitForFunction((most) => Number(document.querySelector("dd[data-role=contacts]").textContent) >= most, CONTACTS, { timeout: WAIT_MS });
         const found = {};
         for (const view of VIEWS) {
           await page.locator(`[data-tab=${view}]`).click();
@@ -125,6 +203,8 @@ for (const size of SIZES) {
           await fill[view]?.(page);
           await page.waitForTimeout(400);
           const faults = await page.evaluate(faultsOfBoxes);
+          if (view === "array") faults.push(...(await page.evaluate(faultsOfLabels)));
+          if (view === "suit") assert.ok((await page.locator(".suit-room").boundingBox()).height > 300);
           if (faults.length > 0) found[view] = faults;
         }
         assert.deepEqual(found, {});

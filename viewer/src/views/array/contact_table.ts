@@ -58,7 +58,7 @@ export class ContactTable {
       element("header", { class: "panel-title" }, element("h2", {}, "Contacts")),
       element(
         "div",
-        { class: "table-room" },
+        { class: "table-room", tabindex: 0, role: "region", "aria-label": "The contacts that are shown" },
         element(
           "table",
           { class: "table contact-table" },

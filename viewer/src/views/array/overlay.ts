@@ -7,10 +7,14 @@ import { type Contact, ContactPhase } from "../../messages/contacts";
 import type { Area } from "../../render/heat_maps";
 import type { ArrayDescription } from "../../suit";
 import { cssColor } from "../../theme";
+import { type LabelBox, LabelRoom } from "../label_room";
 import { AXIS_LEFT } from "./geometry";
 
 const TURN = 2 * Math.PI;
 const CENTRE_PIXELS = 7;
+const LABEL_HEIGHT = 18;
+/** Of a contact, which no label is to hide. */
+const MIDDLE_PIXELS = 14;
 const HALO = "rgb(0 0 0 / 70%)";
 const INK = "#ffffff";
 const FONT = '600 12px "Inter", "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", Arial, sans-serif';
@@ -74,18 +78,22 @@ export class Overlay {
     this.#pen.resetTransform();
     this.#pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
     this.#pen.restore();
+    const room = new LabelRoom(load.width, load.height);
     for (const area of areas) {
       if (area.width === 0) continue;
       pins.forEach((taxel, index) => this.#drawPin(area, array, taxel, index + 1));
       if (cursor >= 0) this.#drawCursor(area, array, cursor);
-      if (region?.array === array.name) this.#drawRegion(area, array, region);
+      if (region?.array !== array.name) continue;
+      const label = this.#drawRegion(area, array, region);
+      if (area === load) room.take(label);
     }
     if (load.width === 0) return;
-    if (contacts !== undefined) this.#drawContacts(load, array, contacts);
+    if (contacts !== undefined) this.#drawContacts(load, array, contacts, room);
     if (centre !== undefined) this.#drawCentre(centre, scaleOf(load, array));
   }
 
-  #drawRegion(area: Area, array: ArrayDescription, region: Region): void {
+  /** Returns where its name is on the map. */
+  #drawRegion(area: Area, array: ArrayDescription, region: Region): LabelBox {
     const [width, height] = [area.width / array.cols, area.height / array.rows];
     const left = area.left + region.cols[0] * width;
     const top = area.top + region.rows[0] * height;
@@ -96,7 +104,10 @@ export class Overlay {
     pen.font = FONT;
     pen.textAlign = "left";
     pen.textBaseline = "bottom";
-    this.#textTwice(regionName(region), left + 4, top + (region.rows[1] - region.rows[0] + 1) * height - 3);
+    const bottom = top + (region.rows[1] - region.rows[0] + 1) * height - 3;
+    this.#textTwice(regionName(region), left + 4, bottom);
+    const textWidth = pen.measureText(regionName(region)).width;
+    return { x: left + 4 + 0.5 * textWidth - area.left, y: bottom - 0.5 * LABEL_HEIGHT - area.top, width: textWidth, height: LABEL_HEIGHT };
   }
 
   /** A cross in a ring, and the way that led there. */
@@ -142,22 +153,25 @@ export class Overlay {
     this.#textTwice(String(label), left + 3, top + 2);
   }
 
-  #drawContacts(area: Area, array: ArrayDescription, live: ArrayLive): void {
+  #drawContacts(area: Area, array: ArrayDescription, live: ArrayLive, room: LabelRoom): void {
     const { originX, originY, pixelsX, pixelsY } = scaleOf(area, array);
     const pen = this.#pen;
     pen.save();
     pen.beginPath();
     pen.rect(area.left - AXIS_LEFT, area.top, area.width + 2 * AXIS_LEFT, area.height);
     pen.clip();
-    for (let index = 0; index < live.contacts.count; ++index) {
-      const contact = live.contacts.contacts[index]!;
-      if (contact.phase === ContactPhase.release) continue;
-      const slot = live.slots.indexOf(contact.id);
-      this.#drawTrail(live, slot, originX, originY, pixelsX, pixelsY);
-      const x = originX + contact.x * pixelsX;
-      const y = originY + contact.y * pixelsY;
+    const touching = live.contacts.contacts.slice(0, live.contacts.count).filter(({ phase }) => phase !== ContactPhase.release);
+    for (const contact of touching) {
+      this.#drawTrail(live, live.slots.indexOf(contact.id), originX, originY, pixelsX, pixelsY);
+      const [x, y] = [originX + contact.x * pixelsX, originY + contact.y * pixelsY];
       this.#drawOutline(contact, x, y, pixelsX, pixelsY);
-      this.#drawLabel(contact, slot, x, y, pixelsX, pixelsY, area);
+      room.take({ x: x - area.left, y: y - area.top, width: MIDDLE_PIXELS, height: MIDDLE_PIXELS });
+    }
+    for (const contact of touching) {
+      const reach = 0.75 * Math.sqrt(contact.areaM2 / Math.PI);
+      const x = originX + (contact.x + reach) * pixelsX + 4;
+      const y = originY + (contact.y - reach) * pixelsY - 22;
+      this.#drawLabel(contact, live.slots.indexOf(contact.id), x, y, area, room);
     }
     pen.restore();
   }
@@ -191,20 +205,22 @@ export class Overlay {
     this.#strokeTwice(() => ellipse(2 * contact.sigmaX * pixelsX, 2 * contact.sigmaY * pixelsY, 0), 1.5);
   }
 
-  #drawLabel(contact: Contact, slot: number, x: number, y: number, pixelsX: number, pixelsY: number, area: Area): void {
+  /** With its corner at x and y or where there is room near it; without any, its line in the table has to do. */
+  #drawLabel(contact: Contact, slot: number, x: number, y: number, area: Area, room: LabelRoom): void {
     const pen = this.#pen;
     const text = `#${contact.id}  ${contact.forceN.toFixed(contact.forceN < 10 ? 2 : 1)} N`;
     pen.font = FONT;
     const width = pen.measureText(text).width + 16;
-    const reach = Math.sqrt(contact.areaM2 / Math.PI);
-    const left = Math.min(x + 0.75 * reach * pixelsX + 4, area.left + area.width - width - 2);
-    const top = Math.max(y - 0.75 * reach * pixelsY - 22, area.top + 2);
+    const place = room.place({ x: x - area.left + 0.5 * width, y: y - area.top + 0.5 * LABEL_HEIGHT, width, height: LABEL_HEIGHT });
+    if (place === undefined) return;
+    const left = area.left + place.x - 0.5 * width;
+    const top = area.top + place.y - 0.5 * LABEL_HEIGHT;
     pen.fillStyle = this.#plate;
     pen.globalAlpha = 0.92;
-    pen.fillRect(left, top, width, 18);
+    pen.fillRect(left, top, width, LABEL_HEIGHT);
     pen.globalAlpha = 1;
     pen.fillStyle = this.#seriesColors[slot] ?? this.#plateText;
-    pen.fillRect(left, top, 4, 18);
+    pen.fillRect(left, top, 4, LABEL_HEIGHT);
     pen.fillStyle = this.#plateText;
     pen.textAlign = "left";
     pen.textBaseline = "middle";

@@ -7,7 +7,7 @@ import { readTransforms } from "../../messages/transforms";
 import { setting } from "../../settings";
 import type { View, ViewContext, ViewFactory } from "../../view";
 import { asOnMap, isLoneAndFlat } from "./as_on_map";
-import { LabelRoom } from "./label_room";
+import { LabelRoom } from "../label_room";
 import { OrientationGizmo } from "./orientation_gizmo";
 import type { SuitScene } from "./suit_scene";
 import "./suit.css";

@@ -29,6 +29,11 @@ export class LabelRoom {
     readonly height: number,
   ) {}
 
+  /** Something else is here already. */
+  take(box: LabelBox): void {
+    this.#taken.push(box);
+  }
+
   /** The nearest free place inside the picture, which is taken from now on; undefined: there is none near enough. */
   place(wanted: LabelBox): LabelBox | undefined {
     for (const [right, down] of STEPS) {
