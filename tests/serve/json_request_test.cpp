@@ -79,7 +79,7 @@ TEST(JsonRequest, null_is_a_missing_number_where_some_may_be_missing) {
 }
 
 TEST(JsonRequest, larger_requests_are_read_where_it_is_said) {
-  const std::string large = R"({"name": ")" + std::string(5000, 'a') + ""}";
+  const std::string large = R"({"name": ")" + std::string(5000, 'a') + R"("})";
   EXPECT_EQ(JsonRequest::parse(large).error().message, "the request is no JSON object of at most 4 KiB");
   EXPECT_TRUE(JsonRequest::parse(large, 8192));
 }
