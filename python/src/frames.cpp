@@ -340,6 +340,12 @@ void bind_many_frames(py::module_& module) {
   py::class_<Forces>(module, "Forces")
       .def("__len__", [](const Forces& forces) { return forces.time_ns.size(); })
       .def("__getitem__", &part_of_forces)
+      .def("__getitem__",
+           [](const Forces& /*forces*/, py::ssize_t index) -> Forces {
+             const std::string text = std::to_string(index);
+             throw py::type_error("one frame of Forces is forces.newtons[" + text + "], forces.total[" + text +
+                                  "] and the like; a slice gives Forces");
+           })
       .def_property_readonly("time_ns", per_frame(&Forces::time_ns))
       .def_property_readonly("status", per_frame(&Forces::status))
       .def_property_readonly("newtons", per_taxel(&Forces::newtons))

@@ -18,9 +18,14 @@ constexpr std::size_t kLeastFrames = 3;
 constexpr double kMostDeviation = 0.05;  // within a piece, relative: more is a hand
 constexpr double kLeastChange = 0.03;    // of a gain: less is not worth a calibration
 constexpr double kSomethingElse = 2.0;   // times the weight, or a part of it
+constexpr double kNewtonsPerGram = 9.80665e-3;
 constexpr double kSigmas = 3.0;
 constexpr double kTooMuch = 0.1;      // of a gain: a check that cannot tell as much has not told much
 constexpr double kLeastSigma = 1e-3;  // relative
+
+bool is_near(double ratio) {
+  return ratio < kSomethingElse && ratio > 1.0 / kSomethingElse;
+}
 
 /// Of the logarithm of the mean ratio. What the model says of a force, and what the presses show of it if that is more.
 double sigma_of(const std::vector<WeighedPress>& presses, double log_ratio, double weight_n) {
@@ -55,7 +60,10 @@ std::string readings(const std::vector<WeighedPress>& presses) {
 
 std::string missing(const WeightFinding& finding) {
   if (finding.others > 0) {
-    return fmt::format("no press reads between half and twice the weight; {} read something else", finding.others);
+    const bool is_in_grams = is_near(finding.other_n / (kNewtonsPerGram * finding.weight_n));
+    return fmt::format("no press reads between half and twice the weight; {} read something else, the last {:.3g} N{}",
+                       finding.others, finding.other_n,
+                       is_in_grams ? fmt::format("; if it weighs {0:g} grams, write '{0:g} g'", finding.weight_n) : "");
   }
   if (finding.unsteady > 0) return "no press lay still for a second: put the object down and let go of it";
   return "nothing was put on";
@@ -136,8 +144,8 @@ void WeightCheck::close_piece(Press& press) const {
   const double deviation = std::sqrt(variance) / weighed.newtons;
   if (!std::isfinite(weighed.sigma_newtons) || !(deviation < kMostDeviation)) return;
   const double ratio = weighed.newtons / finding_.weight_n;
-  const bool is_the_weight = ratio < kSomethingElse && ratio > 1.0 / kSomethingElse;
-  press.is_other = press.is_other || !is_the_weight;
+  const bool is_the_weight = is_near(ratio);
+  if (!is_the_weight) press.other_n = weighed.newtons;
   if (!is_the_weight || (press.steadiest && deviation >= press.deviation)) return;
   press.steadiest = weighed;
   press.deviation = deviation;
@@ -146,8 +154,11 @@ void WeightCheck::close_piece(Press& press) const {
 void WeightCheck::count(const Press& press, WeightFinding& finding) {
   if (press.steadiest) {
     finding.presses.push_back(*press.steadiest);
+  } else if (press.other_n) {
+    ++finding.others;
+    finding.other_n = *press.other_n;
   } else {
-    ++(press.is_other ? finding.others : finding.unsteady);
+    ++finding.unsteady;
   }
 }
 

@@ -125,6 +125,8 @@ class Terminal(SmallArray):
                 for weight in ("0.2 kg", "200g", "1.96133", "1.96133 N")}
         self.assertEqual(len(told), 1)
         self.assertRegex(told.pop(), r"^weight +1.961 N, put on 3 times\n")
+        self.refuse(("check", "--model", array, "--in", frames, "--weight", 200),
+                    ["3 read something else, the last 2 N; if it weighs 200 grams, write '200 g'"], status=1)
         self.refuse(("check", "--model", array, "--in", frames, "--weight", "two"),
                     ["--weight: 'two' is no force; write newtons, or a unit as in 2 N, 200 g or 0.2 kg"])
 

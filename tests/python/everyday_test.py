@@ -79,6 +79,8 @@ class Everyday(workspace.CalibratedArray):
         for member in ("time_ns", "status", "newtons", "sigma_newtons", "taxels", "total", "total_sigma"):
             np.testing.assert_array_equal(getattr(last, member), getattr(self.forces, member)[-5:])
         self.assertEqual((len(self.recording[60:]), len(self.forces[3:3])), (0, 0))
+        with self.assertRaisesRegex(TypeError, r"^one frame of Forces is forces.newtons\[3\], "):
+            self.forces[3]
         part.write(self.folder / "part.csv")
         self.assertEqual(len(dermis.Recording.read(self.folder / "part.csv")), 10)
 

@@ -25,6 +25,7 @@ struct WeightFinding {
   double weight_n = 0.0;
   std::vector<WeighedPress> presses;  ///< Of the object.
   std::size_t others = 0;    ///< Presses that read less than half or more than twice the weight: of something else.
+  double other_n = 0.0;      ///< What the last of them read [N].
   std::size_t unsteady = 0;  ///< Presses that were too short or not steady.
   double ratio = 1.0;        ///< What the array reads over what the object weighs; geometric mean of the presses.
   double sigma = 0.0;        ///< Standard deviation of its logarithm, that from touch to touch included.
@@ -65,7 +66,7 @@ class WeightCheck {
     std::optional<Piece> piece;
     std::optional<WeighedPress> steadiest;  ///< Of the pieces that may be the weight.
     double deviation = 0.0;                 ///< Of `steadiest`, relative.
-    bool is_other = false;  ///< Something lay still that reads less than half or more than twice the weight.
+    std::optional<double> other_n;  ///< Of what lay still and read less than half or more than twice the weight.
   };
 
   void hold(Nanos time);
