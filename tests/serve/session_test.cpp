@@ -53,6 +53,7 @@ class GuidedArray final : public FrameSource {
     const sources::GuideWords words = voice_->words();
     force_n_.assign(force_n_.size(), 0.0);
     if (words.press) force_n_[words.taxel] = words.weight_n;
+    if (words.press && words.together_with) force_n_[*words.together_with] = words.weight_n;
     frame = handled_.frame(force_n_);
     return true;
   }
