@@ -17,6 +17,7 @@
 #include "serve/topics/topics.hpp"
 
 namespace dermis::serve {
+
 /// Makes the parts of a server and what they share, and is their clock.
 class Session::Implementation {
  public:
