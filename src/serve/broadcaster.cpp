@@ -81,8 +81,7 @@ void Broadcaster::publish_contacts(Channels& channels, const live::ArrayResult& 
   if (!server_.has_subscribers(contacts_)) return;
   channels.contacts.take(result);
   channels.contacts.encode(result, channels.message);
-  const auto kind = begins_or_ends(result.report) ? stream::MessageKind::event : stream::MessageKind::picture;
-  server_.publish(contacts_, result.raw.time, channels.message, kind);
+  server_.publish(contacts_, result.raw.time, channels.message, stream::MessageKind::picture);
 }
 
 void Broadcaster::publish_points() {
