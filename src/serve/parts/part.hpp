@@ -40,7 +40,7 @@ class Part {
   [[nodiscard]] virtual std::vector<stream::Service> services() { return {}; }
   [[nodiscard]] virtual std::vector<LiveParameter> parameters() { return {}; }
   /// What else has to happen before clients come. Errors end the session.
-  [[nodiscard]] virtual Status begin() { return Done{}; }
+  [[nodiscard]] virtual Status prepare() { return Done{}; }
 
   /// Every frame of every array, with what was made of it.
   virtual void hear(const live::ArrayResult& /*result*/) {}
@@ -54,7 +54,7 @@ class Part {
   /// Adds what is wrong with the arrays.
   virtual void diagnose(std::vector<messages::Diagnosis>& /*diagnoses*/) const {}
   /// After the last frame.
-  virtual void end() {}
+  virtual void finish() {}
 };
 
 }  // namespace dermis::serve
