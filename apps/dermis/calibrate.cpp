@@ -44,7 +44,7 @@ constexpr double kPoorFit = 0.1;  // relative error
 constexpr std::uint64_t kBankSeed = 1;
 // Single presses hide what is wrong with circuit and ADC: each law takes it in.
 constexpr const char* kProofPresses =
-    "less than eight presses on two to six taxels: whether circuit and ADC are as described is not told; add some, "
+    "fewer than eight presses on two to six taxels: whether circuit and ADC are as described is not told; add some, "
     "such as twenty of a known weight over two to four taxels of a row";
 
 struct CalibrateOptions {
@@ -90,7 +90,7 @@ void print_text(const CalibrationReport& report, const std::optional<BankTrainin
              report.frames_rejected > 0 ? " (" + report.first_rejection + ")" : "");
   for (const std::string& remark : report.remarks) fmt::print("{}\n", remark);
   for (const std::string& doubt : report.doubts) fmt::print("{}\n", doubt);
-  if (report.lacks_proof) fmt::print("{}\n", kProofPresses);
+  if (report.lacks_proof && report.doubts.empty()) fmt::print("{}\n", kProofPresses);
   for (const std::string& statement : report.circuit) fmt::print("{}\n", statement);
   fmt::print("{}\n", training.choice);
   if (!report.memory.empty()) fmt::print("{}\n", report.memory);

@@ -79,7 +79,8 @@ Status Client::receive(std::span<const std::uint8_t> bytes, bool is_text) {
 }
 
 void Client::begin_moment() {
-  if (takes_pictures_) moment_bytes_ = queue_.binary_bytes() - moment_begin_;
+  // Old messages that were dropped meanwhile may leave less than there was.
+  if (takes_pictures_) moment_bytes_ = queue_.binary_bytes() - std::min(moment_begin_, queue_.binary_bytes());
   moment_begin_ = queue_.binary_bytes();
   takes_pictures_ = is_asking_ || taken_.is_open(moment_begin_, moment_bytes_);
 }

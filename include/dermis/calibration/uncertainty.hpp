@@ -38,6 +38,7 @@ struct UncertaintyReport {
   std::optional<RelativeSigma> relative_sigma_of_tables;     ///< Of taxels with a look-up table.
   std::optional<RelativeSigma> relative_sigma_of_unpressed;  ///< Of those of them that no load pressed.
   std::size_t unpressed_taxels = 0;                          ///< How many these are.
+  double unexplained_share = 0.0;  ///< SampleDatabase::unexplained_share, beside all of these.
 };
 
 /// "readings ± 1.05 counts, supply ± 0.10 %, temperature ± 0.30 C, forces ± 0.2 to 0.4 % beside that".

@@ -116,12 +116,12 @@ double sum_of_squares(const std::vector<double>& values) {
   return sum;
 }
 
-/// Relative, and never nothing.
+/// Relative. At least that of presses that nobody repeated.
 double mean_square_error(const std::vector<TestedLoad>& loads) {
-  constexpr double kLeast = 1e-8;
   double sum = 0.0;
   for (const TestedLoad& load : loads) sum += std::pow(load.error_n / load.newtons, 2);
-  return std::max(sum / static_cast<double>(std::max<std::size_t>(loads.size(), 1)), kLeast);
+  const double mean = sum / static_cast<double>(std::max<std::size_t>(loads.size(), 1));
+  return std::max(mean, kUnlearnedRepetition * kUnlearnedRepetition);
 }
 
 /// How surely single presses tell the exponent of the law that taxels share.
@@ -131,7 +131,7 @@ struct ExponentEvidence {
 };
 
 /// A line through ln(newtons): about the mean of each taxel by the scatter of its presses, of the means by that of
-/// taxels.
+/// taxels. Loads that are about the same tell nothing. Taxels with tables have no loads of the shared network left.
 ExponentEvidence exponent_evidence(const ForceTraining& training) {
   std::map<std::size_t, std::vector<double>> log_newtons;  // of each taxel
   for (const TestedLoad& load : training.tested_unpressed) {
@@ -143,10 +143,12 @@ ExponentEvidence exponent_evidence(const ForceTraining& training) {
     means.push_back(mean_of(logs));
     within += sum_of_squares(logs);
   }
-  const double of_presses = mean_square_error(training.tested_shared);
+  const bool has_shared = !training.tested_shared.empty();
+  const double of_presses = mean_square_error(has_shared ? training.tested_shared : training.tested_tables);
   const double of_taxels = mean_square_error(training.tested_unpressed);
-  const double told = within / of_presses + sum_of_squares(means) / of_taxels;
-  return {mean_of(means), 1.0 / (told + 1.0 / (kUnlearnedExponent * kUnlearnedExponent))};
+  double evidence = 1.0 / (kUnlearnedExponent * kUnlearnedExponent);
+  if (!training.report.is_one_load) evidence += within / of_presses + sum_of_squares(means) / of_taxels;
+  return {mean_of(means), 1.0 / evidence};
 }
 
 /// What few loads do not tell of the law.
@@ -240,6 +242,10 @@ std::string describe(const UncertaintyReport& report, const ArrayDescription& ar
   if (report.relative_sigma_of_unpressed) {
     text += ", of taxels that were not pressed " + range_text(*report.relative_sigma_of_unpressed);
   }
+  if (report.unexplained_share > 0.0) {
+    text +=
+        fmt::format(", and all \u00b1 {:.1f} % more, as circuit or ADC are in doubt", 100.0 * report.unexplained_share);
+  }
   return text;
 }
 
@@ -257,7 +263,8 @@ Result<UncertaintyReport> fit_uncertainty(const SampleDatabase& database, const 
   report.supply_noise = likeliest_supply_noise(*judged);
   model.array.readout.supply_noise = report.supply_noise;
   fit_material(*judged, training, model.networks, report);
-  widen(database.unexplained_share, model.networks);
+  report.unexplained_share = database.unexplained_share;
+  widen(report.unexplained_share, model.networks);
   return report;
 }
 

@@ -41,7 +41,8 @@ class BodyPart final : public Part {
   void tick(std::int64_t tick) override {
     const std::uint64_t moved = suit_.body ? suit_.body->version() : 0;
     const bool has_moved = std::exchange(version_, moved) != moved;
-    if (has_moved) publish(Ends::both);
+    if (has_moved) publish(Ends::dds);
+    if (has_moved) publish(Ends::stream);
     if (!has_moved && tick % kTicksPerSecond == kTickOfSecond && transforms_.is_wanted(Ends::stream)) {
       publish(Ends::stream);
     }

@@ -59,8 +59,7 @@ std::vector<stream::Service> CalibrationServices::services() {
 }
 
 void CalibrationServices::tick(std::int64_t tick) {
-  if (!tell_ || tick % 3 != 0) return;
-  if (std::optional<CalibrationProgress> now = progress()) tell_(*std::move(now));
+  if (tell_ && tick % 3 == 0) tell_(*this);
 }
 
 std::shared_ptr<GuidedCalibration> CalibrationServices::guide() const {
@@ -169,9 +168,11 @@ Result<std::unique_ptr<Part>> make_calibration(Host& host) {
   const Result<Topic> topic = host.topics.add({.stream = "/calibration"}, messages::calibration_state_type());
   if (!topic) return topic.error();
   const auto tell = [&host, topic = *topic,
-                     message = std::vector<std::uint8_t>()](CalibrationProgress progress) mutable {
+                     message = std::vector<std::uint8_t>()](const CalibrationServices& calibration) mutable {
     if (!topic.is_wanted()) return;
-    messages::CalibrationState state = calibration_message(std::move(progress));
+    std::optional<CalibrationProgress> progress = calibration.progress();
+    if (!progress) return;
+    messages::CalibrationState state = calibration_message(*std::move(progress));
     state.time = host.now();
     messages::encode_calibration_state(state, kSuitFrame, message);
     topic.publish(state.time, message);

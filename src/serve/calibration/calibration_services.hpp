@@ -27,7 +27,8 @@ namespace dermis::serve {
 /// What a calibration asks for, as it is said to a simulated hand.
 [[nodiscard]] sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time);
 
-/// The services /calibration/... of docs/stream.md: one guided calibration at a time. Thread-safe.
+/// The services /calibration/... of docs/stream.md: one guided calibration at a time. Services are called by one
+/// thread, as stream::Server promises; the rest by any.
 class CalibrationServices final : public Part {
  public:
   /// Takes a new model into use for an array that is at work.
@@ -35,8 +36,8 @@ class CalibrationServices final : public Part {
 
   /// Whether a calibration may begin now; the error says why not.
   using MayBegin = std::function<Status()>;
-  /// Is told of the calibration ten times a second, once one was started.
-  using Tell = std::function<void(CalibrationProgress)>;
+  /// Is called ten times a second; asks progress() where somebody wants to know.
+  using Tell = std::function<void(const CalibrationServices&)>;
 
   /// `guide_voice`: what the calibration asks for is said to it, for simulated hands.
   CalibrationServices(ServiceArrays arrays, UseModel use_model, std::shared_ptr<sources::GuideVoice> guide_voice,

@@ -3,6 +3,7 @@
 #include "serve/parts/part_list.hpp"
 
 #include <iterator>
+#include <ranges>
 #include <utility>
 
 namespace dermis::serve {
@@ -40,7 +41,7 @@ Status PartList::use_classes(std::size_t array, const recognition::Classes& clas
 
 std::vector<messages::Diagnosis> PartList::diagnoses() const {
   std::vector<messages::Diagnosis> diagnoses;
-  for (const auto& part : parts_) part->diagnose(diagnoses);
+  for (const auto& part : std::views::reverse(parts_)) part->diagnose(diagnoses);
   return diagnoses;
 }
 

@@ -20,6 +20,7 @@ class PartList {
   void tick(std::int64_t tick) const;
   void model_changed(std::size_t array) const;
   [[nodiscard]] Status use_classes(std::size_t array, const recognition::Classes& classes) const;
+  /// From the last part to the first, so that arrays come before threats (docs/stream.md).
   [[nodiscard]] std::vector<messages::Diagnosis> diagnoses() const;
   void finish() const;
 

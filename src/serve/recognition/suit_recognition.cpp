@@ -103,12 +103,12 @@ void SuitRecognition::read_further(Nanos time) {
 }
 
 std::vector<stream::Service> SuitRecognition::services() {
-  if (further_.empty()) return {};
+  if (recognition_.classes().layout.extras == 0) return {};
   return {service("/recognition/readings", *this, &SuitRecognition::take_readings, kMostRequestBytes)};
 }
 
 Result<std::string> SuitRecognition::take_readings(const JsonRequest& request) {
-  Result<std::vector<double>> readings = request.numbers_or_null("values", further_.size());
+  Result<std::vector<double>> readings = request.numbers_or_null("values", recognition_.classes().layout.extras);
   if (!readings) return readings.error();
   const std::lock_guard lock(readings_mutex_);
   told_.emplace(readings->begin(), readings->end());

@@ -124,36 +124,43 @@ Result<std::string> RecordingServices::save(const JsonRequest& request) {
   const Result<std::string> name = request.text("array");
   if (!name) return name.error();
   const std::vector<recordings::RecordedArray> arrays = arrays_();
-  const auto array = std::ranges::find(arrays, *name, &recordings::RecordedArray::name);
-  if (!name->empty() && array == arrays.end()) return bad_field("array", "there is none of that name");
-  const std::string wanted = name->empty() ? "cut.mcap" : *name + ".csv";
-  const std::string path = recording_name((std::filesystem::path(folder_.path()) / wanted).string(), false,
-                                          std::chrono::system_clock::now());
-  const Result<std::size_t> frames =
-      name->empty()
-          ? save_recording(last_minute_, arrays, *selection, path)
-          : save_csv(last_minute_, static_cast<std::size_t>(array - arrays.begin()), array->shape, *selection, path);
-  if (!frames) return frames.error();
-  give(path);
-  ordered_json answer{{"file", file_name(path)}, {"frames", *frames}};
-  if (!name->empty()) {
-    const Result<std::string> forces =
-        save_forces_of(static_cast<std::size_t>(array - arrays.begin()), *selection, path);
-    if (!forces) return forces.error();
-    if (!forces->empty()) answer["forces"] = file_name(*forces);
+  if (name->empty()) {
+    const std::string path = path_of("cut.mcap");
+    const Result<std::size_t> frames = save_recording(last_minute_, arrays, *selection, path);
+    if (!frames) return frames.error();
+    give(path);
+    return json_text(ordered_json{{"file", file_name(path)}, {"frames", *frames}});
   }
+  const auto array = std::ranges::find(arrays, *name, &recordings::RecordedArray::name);
+  if (array == arrays.end()) return bad_field("array", "there is none of that name");
+  return save_array(static_cast<std::size_t>(array - arrays.begin()), *array, *selection);
+}
+
+/// Forces that cannot be written leave the counts saved.
+Result<std::string> RecordingServices::save_array(std::size_t array, const recordings::RecordedArray& recorded,
+                                                  const Selection& selection) {
+  const Result<std::vector<RawFrame>> frames = selected_frames(last_minute_, array, selection);
+  if (!frames) return frames.error();
+  const std::string path = path_of(recorded.name + ".csv");
+  if (Status saved = save_csv(*frames, recorded.shape, path); !saved) return saved.error();
+  give(path);
+  ordered_json answer{{"file", file_name(path)}, {"frames", frames->size()}};
+  const std::shared_ptr<const pipeline::Model> model = models_.of(array);
+  if (calibration::is_uncalibrated(*model)) return json_text(answer);
+  const std::string forces = std::filesystem::path(path).replace_extension().string() + "-newtons.csv";
+  if (Status saved = save_forces(*frames, *model, forces); !saved) {
+    answer["forces_error"] = saved.error().message;
+    return json_text(answer);
+  }
+  give(forces);
+  answer["forces"] = file_name(forces);
   return json_text(answer);
 }
 
-/// Beside the counts at `path`, where there is a calibration; returns where.
-Result<std::string> RecordingServices::save_forces_of(std::size_t array, const Selection& selection,
-                                                      const std::string& path) {
-  const std::shared_ptr<const pipeline::Model> model = models_.of(array);
-  if (calibration::is_uncalibrated(*model)) return std::string();
-  const std::string forces = std::filesystem::path(path).replace_extension().string() + "-newtons.csv";
-  if (Status saved = save_forces(last_minute_, array, *model, selection, forces); !saved) return saved.error();
-  give(forces);
-  return forces;
+/// A new one in the folder of the recordings.
+std::string RecordingServices::path_of(const std::string& wanted) const {
+  return recording_name((std::filesystem::path(folder_.path()) / wanted).string(), false,
+                        std::chrono::system_clock::now());
 }
 
 Result<std::unique_ptr<Part>> make_recording(Host& host) {

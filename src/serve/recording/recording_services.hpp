@@ -21,7 +21,8 @@
 
 namespace dermis::serve {
 
-/// The services /recordings/... of docs/stream.md: what clients record, save, play and take away. Thread-safe.
+/// The services /recordings/... of docs/stream.md: what clients record, save, play and take away. Services are called
+/// by one thread, as stream::Server promises; the rest by any.
 class RecordingServices final : public Part {
  public:
   /// `options`: of the session; the folder is that of its recording. `arrays`: how they are recorded now. `played`:
@@ -40,8 +41,9 @@ class RecordingServices final : public Part {
   [[nodiscard]] Result<std::string> list(const JsonRequest& request);
   [[nodiscard]] Result<std::string> play(const JsonRequest& request);
   [[nodiscard]] Result<std::string> save(const JsonRequest& request);
-  [[nodiscard]] Result<std::string> save_forces_of(std::size_t array, const Selection& selection,
-                                                   const std::string& path);
+  [[nodiscard]] Result<std::string> save_array(std::size_t array, const recordings::RecordedArray& recorded,
+                                               const Selection& selection);
+  [[nodiscard]] std::string path_of(const std::string& wanted) const;
   [[nodiscard]] Status switch_recorder(bool on);
   void give(const std::string& path);
 

@@ -23,19 +23,18 @@ Error nothing_there() {
 
 }  // namespace
 
-Result<std::size_t> save_csv(const LastMinute& minute, std::size_t array, FrameShape shape, const Selection& selection,
-                             const std::string& path) {
+Result<std::vector<RawFrame>> selected_frames(const LastMinute& minute, std::size_t array, const Selection& selection) {
   std::vector<RawFrame> frames = minute.frames(array, selection.first, selection.last);
   if (frames.empty()) return nothing_there();
-  const auto take = [&](std::size_t number, RawFrame& frame) { frame = std::move(frames[number]); };
-  if (Status written = write_frames(path, shape, frames.size(), take); !written) return written.error();
-  return frames.size();
+  return frames;
 }
 
-Status save_forces(const LastMinute& minute, std::size_t array, const pipeline::Model& model,
-                   const Selection& selection, const std::string& path) {
-  const std::vector<RawFrame> frames = minute.frames(array, selection.first, selection.last);
-  if (frames.empty()) return nothing_there();
+Status save_csv(std::span<const RawFrame> frames, FrameShape shape, const std::string& path) {
+  const auto take = [&](std::size_t number, RawFrame& frame) { frame = frames[number]; };
+  return write_frames(path, shape, frames.size(), take);
+}
+
+Status save_forces(std::span<const RawFrame> frames, const pipeline::Model& model, const std::string& path) {
   Result<pipeline::Pipeline> pipeline = pipeline::Pipeline::create(model);
   if (!pipeline) return pipeline.error();
   Result<files::ForcesCsvWriter> writer = files::ForcesCsvWriter::create(path, model.array.rows, model.array.cols);

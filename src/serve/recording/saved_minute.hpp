@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,15 +20,18 @@ struct Selection {
   Nanos last{};
 };
 
-/// Writes the frames of one array as frames.csv; returns how many. Fails where there is none in the selection.
-[[nodiscard]] Result<std::size_t> save_csv(const LastMinute& minute, std::size_t array, FrameShape shape,
-                                           const Selection& selection, const std::string& path);
+/// The frames of one array. Fails where there is none in the selection.
+[[nodiscard]] Result<std::vector<RawFrame>> selected_frames(const LastMinute& minute, std::size_t array,
+                                                            const Selection& selection);
 
-/// Writes the forces of one array, as `dermis run` makes them from these frames: without a tare. Fails as save_csv().
-[[nodiscard]] Status save_forces(const LastMinute& minute, std::size_t array, const pipeline::Model& model,
-                                 const Selection& selection, const std::string& path);
+/// Writes the frames of one array as frames.csv.
+[[nodiscard]] Status save_csv(std::span<const RawFrame> frames, FrameShape shape, const std::string& path);
 
-/// Writes the frames of all arrays as a recording; as save_csv().
+/// Writes the forces of one array, as `dermis run` makes them from these frames: without a tare.
+[[nodiscard]] Status save_forces(std::span<const RawFrame> frames, const pipeline::Model& model,
+                                 const std::string& path);
+
+/// Writes the frames of all arrays as a recording; returns how many. Fails where there is none in the selection.
 [[nodiscard]] Result<std::size_t> save_recording(const LastMinute& minute,
                                                  const std::vector<recordings::RecordedArray>& arrays,
                                                  const Selection& selection, const std::string& path);

@@ -81,25 +81,29 @@ void SuitRecorder::await_closing() {
 }
 
 void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
-  const auto taken = write_with([&](recordings::SuitRecordingWriter& writer) { return writer.try_write(array, raw); });
-  if (taken) ++(*taken ? frames_ : left_out_);
+  write_with([&](recordings::SuitRecordingWriter& writer) {
+    const Result<bool> taken = writer.try_write(array, raw);
+    if (taken) ++(*taken ? frames_ : left_out_);
+    return taken;
+  });
 }
 
 void SuitRecorder::write(const recordings::RecordedEvent& event) {
-  const auto taken = write_with([&](recordings::SuitRecordingWriter& writer) { return writer.try_write(event); });
-  if (taken && !*taken) ++left_out_;
+  write_with([&](recordings::SuitRecordingWriter& writer) {
+    const Result<bool> taken = writer.try_write(event);
+    if (taken && !*taken) ++left_out_;
+    return taken;
+  });
 }
 
 template <typename Write>
-std::optional<bool> SuitRecorder::write_with(const Write& write) {
-  if (!recording_) return std::nullopt;
+void SuitRecorder::write_with(const Write& write) {
+  if (!recording_) return;
   {
     const std::shared_lock lock(writer_mutex_);
-    if (!writer_) return std::nullopt;
-    if (const Result<bool> taken = write(*writer_)) return *taken;
+    if (!writer_ || write(*writer_)) return;
   }
   stop();
-  return std::nullopt;
 }
 
 std::string SuitRecorder::path() const {

@@ -9,7 +9,6 @@
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <shared_mutex>
 #include <string>
 #include <thread>
@@ -63,9 +62,9 @@ class SuitRecorder {
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_.load(); }
 
  private:
-  /// Whether it was taken; empty where nothing is recorded. Ends a recording that cannot be written.
+  /// `write` counts what the writer took. Ends a recording that cannot be written.
   template <typename Write>
-  std::optional<bool> write_with(const Write& write);
+  void write_with(const Write& write);
   void close(recordings::SuitRecordingWriter& writer);
   void await_closing();
 

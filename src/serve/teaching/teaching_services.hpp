@@ -16,7 +16,8 @@
 
 namespace dermis::serve {
 
-/// The services /recognition/... of docs/stream.md: the lesson of the arrays for clients. Thread-safe.
+/// The services /recognition/... of docs/stream.md: the lesson of the arrays for clients. Services are
+/// called by one thread, as stream::Server promises; the rest by any.
 class TeachingServices final : public Part {
  public:
   /// Takes new classes into use for an array that is at work.

@@ -104,7 +104,8 @@ void FrameTopics::hear(const live::ArrayResult& result) {
   const bool due = is_due(array, result.raw.time);
   publish_images(array, result, due);
   if (points_topic_.is_wanted(ends_of(due))) points_.keep(result.array, result.force);
-  if (due) last_time_ns_ = result.raw.time.count();
+  if (due) stream_time_ns_ = result.raw.time.count();
+  last_time_ns_ = result.raw.time.count();
   publish_contacts(array, result, due);
   if (topics_.has_dds() && !has(result.force.status, FrameStatus::rejected)) publish_wrench(array, result);
 }
@@ -173,12 +174,16 @@ void FrameTopics::publish_wrench(Array& array, const live::ArrayResult& result) 
 }
 
 void FrameTopics::tick(std::int64_t /*tick*/) {
-  if (points_topic_.is_wanted()) {
-    const Nanos time(last_time_ns_.load());
-    points_.encode(time, message_);
-    points_topic_.publish(time, message_, Ends::both, MessageKind::picture);
-  }
+  const Nanos last(last_time_ns_.load());
+  publish_points(Nanos(stream_time_ns_.load()), Ends::stream);
+  if (last != Nanos{}) publish_points(last, Ends::dds);
   if (wrench_topic_.is_wanted()) publish_suit_wrench();
+}
+
+void FrameTopics::publish_points(Nanos time, Ends ends) {
+  if (!points_topic_.is_wanted(ends)) return;
+  points_.encode(time, message_);
+  points_topic_.publish(time, message_, ends, MessageKind::picture);
 }
 
 /// Nothing where an array is silent: without it the sum would be too low.

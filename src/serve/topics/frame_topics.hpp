@@ -71,6 +71,7 @@ class FrameTopics final : public Part {
   void publish_values(Array& array, const Topic& topic, std::span<const float> values, Nanos time);
   void publish_contacts(Array& array, const live::ArrayResult& result, bool is_due);
   void publish_wrench(Array& array, const live::ArrayResult& result);
+  void publish_points(Nanos time, Ends ends);
   void publish_suit_wrench();
 
   Topics& topics_;
@@ -81,7 +82,8 @@ class FrameTopics final : public Part {
   Topic wrench_topic_;
   std::vector<std::uint8_t> message_;  // of the suit
   std::atomic<double> rate_hz_{60.0};
-  std::atomic<std::int64_t> last_time_ns_{0};
+  std::atomic<std::int64_t> stream_time_ns_{0};  // of the last frame that was due
+  std::atomic<std::int64_t> last_time_ns_{0};    // of the last frame; 0: there was none
 };
 
 }  // namespace dermis::serve
