@@ -130,7 +130,7 @@ class ForceFrame:
 class Recording:
     """Frames of one array in memory, from and to any file of frames: .mcap, .csv, .h5, .npy and more.
 
-    counts: (frames, rows, cols). Give time_ns (frames,) or rate_hz. temperature_celsius [C] and supply_v [V] are (frames,), one
+    counts: (frames, rows, cols). Give rate_hz, or time_ns (frames,), which does not go back. temperature_celsius [C] and supply_v [V] are (frames,), one
     number for all frames, or None; NaN stands for a frame without.
     """
 
@@ -197,7 +197,8 @@ class Pipeline:
     """Counts in, newtons out. One for each stream of frames, in their order; raises where two threads use it at once.
     A copy, also by pickle, is made anew of the model: it has not been tared and remembers nothing."""
 
-    def __init__(self, model: Model) -> None: ...
+    def __init__(self, model: Model | _Path) -> None:
+        """A model, or the path of its file."""
     @property
     def model(self) -> Model: ...
     @overload

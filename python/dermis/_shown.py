@@ -3,7 +3,7 @@
 """How objects show themselves: one line for repr(), a heat map in notebooks."""
 import numpy
 
-from dermis import _dermis  # type: ignore[attr-defined]  # it has no stub
+from dermis import FrameStatus, _dermis  # type: ignore[attr-defined]  # _dermis has no stub
 
 
 def _size(array):
@@ -42,8 +42,10 @@ def _of_force(force):
 
 def _of_forces(forces):
     there = forces.total[numpy.isfinite(forces.total)]
-    most = f"at most {there.max():.3g} N" if there.size else "no force"
-    return f"<dermis.Forces, {_frames(forces.newtons)}, {_span(forces.time_ns)}, {most}>"
+    most = f"total at most {there.max():.3g} N" if there.size else "no force"
+    rejected = numpy.count_nonzero(forces.status & FrameStatus.REJECTED)
+    loss = f", {rejected} rejected" if rejected else ""
+    return f"<dermis.Forces, {_frames(forces.newtons)}, {_span(forces.time_ns)}, {most}{loss}>"
 
 
 def _of_source(source):

@@ -23,6 +23,12 @@ std::shared_ptr<pipeline::Model> read_model(const std::string& path) {
 
 }  // namespace
 
+std::shared_ptr<pipeline::Model> model_of(const py::object& object) {
+  if (is_path(object)) return read_model(path_of(object));
+  if (!py::isinstance<pipeline::Model>(object)) throw py::type_error("model: is a Model or the path of its file");
+  return object.cast<std::shared_ptr<pipeline::Model>>();
+}
+
 void bind_array(py::module_& module) {
   py::class_<ArrayDescription>(module, "ArrayDescription")
       .def_static(

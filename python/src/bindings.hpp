@@ -7,6 +7,7 @@
 #include <pybind11/stl.h>
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +16,10 @@
 #include "dermis/core/array_description.hpp"
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
+
+namespace dermis::pipeline {
+struct Model;
+}  // namespace dermis::pipeline
 
 /// What the sources of the Python module share. python/dermis/__init__.pyi is the reference of what they bind.
 namespace dermis::python {
@@ -69,5 +74,8 @@ std::string new_path(const py::object& object, bool is_forced);
 
 /// An ArrayDescription, or the path of its array.toml.
 ArrayDescription array_of(const py::object& object);
+
+/// A Model, or the path of its file.
+std::shared_ptr<pipeline::Model> model_of(const py::object& object);
 
 }  // namespace dermis::python

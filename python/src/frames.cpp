@@ -44,7 +44,16 @@ std::vector<double> series(const py::object& object, const char* name, std::size
 
 std::vector<std::int64_t> times(const py::object& time_ns, const std::optional<double>& rate_hz, std::size_t frames) {
   if (time_ns.is_none() == !rate_hz) throw py::value_error("give the times of the frames as time_ns, or their rate_hz");
-  if (!time_ns.is_none()) return copied(numbers<std::int64_t>(time_ns, "time_ns", {static_cast<py::ssize_t>(frames)}));
+  if (!time_ns.is_none()) {
+    std::vector<std::int64_t> given =
+        copied(numbers<std::int64_t>(time_ns, "time_ns", {static_cast<py::ssize_t>(frames)}));
+    const auto back = std::is_sorted_until(given.begin(), given.end());
+    if (back != given.end()) {
+      throw py::value_error("time_ns: goes back at [" + std::to_string(back - given.begin()) +
+                            "]; give the frames in the order of their times");
+    }
+    return given;
+  }
   if (!(*rate_hz > 0.0 && *rate_hz <= 1e6)) throw py::value_error("rate_hz: must be above 0, at most 1e6");
   std::vector<std::int64_t> times(frames);
   for (std::size_t k = 0; k < frames; ++k) times[k] = std::llround(1e9 * static_cast<double>(k) / *rate_hz);
@@ -239,6 +248,7 @@ std::vector<std::size_t> places_of(const py::slice& slice, std::size_t frames) {
   py::ssize_t step = 0;
   py::ssize_t count = 0;
   if (!slice.compute(static_cast<py::ssize_t>(frames), &place, &stop, &step, &count)) throw py::error_already_set();
+  if (step < 0) throw py::value_error("the step of a slice must be positive: times must not go back");
   std::vector<std::size_t> places(static_cast<std::size_t>(count));
   for (std::size_t& each : places) each = static_cast<std::size_t>(std::exchange(place, place + step));
   return places;
@@ -309,6 +319,12 @@ void bind_many_frames(py::module_& module) {
              return raw;
            })
       .def("__getitem__", &part_of_recording)
+      .def("__getitem__",
+           [](const Recording& /*recording*/, const py::object& /*index*/) -> py::object {
+             throw py::type_error(
+                 "an index of a Recording is a whole number or a slice; other indices are for its arrays, as in "
+                 "recording.counts[index]");
+           })
       .def_readonly("name", &Recording::name)
       .def_readonly("model_hash", &Recording::model_hash)
       .def_property_readonly("array",
@@ -345,6 +361,11 @@ void bind_many_frames(py::module_& module) {
              const std::string text = std::to_string(index);
              throw py::type_error("one frame of Forces is forces.newtons[" + text + "], forces.total[" + text +
                                   "] and the like; a slice gives Forces");
+           })
+      .def("__getitem__",
+           [](const Forces& /*forces*/, const py::object& /*index*/) -> Forces {
+             throw py::type_error(
+                 "an index of Forces is a slice; other indices are for its arrays, as in forces.newtons[index]");
            })
       .def_property_readonly("time_ns", per_frame(&Forces::time_ns))
       .def_property_readonly("status", per_frame(&Forces::status))

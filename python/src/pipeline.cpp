@@ -143,18 +143,21 @@ class SharedPipeline {
 
 void bind_pipeline(py::module_& module) {
   py::class_<SharedPipeline>(module, "Pipeline")
-      .def(py::init<std::shared_ptr<pipeline::Model>>(), py::arg("model").none(false))
+      .def(py::init([](const py::object& model) { return std::make_unique<SharedPipeline>(model_of(model)); }),
+           py::arg("model"))
       .def_property_readonly("model", &SharedPipeline::model)
       .def("process", &SharedPipeline::process_frame, py::arg("frame"))
       .def("process", &SharedPipeline::process, py::arg("counts"), py::arg("temperature") = py::none(),
            py::arg("supply") = py::none(), py::arg("time_ns") = py::none())
       .def(
           "run",
-          [](SharedPipeline& self, const py::object& frames, const py::object& time_ns, std::optional<double> rate_hz,
-             const py::object& temperature_celsius, const py::object& supply_v) {
+          [](SharedPipeline& self, const py::object& frames, const py::args& unnamed, const py::object& time_ns,
+             std::optional<double> rate_hz, const py::object& temperature_celsius, const py::object& supply_v) {
+            if (!unnamed.empty())
+              throw py::type_error("run() takes the frames; name what comes beside, as rate_hz=100");
             return self.run(frames_of(*self.model(), frames, {time_ns, rate_hz, temperature_celsius, supply_v}));
           },
-          py::arg("frames"), py::kw_only(), py::arg("time_ns") = py::none(), py::arg("rate_hz") = py::none(),
+          py::arg("frames"), py::arg("time_ns") = py::none(), py::arg("rate_hz") = py::none(),
           py::arg("temperature_celsius") = py::none(), py::arg("supply_v") = py::none())
       .def_property_readonly("why_rejected", &SharedPipeline::why_rejected)
       .def("tare", &SharedPipeline::tare, py::kw_only(), py::arg("force") = false)

@@ -84,6 +84,32 @@ class Everyday(workspace.CalibratedArray):
         part.write(self.folder / "part.csv")
         self.assertEqual(len(dermis.Recording.read(self.folder / "part.csv")), 10)
 
+    def test_times_never_go_back(self):
+        pipeline = dermis.Pipeline(self.loaded)
+        for backwards in (lambda: self.recording[::-1], lambda: self.forces[::-1]):
+            with self.assertRaisesRegex(ValueError, "^the step of a slice must be positive: times must not go back$"):
+                backwards()
+        for take in (dermis.Recording, pipeline.run):
+            with self.assertRaisesRegex(ValueError, r"^time_ns: goes back at \[2\]; "):
+                take(self.recording.counts[:3], time_ns=[5, 7, 6])
+        self.assertEqual(len(dermis.Recording(self.recording.counts[:3], time_ns=[5, 5, 6])), 3)
+
+    def test_a_pipeline_takes_the_path_of_a_model(self):
+        for path in (self.model, str(self.model)):
+            np.testing.assert_array_equal(dermis.Pipeline(path).run(self.recording).newtons, self.forces.newtons)
+        with self.assertRaisesRegex(dermis.BadInput, "none.safetensors"):
+            dermis.Pipeline("none.safetensors")
+
+    def test_wrong_types_are_told_in_one_line(self):
+        some = np.array([1, 2])
+        for call, line in ((lambda: dermis.Pipeline(3), "model: is a Model or the path of its file"),
+                           (lambda: dermis.Pipeline(self.loaded).run(self.recording, 100), "name what comes beside, as rate_hz=100"),
+                           (lambda: self.forces[some], r"as in forces\.newtons\[index\]"),
+                           (lambda: self.recording[some], r"as in recording\.counts\[index\]")):
+            with self.assertRaisesRegex(TypeError, f"^[^\\n]*{line}$"):
+                call()
+        self.assertEqual(self.recording[np.int64(3)].time_ns, self.recording.time_ns[3])
+
     def test_models_and_pipelines_are_copied(self):
         model = copy.copy(self.loaded)
         self.assertEqual(model.provenance, self.loaded.provenance)
@@ -158,10 +184,12 @@ class Everyday(workspace.CalibratedArray):
                                  (self.recording[0:0], "Recording, 0 frames of 5x4, 0 s"),
                                  (self.recording[5], r"RawFrame 5x4, \d+ to \d+ counts, at \d+\.\d{3} s"),
                                  (force, r"ForceFrame 5x4, [\d.]+ \u00b1 [\d.e-]+ N, OK"),
-                                 (self.forces, r"Forces, 60 frames of 5x4, \d+\.\d{3} s, at most [\d.]+ N"),
+                                 (self.forces, r"Forces, 60 frames of 5x4, \d+\.\d{3} s, total at most [\d.]+ N"),
                                  (source, r"Source '.*frames.csv' 5x4"), (dermis.Load(3, (1, 2), newtons=5), "Load 5 N on r1c2 in frame 3"),
                                  (dermis.Load(3, (1, 2, 3, 3), pascals=2000), "Load 2000 Pa on r1c2:r3c3 in frame 3")):
                 self.assertRegex(repr(shown), f"^<dermis.{words}>$")
+        some = np.concatenate([self.recording.counts[:3], np.full((2, 5, 4), np.nan)])
+        self.assertRegex(repr(dermis.Pipeline(self.loaded).run(some, rate_hz=10.0, supply_v=5.0)), "total at most .* N, 2 rejected>$")
         rejected = pipeline.process(np.full((5, 4), np.nan))
         self.assertRegex(repr(rejected), "^<dermis.ForceFrame 5x4, nan .* N, .*REJECTED.*>$")
 
