@@ -8,9 +8,11 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -23,6 +25,7 @@
 
 #include "dermis/core/nearest_name.hpp"
 #include "dermis/core/version.hpp"
+#include "dermis/files/force_text.hpp"
 #include "dermis/files/safetensors.hpp"
 #include "dermis/files/text.hpp"
 #include "dermis/paper/paper_bank_file.hpp"
@@ -34,6 +37,9 @@
 namespace dermis::app {
 namespace {
 
+constexpr const char* kMoreHelp =
+    "dermis help COMMAND: its options; guides: docs/ of the source, /usr/share/doc/dermis of a package";
+
 /// CLI11 would wrap a negative count round, and names neither range nor mend.
 template <typename Number>
 std::string check_count(const std::string& text) {
@@ -42,9 +48,10 @@ std::string check_count(const std::string& text) {
   const char* const text_end = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), text_end, number);
   if (error == std::errc() && end == text_end) return "";
-  const std::string range = fmt::format("0 to {}", std::numeric_limits<Number>::max());
-  if (error == std::errc::result_out_of_range) return "must be " + range;
-  return fmt::format("'{}' is no whole number; write one of {}", text, range);
+  if (error == std::errc::result_out_of_range) {
+    return fmt::format("must be 0 to {}", std::numeric_limits<Number>::max());
+  }
+  return fmt::format("'{}' is no whole number; write one such as 200", text);
 }
 
 std::string check_number(const std::string& text) {
@@ -112,9 +119,21 @@ std::string unknown(const std::string& argument, const CLI::App& command) {
   return nearest.empty() ? what : fmt::format("{}; did you mean '{}'?", what, nearest);
 }
 
-std::string message_of(const CLI::ParseError& error, const CLI::App& app) {
+/// The mend where somebody wrote a force as two arguments, "200 g"; else empty.
+std::string force_in_two(const std::string& argument, std::span<char* const> arguments) {
+  const auto found = std::find(arguments.begin() + 1, arguments.end(), argument);
+  if (found == arguments.end()) return "";
+  const std::string number = *std::prev(found);
+  const bool is_number = check_number(number).empty() && !check_number(argument).empty();
+  if (!is_number || !files::parse_force(number + argument)) return "";
+  return fmt::format("; write '{0} {1}' in quotes, or {0}{1}", number, argument);
+}
+
+std::string message_of(const CLI::ParseError& error, const CLI::App& app, std::span<char* const> arguments) {
   const std::vector<std::string> nobody_took = app.remaining(true);
-  return nobody_took.empty() ? first_line(error.what()) : unknown(nobody_took.front(), chosen_command(app));
+  if (nobody_took.empty()) return first_line(error.what());
+  const std::string& first = nobody_took.front();
+  return unknown(first, chosen_command(app)) + force_in_two(first, arguments);
 }
 
 /// "simulate, calibrate, ... or serve"
@@ -146,7 +165,6 @@ void print(const std::string& text) {
 /// For those who type it in place of --version.
 void add_version(CLI::App& app, Action& chosen) {
   CLI::App& command = *app.add_subcommand("version", "Show the version");
-  command.group("");
   command.callback([&chosen] {
     chosen = []() -> Result<int> {
       print(DERMIS_VERSION);
@@ -171,7 +189,6 @@ Result<std::string> help_of(const CLI::App& app, const std::vector<std::string>&
 /// For those who type it in place of --help.
 void add_help(CLI::App& app, Action& chosen) {
   CLI::App& command = *app.add_subcommand("help", "Show what a command takes");
-  command.group("");
   auto names = std::make_shared<std::vector<std::string>>();
   command.add_option("command", *names, "Such as run, or circuit forward");
   command.callback([&app, &chosen, names] {
@@ -326,17 +343,19 @@ Result<Action> parse_command_line(int argc, char** argv, std::span<const Command
   app.set_version_flag("--version", DERMIS_VERSION);
   app.require_subcommand(0, 1);
   Action chosen;
-  add_version(app, chosen);
-  add_help(app, chosen);
   add_reference(app, chosen);
   for (const CommandEntry& entry : commands) {
     Command command(*app.add_subcommand(entry.name, entry.summary), chosen);
     entry.add(command);
   }
+  add_help(app, chosen);
+  add_version(app, chosen);
+  app.footer(kMoreHelp);  // after the commands, which would inherit it
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0) return bad_input(message_of(error, app) + " (see dermis --help)");
+    if (error.get_exit_code() != 0)
+      return bad_input(message_of(error, app, {argv, static_cast<std::size_t>(argc)}) + " (see dermis --help)");
     app.exit(error);  // prints what was asked for
     return Action();
   }

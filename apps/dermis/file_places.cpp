@@ -128,14 +128,13 @@ void FilePlaces::add_output_folder(const std::string& option, const std::string&
   outputs_.push_back({option, paths, false, was_simulated});
 }
 
-Status FilePlaces::check_standard_input() const {
-  std::string reader;
-  for (const Place& input : inputs_) {
-    for (const std::string& path : input.paths()) {
-      if (path != kStandardInput) continue;
-      if (!reader.empty())
-        return bad_input(fmt::format("{}: {} reads the standard input; name a file", input.option, reader));
-      reader = input.option;
+Status FilePlaces::check_one_uses(const std::string& stream, const std::vector<Place>& places, const char* use) {
+  std::string user;
+  for (const Place& place : places) {
+    for (const std::string& path : place.paths()) {
+      if (path != stream) continue;
+      if (!user.empty()) return bad_input(fmt::format("{}: {} {}; name a file", place.option, user, use));
+      user = place.option;
     }
   }
   return Done{};
@@ -157,7 +156,9 @@ Status FilePlaces::check_distinct() const {
 }
 
 Status FilePlaces::check(bool is_forced) const {
-  if (Status once = check_standard_input(); !once) return once;
+  Status once = check_one_uses(kStandardInput, inputs_, "reads the standard input");
+  if (once) once = check_one_uses(kStandardOutput, outputs_, "writes the standard output");
+  if (!once) return once;
   if (Status distinct = check_distinct(); !distinct) return distinct;
   std::vector<std::string> replaced;
   for (const Place& output : outputs_) {

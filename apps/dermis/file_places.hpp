@@ -43,7 +43,9 @@ class FilePlaces {
     std::function<bool()> can_be_made_again{};  ///< Empty: it cannot.
   };
 
-  [[nodiscard]] Status check_standard_input() const;
+  /// Fails where two of these places are the same stream.
+  [[nodiscard]] static Status check_one_uses(const std::string& stream, const std::vector<Place>& places,
+                                             const char* use);
   [[nodiscard]] Status check_distinct() const;
 
   std::vector<Place> inputs_;

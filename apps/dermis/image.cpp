@@ -56,6 +56,7 @@ Result<PictureRange> range_of(const ImageOptions& options) {
 }
 
 Status check(const ImageOptions& options) {
+  if (options.out == kStandardOutput) return bad_input("--out: '-' is no file; name one");
   if (!options.out.ends_with(".png") && !options.out.ends_with(".svg")) {
     return bad_input("--out: '" + options.out + "': must end in .png or .svg");
   }

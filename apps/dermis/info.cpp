@@ -213,7 +213,7 @@ Status print_info(const InfoOptions& options) {
 
 void add_info(Command& command) {
   auto options = std::make_shared<InfoOptions>();
-  command.option("file", options->file, "A file of frames (docs/file-formats.md), a model file, or array.toml")
+  command.input_file("file", options->file, "A file of frames (docs/file-formats.md), a model file, or array.toml")
       .required();
   options->shape.add(command);
   command.flag("--json", options->json, "As JSON");

@@ -7,10 +7,12 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <exception>
+#include <system_error>
 
 #include "commands.hpp"
+#include "dermis/files/output_place.hpp"
+#include "file_places.hpp"
 #include "lost_input.hpp"
 #include "status_line.hpp"
 
@@ -19,6 +21,7 @@ namespace {
 
 constexpr int kExitFailed = 1;
 constexpr int kExitBadInput = 2;
+constexpr int kExitReaderGone = 128 + SIGPIPE;
 
 constexpr std::array kCommands{
     CommandEntry{"simulate", "Simulate an array: frames.csv and loads.csv (the true loads)", add_simulate},
@@ -55,9 +58,15 @@ void fill_standard_descriptors() {
 Result<int> perform(const Action& action) {
   Result<int> status = action();
   if (status && std::fflush(stdout) != 0) {
-    return failed(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
+    return cannot_print(errno);
   }
   return status;
+}
+
+/// Whoever reads the standard output has enough, as head has after some lines.
+bool has_reader_gone(const Error& error) {
+  return error.message == cannot_print(EPIPE).message ||
+         error.message == files::cannot_write(kStandardOutput, EPIPE).message;
 }
 
 int exit_status(const Error& error) {
@@ -70,6 +79,7 @@ int run(int argc, char** argv) {
   if (!action) return exit_status(action.error());
   if (!*action) return 0;
   const Result<int> status = perform(*action);
+  if (!status && has_reader_gone(status.error())) return kExitReaderGone;
   const std::string lost = losses();
   if (lost.empty()) return status ? *status : exit_status(status.error());
   if (!status) return exit_status({.kind = status.error().kind, .message = lost + "; " + status.error().message});
@@ -87,6 +97,10 @@ int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
   try {
     return dermis::app::run(argc, argv);
+  } catch (const std::system_error& error) {  // of fmt::print()
+    if (error.code() == std::errc::broken_pipe) return dermis::app::kExitReaderGone;
+    dermis::app::say(fmt::format("dermis: {}", error.what()));
+    return dermis::app::kExitFailed;
   } catch (const std::exception& error) {  // out of memory and the like
     dermis::app::say(fmt::format("dermis: {}", error.what()));
     return dermis::app::kExitFailed;

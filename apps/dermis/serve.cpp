@@ -18,6 +18,8 @@
 #include "commands.hpp"
 #include "dermis/dds/publisher.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/recording.hpp"
+#include "dermis/recordings/suit_recording.hpp"
 #include "dermis/serve/array_setup.hpp"
 #include "dermis/serve/session.hpp"
 #include "dermis/sources/source_name.hpp"
@@ -83,6 +85,15 @@ std::string address(const stream::ServerOptions& server, std::uint16_t port) {
   return url;
 }
 
+/// A suit.toml tells of several arrays, the page of one.
+Status check_one_array(const std::string& from) {
+  const recordings::RecordingPlace place = recordings::recording_place(from);
+  const auto recording = recordings::SuitRecordingReader::open(place.path);
+  if (!place.array.empty() || !recording || (*recording)->arrays().size() == 1) return Done{};
+  const Result<std::size_t> one = recordings::find_array((*recording)->arrays(), place.path, place.array);
+  return bad_input(one.error().message + "; or play all of it with --suit suit.toml");
+}
+
 /// Whether somebody has to describe the array. Fails on a source that cannot be served.
 Result<bool> is_of_unknown_array(const serve::SuitPlace& place) {
   if (!place.suit.empty() || !place.model.empty()) return false;
@@ -90,6 +101,9 @@ Result<bool> is_of_unknown_array(const serve::SuitPlace& place) {
   const Result<sources::SourceName> from = sources::SourceName::parse(place.from);
   if (!from) return from.error();
   if (Status can = serve::check_served(*from); !can) return can.error();
+  if (from->kind == sources::SourceKind::recording) {
+    if (Status one = check_one_array(place.from); !one) return one.error();
+  }
   return !serve::describes_its_array(*from);
 }
 

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstring>
 #include <mutex>
 
 namespace dermis::app {
@@ -32,6 +33,10 @@ void say(const std::string& text) {
   const std::lock_guard lock(stderr_mutex);
   end_line();
   std::fputs((text + "\n").c_str(), stderr);
+}
+
+Error cannot_print(int error_number) {
+  return failed(fmt::format("cannot write the standard output: {}", std::strerror(error_number)));
 }
 
 StatusLine::StatusLine() : is_terminal_(isatty(STDERR_FILENO) == 1) {}

@@ -7,12 +7,16 @@
 #include <string>
 
 #include "dermis/core/frame_source.hpp"
+#include "dermis/core/result.hpp"
 
 namespace dermis::app {
 
 /// A line on stderr, below the status line where there is one. That nobody reads it ends no work: unlike fmt::print(),
 /// it does not throw. Thread-safe.
 void say(const std::string& text);
+
+/// The error of printing to the standard output.
+[[nodiscard]] Error cannot_print(int error_number);
 
 /// The line on stderr that redraws itself on a terminal. One at a time.
 class StatusLine {

@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -72,7 +71,7 @@ std::string json_of(const ThreatEvent& event) {
 Status print(const std::vector<ThreatEvent>& events, bool json) {
   for (const ThreatEvent& event : events) fmt::print("{}\n", json ? json_of(event) : line_of(event));
   if (std::fflush(stdout) != 0) {
-    return failed(fmt::format("cannot write the standard output: {}", std::strerror(errno)));
+    return cannot_print(errno);
   }
   return Done{};
 }

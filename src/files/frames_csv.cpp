@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -89,8 +90,23 @@ Result<Expected> learn_shape(const Cells& cells) {
   return Expected{{last->row + 1, last->col + 1}, "its last column says"};
 }
 
+/// What a table holds that dermis writes beside the frames, by its first columns; empty of any other.
+std::string_view other_content(const Cells& cells) {
+  const auto begins = [&](std::initializer_list<std::string_view> names) {
+    return cells.size() >= names.size() && std::equal(names.begin(), names.end(), cells.begin());
+  };
+  if (begins({"frame", "kind"})) return "loads";
+  if (begins({"time_s", "id", "phase"})) return "contacts";
+  if (begins({"time_s", "status", "total_n"})) return "total forces";
+  if (begins({"time_s", "status"})) return "forces";
+  return "";
+}
+
 /// The columns before the taxels, or what is wrong with the header.
 Result<std::vector<Column>> parse_columns(const Cells& cells) {
+  if (const std::string_view other = other_content(cells); !other.empty()) {
+    return bad_input("is a table of " + std::string(other) + ", not of raw counts");
+  }
   std::vector<Column> columns;
   for (const std::string_view cell : cells) {
     const std::optional<Column> column = column_named(cell);

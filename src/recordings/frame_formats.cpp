@@ -39,8 +39,9 @@ constexpr std::array kEndings = {Ending{".wiresens.h5", FrameFormat::wiresens},
                                  Ending{".png", FrameFormat::png_stack},
                                  Ending{".packed10", FrameFormat::packed10}};
 
-/// A pipe, a terminal, /dev/stdin.
+/// A pipe, a terminal; the standard input and output, also where a shell leads them to a file.
 bool is_stream(const std::string& path) {
+  if (path == "/dev/stdin" || path == "/dev/stdout") return true;
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   return std::filesystem::is_fifo(status) || std::filesystem::is_character_file(status);

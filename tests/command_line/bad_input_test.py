@@ -49,6 +49,18 @@ class Usage(SmallArray):
                 self.refuse(["simulate", "--array", self.array, "--scene", "multitouch", "--out", self.work / "o",
                              option, "-1"], [option], **files_limited_to(1000000))
 
+    def test_results_are_no_frames(self):
+        self.succeed(*self.run_arguments(self.work / "f.csv"), "--contacts", self.work / "c.csv", "--totals", self.work / "t.csv")
+        for file, content in ((self.work / "f.csv", "forces"), (self.work / "c.csv", "contacts"),
+                              (self.work / "t.csv", "total forces"), (self.contacts / "loads.csv", "loads")):
+            with self.subTest(content):
+                self.refuse(self.run_arguments(self.work / "o.csv", **{"in": file}),
+                            [f"{file}:1: is a table of {content}, not of raw counts"])
+
+    def test_a_folder_with_frames_is_told_which(self):
+        self.refuse(self.run_arguments(self.work / "o.csv", **{"in": self.contacts}),
+                    [f"{self.contacts}: is a folder; name {self.contacts / 'frames.csv'}"])
+
     def test_a_count_beyond_its_range(self):
         self.refuse(["serve", "--from", "sim:idle?rate=10", "--model", self.model, "--port", 99999],
                     ["--port", "must be 0 to 65535"])

@@ -145,6 +145,8 @@ class Serve(SmallArray):
         self.end(process)
         for name in ("left", "right"):
             self.assertGreater(self.recorded_frames(f"{recording}#{name}"), 30)
+        self.refuse(["serve", "--from", recording], ["holds 2 arrays; name one, as", "'left', 'right'; or play all of it with --suit"])
+        self.refuse(["serve", "--from", recording, "--model", self.model], ["has no array 'small'; it has: 'left', 'right'"])
 
         process, address = self.serve("--from", recording, "--suit", suit)
         self.assertEqual([array["name"] for array in json.loads(self.get(address + "suit.json"))["arrays"]],

@@ -2,6 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The dermis authors
 """What people type and read at a terminal: streams by "-", help in words, models in words, units, nearest names."""
 import json
+import os
+import signal
 import subprocess
 
 import support
@@ -36,6 +38,21 @@ class Terminal(SmallArray):
         self.piped("convert", "-", self.work / "rec.mcap")
         self.assertEqual(json.loads(dermis("info", self.work / "rec.mcap", "--json").stdout)["frames"], 200)
 
+    def test_a_dash_is_a_table_where_the_shell_leads_it_to_a_file(self):
+        frames, copy = self.contacts / "frames.csv", self.work / "copy.csv"
+        for command in (("convert", "-", "-"), ("record", "--from", "-", "--out", "-")):
+            with self.subTest(command[0]), frames.open() as read, copy.open("w") as written:
+                result = subprocess.run([support.BINARY, *command], stdin=read, stdout=written, stderr=subprocess.PIPE, timeout=60)
+                self.assertEqual((result.returncode, copy.read_text()), (0, frames.read_text()), result.stderr)
+
+    def test_who_has_read_enough_ends_a_command_in_silence(self):
+        for command in (self.run_arguments("-", **{"in": "sim:touches?frames=20000"}), ("help", "run")):
+            reader, writer = os.pipe()
+            os.close(reader)
+            with self.subTest(command[0]), open(writer, "wb") as closed:
+                result = subprocess.run([support.BINARY, *map(str, command)], stdout=closed, stderr=subprocess.PIPE, timeout=60)
+                self.assertEqual((result.returncode, result.stderr), (128 + signal.SIGPIPE, b""))
+
     def test_every_command_that_reads_frames_once_reads_a_pipe(self):
         for command in (("doctor", "--model", self.model, "--in", "-"), ("image", "--in", "-", "--out", self.work / "map.png"),
                         ("emulate", "--in", "-", "--to", "stdout:", "--protocol", "dermis", "--rate", 1000),
@@ -53,7 +70,7 @@ class Terminal(SmallArray):
     def test_two_options_cannot_share_a_stream(self):
         self.refuse(self.evaluate_arguments(frames="-", loads="-"),
                     ["--loads: --frames reads the standard input; name a file"])
-        self.refuse((*self.run_arguments("-"), "--totals", "-"), ["--totals: is the file of --out; name another"])
+        self.refuse((*self.run_arguments("-"), "--totals", "-"), ["--totals: --out writes the standard output; name a file"])
 
     def test_a_stream_that_is_a_file_of_the_command_is_found(self):
         frames = self.written("f.csv", (self.contacts / "frames.csv").read_text())
@@ -64,7 +81,8 @@ class Terminal(SmallArray):
         for command, option in NO_STREAMS:
             with self.subTest(command=command, option=option):
                 self.refuse((command, option, "-"), [f"{option}: '-' is no file; name one"])
-        self.refuse(("image", "--in", self.contacts / "frames.csv", "--out", "-"), ["must end in .png or .svg"])
+        self.refuse(("image", "--in", self.contacts / "frames.csv", "--out", "-"), ["--out: '-' is no file; name one"])
+        self.refuse(("info", "-"), ["'-' is no file; name one"])
         self.refuse(("recover", "-", "--out", self.work / "r.mcap"), ["'-' is no file; name one"])
 
     def test_help_and_version_are_commands_too(self):
@@ -74,6 +92,7 @@ class Terminal(SmallArray):
             self.assertEqual(self.succeed("help", *command), dermis(*command, "--help").stdout)
         self.refuse(("help", "evalute"), ["unknown command 'evalute'; did you mean 'evaluate'?"])
         self.refuse(("help", "run", "fast"), ["'fast' is one argument too many"])
+        self.assertRegex(self.succeed("help"), r"(?m)^  help {3,}.*\n  version {3,}(.*\n)*dermis help COMMAND: .*guides: .*\n\Z")
 
     def test_a_model_is_told_in_words(self):
         text = self.succeed("info", self.model)
@@ -102,8 +121,8 @@ class Terminal(SmallArray):
         self.assertRegex(result.stderr, r"^50 frames, 100 skipped: forces in .*late.csv\n")
 
     def test_a_number_that_is_none_is_told_in_a_line(self):
-        for arguments, words in ((("serve", "--port", "abc"), "--port: 'abc' is no whole number; write one of 0 to 65535"),
-                                 (("serve", "--port", "80x"), "--port: '80x' is no whole number; write one of 0 to 65535"),
+        for arguments, words in ((("serve", "--port", "abc"), "--port: 'abc' is no whole number; write one such as 200"),
+                                 (("serve", "--port", "80x"), "--port: '80x' is no whole number; write one such as 200"),
                                  (("serve", "--port", "99999"), "--port: must be 0 to 65535"),
                                  (("simulate", "--rate", "fast"), "--rate: 'fast' is no number"),
                                  (("circuit", "advise", "--range", "1k", "10"), "--range: '1k' is no number")):
@@ -116,6 +135,11 @@ class Terminal(SmallArray):
                     ['did you mean "two_weights"?'])
         self.refuse(("simulate", "--array", self.array, "--scene", "earthquake", "--out", self.work / "s"),
                     ["unknown; there are calibration, uniform"])
+
+    def test_a_weight_in_two_arguments_is_told_how_to_write_it(self):
+        self.refuse(("check", "--model", self.model, "--in", self.contacts / "frames.csv", "--weight", 200, "g"),
+                    ["'g' is one argument too many; write '200 g' in quotes, or 200g (see"])
+        self.refuse(("check", "--weight", 200, 5), ["'5' is one argument too many (see"])
 
     def test_a_weight_may_be_given_by_its_mass(self):
         array = self.written("direct.toml", '[array]\nrows = 1\ncols = 1\n[readout]\ncircuit = "force"\nadc_noise_counts = 0.01\n')

@@ -172,6 +172,14 @@ TEST(FramesCsvReader, names_an_unknown_column) {
             "frames.csv:1: unknown column 'x' after the last taxel of a 1x2 array; remove it");
 }
 
+TEST(FramesCsvReader, names_what_another_table_holds) {
+  EXPECT_EQ(error_of("time_s,status,r0c0,r0c1\n"), "frames.csv:1: is a table of forces, not of raw counts");
+  EXPECT_EQ(error_of("time_s,status,total_n,sigma_total_n,left_out\n"),
+            "frames.csv:1: is a table of total forces, not of raw counts");
+  EXPECT_EQ(learning_error_of("time_s,id,phase,x_mm\n"), "frames.csv:1: is a table of contacts, not of raw counts");
+  EXPECT_EQ(learning_error_of("frame,kind,where,value\n"), "frames.csv:1: is a table of loads, not of raw counts");
+}
+
 TEST(FramesCsvReader, names_a_column_out_of_place) {
   EXPECT_EQ(error_of("time_s,r0c1,r0c0\n"),
             "frames.csv:1: column 'r0c1' stands where r0c0 is expected; write the taxels row by row, after all other "

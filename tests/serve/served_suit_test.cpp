@@ -142,7 +142,8 @@ TEST(ServedSuit, opens_the_arrays_of_a_recording_by_their_names) {
   EXPECT_EQ(suit->arrays[0].source->shape(), (FrameShape{kRows, kCols}));
 
   const std::string rec = folder.file("rec.mcap");
-  EXPECT_EQ(refusal({.from = rec, .model = folder.model()}), "'" + rec + "': holds no array 'hand_made'");
+  EXPECT_EQ(refusal({.from = rec, .model = folder.model()}),
+            rec + ": has no array 'hand_made'; it has: 'other', 'chest'");
   EXPECT_EQ(refusal({.from = rec + "#other", .model = folder.model()}),
             "'" + rec + "#other': array 'hand_made' has 2x2 taxels, its model 3x4");
 }

@@ -19,6 +19,7 @@
 #include "dermis/pipeline/model.hpp"
 #include "dermis/recognition/classes_file.hpp"
 #include "dermis/recordings/frame_files.hpp"
+#include "dermis/recordings/suit_recording.hpp"
 #include "dermis/sources/open_source.hpp"
 #include "dermis/sources/recorded_order.hpp"
 #include "dermis/threats/threat_monitor.hpp"
@@ -225,7 +226,7 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
     const auto same = [&](const recordings::RecordedArray& other) { return topic_name(other.name) == array.name; };
     auto found = std::find_if(recorded.begin(), recorded.end(), same);
     if (found == recorded.end() && suit.arrays.size() == 1 && recorded.size() == 1) found = recorded.begin();
-    if (found == recorded.end()) return bad_input(fmt::format("'{}': holds no array '{}'", from, array.name));
+    if (found == recorded.end()) return recordings::find_array(recorded, from, array.name).error();
     const FrameShape shape{array.model->array.rows, array.model->array.cols};
     if (found->shape != shape) {
       return bad_input(fmt::format("'{}': array '{}' has {}x{} taxels, its model {}x{}", from, array.name,
