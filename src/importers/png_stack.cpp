@@ -74,13 +74,6 @@ bool read_rows(Decoding& decoding, png_bytepp rows) {
   return true;
 }
 
-Error no_pictures(const std::string& folder) {
-  const std::string frames = (std::filesystem::path(folder) / "frames.csv").string();
-  std::error_code ignored;
-  if (std::filesystem::exists(frames, ignored)) return bad_input(folder + ": is a folder; name " + frames);
-  return bad_input(folder + ": is a folder without .png files");
-}
-
 /// The pictures of a folder.
 Result<std::vector<std::string>> pictures_in(const std::string& folder) {
   std::vector<std::string> names;
@@ -90,7 +83,7 @@ Result<std::vector<std::string>> pictures_in(const std::string& folder) {
     if (names.size() > kMostPictures) return bad_input(folder + ": has more than a million pictures");
   }
   if (error) return bad_input("cannot open " + files::in_quotes(folder) + ": " + error.message());
-  if (names.empty()) return no_pictures(folder);
+  if (names.empty()) return bad_input(folder + ": is a folder without .png files");
   return names;
 }
 

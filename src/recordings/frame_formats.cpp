@@ -57,6 +57,13 @@ Result<FrameFormat> hdf5_format(const std::string& path) {
   return bad_input(path + ": has neither the dataset 'counts' (dermis) nor 'pressure' and 'frame_count' (WiReSens)");
 }
 
+/// A folder that 'dermis simulate' has written.
+bool was_simulated(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  return std::filesystem::exists(folder / "origin.toml", ignored) &&
+         std::filesystem::exists(folder / "frames.csv", ignored);
+}
+
 /// Of a file that can be read from its beginning again; else nothing.
 std::string first_bytes(const std::string& path) {
   constexpr std::size_t kLooked = 4096;
@@ -149,6 +156,9 @@ Result<FrameFormat> recognise_frames(const std::string& path) {
   const RecordingPlace place = recording_place(path);
   Result<FrameFormat> format = frame_format(place.path);
   if (!format) return format;
+  if (was_simulated(place.path)) {
+    return bad_input(place.path + ": is a folder; name " + (std::filesystem::path(place.path) / "frames.csv").string());
+  }
   if (const std::string_view kind = kind_of_format(*format); !kind.empty()) {
     if (const auto other = files::wrong_kind(first_bytes(place.path), kind))
       return bad_input(place.path + ": " + *other);

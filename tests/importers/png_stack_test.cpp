@@ -111,9 +111,6 @@ TEST(PngStack, names_the_picture_that_is_wrong) {
   const support::TemporaryFolder folder;
   const std::string path = folder.file("");
   EXPECT_EQ(open_png_stack(path, {.rate_hz = 4.0}).error().message, path + ": is a folder without .png files");
-  support::write_bytes(folder.file("frames.csv"), "time_s,r0c0\n");
-  EXPECT_EQ(open_png_stack(path, {.rate_hz = 4.0}).error().message,
-            path + ": is a folder; name " + folder.file("frames.csv"));
   support::write_bytes(folder.file("a1.png"), png(2, {"ab"}));
   support::write_bytes(folder.file("a2.png"), png(3, {"abc"}));
   const auto source = open_png_stack(path, {.rate_hz = 4.0});
