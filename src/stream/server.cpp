@@ -152,7 +152,7 @@ class Server::Implementation final : public SessionOwner {
   Subscriptions subscriptions_;  // outlives the sessions that the context still holds
   std::atomic<bool> parameters_pending_{false};
   asio::io_context context_{1};
-  asio::thread_pool desk_{1};  // the owner's handlers and services run here
+  asio::thread_pool desk_{1};  // the owner's handlers and services run here, one at a time as promised
   Door door_{context_};
   std::uint16_t port_ = 0;
   Connected connected_;
