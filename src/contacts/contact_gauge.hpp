@@ -40,12 +40,13 @@ class ContactGauge {
   [[nodiscard]] Measurement measure(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                     double pressed_sigma, const ExpectedContact* expected);
 
-  /// What the weak taxels in and around the area of `measured` differ by from its patch, which there is [N].
+  /// The deviation of the weak taxels in and around the area of `measured` from its patch, which must exist [N].
   [[nodiscard]] float scatter_of_weak_taxels(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                              double pressed_sigma, const Measurement& measured);
 
  private:
-  /// Of the table, of the patch, which it leaves in `measured`, or of both. Empty where the taxels do not tell it.
+  /// The place from the table, from the patch, which it leaves in `measured`, or from both. Empty where the taxels do
+  /// not determine it.
   [[nodiscard]] std::optional<ContactPlace> place(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                                   double pressed_sigma, const ExpectedContact* expected,
                                                   Measurement& measured);

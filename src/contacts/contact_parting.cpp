@@ -56,7 +56,7 @@ void ContactParting::keep_what_hangs_together(std::vector<std::uint32_t>& taxels
   taxels.resize(kept);
 }
 
-/// What another contact presses is weak against this one's peak, or there would be a valley.
+/// The force of another contact is weak against this one's peak, or there would be a valley.
 bool ContactParting::stands_out(const ForceFrame& force, std::uint32_t taxel, const Measurement& measured,
                                 Evidence evidence, float scatter) const {
   const float newtons = force.newtons[taxel];

@@ -71,7 +71,7 @@ class ContactTracker::Implementation {
     keep_strongest();
     tracks_.update(force, found_, report.contacts);
     add_up(report);
-    // What contacts have in common adds up; what they have not, does so in squares.
+    // Errors that contacts share add up; the others add in squares.
     if (report.centre_of_pressure) report.sigma_total_n = std::max(report.sigma_total_n, totals_.back().sigma_newtons);
   }
 
@@ -146,8 +146,8 @@ class ContactTracker::Implementation {
            }) > 1;
   }
 
-  /// The other one stands out of all that the first one's taxels differ by from its patch, and their patches do not
-  /// overlap; those found on the parts of an elongated one do, near each other.
+  /// The other one stands out of all deviations of the first one's taxels from its patch, and their patches do not
+  /// overlap. Contacts found on parts of an elongated one do overlap, near each other.
   [[nodiscard]] bool are_apart(const ForceFrame& force, std::span<const std::uint32_t> one,
                                std::span<const std::uint32_t> other, double share) {
     const Measurement measured = gauge_.measure(force, one, pressed_sigma(), nullptr);
@@ -180,8 +180,8 @@ class ContactTracker::Implementation {
     return is_strong(force, taxels, expected_at(taxels.front()) != nullptr ? options.release_share : 1.0);
   }
 
-  /// `share`: of the thresholds of an onset. Each taxel adds the square of what it shows over the noise, less what one
-  /// shows that just counts as pressed: so one taxel needs onset_sigma, several together need less each, and noise that
+  /// `share`: of the thresholds of an onset. Each taxel adds the square of its signal over the noise, less that of a
+  /// taxel that just counts as pressed. So one taxel needs onset_sigma, and several together need less each. Noise that
   /// takes a taxel just over the threshold adds nothing.
   [[nodiscard]] bool is_strong(const ForceFrame& force, std::span<const std::uint32_t> taxels, double share) const {
     const double pressed = pressed_sigma();

@@ -29,7 +29,7 @@ class AxisFilter {
   double variance_velocity_ = 0.0;
 };
 
-/// What the frames before let expect of a contact.
+/// The expectation of a contact by the frames before.
 struct ExpectedContact {
   PlaneVector place;
   double radius_m = 0.0;

@@ -17,7 +17,7 @@ constexpr float kMismatchOfPeak = 0.0005F;
 constexpr float kPlainMisfit = 2.0F;        // chi squared per degree of freedom, up to which noise explains a misfit
 constexpr float kMostShareOfOther = 0.35F;  // of a peak, that a contact without a valley before it can have
 
-/// Of a place anywhere on a cell of this pitch [1/radii of a taxel^2].
+/// Strength of the prior for a place anywhere on a cell of this pitch [1/radii of a taxel^2].
 double strength_on_cell(double pitch_m, double taxel_radius_m) {
   return 12.0 * std::pow(taxel_radius_m / pitch_m, 2);
 }

@@ -19,7 +19,7 @@ namespace dermis::serve {
 struct SessionOptions {
   /// `notice` must be thread-safe: arrays and recordings tell it their lines, too.
   stream::ServerOptions server{};
-  std::vector<stream::Asset> page{};  ///< What browsers are shown; empty: there is the stream alone.
+  std::vector<stream::Asset> page{};  ///< The page for browsers; empty: there is the stream alone.
   /// A recording to begin with, .mcap; those that clients begin take their names from it. Empty: none.
   std::string record{};
   std::string recordings{};                    ///< A recording in whose folder clients record; empty: that of `record`.

@@ -24,7 +24,7 @@ struct BodyFile {
   std::string bytes;
 };
 
-/// What a body is made of.
+/// The parts of a body.
 struct BodyParts {
   Body body;
   std::vector<BodyFile> files;
@@ -62,9 +62,10 @@ class WornBody {
   /// Rises with each set_joints().
   [[nodiscard]] std::uint64_t version() const noexcept { return version_; }
 
-  [[nodiscard]] std::vector<Pose> suit_from_links() const;                        ///< Of all links, now.
-  [[nodiscard]] Pose suit_from_array(std::size_t array) const;                    ///< Now.
-  [[nodiscard]] const std::vector<Pose>& rest() const noexcept { return rest_; }  ///< Of all links, all joints at 0.
+  [[nodiscard]] std::vector<Pose> suit_from_links() const;      ///< Of all links, now.
+  [[nodiscard]] Pose suit_from_array(std::size_t array) const;  ///< Now.
+  /// Poses of all links with all joints at 0.
+  [[nodiscard]] const std::vector<Pose>& rest() const noexcept { return rest_; }
   /// From where an array is at rest to where it is now.
   [[nodiscard]] Pose move_of(std::size_t array) const;
 

@@ -17,8 +17,8 @@
 namespace dermis::calibration {
 namespace {
 
-/// Lines that taxels share have crosstalk. None is shown by presses that leave the idle taxels of their lines alone
-/// although the circuit says that they must not, where the laws of the pressed ones do not suffer from it.
+/// Lines that taxels share have crosstalk. `none` is shown by presses that leave the idle taxels of their lines alone
+/// although the circuit says that they must not. Only presses whose laws do not suffer from it count.
 bool is_none_shown(const CircuitTrial& none, const CircuitTrial& circuit) {
   if (!circuit.fit) return true;
   const auto [of_none, of_circuit] = compare(none, circuit);
@@ -37,8 +37,8 @@ bool presses_parts(const CircuitFrames& frames) {
   });
 }
 
-/// No circuit only where that is shown against all of them. Where the true one may be among those that are not
-/// resolved, one of the others must be better than none, and not by a law.
+/// No circuit only where that is shown against all of them. Where the true one may be among the unresolved ones, a
+/// resolved one must be better than none, and not by a law.
 const CircuitTrial& choose(const std::vector<CircuitTrial>& trials, const CircuitFrames& frames) {
   const auto none = std::find_if(trials.begin(), trials.end(), [](const CircuitTrial& trial) {
     return trial.array.readout.circuit == Circuit::none;

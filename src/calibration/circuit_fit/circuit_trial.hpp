@@ -21,14 +21,14 @@ struct CircuitTrial {
   const CircuitFrames* frames = nullptr;  ///< Those of the array's ADC.
   std::optional<CommonRatio> fit = {};    ///< Empty: it cannot give them, or is not resolved.
   double noise_share = 0.0;               ///< 0: it is resolved.
-  bool is_rough = false;                  ///< What its lines differ by could not be compared.
+  bool is_rough = false;                  ///< The differences between its lines could not be compared.
   JudgedReadings readings = {};
   FrameMisfit misfit = {std::numeric_limits<double>::infinity()};  ///< Of the readings that tell.
 
   [[nodiscard]] bool is_unresolved() const { return noise_share > 0.0; }
 };
 
-/// One of each kind. Of resistances those are kept that `array` gives for all drivers, or all loads.
+/// One of each kind. Keeps the resistances that `array` gives for all drivers, or for all loads.
 [[nodiscard]] std::vector<CircuitTrial> trials_of_all_kinds(const ArrayDescription& array, const CircuitFrames& frames);
 
 /// `array` with readings that are taken as proportional to conductance.
@@ -40,15 +40,15 @@ void fit_trials(std::size_t most, std::vector<CircuitTrial>& trials);
 /// The same; circuits that leave nearly the same are fitted once more, with resistances of each line's own.
 void fit_trials_and_lines(std::size_t most, std::vector<CircuitTrial>& trials);
 
-/// What two circuits leave of the readings that tell in both.
+/// The residuals of two circuits over the readings that are telling in both.
 struct TrialComparison {
   FrameMisfit first;
   FrameMisfit second;
 };
 [[nodiscard]] TrialComparison compare(const CircuitTrial& first, const CircuitTrial& second);
 
-/// The sum of squares by which a circuit must be better to be told from another: readings that no circuit explains to
-/// their noise count for less.
+/// The sum of squares by which a circuit must be better to be distinguished from another. Readings that no circuit
+/// explains to their noise count for less.
 [[nodiscard]] double sure_square(const FrameMisfit& best);
 
 [[nodiscard]] bool has_less(const CircuitTrial& a, const CircuitTrial& b);

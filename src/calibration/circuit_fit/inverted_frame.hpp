@@ -27,9 +27,9 @@ struct InvertedFrame {
   }
 };
 
-/// Empty: the circuit cannot give this frame, and the inversion has forgotten it. Where slopes are wanted they, and the
-/// pressed taxels, are taken with the idle ones at their laws: derivatives taken at noisy readings would follow the
-/// noise, and the fit would do away with the noise by making all conductances small.
+/// Empty: the circuit cannot give this frame, and the inversion has forgotten it. Where slopes are wanted, they and the
+/// pressed taxels are taken with the idle ones at their laws. Derivatives at noisy readings would follow the noise, and
+/// the fit would reduce the noise by making all conductances small.
 [[nodiscard]] std::optional<InvertedFrame> invert_frame(SlopedInversion& inversion, const CircuitFrame& frame,
                                                         const Rubber& rubber);
 

@@ -70,7 +70,7 @@ void add_beside(const JudgedReading& reading, const JudgedReading& other, FrameM
   if (reading.is_telling && other.is_telling) add(reading, std::max(reading.variance, other.variance), misfit);
 }
 
-/// What pressed taxels leave within their noise and scatter is taken as so much.
+/// Residuals of pressed taxels that are smaller than their noise and scatter count as large as these.
 FrameMisfit with_scatter(FrameMisfit frame) {
   const double scattered = std::max(frame.pressed_square, frame.pressed_readings);
   frame.square += scattered - frame.pressed_square;

@@ -17,14 +17,14 @@ inline constexpr double kNominalLoadOhm = 1000.0;
 struct LineGroup {
   Eigen::VectorXd values;                ///< In the units of the parameters.
   std::vector<Eigen::Index> parameters;  ///< Of each line; -1: given.
-  double unit = 1.0;                     ///< What a relative spread of 1 means.
+  double unit = 1.0;                     ///< The unit of a relative spread of 1.
 };
 
 /// The inversion of idle rows that float takes longer than that of others.
 [[nodiscard]] bool is_inverted_slowly(const ArrayDescription& array);
 
-/// The unknown resistances of an array as parameters of a fit: drivers as a multiple of a reference resistance, so that
-/// 0 ohm is a value like any other; loads as logarithms. Drivers come first.
+/// The unknown resistances of an array as parameters of a fit. Drivers are multiples of a reference resistance, so that
+/// 0 ohm is a value like any other; loads are logarithms. Drivers come first.
 class LineParameters {
  public:
   /// Unknown is what is kFitOhm.

@@ -15,7 +15,7 @@
 
 namespace dermis::calibration {
 
-/// What the frames say in one circuit.
+/// The measurements of the frames as one circuit explains them.
 struct Measurements {
   NormalEquations idle;  ///< Columns: parameters, conductance over the reference; by the noise that is said of them.
   std::vector<PressedReading> pressed;

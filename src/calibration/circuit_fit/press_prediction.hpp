@@ -20,8 +20,8 @@ namespace dermis::calibration {
 /// No neighbours: rubber spreads a load to them.
 [[nodiscard]] bool are_apart(std::size_t cols, std::size_t a, std::size_t b);
 
-/// The noise of a typical pressed frame, over the supply: presses that are asked for are kept like those that are
-/// there, and unloaded frames are means of more.
+/// The noise of a typical pressed frame, over the supply. Presses that are asked for are kept like the recorded ones;
+/// unloaded frames are means of more readings.
 [[nodiscard]] double noise_of_presses(const CircuitFrames& frames);
 
 }  // namespace dermis::calibration

@@ -47,9 +47,9 @@ struct Rubber {
 
 [[nodiscard]] Eigen::VectorXd pressed_basis(double x, double t);
 
-/// What all taxels of a piece of rubber have in common. A contact resistance in series with each cannot be told from
-/// the mean of the drivers by the laws: without its column the fit would take a law that is not quite a cubic for it.
-/// `excess`: conductance over the unloaded one.
+/// The terms that all taxels of a piece of rubber share. The laws cannot distinguish a contact resistance in series
+/// with each taxel from the mean of the drivers. Without its column the fit would take a law that is not quite a cubic
+/// for it. `excess`: conductance over the unloaded one.
 [[nodiscard]] Eigen::VectorXd common_basis(double x, double t, double excess);
 
 }  // namespace dermis::calibration

@@ -30,7 +30,7 @@ double learn_noise(const Elimination& idle, const Step& step, Index unloaded_ter
   return std::max(noise_variance * (extended.dot(idle.normal * extended) / freedom), kLeastNoiseVariance);
 }
 
-/// What the readings scatter about their laws more than their noise explains: a Newton step of its likelihood.
+/// The scatter of the readings about their laws beyond their noise: a Newton step of its likelihood.
 double learn_rubber(const std::vector<PressedReading>& readings, double freedom_lost, const Rubber& rubber,
                     const Scatter& scatter) {
   double excess_variance = 0.0;

@@ -31,7 +31,7 @@ struct Step {
 [[nodiscard]] Step solve_step(const LineParameters& lines, const Elimination& idle, const Elimination& pressed,
                               const std::vector<Assumption>& assumptions);
 
-/// What the equations leave at the present parameters, with the best laws.
+/// The residual of the equations at the present parameters, with the best laws.
 [[nodiscard]] double cost_without_step(const LineParameters& lines, const Elimination& idle, const Elimination& pressed,
                                        const std::vector<Assumption>& assumptions);
 

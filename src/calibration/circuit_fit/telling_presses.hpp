@@ -11,10 +11,10 @@
 
 namespace dermis::calibration {
 
-/// The five pairs of taxels whose readings, when both are pressed with the heaviest load they have had, differ most
-/// between the circuits: of each pair the least distance from the first circuit to another counts, in the noise of a
-/// typical pressed frame. Fewer where there are no more pairs; none where all together would not tell. `circuits`: at
-/// least two.
+/// The five pairs of taxels whose readings differ most between the circuits when both are pressed with the heaviest
+/// load that both have had. A pair counts by the least distance from the first circuit to another, in the noise of a
+/// typical pressed frame. Fewer where there are no more pairs; none where all together would not distinguish the
+/// circuits. `circuits`: at least two.
 [[nodiscard]] std::vector<PressPair> telling_presses(const std::vector<const CommonRatio*>& circuits,
                                                      const CircuitFrames& frames, double sure_square);
 

@@ -51,7 +51,7 @@ std::string name_of(std::optional<std::size_t> taxel, const ArrayDescription& ar
   return taxel ? array.taxel_name(*taxel) : "another taxel";
 }
 
-/// Of two taxels that are asked for, one is pressed, and another one in the place of the other.
+/// One of the two taxels that are asked for is pressed, and another taxel in place of the other.
 std::string describe_misplaced(const GuideState& state, const ArrayDescription& array) {
   const bool is_first_missing = state.missing_taxel == state.taxel;
   return fmt::format("That is {}: put {} on {} instead. {} is right.", name_of(state.pressed_taxel, array),

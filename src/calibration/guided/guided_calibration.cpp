@@ -47,7 +47,7 @@ class GuidedCalibration::Implementation {
   GuidedData data() const;
 
  private:
-  /// What the fits have found so far.
+  /// The findings of the fits so far.
   struct Fit {
     std::size_t presses = 0;  // of the last one that was asked for
     std::optional<double> error;

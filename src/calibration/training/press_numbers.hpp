@@ -20,7 +20,7 @@ class PressNumbers {
     std::size_t touch = 0;
   };
 
-  /// Of sample `index` of the database; they rise from call to call.
+  /// Numbers for sample `index` of the database; they rise from call to call.
   const Numbers& next(const Sample& sample, std::size_t index, double load_newtons) {
     const auto [least, most] = std::minmax(load_newtons, first_newtons_);
     const bool is_next = samples_ > 0 && index == last_ + 1;

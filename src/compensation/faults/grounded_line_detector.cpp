@@ -113,7 +113,7 @@ double GroundedLineDetector::siemens_between(const Observation& seen, std::size_
                   has_ends ? between(taxel - array_.cols, taxel + array_.cols) : 0.0);
 }
 
-/// Of the line that crosses the silent one there: what its untouched taxels miss, against what a short would take.
+/// Judges the line that crosses the silent one there: the loss of its untouched taxels against the loss by a short.
 double GroundedLineDetector::evidence_at(const Observation& seen, const LineFault& fault,
                                          std::size_t place) const noexcept {
   const Axis axis = *traits_of(fault.kind).axis;
@@ -135,7 +135,7 @@ double GroundedLineDetector::evidence_of_current(const Observation& seen, Axis a
   return std::clamp(difference * (missing - 0.5 * difference) / variance, -kMostEvidence, kMostEvidence);
 }
 
-/// What a short of the line would take from the untouched taxels of the line that crosses it at `place`.
+/// The share that a short of the line would take from the untouched taxels of the line that crosses it at `place`.
 double GroundedLineDetector::taken_share(const Observation& seen, Axis axis, std::size_t place,
                                          double pressed_siemens) const noexcept {
   if (axis != driven_axis(array_)) {

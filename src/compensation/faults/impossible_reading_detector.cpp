@@ -101,7 +101,7 @@ void ImpossibleReadingDetector::watch_columns(const Observation& seen, const Fau
   for (std::size_t k = 0; k < count; ++k) watch(found[k], faults);
 }
 
-/// Of a high reading; `possible` where the others of its column have fallen.
+/// Judges a high reading; `possible` where the others of its column have fallen.
 ReadingVerdict ImpossibleReadingDetector::verdict_of_column(const Observation& seen, std::size_t taxel) const noexcept {
   const double ratio = seen.conditioned.ratio[taxel];
   if (ratio < kHigh) return ReadingVerdict::possible;

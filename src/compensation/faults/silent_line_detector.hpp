@@ -13,8 +13,9 @@
 
 namespace dermis::compensation {
 
-/// A line is silent when its taxels read less than unloaded ones would, all together: evidence that each is silent,
-/// summed over the line and the frames. It has to read nothing but noise, while unloaded taxels elsewhere do read.
+/// A line is silent when its taxels together read less than unloaded ones would. The evidence that each is silent is
+/// summed over the line and the frames. The line has to read nothing but noise, while unloaded taxels elsewhere do
+/// read.
 class SilentLineDetector {
  public:
   SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded, UnloadedWitnesses& witnesses);

@@ -13,10 +13,10 @@
 
 namespace dermis::compensation {
 
-/// A row at the supply reads the least in every column, as the others hold its reading too. What speaks for it is a
-/// press on a part of it that shows in most other rows, equal within the noise, while presses on other rows show on
-/// them alone: where a whole column or everything is pressed, rows read alike without a fault. Where taxels are seen to
-/// scatter, no load makes so many of them equal: one press does, once all other rows have read more for 3 frames. With
+/// A row at the supply reads the least in every column, as the others hold its reading too. The evidence is a press on
+/// a part of it that shows in most other rows, equal within the noise. Presses on other rows must show on them alone:
+/// where a whole column or everything is pressed, rows read alike without a fault. Where taxels are seen to scatter, no
+/// load makes so many of them equal. One press then suffices, once all other rows have read more for 3 frames. With
 /// `circuit = "none"` there is no supply on a row.
 class SuppliedRowDetector {
  public:
@@ -28,7 +28,7 @@ class SuppliedRowDetector {
   void suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const;
 
  private:
-  /// What the presses on a row show in the other rows.
+  /// How the presses on a row show in the other rows.
   struct Comparison {
     std::optional<std::size_t> place;  // of a press that shows
     std::size_t alike = 0;             // readings of other rows that are equal to that press

@@ -24,7 +24,7 @@
 
 namespace dermis::serve {
 
-/// What a calibration asks for, as it is said to a simulated hand.
+/// The request of a calibration, in the words of a simulated hand.
 [[nodiscard]] sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time);
 
 /// The services /calibration/... of docs/stream.md: one guided calibration at a time. Thread-safe.
@@ -80,7 +80,7 @@ class CalibrationServices final : public Part {
   const Tell tell_;
   std::future<void> ending_;  ///< A calibration whose last fit is waited for.
   std::atomic<std::size_t> active_array_{kNone};
-  mutable std::mutex mutex_;  ///< Of what follows; never held for long, because frames wait for it.
+  mutable std::mutex mutex_;  ///< Guards the members below; never held for long, because frames wait for it.
   Calibration last_;
 };
 

@@ -48,7 +48,7 @@ std::vector<LiveParameter> Tares::parameters() {
   return all;
 }
 
-/// Of the arrays [first, end): on where all of them are tared.
+/// Controls the arrays [first, end): on where all of them are tared.
 LiveParameter Tares::tare_of(const std::string& name, std::size_t first, std::size_t end) {
   const auto value = [this, first, end] {
     const std::lock_guard lock(mutex_);

@@ -36,7 +36,7 @@ class Tares final : public Part {
   /// It begins at its own zero.
   void model_changed(std::size_t array) override;
 
-  /// What clients have done to zeros, as far as it is done, a line each: "2026-11-22 10:15:00 UTC: chest was tared by
+  /// Changes of zeros by clients that are done, a line each: "2026-11-22 10:15:00 UTC: chest was tared by
   /// 127.0.0.1:53412". To be called again and again.
   [[nodiscard]] std::vector<std::string> follow();
 

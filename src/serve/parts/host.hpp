@@ -21,8 +21,8 @@ namespace dermis::serve {
 class SuitRecorder;
 class Topics;
 
-/// What the parts of a server share. What one of them asks of all goes through here. Thread-safe as its members are;
-/// they outlive it.
+/// The objects that all parts of a server use. Requests of a part to all parts go through here. Thread-safe as its
+/// members are; they outlive it.
 struct Host {
   ServedSuit& suit;
   const SessionOptions options;

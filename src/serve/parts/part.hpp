@@ -39,7 +39,7 @@ class Part {
   /// Asked for once, before the server begins.
   [[nodiscard]] virtual std::vector<stream::Service> services() { return {}; }
   [[nodiscard]] virtual std::vector<LiveParameter> parameters() { return {}; }
-  /// What else has to happen before clients come. Errors end the session.
+  /// Does the rest of the work before clients come. Errors end the session.
   [[nodiscard]] virtual Status begin() { return Done{}; }
 
   /// Every frame of every array, with what was made of it.

@@ -24,7 +24,7 @@ double rate_for(const Classes& classes) {
   return classes.moving ? std::min(classes.layout.rate_hz, kMostHz) : kPosesHz;
 }
 
-/// Of newtons of these arrays, side by side.
+/// The layout of newtons of these arrays, side by side.
 Layout layout_of(std::vector<recognition::SensedArray> arrays, std::size_t further, const Classes& classes) {
   Layout layout;
   for (recognition::SensedArray& array : arrays) {
@@ -54,7 +54,7 @@ LiveRecognition::LiveRecognition(StreamRecogniser recogniser, double rate_hz, st
 std::optional<Answer> LiveRecognition::next(const ForceFrame& force, std::span<const float> further) {
   if (has(force.status, FrameStatus::rejected)) return std::nullopt;
   if (resampler_.leaps_to(force)) {
-    // What was going on then is not answered for.
+    // A touch that was going on then gets no answer.
     static_cast<void>(recogniser_.finish());
     told_.reset();
   }

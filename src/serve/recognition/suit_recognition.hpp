@@ -51,7 +51,7 @@ class SuitRecognition final : public Part {
   EventTopic topic_;
   std::mutex readings_mutex_;
   std::optional<std::vector<float>> told_{};  ///< Further readings that no frame has seen yet.
-  // Of the thread of the first array alone.
+  // Used by the thread of the first array alone.
   std::vector<float> further_;
   std::optional<Nanos> further_time_{};
   std::vector<std::size_t> order_{};
@@ -59,7 +59,7 @@ class SuitRecognition final : public Part {
   std::vector<std::uint8_t> message_{};
 };
 
-/// What the classes of several arrays say of those of a suit, which are known by their names; one may have another name
+/// Applies the classes of several arrays to those of a suit, which are found by their names. One may have another name
 /// where the suit has no other array. Fails where they do not fit.
 [[nodiscard]] Result<LiveRecognition> recognition_of_suit(const recognition::Classes& classes,
                                                           const std::vector<ServedArray>& arrays);

@@ -164,7 +164,7 @@ Result<std::unique_ptr<Part>> make_recording(Host& host) {
     for (std::size_t k = 0; k < suit->arrays.size(); ++k) suit->arrays[k].model = host.models.of(k);
     return suit;
   };
-  // What is played itself plays no other.
+  // A played recording cannot play another one.
   std::optional<PlayedRecording::PlayedSuit> player;
   if (!host.suit.playback) player = played;
   return std::unique_ptr<Part>(std::make_unique<RecordingServices>(host.suit, host.options, arrays, host.models,

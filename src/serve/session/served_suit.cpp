@@ -112,7 +112,7 @@ Status read_classes_of_suit(const std::string& path, const Notice& notice, Serve
   return Done{};
 }
 
-/// Of the files that suit.toml names; a command tells those that its user named.
+/// Takes the files that suit.toml names; a command warns about those that its user named.
 void tell_missing_checksums(const SuitDescription& suit, const Notice& notice) {
   if (!notice) return;
   std::set<std::pair<std::string, const files::FileFormat*>> named{{suit.classes, &recognition::kClassesFormat}};
@@ -239,7 +239,8 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
   return Done{};
 }
 
-/// All at once: a device may take its time to answer, and a scene to be simulated. Of several errors the first array's.
+/// All at once: a device may take its time to answer, and a scene to be simulated. Returns the first array's error
+/// where there are several.
 Status open_together(const SuitDescription& described, const sources::SourceOptions& options, ServedSuit& suit) {
   using Opened = Result<std::unique_ptr<FrameSource>>;
   const auto how = suit.arrays.size() == 1 ? std::launch::deferred : std::launch::async;

@@ -17,11 +17,11 @@ namespace dermis::serve {
 /// How long a device may take to send its first frame.
 inline constexpr std::chrono::seconds kPatience{8};
 
-/// What a source sends, as far as that tells the array.
+/// The traffic of a source, as far as it shows the array.
 struct FirstLook {
   bool has_frames = false;
-  std::optional<FrameShape> shape{};  ///< Of the frames; without frames the one that they would likely have.
-  std::string message{};              ///< What the bytes are, or what they lack.
+  std::optional<FrameShape> shape{};  ///< Shape of the frames; without frames the likely one.
+  std::string message{};              ///< Describes the bytes, or what they lack.
   std::vector<std::uint8_t> bytes{};  ///< The first of those of which no frame was made, at most 256.
 };
 

@@ -16,7 +16,7 @@ class TouchFinder {
 
   explicit TouchFinder(std::size_t taxels);
 
-  /// `counts`: one reading a taxel. What is not a number is left out.
+  /// `counts`: one reading a taxel. Readings that are not numbers are left out.
   void add(std::span<const float> counts);
 
   /// It knows the readings at rest.

@@ -28,7 +28,7 @@ class TouchWatch {
     std::string problem{};               ///< Why the source gives no frames (any more).
   };
 
-  /// `shape`: of the frames. Of the options, `array` and `stop` are not used.
+  /// `shape`: of the frames. The options `array` and `stop` are not used.
   TouchWatch(sources::SourceName name, FrameShape shape, sources::SourceOptions options);
   TouchWatch(const TouchWatch&) = delete;
   TouchWatch& operator=(const TouchWatch&) = delete;

@@ -34,7 +34,7 @@ struct LessonState {
 };
 
 struct LearnedLesson {
-  std::string name;  ///< Of the files beside the model of the array, without their endings.
+  std::string name;  ///< Name of the files beside the model of the array, without their endings.
   recognition::Learned learned;
 };
 
