@@ -33,6 +33,7 @@ OBLIQUE = re.compile(r"(What|Of)\b")
 TEXT_OR_COMMENT = re.compile(
     r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![\w])\'(?:\\.|[^\'\\\n])*\'|`(?:\\.|[^`\\])*`|(//[^\n]*|/\*.*?\*/)', re.DOTALL)
 MARKS = re.compile(r"^\s*(?:///?<?|/\*\*?<?|\*/|\*|#)|\*/$")
+FORMULA = re.compile(r" {3,}\S|.*\S {3,}\S")  # or a row of a table
 NO_COMMENT = re.compile(r"\s*(SPDX-|NOLINT|clang-format|biome-|eslint-|@ts-|!/|type: |pylint|ruff|noqa|namespace |\})")
 
 COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
@@ -130,7 +131,7 @@ def comments(path):
     for row, rows, is_beside in blocks:
         is_sentence = rows[-1].rstrip().endswith((".", "?", "!")) and len(" ".join(rows).split()) > LABEL_WORDS
         if not is_beside or is_sentence:
-            yield row, "\n".join(line[1:] if line.startswith(" ") else line for line in rows)
+            yield row, "\n".join("" if FORMULA.match(line) else line.strip() for line in rows)
 
 
 def judge_comments(files, over):

@@ -14,7 +14,7 @@
 
 namespace dermis::calibration {
 
-/// The request of /calibration/start (docs/stream.md). What is not asked for is that of default_plan().
+/// The request of /calibration/start (docs/stream.md). Values that are not asked for are those of default_plan().
 struct PlanRequest {
   std::string array;  ///< Empty: not told.
   std::optional<std::vector<double>> weights_n;

@@ -53,7 +53,7 @@ class BankTraining {
   [[nodiscard]] std::vector<float> start_parameters(BankStart start, std::uint64_t seed) const;
   void draw_batch();
 
-  /// What one network may draw from.
+  /// The samples that one network may draw from.
   struct Choice {
     std::vector<std::uint32_t> loaded;    // samples that load its taxel
     std::vector<std::uint32_t> unloaded;  // samples that do not

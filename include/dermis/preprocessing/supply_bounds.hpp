@@ -38,9 +38,9 @@ struct SupplyRange {
 /// too, everything is trusted from a hundredth of the ADC's reference to a hundred times it.
 class SupplyBounds {
  public:
-  /// Of a calibration: what is possible is trusted.
+  /// For a calibration: possible supplies are trusted.
   explicit SupplyBounds(const Readout& readout);
-  /// Of an array at work. `calibrated`: the supplies of its calibration; empty: not known.
+  /// For an array at work. `calibrated`: the supplies of its calibration; empty: not known.
   SupplyBounds(const Readout& readout, const std::optional<SupplyRange>& calibrated);
 
   [[nodiscard]] const SupplyRange& trusted() const noexcept { return trusted_; }
@@ -49,7 +49,7 @@ class SupplyBounds {
   [[nodiscard]] bool is_plausible(double supply_v) const noexcept {
     return plausible_.contains(supply_v) || trusted_.contains(supply_v);
   }
-  /// What readings are divided by.
+  /// The divisor of readings.
   [[nodiscard]] double used(double supply_v) const noexcept {
     return is_plausible(supply_v) ? std::clamp(supply_v, trusted_.least_v, trusted_.most_v) : nominal_v_;
   }

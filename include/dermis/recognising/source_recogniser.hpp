@@ -22,10 +22,10 @@ struct RecognitionInput {
   double rate_hz = 0.0;  ///< Frames a second of the source; 0: as many as the examples had.
 };
 
-/// What was recognised in a source.
+/// The recognition in a source.
 struct SourceRecognition {
   recognition::Recognition recognition{};  ///< Its frames count from the first of the source.
-  Nanos time{};                            ///< Of the frame with which it was known.
+  Nanos time{};                            ///< Time of the frame with which it was known.
 };
 
 /// Names what happens in a source. Not thread-safe.
