@@ -34,7 +34,7 @@ using Message = std::span<const std::uint8_t>;
 constexpr std::size_t kMostBytesOfATopic = std::size_t{32} << 20U;
 constexpr std::size_t kFewestMessages = 10;
 constexpr std::size_t kMostMessages = 1000;
-// What was lost is sent again after this.
+// Lost data are sent again after this.
 constexpr std::uint32_t kHeartbeatNanos = 10'000'000;
 constexpr std::uint32_t kProgramsOnThisMachine = 32;
 

@@ -19,7 +19,7 @@ class Option;
 
 namespace dermis::app {
 
-/// What the chosen command does; the exit status of the process where it does not fail.
+/// The work of the chosen command; the exit status of the process where it does not fail.
 using Action = std::function<Result<int>()>;
 
 /// An option of a command, to say more of it.
@@ -39,7 +39,7 @@ class Option {
   CLI::Option* option_;
 };
 
-/// A command whose options are being declared. What they are parsed into must live as long as the action.
+/// A command whose options are being declared. The variables for its options must live as long as the action.
 class Command {
  public:
   Command(CLI::App& app, Action& chosen) : app_(app), chosen_(chosen) {}

@@ -12,7 +12,7 @@ namespace dermis::app {
 /// An option or an argument as --help shows it.
 struct OptionRow {
   std::vector<std::string> names;    ///< "-h" and "--help"; of an argument its one name, "in".
-  std::string value;                 ///< What its value is, "TEXT" or "simple|rubber"; empty for a flag.
+  std::string value;                 ///< Kind of its value, "TEXT" or "simple|rubber"; empty for a flag.
   std::vector<std::string> choices;  ///< The names that it knows, where there is a list of them.
   std::string default_value;         ///< Empty where none is shown.
   std::string help;
@@ -32,7 +32,7 @@ struct CommandTable {
   std::vector<CommandTable> commands;
 };
 
-/// What --help knows of a command and of all that are below it.
+/// The --help of a command and of all that are below it.
 [[nodiscard]] CommandTable command_table(const CLI::App& app);
 
 }  // namespace dermis::app

@@ -65,7 +65,7 @@ std::string source_of(const SimulateOptions& options) {
   return fmt::format("sim:{}?seed={}", options.scene, options.seed);
 }
 
-/// What the simulator tells of the truth besides the frames themselves.
+/// The simulator's truth besides the frames themselves.
 struct Truth {
   std::vector<Load> loads;
   std::string contacts = "frame,id,shape,x_mm,y_mm,diameter_mm,force_n,taxel_force_n\n";

@@ -19,7 +19,7 @@ Nanos steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-/// What `beside` says belongs to counts alone.
+/// The data in `beside` belong to counts alone.
 Recording frames_of(const pipeline::Model& model, const py::object& frames, const FrameSeries& beside) {
   const bool is_whole = py::isinstance<Recording>(frames) || is_path(frames);
   if (!is_whole) return recording_of(frames, &model.array, beside);

@@ -34,10 +34,10 @@ struct AgeingEvidence {
 ///
 ///   d = ln F(r, c) - ln F(r, c + 1) - ln F(r + 1, c) + ln F(r + 1, c + 1)
 ///
-/// It is 0 for each pressure that is a product of one function of x and one of y: a plane, an edge, a box, a bell.
-/// Other round patches give d the sign of the quadrant around their centre in which the square lies. Gains g that have
-/// changed since the calibration add the same d of ln g under every touch. So the product of two means of d counts, one
-/// of touches whose centre lies diagonally one way and one of those the other way. Its mean over the squares is 4 times
+/// It is 0 for each pressure that is a product of functions of x and of y: a plane, an edge, a box, a bell. Other round
+/// patches give d the sign of the quadrant around their centre in which the square lies. Gains g that have changed
+/// since the calibration add the same d of ln g under every touch. So the product of two means of d counts, one of
+/// touches whose centre lies diagonally one way and one of those the other way. Its mean over the squares is 4 times
 /// the variance of ln g. Scatter from touch to touch is in no product, as the two means are of different touches.
 ///
 /// Squares at the rim of a touch count little: there shapes differ most, and what they add hides gains. The weight is 1

@@ -78,8 +78,8 @@ class SuitRecordingWriter {
 [[nodiscard]] Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const std::string& path,
                                              const std::string& name);
 
-/// Reads every RawFrame of all arrays of a recording, in the order of the file. Of other MCAP files there is one array:
-/// the first topic of images (RecordingReader). Not thread-safe.
+/// Reads every RawFrame of all arrays of a recording, in the order of the file. Other MCAP files give one array: the
+/// first topic of images (RecordingReader). Not thread-safe.
 class SuitRecordingReader {
  public:
   [[nodiscard]] static Result<std::unique_ptr<SuitRecordingReader>> open(const std::string& path);

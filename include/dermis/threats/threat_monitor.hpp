@@ -31,7 +31,7 @@ struct ThreatValue {
   PlaneVector position{};  ///< Where, in the plane of the array: of the contact, the taxel, the centre of pressure [m].
   std::uint32_t contact = 0;  ///< Id of the contact; 0 where it is of none.
 
-  /// What it is at least.
+  /// The least value within the uncertainty.
   [[nodiscard]] double least() const noexcept { return value - kThreatSigmas * sigma; }
 
   bool operator==(const ThreatValue&) const = default;

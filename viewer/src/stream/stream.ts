@@ -66,7 +66,7 @@ export class Stream {
   #attempts = 0;
   #liveSinceMs = 0;
   #lastMessageMs = 0;
-  /** Of binary messages on this connection. */
+  /** Bytes of binary messages on this connection. */
   #taken = 0;
   #takenTimer = 0;
 

@@ -19,7 +19,7 @@ export function byClass(touches: readonly TaughtTouch[]): Map<string, TaughtTouc
   return classes;
 }
 
-/** What a person should know before the training. */
+/** Warnings to a person before the training. */
 export function warnings(touches: readonly TaughtTouch[]): string[] {
   const few = [...byClass(touches)].filter(([, some]) => some.length < FEW_EXAMPLES);
   const lines = few.map(([name, some]) => `${name} has ${some.length} of at least ${FEW_EXAMPLES} examples`);
