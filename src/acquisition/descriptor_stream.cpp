@@ -26,7 +26,7 @@ int milliseconds(Nanos timeout) {
   return static_cast<int>(std::clamp<long long>(whole, 0, 1'000'000));
 }
 
-/// What poll() says of the descriptor within the time.
+/// The result of poll() on the descriptor within the time.
 short poll_for(int descriptor, short events, Nanos timeout) {
   pollfd request{descriptor, events, 0};
   return ::poll(&request, 1, milliseconds(timeout)) > 0 ? request.revents : short{0};

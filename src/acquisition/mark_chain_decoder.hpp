@@ -69,7 +69,7 @@ class MarkChainDecoder : public WindowDecoder {
   std::vector<std::size_t> frame_sizes_;  ///< One, once it is known.
   bool in_step_ = false;                  ///< A frame begins at the front of the window.
   bool was_in_step_ = false;              ///< One would, had no bytes been lost or added since the last.
-  bool after_mark_ = false;               ///< What was taken before the window ended with a mark.
+  bool after_mark_ = false;               ///< The bytes taken before the window ended with a mark.
   std::size_t frames_compared_ = 0;       ///< Over how many frames chains are followed at present.
   std::vector<std::uint8_t> last_payload_;
   std::vector<std::uint8_t> marks_in_phase_;  ///< Number of marks at each position modulo the frame size.

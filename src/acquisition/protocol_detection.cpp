@@ -17,8 +17,8 @@ constexpr std::size_t kStep = 256;                          // bytes between two
 constexpr std::size_t kFirstWiresensTrial = 16 * kStep;  // bytes; the next ones after twice as many, as it is not cheap
 constexpr std::uint64_t kFramesWithoutChecksum = 4;
 
-/// Those with a checksum first, then text, then binary forms, the one with the least to check last: where several
-/// decode the same bytes, the first is meant.
+/// The order is protocols with a checksum, then text, then binary forms, with the least checked last. Where several
+/// decode the same bytes, the first one is right.
 struct Trait {
   std::string_view name;
   bool has_checksum;
@@ -49,8 +49,7 @@ void drain(Decoder& decoder, RawFrame& frame) {
 /// Shows the same bytes to all decoders.
 class ProtocolDetector {
  public:
-  /// What the options say is taken as known. `name_only`: protocols count too whose frames cannot be had without being
-  /// told more.
+  /// Known options are taken as they are. `name_only`: protocols whose frames need further options count, too.
   ProtocolDetector(const ProtocolOptions& known, bool name_only) : known_(known), name_only_(name_only) {
     for (const Trait& trait : kByStrictness) add(trait, known_);
     if (name_only) {

@@ -51,7 +51,7 @@ double mean_difference(std::span<const float> values, std::size_t width, std::si
   return sum / static_cast<double>(values.size() - lag * width);
 }
 
-/// Of all shapes of so many taxels the one nearest to a square, such as 12x10.
+/// The shape of so many taxels that is nearest to a square, such as 12x10.
 FrameShape near_square(std::size_t taxels) {
   auto cols = static_cast<std::size_t>(std::sqrt(static_cast<double>(taxels)));
   while (cols > 1 && taxels % cols != 0) --cols;
@@ -151,7 +151,7 @@ void RowLayoutLearner::learn_given_block() {
   if (block_before_.cols == shape_->cols + 1 && clock_blocks_ >= kEqualFrames) layout_ = {*shape_, false, 1};
 }
 
-/// Of blocks without an end.
+/// Learns from blocks without an end.
 void RowLayoutLearner::learn_block(bool at_end) {
   if (!block_before_.even || equal_blocks_ < kEqualFrames) return;
   const std::size_t cols = block_before_.cols;

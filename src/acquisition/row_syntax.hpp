@@ -25,7 +25,7 @@ struct ParsedLine {
   std::size_t cols = 0;    ///< Columns of the frame, where the line tells them; else 0.
 };
 
-constexpr std::uint32_t kMaxTextReading = (1U << 24U) - 1;  ///< Of the widest converters, and exact as float.
+constexpr std::uint32_t kMaxTextReading = (1U << 24U) - 1;  ///< The most of the widest converters, and exact as float.
 
 /// Whether a frame may also be one line of rows * cols values.
 enum class SingleLines {

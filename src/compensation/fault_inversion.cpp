@@ -172,8 +172,8 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circu
   }
 }
 
-/// A conductance of a driven line k and a sensed line j that is wrong by d changes the others by the share Rd_k d, or
-/// RL_j d, to first order.
+/// A conductance of a driven line k and a sensed line j that is wrong by d changes the others to first order. Their
+/// share is Rd_k d, or RL_j d.
 void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept {
   if (array_.readout.circuit == Circuit::none || lines_are_faulty_) return;
   const Axis driven = driven_axis(array_);
@@ -218,7 +218,7 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   subtract_supplied_rows(ratio);
   average_shorted_lines();
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
-  // What another circuit takes tells nothing of the frames without a fault.
+  // The work in another circuit is no example for frames without a fault.
   if (lines_are_faulty_ || crossings_.are_kept) healthy.start_frame(kUnbounded);
   if (!lines_are_faulty_) return keep_estimates(healthy, siemens);
   missing_.estimate(equivalent_);

@@ -24,8 +24,8 @@ namespace dermis::compensation {
 /// (MissingTaxels). Without faults of lines, the healthy inversion keeps those estimates. An open row still couples the
 /// columns through them: eliminating it adds -g g^T / sum(g) to their equations. Shorted crossings are in both
 /// circuits: the inversion solves them, or keeps their taxels at a large conductance. For resistive lines, switches,
-/// real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit: the readings of faulty lines
-/// are replaced by those of their neighbours, and the rest is solved as if healthy.
+/// real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit. There the readings of faulty
+/// lines are replaced by those of their neighbours, and the rest is solved as if healthy.
 class FaultInversion {
  public:
   FaultInversion(const ArrayDescription& array, double tolerance_ratio, const ReferenceConductances& references);
@@ -34,7 +34,7 @@ class FaultInversion {
   void set_faults(std::span<const LineFault> faults, CrosstalkInversion& healthy);
   [[nodiscard]] bool any() const noexcept { return any_; }
 
-  /// What the readings of a line can be together still holds: none is at the supply or joined with another.
+  /// The bounds on the readings of a line together still hold: none is at the supply or joined with another.
   [[nodiscard]] bool keeps_bounds() const noexcept { return keeps_bounds_; }
 
   /// The taxel has no force of its own to report.
@@ -67,7 +67,7 @@ class FaultInversion {
     LumpedCircuit faulty;
   };
 
-  /// Of each taxel [taxels].
+  /// The masks of each taxel [taxels].
   struct Masks {
     explicit Masks(const ArrayDescription& array);
 

@@ -117,7 +117,7 @@ std::optional<double> MissingTaxels::logarithm(std::span<const double> values, s
 void MissingTaxels::estimate(std::span<double> values) const noexcept {
   const double floor = kFloorShare * *std::max_element(values.begin(), values.end());
   if (!(floor > 0.0)) return;
-  // Of the taxels at `place` on a line, -2, -1, +1 and +2 steps away.
+  // The taxels -2, -1, +1 and +2 steps from `place` on a line.
   const auto along = [&](std::size_t taxel, std::size_t place, std::size_t size, std::size_t step) {
     std::array<std::optional<double>, 4> near;
     if (place > 1) near[0] = logarithm(values, taxel - 2 * step, floor);

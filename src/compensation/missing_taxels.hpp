@@ -15,13 +15,13 @@
 namespace dermis::compensation {
 
 /// Conductances of taxels whose readings tell nothing of them. For three frames a taxel stays what it was; then its
-/// neighbours tell. In most circuits the others of its line tell, too: with g the line's load (at virtual ground, the
-/// conductance of its driver), a taxel that is taken as x where it is X makes all of them
+/// neighbours tell. In most circuits the others of its line tell, too. Let g be the line's load (at virtual ground, the
+/// conductance of its driver). A taxel that is taken as x where it is X makes all others
 ///
 ///   s = (g + x) / (g + X)
 ///
-/// times what they are. Of unloaded ones that is known, as they are in the rest of the array. Both are weighed by their
-/// standard deviations, in logarithms.
+/// times what they are. The true values of unloaded ones are known from the rest of the array. Both are weighed by
+/// their standard deviations, in logarithms.
 class MissingTaxels {
  public:
   MissingTaxels(const ArrayDescription& array, const ReferenceConductances& references);

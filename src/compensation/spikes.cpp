@@ -68,7 +68,7 @@ void Spikes::check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels)
   follow(ratio, frame.sigma_ratio, taxels);
 }
 
-/// What had no reading in the last frame is not compared with one from before: others have changed since.
+/// A taxel without a reading in the last frame is not compared with an older one: others have changed since.
 void Spikes::renew(std::span<const double> ratio, std::span<const TaxelStatus> taxels) noexcept {
   const bool all_are_read = std::find(taxels.begin(), taxels.end(), TaxelStatus::invalid) == taxels.end();
   if (all_are_read && !std::exchange(any_stale_, false)) return;

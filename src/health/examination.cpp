@@ -44,7 +44,7 @@ bool is_explained(const LineFault& dead, const LineFault& line, const ArrayDescr
   return line.place == (*traits.axis == Axis::row ? dead.place / array.cols : dead.place % array.cols);
 }
 
-/// Of the faults so far, which stand and which have gone at this frame.
+/// Updates which of the faults so far stand and which have gone at this frame.
 void follow(std::span<const LineFault> present, std::size_t frame, const ArrayDescription& array,
             std::vector<FaultHistory>& faults) {
   std::erase_if(faults, [&](const FaultHistory& known) {

@@ -27,7 +27,8 @@ bool is_near(double ratio) {
   return ratio < kSomethingElse && ratio > 1.0 / kSomethingElse;
 }
 
-/// Of the logarithm of the mean ratio. What the model says of a force, and what the presses show of it if that is more.
+/// Standard deviation of the logarithm of the mean ratio. It is the model's for a force, or the scatter of the presses
+/// if that is more.
 double sigma_of(const std::vector<WeighedPress>& presses, double log_ratio, double weight_n) {
   double told = 0.0;
   double seen = 0.0;

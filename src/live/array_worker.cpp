@@ -176,7 +176,7 @@ void ArrayWorker::place_contacts() {
   }
 }
 
-/// What is put there later counts from when nothing stood there.
+/// A load that is put there later counts from when nothing stood there.
 void ArrayWorker::follow_standing() {
   standing_.watch.add(pipeline_->conductance(), frame_.force);
   if (standing_.watch.is_any_loaded()) return;

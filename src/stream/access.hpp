@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-/// Who may have the stream. A page of any site that is open in a browser can reach a server on loopback: what it
-/// cannot do is forge Host and Origin.
+/// Who may have the stream. A page of any site that is open in a browser can reach a server on loopback. But it cannot
+/// forge Host and Origin.
 namespace dermis::stream {
 
 /// "127.0.0.1", "127.1.2.3", "::1", "localhost".

@@ -20,7 +20,7 @@
 
 namespace dermis::stream {
 
-/// What clients can ask of: the owner of the server, and what it offers.
+/// The addressees of clients' requests: the owner of the server, and its offers.
 struct Offer {
   Handlers handlers{};
   std::vector<Service> services{};
@@ -31,7 +31,7 @@ struct Offer {
 using SubscriptionsChanged = std::function<void(ChannelId channel, int change)>;
 
 class Client;
-/// What the owner was asked, which may take its time, and what is to be done with the client then.
+/// The question to the owner, which may take its time, and the following action for the client.
 using Answer = std::function<void(Client&)>;
 using Question = std::function<Answer()>;
 /// Has a question answered, one after the other, on any thread; the answer comes on the client's, if that is still

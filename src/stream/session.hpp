@@ -43,7 +43,7 @@ class SessionOwner {
   virtual void on_cut(const std::string& line) = 0;
 };
 
-/// One connection: HTTP, until the client asks for the stream. Of the server's thread.
+/// One connection: HTTP, until the client asks for the stream. Used by the server's thread.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   /// `owner` must outlive it.
@@ -62,7 +62,7 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   using ErrorCode = boost::beast::error_code;
 
-  /// What of them is read.
+  /// Limits on reading them.
   struct Requests {
     Budget count;
     Budget bytes;

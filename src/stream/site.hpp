@@ -18,7 +18,7 @@ namespace dermis::stream {
 
 using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 using Response = boost::beast::http::response<boost::beast::http::string_body>;
-/// What goes before a file.
+/// The head before a file.
 using FileHead = boost::beast::http::response<boost::beast::http::empty_body>;
 
 [[nodiscard]] inline std::string_view view(boost::beast::string_view text) {
@@ -31,7 +31,7 @@ using FileHead = boost::beast::http::response<boost::beast::http::empty_body>;
 /// `name`: by which a browser saves it.
 [[nodiscard]] FileHead make_file_head(const Request& request, const std::string& name, std::uint64_t bytes);
 
-/// What is given over HTTP, and to whom. Thread-safe.
+/// The files over HTTP, and who may have them. Thread-safe.
 class Site {
  public:
   /// `options` must outlive it.

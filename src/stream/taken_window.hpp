@@ -7,8 +7,8 @@
 
 namespace dermis::stream {
 
-/// How much may be on its way to a client that tells what it has taken: what it takes in kLongest, so that nothing
-/// that comes is much older. Not thread-safe.
+/// How much may be on its way to a client that reports what it has taken. It is the amount that it takes in kLongest,
+/// so that nothing arrives much older. Not thread-safe.
 class TakenWindow {
  public:
   using Clock = std::chrono::steady_clock;

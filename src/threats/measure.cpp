@@ -53,7 +53,7 @@ ThreatValue taxel_force(const Area& area, const ForceFrame& force) {
   return worst;
 }
 
-/// Of the contacts in the area that are held, the one with the largest `value_of`.
+/// The held contact in the area with the largest `value_of`.
 template <typename ValueOf>
 ThreatValue worst_contact(const Area& area, const ContactReport& report, ValueOf value_of) {
   ThreatValue worst;

@@ -9,7 +9,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/threats/threat_monitor.hpp"
 
-/// What one frame holds against the limits.
+/// The values of one frame for the limits.
 namespace dermis::threats {
 
 /// The taxels of an array that a limit is for.

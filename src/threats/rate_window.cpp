@@ -35,7 +35,7 @@ void RateWindow::drop_before(Nanos start) noexcept {
   }
 }
 
-/// Of frames that come too fast for the samples, some.
+/// Stores some of frames that come too fast for the samples.
 void RateWindow::store(const Sample& now) noexcept {
   const Nanos least = window_ / static_cast<Nanos::rep>(kMostSamples - 4);
   if (count_ > 0 && now.time - sample(count_ - 1).time < least) return;

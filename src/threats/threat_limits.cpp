@@ -114,7 +114,7 @@ bool is_printable(const std::string& name) {
   });
 }
 
-/// What is wrong; empty where nothing is.
+/// The first error; empty where there is none.
 std::string fault_of(const Zone& zone, const ThreatLimits& all) {
   if (has_twin(all.zones, zone)) return "stands twice; name one of them otherwise";
   if (zone.last_row < zone.first_row || zone.last_col < zone.first_col) return "ends before it begins";

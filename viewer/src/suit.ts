@@ -24,7 +24,10 @@ export interface PlacedPose {
   rotation: [number, number, number, number];
 }
 
-/** The visible shape of a link. `size`: sides of a box; radius and length of a cylinder; radius of a sphere; scale of a mesh. */
+/**
+ * The visible shape of a link. `size`: sides of a box; radius and length of a cylinder; radius of a sphere; scale of a
+ * mesh.
+ */
 export interface BodyVisual {
   pose: PlacedPose;
   solid: "box" | "cylinder" | "sphere" | "mesh";

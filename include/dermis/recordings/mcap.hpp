@@ -61,7 +61,7 @@ struct McapMetadata {
 /// Writes an MCAP file of the profile "ros2". The file is beside its final place until appear() or finish(). Data that
 /// close_chunk() wrote can be read even if the process dies afterwards. After the first write error the file is cut
 /// back to the last whole record, and later data are dropped. finish() then adds the index. Where the disk is full, the
-/// last chunks make room for it. Until then the index lies in a file without a name beside the recording, with about
+/// last chunks make room for it. Until then the index lies in a file without a name beside the recording. It has about
 /// 110 bytes for each chunk (and 10 for each topic in it). Memory: two chunks and those that wait. Not thread-safe.
 class McapWriter {
  public:

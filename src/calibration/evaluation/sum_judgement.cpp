@@ -11,7 +11,7 @@
 namespace dermis::calibration {
 namespace {
 
-/// What lies on the taxels that have a force; empty where some of it is not known.
+/// The load on the taxels that have a force; empty where some of it is not known.
 std::optional<double> true_sum(const Sample& truth, const ForceFrame& force) {
   std::vector<bool> is_told(truth.known_newtons.size());
   double sum = 0.0;

@@ -99,7 +99,7 @@ class Judge {
     const VectorXd sizes = residuals.head(sigmas_.size()).cwiseProduct(sigmas_).cwiseAbs();
     return quantile(std::vector<double>(sizes.begin(), sizes.end()), kMostPressesShare);
   }
-  /// For presses on several taxels, which come first: the mean, or its estimate by the median where that is less, so
+  /// The mean for presses on several taxels, which come first. Or its estimate by the median where that is less, so
   /// that single outliers are no misfit.
   [[nodiscard]] double square_of_totals(const VectorXd& residuals) const {
     constexpr double kMedianOfSquare = 0.4549;  // of a standard normal variable

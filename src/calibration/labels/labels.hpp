@@ -14,7 +14,7 @@ namespace dermis::calibration {
 /// There are loads, they name frames that exist, and a pressure can be turned into a force.
 [[nodiscard]] Status check_loads(const ArrayDescription& array, std::size_t frame_count, std::span<const Load> loads);
 
-/// What a load presses with in all [N].
+/// The force of a load in all [N].
 [[nodiscard]] double total_newtons(const Load& load, const ArrayDescription& array);
 
 /// The sum of the loads of every frame [N]; none for unlabelled frames.

@@ -30,7 +30,7 @@ constexpr double kHighestRate = 0.05;
 constexpr double kLowestRate = 1e-5;
 constexpr float kSecondDecay = 0.97F;  // 0.999 takes twice the steps
 
-/// Of each taxel over all samples; a taxel that never changes gets a range of 1.
+/// The range of each taxel over all samples; a taxel that never changes gets a range of 1.
 std::vector<PaperBank::Range> ratio_ranges(const SampleDatabase& database) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<PaperBank::Range> ranges(database.array.taxel_count(), {kInfinity, -kInfinity});

@@ -15,7 +15,7 @@ namespace {
 constexpr double kKnownShare = 0.95;  // of new touches of known classes shall not be called unknown
 constexpr double kConfidence = 0.95;
 
-/// What the unknown score is made from, of several examples.
+/// The data for the unknown score, of several examples.
 struct Observations {
   std::vector<std::vector<double>> distances;  ///< [experts][examples] to the class that was answered
   std::vector<double> doubts;                  ///< [examples] 1 - largest probability
@@ -50,8 +50,8 @@ Observations observe(Judged judged, const Matrix& scores, const std::vector<Matr
   return result;
 }
 
-/// Ranks of the distances by each expert, then of the doubts: [experts + 1][examples]; each among the others, as that
-/// of a new touch is among them.
+/// Ranks of the distances by each expert, then of the doubts: [experts + 1][examples]. Each is among the others, as a
+/// new touch is among them.
 std::vector<std::vector<double>> ranks_of_known(const Observations& known) {
   std::vector<std::vector<double>> ranks;
   for (const std::vector<double>& distances : known.distances) ranks.push_back(ranks_among_others(distances));

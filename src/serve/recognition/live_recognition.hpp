@@ -24,8 +24,8 @@ class LiveRecognition {
                                                       std::vector<recognition::SensedArray> arrays,
                                                       std::size_t further = 0);
 
-  /// The answer where there is a new one: for a gesture once it is over; for a pose when it changes, and ten times a
-  /// second. `further`: as many as create() was given. Valid until the next call. Rejected frames are passed over.
+  /// The new answer, if any: for a gesture once it is over; for a pose when it changes, and ten times a second.
+  /// `further`: as many as create() was given. Valid until the next call. Rejected frames are passed over.
   [[nodiscard]] std::optional<recognition::Answer> next(const ForceFrame& force, std::span<const float> further = {});
 
   [[nodiscard]] const recognition::Classes& classes() const noexcept { return recogniser_.classes(); }
