@@ -11,9 +11,10 @@ item of a list ends a sentence, a semicolon or a colon does not. Prints a line a
 sentence and where its paragraph begins. Fails where a sentence has over 40 words, over 3 % have more than 30, or the mean
 is over 17.
 
---comments reads // and /* */ of C++ and TypeScript, # and docstrings of Python. Comments on rows below each other are one.
-A comment beside code is a label, not a sentence, where it has no full stop or at most six words ("///< Of each line [ohm]"). Prints the
-sentences with over 25 words and those that begin with "What" or "Of". Fails where the first are over 1 % or the second over 40.
+--comments reads // and /* */ of C++ and TypeScript, # and docstrings of Python. Comments on rows below each other are one; rows
+of formulas and tables are left out. A comment beside code is a label, not a sentence, where it has no full stop or at most six
+words ("///< Each line [ohm]"). Prints the sentences with over 25 words and those that begin with "What" or "Of". Fails where the
+first are over 1 % or the second over 40.
 """
 import argparse
 import io
@@ -31,7 +32,7 @@ CODE_SUFFIXES = (".cpp", ".hpp", ".h", ".ts", ".py", ".pyi")
 COMMENT_LIMIT, COMMENT_LONG_SHARE, COMMENT_OBLIQUE, LABEL_WORDS = 25, 0.01, 40, 6
 OBLIQUE = re.compile(r"(What|Of)\b")
 TEXT_OR_COMMENT = re.compile(
-    r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<![\w])\'(?:\\.|[^\'\\\n])*\'|`(?:\\.|[^`\\])*`|(//[^\n]*|/\*.*?\*/)', re.DOTALL)
+    r'''R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|(?<!\w)'(?:\\.|[^'\\\n])*'|`(?:\\.|[^`\\])*`|(//[^\n]*|/\*.*?\*/)''', re.DOTALL)
 MARKS = re.compile(r"^\s*(?:///?<?|/\*\*?<?|\*/|\*|#)|\*/$")
 FORMULA = re.compile(r" {3,}\S|.*\S {3,}\S")  # or a row of a table
 NO_COMMENT = re.compile(r"\s*(SPDX-|NOLINT|clang-format|biome-|eslint-|@ts-|!/|type: |pylint|ruff|noqa|namespace |\})")

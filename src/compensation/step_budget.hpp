@@ -8,9 +8,8 @@
 
 namespace dermis::compensation {
 
-/// Work that one frame may take: much as long as frames are solved. Work that one frame may take: much as long as
-/// frames are solved. After some unsolved ones in a row, a frame may take a few times the work of the solved ones. Now
-/// and then one may take much again.
+/// Work that one frame may take: much as long as frames are solved. After some unsolved ones in a row, a frame may take
+/// a few times the work of the solved ones. Now and then one may take much again.
 class StepBudget {
  public:
   /// `least`: of any frame, much is 8 times that; 0: nothing is ever bounded.
