@@ -148,7 +148,7 @@ double ContactGauge::reach(std::span<const std::uint32_t> taxels, PlaneVector pl
 ContactPlace ContactGauge::blend(const FoundPatch& found, const Contact& contact) const {
   const PlaneVector mass = contact.position;
   const PlaneVector sigma_mass = contact.sigma_position_m;
-  const auto variance = [&](const PlaneVector& sigma) {  // along the axes that the taxels tell
+  const auto variance = [&](const PlaneVector& sigma) {  // along the axes that the taxels determine
     return (plane_.cols > 1 ? sigma.x * sigma.x : 0.0) + (plane_.rows > 1 ? sigma.y * sigma.y : 0.0);
   };
   const double ratio =

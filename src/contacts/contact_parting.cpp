@@ -45,7 +45,7 @@ std::size_t ContactParting::part(const ForceFrame& force, std::span<std::uint32_
   return explained;
 }
 
-/// With the first of them.
+/// Keeps those that hang together with the first of them.
 void ContactParting::keep_what_hangs_together(std::vector<std::uint32_t>& taxels) const {
   std::size_t kept = 1;
   for (std::size_t k = 0; k < kept; ++k) {

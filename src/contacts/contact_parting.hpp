@@ -31,8 +31,8 @@ class ContactParting {
   [[nodiscard]] std::size_t part(const ForceFrame& force, std::span<std::uint32_t> taxels, const Measurement& measured,
                                  Evidence evidence, std::span<const std::uint32_t> held);
 
-  /// Whether `taxel` stands out of the patch of `measured`, which there is. `scatter`: what a taxel may differ by from
-  /// the patch beside its noise [N].
+  /// Whether `taxel` stands out of the patch of `measured`, which must exist. `scatter`: deviation of a taxel from the
+  /// patch beside its noise [N].
   [[nodiscard]] bool stands_out(const ForceFrame& force, std::uint32_t taxel, const Measurement& measured,
                                 Evidence evidence, float scatter) const;
 

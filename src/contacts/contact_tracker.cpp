@@ -83,7 +83,7 @@ class ContactTracker::Implementation {
   static constexpr double kReachPitches = 2.0;
   static constexpr double kPitchesApart = 1.7;
 
-  /// From so many standard deviations of the noise on a taxel is pressed.
+  /// A taxel is pressed from so many standard deviations of the noise on.
   [[nodiscard]] double pressed_sigma() const { return options.release_share * options.onset_sigma; }
 
   void find_held_taxels(Nanos time) {
@@ -115,7 +115,7 @@ class ContactTracker::Implementation {
     regions_.push_back(std::span<const std::size_t>(touched_).subspan(before));
   }
 
-  /// With what the taxels' errors have in common.
+  /// Includes the errors that the taxels share.
   void find_sigmas(const ForceFrame& force) {
     regions_.emplace_back(touched_);
     totals_.resize(regions_.size());
@@ -159,7 +159,7 @@ class ContactTracker::Implementation {
            distance >= share * (std::sqrt(a.area_m2 / std::numbers::pi) + std::sqrt(b.area_m2 / std::numbers::pi));
   }
 
-  /// `taxel` stands out of what the weak taxels around `area` differ by from its patch. All do where it has none.
+  /// `taxel` stands out of the deviations of the weak taxels around `area` from its patch. All do where it has none.
   [[nodiscard]] bool stands_out(const ForceFrame& force, std::span<const std::uint32_t> area, std::uint32_t taxel,
                                 const Measurement& measured, Evidence evidence) {
     if (!measured.patch) return true;
@@ -167,7 +167,7 @@ class ContactTracker::Implementation {
     return parting_.stands_out(force, taxel, measured, evidence, scatter);
   }
 
-  /// No taxel of another area beside it is stronger; else it is the rim of that one.
+  /// No taxel of another area beside it is stronger; otherwise it is the rim of that area.
   [[nodiscard]] bool is_top(const ForceFrame& force, std::span<const std::uint32_t> area, std::uint32_t taxel) const {
     for (const std::size_t beside : Neighbours(plane_.rows, plane_.cols, taxel)) {
       if (!(force.newtons[beside] > force.newtons[taxel])) continue;

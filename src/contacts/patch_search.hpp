@@ -42,8 +42,8 @@ class PatchSearch {
   /// `plane` is to outlive it.
   explicit PatchSearch(const TaxelPlane& plane);
 
-  /// Takes the taxels of an area, by falling force, at most kMostTaxels, and those around it. Left out are those from
-  /// `pressed_sigma` standard deviations of the noise on, which belong to other contacts.
+  /// Takes the taxels of an area, by falling force, at most kMostTaxels, and those around it. Those from
+  /// `pressed_sigma` standard deviations of the noise on belong to other contacts and are left out.
   void gather(const ForceFrame& force, std::span<const std::uint32_t> taxels, double pressed_sigma);
 
   /// Starts from `start` and a force of that size. Empty where the taxels determine nothing.

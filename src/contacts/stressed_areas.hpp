@@ -25,14 +25,14 @@ class StressedAreas {
   static constexpr float kValleyShare = 0.1F;
   static constexpr float kHeldShare = 0.5F;  ///< Keeps contacts apart that are there already.
 
-  /// `overlapping`: each taxel feels what presses beside it, so that a valley of the forces parts no contacts.
+  /// `overlapping`: each taxel feels loads beside it, so that a valley of the forces parts no contacts.
   StressedAreas(std::size_t rows, std::size_t cols, bool overlapping);
 
   /// A taxel is pressed from `sigma` standard deviations of the additive noise on.
   /// `held`: the taxels nearest to the contacts of the frame before.
   void find(const ForceFrame& force, double sigma, std::span<const std::uint32_t> held);
 
-  /// The taxels of each area, by falling force; what is written there is forgotten by the next find().
+  /// The taxels of each area, by falling force; the next find() overwrites them.
   [[nodiscard]] std::span<const std::span<std::uint32_t>> areas() const noexcept { return areas_; }
 
  private:

@@ -25,7 +25,7 @@ struct Assumption {
 /// The scale is that of the nominal load where no resistance is given: only ratios exist then.
 [[nodiscard]] std::vector<Assumption> nominal_scale(const LineParameters& lines, const Eigen::VectorXd& parameters);
 
-/// The unloaded rubber from line to line.
+/// How the unloaded rubber differs from line to line.
 struct SheetComparison {
   double scatter = 0.0;  ///< Between the means of driven lines, relative.
   std::vector<Assumption> assumptions;

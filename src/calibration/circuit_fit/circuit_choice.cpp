@@ -27,7 +27,7 @@ bool is_none_shown(const CircuitTrial& none, const CircuitTrial& circuit) {
          of_none.crossed_square + sure_square(of_none) < of_circuit.crossed_square;
 }
 
-/// Under loads on the whole array alone, what a circuit does and a law of the rubber look alike.
+/// Under loads on the whole array alone, the effect of a circuit looks like a law of the rubber.
 bool presses_parts(const CircuitFrames& frames) {
   return std::any_of(frames.frames.begin(), frames.frames.end(), [](const CircuitFrame& frame) {
     const auto is_pressed = [](float newtons) { return newtons > 0.0F; };
@@ -37,8 +37,8 @@ bool presses_parts(const CircuitFrames& frames) {
   });
 }
 
-/// No circuit only where that is shown against all of them. Where the true one may be among the unresolved ones, a
-/// resolved one must be better than none, and not by a law.
+/// The answer is `none` only where that is shown against all circuits. Where the true one may be among the unresolved
+/// ones, a resolved one must be better than none, and not by a law.
 const CircuitTrial& choose(const std::vector<CircuitTrial>& trials, const CircuitFrames& frames) {
   const auto none = std::find_if(trials.begin(), trials.end(), [](const CircuitTrial& trial) {
     return trial.array.readout.circuit == Circuit::none;
@@ -53,7 +53,7 @@ const CircuitTrial& choose(const std::vector<CircuitTrial>& trials, const Circui
   return is_shown ? *none : *best;
 }
 
-/// "none" is a rival of a circuit only where it leaves surely less.
+/// `none` is a rival of a circuit only where its residual is surely less.
 bool is_told(const CircuitTrial& trial, const CircuitTrial& chosen) {
   return trial.array.readout.circuit == Circuit::none ? !is_surely_less(trial, chosen) : is_surely_less(chosen, trial);
 }
@@ -68,7 +68,7 @@ std::vector<PressPair> presses_to_tell(const std::vector<CircuitTrial>& trials, 
   return telling_presses(circuits, frames, sure_square(chosen.misfit));
 }
 
-/// The chosen one, and what a few frames do not refute.
+/// The chosen circuit, and those that a few frames do not refute.
 std::vector<CircuitTrial> rivals(const std::vector<CircuitTrial>& trials, const CircuitFrames& frames) {
   const CircuitTrial& chosen = choose(trials, frames);
   std::vector<CircuitTrial> rivals;
@@ -104,7 +104,7 @@ std::vector<CircuitCandidate> candidates_of(const std::vector<CircuitTrial>& tri
   return candidates;
 }
 
-/// By fewer frames than those that are left, so that they do not compare with them any more.
+/// Refuted circuits were judged by fewer frames than the ones left, so their misfits do not compare with these.
 std::vector<CircuitCandidate> refuted_candidates(const std::vector<CircuitTrial>& trials,
                                                  const std::vector<CircuitTrial>& left) {
   std::vector<CircuitCandidate> candidates;

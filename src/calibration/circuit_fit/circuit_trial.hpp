@@ -14,7 +14,7 @@
 
 namespace dermis::calibration {
 
-/// A circuit, and what it makes of the frames.
+/// A circuit, and its fit to the frames.
 struct CircuitTrial {
   std::string name;                       ///< "divider, idle rows floating"
   ArrayDescription array;                 ///< Unknown resistances are kFitOhm.
@@ -37,10 +37,10 @@ struct CircuitTrial {
 /// Fits `most` frames with one resistance for all drivers and one for all loads, and judges all by the same scatter.
 void fit_trials(std::size_t most, std::vector<CircuitTrial>& trials);
 
-/// The same; circuits that leave nearly the same are fitted once more, with resistances of each line's own.
+/// The same; circuits with nearly the same residual are fitted again with a resistance for each line.
 void fit_trials_and_lines(std::size_t most, std::vector<CircuitTrial>& trials);
 
-/// The residuals of two circuits over the readings that are telling in both.
+/// The residuals of two circuits over the readings that depend on both.
 struct TrialComparison {
   FrameMisfit first;
   FrameMisfit second;
@@ -53,10 +53,10 @@ struct TrialComparison {
 
 [[nodiscard]] bool has_less(const CircuitTrial& a, const CircuitTrial& b);
 
-/// A thousand to one. With lines whose differences could not be compared the odds must be far better.
+/// The odds are a thousand to one, or far better with lines whose differences could not be compared.
 [[nodiscard]] bool is_surely_less(const CircuitTrial& better, const CircuitTrial& worse);
 
-/// By a few frames, which leave the laws nearly free: they may take as much as they have terms.
+/// Judges by a few frames, which leave the laws nearly free: they may explain as many readings as they have terms.
 [[nodiscard]] bool is_refuted(const CircuitTrial& worse, const CircuitTrial& better);
 
 }  // namespace dermis::calibration

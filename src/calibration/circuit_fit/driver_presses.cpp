@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 constexpr std::size_t kPresses = 5;
 constexpr std::size_t kMostPairsOfLine = 10;  // that are looked at
 
-/// A pair and what it tells of its driver.
+/// A pair and its information on its driver.
 struct DriverPair {
   PressPair pair;
   Index driver = 0;          // among the parameters

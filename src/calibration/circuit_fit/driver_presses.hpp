@@ -14,8 +14,8 @@ namespace dermis::calibration {
 
 /// The five pairs of taxels, each on one driven line, that make the drivers surest when both are pressed. They are
 /// chosen one after the other, with the heaviest load that both have had. Each taxel of a pair takes from the other the
-/// voltage that their driver loses. Only pairs that tell more about their driver than all frames did. `covariance`: of
-/// the drivers among the parameters.
+/// voltage that their driver loses. Only pairs with more information on their driver than in all frames count.
+/// `covariance`: of the drivers among the parameters.
 [[nodiscard]] std::vector<PressPair> driver_presses(const LineParameters& lines, const Estimate& fitted,
                                                     Eigen::MatrixXd covariance, const CircuitFrames& frames);
 

@@ -12,7 +12,7 @@ inline constexpr double kLineSpread = 0.1;      // resistances of one kind are a
 inline constexpr double kShapeSpread = 0.1;     // first guess of the scatter of the laws' shapes over the taxels
 inline constexpr double kRubberScatter = 0.01;  // first guess
 
-/// How far things lie apart that are alike: learned from the readings.
+/// The scatter of values that are alike, learned from the readings.
 struct Scatter {
   double noise_variance = 1.0;  ///< Variance of the idle readings over the nominal variance of their noise.
   double rubber_variance = kRubberScatter * kRubberScatter;  ///< Relative variance of a pressed taxel about its law.

@@ -111,7 +111,8 @@ double readings_of(const Linearisation& linearisation) {
   return linearisation.idle.readings + linearisation.pressed.readings;
 }
 
-/// By how much an estimate leaves more than `here`, both with the scatter that is given and for as many readings.
+/// By how much the residual of an estimate exceeds that of `here`, both with the given scatter and for as many
+/// readings.
 double rise_from(const Linearisation& here, const LineParameters& lines, const Measurements& measurements,
                  Estimate estimate, const Scatter& scatter) {
   estimate.scatter = scatter;

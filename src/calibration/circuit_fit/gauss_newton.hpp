@@ -19,7 +19,7 @@ struct Iteration {
   Estimate estimate;
   Eigen::MatrixXd covariance;      ///< For the parameters, then for the common terms of the pressed laws.
   double step = 0.0;               ///< The largest of a parameter, in its standard errors.
-  bool has_idle_readings = false;  ///< That are large enough to tell something.
+  bool has_idle_readings = false;  ///< Large enough to be evidence.
 };
 
 /// Gauss-Newton with the taxels' laws eliminated (variable projection), until a step is smaller than `enough` standard

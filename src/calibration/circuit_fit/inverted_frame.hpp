@@ -18,7 +18,7 @@ namespace dermis::calibration {
 /// A frame's taxels in one circuit.
 struct InvertedFrame {
   std::vector<double> siemens;
-  std::vector<double> sigma_siemens;  ///< Infinite: a reading that tells nothing.
+  std::vector<double> sigma_siemens;  ///< Infinite: a reading without evidence.
   Eigen::MatrixXd slopes;             ///< d siemens / d parameter [taxels, parameters or 0].
 
   [[nodiscard]] Eigen::VectorXd slopes_of(std::size_t taxel) const {

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMostSquare = 25.0;  // of a reading
 constexpr double kResolved = 5.0;     // a pressed conductance over its noise
-constexpr double kCutSigmas = 3.0;    // below, idle readings that are mostly cut at 0 tell nothing
+constexpr double kCutSigmas = 3.0;    // below, idle readings are mostly cut at 0
 constexpr std::size_t kJudgedPerTask = 16;
 
 bool is_judged(const Rubber& rubber, std::size_t taxel, float newtons) {
@@ -130,7 +130,7 @@ class Judge {
     const PressedPoint point =
         pressed_point({taxel, log_force, frame.temperature, inverted.siemens[taxel], sigma, {}}, rubber_, scatter_);
     const double noise = std::sqrt(scatter_.noise_variance) * sigma / rubber_.reference_siemens;
-    // No law is nearer to its rubber than this: what is beyond is not the circuit's.
+    // No law is nearer to its rubber than this, so a larger residual is not due to the circuit.
     const double rubber = std::max(std::sqrt(scatter_.rubber_variance), kRubberScatter) * point.expected;
     return {static_cast<float>(std::pow((point.excess - point.expected) / noise, 2)),
             static_cast<float>(1.0 + std::pow(rubber / noise, 2)),

@@ -16,7 +16,7 @@ namespace dermis::calibration {
 struct JudgedReading {
   enum class Taxel : unsigned char { unknown, idle, crossed, pressed };  ///< crossed: idle, on a line of a pressed one.
   float square = 0.0F;           ///< Infinite: the circuit cannot give its frame.
-  float variance = 1.0F;         ///< 1 and what the rubber scatters.
+  float variance = 1.0F;         ///< 1 and the scatter of the rubber.
   Taxel taxel = Taxel::unknown;  ///< unknown: not judged.
   /// The reading depends on the circuit. It does not for a taxel pressed alone, which the law of the taxel explains in
   /// any circuit. Nor does it where the noise hides the conductance in this circuit.
@@ -45,7 +45,7 @@ struct FrameMisfit {
 /// The misfit over all judged readings.
 [[nodiscard]] FrameMisfit misfit_of(const JudgedReadings& readings);
 
-/// The misfit over the readings that are telling in both circuits, by the larger of their variances: the two compare by
+/// The misfit over the readings that depend on both circuits, by the larger of their variances: the two compare by
 /// these. Otherwise a circuit in which a reading hardly follows its taxel would look worse than one that leaves it to
 /// the rubber.
 [[nodiscard]] FrameMisfit misfit_beside(const JudgedReadings& readings, const JudgedReadings& other);

@@ -17,7 +17,7 @@ namespace dermis::calibration {
 
 /// The measurements of the frames as one circuit explains them.
 struct Measurements {
-  NormalEquations idle;  ///< Columns: parameters, conductance over the reference; by the noise that is said of them.
+  NormalEquations idle;  ///< Columns: parameters, conductance over the reference; weighted by the described noise.
   std::vector<PressedReading> pressed;
   std::size_t lost_frames = 0;  ///< That the circuit cannot give.
 };

@@ -37,10 +37,11 @@ struct Rubber {
   ForceScale force_scale;
   Eigen::Index unloaded_terms = 1;  ///< 3 where temperature is known.
   std::vector<TaxelLaw> laws;
-  Eigen::VectorXd sheet = Eigen::VectorXd::Zero(kSheetTerms);  ///< Mean of the shapes; what all pressed laws share.
+  /// Mean of the shapes; common terms of all pressed laws.
+  Eigen::VectorXd sheet = Eigen::VectorXd::Zero(kSheetTerms);
 };
 
-/// Nothing is known of its laws yet.
+/// Rubber whose laws are not known yet.
 [[nodiscard]] Rubber unknown_rubber(const CircuitFrames& frames, std::size_t taxels, double reference_siemens);
 
 [[nodiscard]] Eigen::VectorXd unloaded_basis(const Rubber& rubber, double temperature);

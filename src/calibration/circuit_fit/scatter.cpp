@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastNoiseVariance = 0.01;  // over what noise is said to be: readings that are cut at 0 have none
+constexpr double kLeastNoiseVariance = 0.01;  // over the described noise: readings that are cut at 0 have none
 constexpr double kLeastShapeSpread = 1e-4;
 constexpr double kLeastRubberScatter = 1e-4;
 constexpr double kMostRubberScatter = 1.0;

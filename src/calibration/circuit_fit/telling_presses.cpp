@@ -59,7 +59,7 @@ std::vector<double> heaviest_loads(const std::vector<const CommonRatio*>& circui
   return heaviest;
 }
 
-/// Pairs that are no neighbours, all of them or as many as are looked at.
+/// Pairs that are no neighbours, at most kMostPairs of them.
 std::vector<PressPair> possible_pairs(const ArrayDescription& array, const std::vector<double>& heaviest) {
   std::vector<PressPair> pairs;
   for (std::size_t a = 0; a < heaviest.size(); ++a) {

@@ -135,7 +135,7 @@ void GuidedCalibration::Implementation::ask_for_next() {
   recogniser_->expect(presses_.taxels());
 }
 
-/// After the plan's presses. An unknown kind of circuit is found first: others may tell it.
+/// Presses after those of the plan. An unknown kind of circuit is found first: further presses may determine it.
 void GuidedCalibration::Implementation::ask_for_proof() {
   if (presses_.has_open() || presses_.has_pairs() || array_.readout.circuit == Circuit::automatic) return;
   presses_.ask_for(proof_presses(array_, presses_.kept()));

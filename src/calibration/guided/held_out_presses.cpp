@@ -22,7 +22,7 @@ constexpr std::size_t kTaxelFolds = 4;
 
 using PressesOfTaxel = std::map<std::size_t, GuidedPresses>;
 
-/// Those of single taxels, from the lightest.
+/// Presses of single taxels, from the lightest.
 PressesOfTaxel by_taxel(const GuidedPresses& presses) {
   PressesOfTaxel grouped;
   for (const auto& press : presses) {

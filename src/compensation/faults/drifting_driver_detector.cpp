@@ -37,7 +37,7 @@ void DriftingDriverDetector::Fit::add(double slope, double value, double varianc
   pairs = kMemory * pairs + 1.0;
 }
 
-/// From the scatter of what was fitted, which memory of the material makes wider than noise alone.
+/// Takes the scatter of the fitted values, which memory of the material makes wider than noise alone.
 double DriftingDriverDetector::Fit::deviation() const {
   const double scatter = (square - moment * moment / normal) / pairs;
   return std::sqrt(std::max(scatter, 1.0) / normal);

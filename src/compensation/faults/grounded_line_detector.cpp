@@ -91,7 +91,7 @@ void GroundedLineDetector::judge_line(const Observation& seen, LineFault& fault)
   fault.grounded = fault.ground_evidence > (fault.grounded ? -kGroundEvidence : kGroundEvidence);
 }
 
-/// In the scan of its own line.
+/// Judges a taxel in the scan of its own line.
 void GroundedLineDetector::judge_taxel(const Observation& seen, LineFault& fault) const noexcept {
   const Axis driven = driven_axis(array_);
   const std::size_t place = driven == Axis::row ? fault.place % array_.cols : fault.place / array_.cols;
@@ -99,7 +99,7 @@ void GroundedLineDetector::judge_taxel(const Observation& seen, LineFault& fault
   fault.ground_evidence = std::max(fault.ground_evidence, -kEvidence);
 }
 
-/// As the taxels on both its sides conduct; 0 where they are not pressed.
+/// Conductance between those of the taxels on both its sides; 0 where they are not pressed.
 double GroundedLineDetector::siemens_between(const Observation& seen, std::size_t taxel) const noexcept {
   const std::size_t row = taxel / array_.cols;
   const std::size_t col = taxel % array_.cols;

@@ -22,7 +22,7 @@ namespace dermis::compensation {
 /// beside them have nothing to differ from.
 class ShortedLineDetector {
  public:
-  /// `equal_presses`: told of every press that is equal on two lines.
+  /// `equal_presses`: gets every press that is equal on two lines.
   ShortedLineDetector(const ArrayDescription& array, EqualPresses& equal_presses);
 
   void judge(const Observation& seen, FaultList& faults) noexcept;

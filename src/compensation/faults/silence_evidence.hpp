@@ -4,7 +4,7 @@
 
 namespace dermis::compensation {
 
-inline constexpr float kMostMean = 8.0F;  // beyond, silence is told by less than half of this many deviations
+inline constexpr float kMostMean = 8.0F;  // beyond, less than half of this many deviations show silence
 
 /// Evidence of a reading at the floor of the ADC, by the noise of a reading.
 struct FloorEvidence {

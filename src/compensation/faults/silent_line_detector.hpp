@@ -22,7 +22,7 @@ class SilentLineDetector {
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
-  /// The line would be missed within 10 frames. False until the first frame.
+  /// Silence of the line would be noticed within 10 frames. False until the first frame.
   [[nodiscard]] bool sees(Axis axis, std::size_t line) const noexcept;
 
  private:
@@ -39,7 +39,7 @@ class SilentLineDetector {
 
   const ArrayDescription& array_;
   const UnloadedTaxels& unloaded_;
-  UnloadedWitnesses& witnesses_;  // told of every frame
+  UnloadedWitnesses& witnesses_;  // gets every frame
   FloorEvidence floor_;
   double last_sigma_ratio_ = 0.0;
   std::vector<float> evidence_;                // that the taxel is silent, of this frame [taxels]

@@ -24,7 +24,7 @@ class SuppliedRowDetector {
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
-  /// The row that half as much as it takes speaks for; allocates.
+  /// Adds the row with half the evidence that a fault needs; allocates.
   void suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const;
 
  private:
@@ -39,7 +39,7 @@ class SuppliedRowDetector {
     int fails = 0;  // readings below those of the row
   };
 
-  /// How a press on a row stands against the readings of the other rows in its column.
+  /// How a press on a row compares with the readings of the other rows in its column.
   struct ColumnComparison {
     bool shows = false;
     std::size_t alike = 0;

@@ -10,7 +10,7 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr double kMostCutOff = 0.05;  // of full scale: what readouts send as 0
+constexpr double kMostCutOff = 0.05;  // of full scale: the most that readouts send as 0
 constexpr double kOneCount = 1.5;     // less is no more than one: nothing but rounding cuts off below it
 
 }  // namespace
@@ -116,7 +116,7 @@ void UnloadedTaxels::expect_beside_presses(const LineSums& sums, double sigma_ra
   }
 }
 
-/// In an unknown circuit nobody knows what a press takes from the taxels of its lines.
+/// In an unknown circuit the effect of a press on the taxels of its lines is unknown.
 void UnloadedTaxels::expect_beside_no_press(const ConditionedFrame& conditioned) noexcept {
   find_pressed_lines(conditioned);
   for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {

@@ -16,7 +16,7 @@
 namespace dermis::compensation {
 
 inline constexpr double kUnloadedShare = 0.3;  // of the unloaded conductance: temperature, memory, age leave at least
-inline constexpr double kRoundedToNone = 0.5;  // of a count, in every frame, however much noise there is said to be
+inline constexpr double kRoundedToNone = 0.5;  // of a count, in every frame, whatever the described noise
 
 /// The readings of taxels that nothing presses.
 class UnloadedTaxels {
@@ -24,7 +24,7 @@ class UnloadedTaxels {
   /// `siemens`: see LineFaultMonitor.
   UnloadedTaxels(const ArrayDescription& array, std::span<const double> siemens);
 
-  /// Finds least_reading() of this frame, from what the pressed taxels take from the others of their lines.
+  /// Finds least_reading() of this frame, from the share that pressed taxels take from the others of their lines.
   void expect(const ConditionedFrame& conditioned, const LineSums& sums, std::size_t frame, bool solved) noexcept;
 
   /// Conductance of every taxel; 0 where it is not known.
@@ -45,7 +45,7 @@ class UnloadedTaxels {
   /// The smallest of all readings above 0 so far: a readout that cuts readings off does so below it.
   [[nodiscard]] double smallest_reading() const noexcept { return smallest_reading_; }
 
-  /// Most that an unloaded taxel may come out with, at this standard deviation of its conductance.
+  /// The largest conductance of an unloaded taxel, at this standard deviation of it.
   [[nodiscard]] double most_siemens(std::size_t taxel, double sigma_siemens) const noexcept {
     return touched_above(siemens_[taxel], sigma_siemens, kMostSigmas);
   }

@@ -35,10 +35,10 @@ class CalibrationServices final : public Part {
 
   /// Whether a calibration may begin now; the error says why not.
   using MayBegin = std::function<Status()>;
-  /// Is told of the calibration ten times a second, once one was started.
+  /// Gets the calibration ten times a second, once one was started.
   using Tell = std::function<void(CalibrationProgress)>;
 
-  /// `guide_voice`: what the calibration asks for is said to it, for simulated hands.
+  /// `guide_voice`: gets the requests of the calibration, for simulated hands.
   CalibrationServices(ServiceArrays arrays, UseModel use_model, std::shared_ptr<sources::GuideVoice> guide_voice,
                       MayBegin may_begin = {}, Tell tell = {});
 

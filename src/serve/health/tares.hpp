@@ -24,7 +24,7 @@ class Tares final : public Part {
  public:
   static constexpr std::size_t kMostLines = 20;
 
-  /// Is told the lines of follow(), where there are some.
+  /// Gets the lines of follow(), where there are some.
   using Tell = std::function<void(const std::vector<std::string>& lines)>;
 
   /// `suit` and `live` must outlive it.

@@ -33,7 +33,7 @@ struct Host {
   SuitRecorder& recorder;
   PartList& parts;
 
-  /// Takes a model into use for an array, and tells all parts and clients.
+  /// Takes a model into use for an array, and notifies all parts and clients.
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
   [[nodiscard]] Status use_classes(std::size_t array, recognition::Classes classes);
 

@@ -37,7 +37,7 @@ class LiveRecognition {
 
   recognition::StreamRecogniser recogniser_;
   FrameResampler resampler_;
-  /// The pose that was told last.
+  /// The pose that was published last.
   struct Told {
     std::size_t likeliest = 0;
     recognition::Verdict verdict = recognition::Verdict::known;

@@ -35,8 +35,9 @@ class SuitRecorder {
   using Failed = std::function<void(const std::string& why)>;
   using Written = std::function<void(std::uint64_t frames)>;
 
-  /// `wanted`: the path of the first recording, or empty. `arrays` tells begin() what is recorded. On the thread that
-  /// closes the file, `failed` is told why a recording ended, and `written` how many frames a complete one has.
+  /// `wanted`: the path of the first recording, or empty. `arrays` gives begin() the recorded arrays. The thread that
+  /// closes the file calls `failed` with the reason why a recording ended, and `written` with the frames of a complete
+  /// one.
   SuitRecorder(std::string wanted, Arrays arrays, Failed failed, Written written = {});
   SuitRecorder(const SuitRecorder&) = delete;
   SuitRecorder& operator=(const SuitRecorder&) = delete;

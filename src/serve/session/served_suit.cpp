@@ -66,7 +66,7 @@ class Models {
   std::map<std::string, Known> read_;
 };
 
-/// As suit.toml tells, or one flat array.
+/// The suit of suit.toml, or one flat array.
 Result<SuitDescription> describe(const SuitPlace& place) {
   if (!place.suit.empty()) return files::read_suit(place.suit);
   SuitArray array;

@@ -222,7 +222,7 @@ class ArraySetup::Implementation {
     watch_ = std::make_unique<TouchWatch>(*name_, shape, options_);
   }
 
-  /// From now on touch() tells what is sent; `request` says its shape.
+  /// From now on touch() gives the sent readings; `request` has their shape.
   Result<std::string> watch(std::string_view request) {
     if (!name_) return bad_input(kNoSource);
     const Result<FrameShape> shape = shape_request(request);

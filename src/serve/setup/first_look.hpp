@@ -25,7 +25,7 @@ struct FirstLook {
   std::vector<std::uint8_t> bytes{};  ///< The first of those of which no frame was made, at most 256.
 };
 
-/// Reads the first frame, for at most kPatience. Bytes of which no frame can be made are told, and no error.
+/// Reads the first frame, for at most kPatience. Bytes that make no frame are described and are no error.
 [[nodiscard]] Result<FirstLook> first_look(const sources::SourceName& name, sources::SourceOptions options);
 
 }  // namespace dermis::serve
