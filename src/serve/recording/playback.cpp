@@ -17,7 +17,7 @@ class PlaybackClock final : public Part {
   PlaybackClock(live::Playback& playback, stream::Server& server) : playback_(playback), server_(server) {}
 
   /// Ten times a second while it runs and once when it stands still. A client that comes while it stands still gets it,
-  /// too, and shown the frame at which it stands.
+  /// too, and sees the frame at which it stands.
   void tick(std::int64_t tick) override {
     if (tick % 3 != 1) return;
     const PlaybackStatus status = playback_.status();
