@@ -69,7 +69,8 @@ std::string look_of_text(std::string_view text) {
     return "They are text whose lines are not numbers alone, such as '" + std::string(shown) + "'";
   }
   if (lines.most == 1) return "Each line has one number: print a row or a frame in a line";
-  if (lines.least == lines.most) return "Their lines have " + std::to_string(lines.most) + " numbers: check rows and cols";
+  if (lines.least == lines.most)
+    return "Their lines have " + std::to_string(lines.most) + " numbers: check rows and cols";
   return "Their lines have " + std::to_string(lines.least) + " to " + std::to_string(lines.most) +
          " numbers: print as many in each";
 }

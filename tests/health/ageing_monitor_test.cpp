@@ -153,9 +153,9 @@ TEST(AgeingEvidence, that_tells_of_no_change_does_not_call_it_a_change_of_0_perc
   evidence.gain_spread = 0.004;
   evidence.spread_sigma = 0.02;
   evidence.comparisons = 214;
-  EXPECT_EQ(describe(evidence), "gains have not changed from taxel to taxel (+- 2 %, 214 comparisons)");
+  EXPECT_EQ(describe(evidence), "gains have not changed from taxel to taxel (\u00b1 2 %, 214 comparisons)");
   evidence.gain_spread = 0.006;
-  EXPECT_EQ(describe(evidence), "gains have changed by about 1 % from taxel to taxel (+- 2 %, 214 comparisons)");
+  EXPECT_EQ(describe(evidence), "gains have changed by about 1 % from taxel to taxel (\u00b1 2 %, 214 comparisons)");
 }
 
 }  // namespace

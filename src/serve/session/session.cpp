@@ -4,43 +4,19 @@
 
 #include <fmt/core.h>
 
-#include <cassert>
 #include <chrono>
 #include <optional>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include "serve/parts/part_makers.hpp"
 #include "serve/recording/recorded_arrays.hpp"
 #include "serve/recording/recordings_folder.hpp"
 #include "serve/recording/suit_recorder.hpp"
+#include "serve/session/make_live.hpp"
 #include "serve/topics/topics.hpp"
 
 namespace dermis::serve {
-namespace {
-
-std::optional<stream::PlaybackService> playback_service(live::Playback* playback) {
-  if (playback == nullptr) return std::nullopt;
-  return stream::PlaybackService{playback->start(), playback->end(),
-                                 [playback](const PlaybackCommand& command) { return playback->control(command); }};
-}
-
-/// Takes the sources of the suit.
-Result<std::unique_ptr<live::LiveSuit>> make_live(ServedSuit& suit, const PartList& parts,
-                                                  const SessionOptions& options) {
-  std::vector<live::LiveArray> arrays;
-  for (ServedArray& array : suit.arrays) {
-    assert(array.source != nullptr && array.model != nullptr);
-    arrays.push_back({array.name, std::move(array.source), array.model, array.surface});
-  }
-  live::LiveOptions live_options;
-  live_options.on_result = [&parts](const live::ArrayResult& result) { parts.hear(result); };
-  live_options.notice = options.server.notice;
-  return live::LiveSuit::create(std::move(arrays), std::move(live_options));
-}
-
-}  // namespace
 
 /// Makes the parts of a server and what they share, and is their clock.
 class Session::Implementation {

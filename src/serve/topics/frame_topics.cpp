@@ -153,13 +153,12 @@ void FrameTopics::publish_values(Array& array, const Topic& topic, std::span<con
 
 /// Clients hear of each contact that begins or ends, also between the frames that are due.
 void FrameTopics::publish_contacts(Array& array, const live::ArrayResult& result, bool is_due) {
-  const bool is_event = begins_or_ends(result.report);
-  const Ends ends = ends_of(is_due || is_event);
+  const Ends ends = ends_of(is_due || begins_or_ends(result.report));
   const bool is_wanted = contacts_topic_.is_wanted(ends);
   if (is_wanted || topics_.has_dds()) array.contacts.take(result);
   if (!is_wanted) return;
   array.contacts.encode(result, array.message);
-  contacts_topic_.publish(result.raw.time, array.message, ends, is_event ? MessageKind::event : MessageKind::picture);
+  contacts_topic_.publish(result.raw.time, array.message, ends, MessageKind::picture);
 }
 
 void FrameTopics::publish_wrench(Array& array, const live::ArrayResult& result) {

@@ -41,7 +41,7 @@ export class LivePicture {
     const highest = known.reduce((one, other) => Math.max(one, other));
     this.#lowest = Math.min(this.#lowest, lowest);
     this.#highest = Math.max(this.#highest, highest);
-    setText(this.#words, `Live: ${fixed(lowest, 0)} to ${fixed(highest, 0)} counts`);
+    setText(this.#words, `Now: ${fixed(lowest, 0)} to ${fixed(highest, 0)} counts`);
     this.#draw(counts, sent, way);
     setHidden(this.#dot, touched === null);
     if (touched === null) return;

@@ -40,7 +40,7 @@ export class ConnectionPill {
       connection,
       nowMs,
       isAsked: setup !== undefined,
-      isUnreadable: setup === undefined ? problem !== "" : setup.from !== "" && !setup.readable,
+      isUnreadable: setup === undefined ? problem !== "" : setup.from !== "" && !setup.readable && setup.rows === null,
       isPaused: paused.value,
       playback: stream.playback.value?.status,
       silenceS: live.delay.silenceS(nowMs),

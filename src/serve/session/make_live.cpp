@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: 2026 The dermis authors
+#include "serve/session/make_live.hpp"
+
+#include <cassert>
+#include <utility>
+#include <vector>
+
+namespace dermis::serve {
+
+std::optional<stream::PlaybackService> playback_service(live::Playback* playback) {
+  if (playback == nullptr) return std::nullopt;
+  return stream::PlaybackService{playback->start(), playback->end(),
+                                 [playback](const PlaybackCommand& command) { return playback->control(command); }};
+}
+
+Result<std::unique_ptr<live::LiveSuit>> make_live(ServedSuit& suit, const PartList& parts,
+                                                  const SessionOptions& options) {
+  std::vector<live::LiveArray> arrays;
+  for (ServedArray& array : suit.arrays) {
+    assert(array.source != nullptr && array.model != nullptr);
+    arrays.push_back({array.name, std::move(array.source), array.model, array.surface});
+  }
+  live::LiveOptions live_options;
+  live_options.on_result = [&parts](const live::ArrayResult& result) { parts.hear(result); };
+  live_options.notice = options.server.notice;
+  return live::LiveSuit::create(std::move(arrays), std::move(live_options));
+}
+
+}  // namespace dermis::serve
