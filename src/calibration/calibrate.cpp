@@ -128,7 +128,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   report.training = std::move(training->report);
   if (database.circuit_fit) {
     report.circuit = database.circuit_fit->statements;
-    report.telling_presses = database.circuit_fit->telling_presses;
+    report.discriminating_presses = database.circuit_fit->discriminating_presses;
   }
   calibration.model.provenance = provenance(database.array, report);
   return calibration;

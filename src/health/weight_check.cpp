@@ -30,14 +30,14 @@ bool is_near(double ratio) {
 /// Standard deviation of the logarithm of the mean ratio. It is the model's for a force, or the scatter of the presses
 /// if that is more.
 double sigma_of(const std::vector<WeighedPress>& presses, double log_ratio, double weight_n) {
-  double told = 0.0;
+  double modelled = 0.0;
   double seen = 0.0;
   for (const WeighedPress& press : presses) {
-    told += std::pow(press.sigma_newtons / press.newtons, 2);
+    modelled += std::pow(press.sigma_newtons / press.newtons, 2);
     seen += std::pow(std::log(press.newtons / weight_n) - log_ratio, 2);
   }
   const auto count = static_cast<double>(presses.size());
-  const double of_one = std::max(told / count, count > 1.0 ? seen / (count - 1.0) : 0.0);
+  const double of_one = std::max(modelled / count, count > 1.0 ? seen / (count - 1.0) : 0.0);
   return std::max(std::sqrt(of_one / count), kLeastSigma);
 }
 

@@ -23,7 +23,7 @@ class TakenWindow {
   [[nodiscard]] bool is_open(std::uint64_t sent, std::uint64_t next) const noexcept;
 
  private:
-  bool is_told_ = false;
+  bool has_report_ = false;
   std::uint64_t taken_ = 0;
   double rate_ = 0.0;  // [bytes/s], that it can take
   std::uint64_t mark_ = 0;

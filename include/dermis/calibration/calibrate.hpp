@@ -28,12 +28,12 @@ struct CalibrationReport {
   std::size_t frames = 0;  ///< Labelled frames used.
   std::size_t frames_rejected = 0;
   std::string first_rejection;
-  std::vector<std::string> remarks;        ///< On labels and readings: SampleDatabase::remarks.
-  std::vector<std::string> doubts;         ///< On circuit and ADC: SampleDatabase::doubts.
-  bool lacks_proof = false;                ///< SampleDatabase::lacks_proof.
-  std::vector<std::string> circuit;        ///< The findings on an unknown circuit; empty where all was given.
-  std::vector<PressPair> telling_presses;  ///< Would tell circuits apart that the frames do not; see CircuitFit.
-  std::string memory;                      ///< A sentence on the memory of the material; empty: nothing was learned.
+  std::vector<std::string> remarks;               ///< On labels and readings: SampleDatabase::remarks.
+  std::vector<std::string> doubts;                ///< On circuit and ADC: SampleDatabase::doubts.
+  bool lacks_proof = false;                       ///< SampleDatabase::lacks_proof.
+  std::vector<std::string> circuit;               ///< The findings on an unknown circuit; empty where all was given.
+  std::vector<PressPair> discriminating_presses;  ///< Would distinguish the remaining circuits; see CircuitFit.
+  std::string memory;  ///< A sentence on the memory of the material; empty: nothing was learned.
   TrainingReport training;
   UncertaintyReport uncertainty;
   std::vector<StageTime> stages;

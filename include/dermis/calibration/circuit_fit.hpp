@@ -45,10 +45,10 @@ struct CircuitFit {
   double common_drive_error = 0.0;  ///< Relative error of the mean of the fitted drivers.
   double rubber_scatter = 0.0;      ///< Relative scatter of a press about the law of its taxel, found with the circuit.
   std::size_t frames = 0;           ///< Frames the fit used, after repeated ones were averaged.
-  std::vector<CircuitCandidate> candidates;  ///< Of `auto`; empty otherwise.
-  std::vector<PressPair> telling_presses;    ///< Would tell the circuits apart that these frames do not; at most 5.
-  std::vector<PressPair> driver_presses;     ///< Would tell the drivers that these frames leave uncertain; at most 5.
-  std::vector<std::string> statements;       ///< The findings and what the data cannot determine, in plain words.
+  std::vector<CircuitCandidate> candidates;       ///< Of `auto`; empty otherwise.
+  std::vector<PressPair> discriminating_presses;  ///< Would distinguish the remaining circuits; at most 5.
+  std::vector<PressPair> driver_presses;          ///< Would determine drivers that are uncertain; at most 5.
+  std::vector<std::string> statements;            ///< The findings and what the data cannot determine, in plain words.
 };
 
 /// Finds the resistances that are kFitOhm, and the circuit where it is Circuit::automatic, from labelled frames: single

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "calibration/circuit_fit/circuit_trial.hpp"
+#include "calibration/circuit_fit/discriminating_presses.hpp"
 #include "calibration/circuit_fit/frame_selection.hpp"
-#include "calibration/circuit_fit/telling_presses.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -54,18 +54,18 @@ const CircuitTrial& choose(const std::vector<CircuitTrial>& trials, const Circui
 }
 
 /// `none` is a rival of a circuit only where its residual is surely less.
-bool is_told(const CircuitTrial& trial, const CircuitTrial& chosen) {
+bool is_distinguishable(const CircuitTrial& trial, const CircuitTrial& chosen) {
   return trial.array.readout.circuit == Circuit::none ? !is_surely_less(trial, chosen) : is_surely_less(chosen, trial);
 }
 
-std::vector<PressPair> presses_to_tell(const std::vector<CircuitTrial>& trials, const CircuitTrial& chosen,
-                                       const CircuitFrames& frames) {
+std::vector<PressPair> discriminating_presses_of(const std::vector<CircuitTrial>& trials, const CircuitTrial& chosen,
+                                                 const CircuitFrames& frames) {
   std::vector<const CommonRatio*> circuits{&*chosen.fit};
   for (const CircuitTrial& trial : trials) {
-    if (trial.name != chosen.name && !is_told(trial, chosen)) circuits.push_back(&*trial.fit);
+    if (trial.name != chosen.name && !is_distinguishable(trial, chosen)) circuits.push_back(&*trial.fit);
   }
   if (circuits.size() == 1) return {};
-  return telling_presses(circuits, frames, sure_square(chosen.misfit));
+  return discriminating_presses(circuits, frames, sure_square(chosen.misfit));
 }
 
 /// The chosen circuit, and those that a few frames do not refute.
@@ -98,7 +98,7 @@ std::vector<CircuitCandidate> candidates_of(const std::vector<CircuitTrial>& tri
   for (const CircuitTrial& trial : trials) {
     candidates.push_back(candidate_of(trial));
     candidates.back().chosen = trial.name == chosen.name;
-    candidates.back().indistinguishable = trial.name != chosen.name && !is_told(trial, chosen);
+    candidates.back().indistinguishable = trial.name != chosen.name && !is_distinguishable(trial, chosen);
   }
   sort_candidates(candidates);
   return candidates;
@@ -132,7 +132,7 @@ Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const Circui
   std::vector<CircuitCandidate> candidates = candidates_of(left, chosen);
   std::vector<CircuitCandidate> refuted = refuted_candidates(trials, left);
   std::move(refuted.begin(), refuted.end(), std::back_inserter(candidates));
-  return CircuitChoice{chosen.array, std::move(candidates), presses_to_tell(left, chosen, frames)};
+  return CircuitChoice{chosen.array, std::move(candidates), discriminating_presses_of(left, chosen, frames)};
 }
 
 }  // namespace dermis::calibration

@@ -13,9 +13,9 @@ namespace dermis::calibration {
 
 /// The kind of circuit that explains the frames best.
 struct CircuitChoice {
-  ArrayDescription array;                    ///< Has that kind; resistances that are not given are kFitOhm.
-  std::vector<CircuitCandidate> candidates;  ///< The best first.
-  std::vector<PressPair> telling_presses;    ///< Where some of them are indistinguishable.
+  ArrayDescription array;                         ///< Has that kind; resistances that are not given are kFitOhm.
+  std::vector<CircuitCandidate> candidates;       ///< The best first.
+  std::vector<PressPair> discriminating_presses;  ///< Where some of them are indistinguishable.
 };
 
 /// Fits every kind that the ADC resolves with one resistance for all drivers and one for all loads, and compares their

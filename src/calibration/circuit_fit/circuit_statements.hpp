@@ -13,7 +13,7 @@ namespace dermis::calibration {
 /// Says which kind was chosen, which ones the frames do not distinguish from it, and which presses would.
 [[nodiscard]] std::vector<std::string> describe_choice(const ArrayDescription& array,
                                                        const std::vector<CircuitCandidate>& candidates,
-                                                       const std::vector<PressPair>& telling_presses);
+                                                       const std::vector<PressPair>& discriminating_presses);
 
 /// "the ADC does not resolve "divider, idle rows floating" under these loads (...)".
 [[nodiscard]] std::string describe_unresolved(const std::string& circuit, double noise_share);

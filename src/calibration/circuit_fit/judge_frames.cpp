@@ -67,7 +67,8 @@ void add(const JudgedReading& reading, float variance, FrameMisfit& misfit) {
 }
 
 void add_beside(const JudgedReading& reading, const JudgedReading& other, FrameMisfit& misfit) {
-  if (reading.is_telling && other.is_telling) add(reading, std::max(reading.variance, other.variance), misfit);
+  if (!reading.depends_on_circuit || !other.depends_on_circuit) return;
+  add(reading, std::max(reading.variance, other.variance), misfit);
 }
 
 /// Residuals of pressed taxels that are smaller than their noise and scatter count as large as these.
@@ -101,7 +102,7 @@ class Judge {
       } else {
         reading = is_pressed ? judge_pressed(frame, *inverted, taxel) : judge_idle(frame, taxel);
       }
-      if (is_pressed && lines.are_of_one_press()) reading.is_telling = false;
+      if (is_pressed && lines.are_of_one_press()) reading.depends_on_circuit = false;
       reading.taxel = is_pressed           ? JudgedReading::Taxel::pressed
                       : lines.cross(taxel) ? JudgedReading::Taxel::crossed
                                            : JudgedReading::Taxel::idle;

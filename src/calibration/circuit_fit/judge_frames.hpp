@@ -20,7 +20,7 @@ struct JudgedReading {
   Taxel taxel = Taxel::unknown;  ///< unknown: not judged.
   /// The reading depends on the circuit. It does not for a taxel pressed alone, which the law of the taxel explains in
   /// any circuit. Nor does it where the noise hides the conductance in this circuit.
-  bool is_telling = false;
+  bool depends_on_circuit = false;
 };
 using JudgedReadings = std::vector<JudgedReading>;  ///< [frames, taxels]
 

@@ -166,9 +166,9 @@ void GuidedCalibration::Implementation::accept_fit(GuideFitter::Outcome outcome)
   fit_.unpressed_error = outcome.unpressed_error;
   if (!outcome.calibration) return;
   if (!*outcome.calibration) return fail(outcome.calibration->error().message);
-  const std::vector<PressPair>& telling = outcome.calibration->value().report.telling_presses;
-  if (!telling.empty() && !presses_.has_pairs()) {
-    presses_.ask_for(telling);
+  const std::vector<PressPair>& discriminating = outcome.calibration->value().report.discriminating_presses;
+  if (!discriminating.empty() && !presses_.has_pairs()) {
+    presses_.ask_for(discriminating);
     stage_ = GuideStage::pressing;
     return ask_for_next();
   }

@@ -74,8 +74,8 @@ std::vector<std::vector<double>> ranks_of_unknown(const Classes& classes, const 
 }
 
 /// Weights >= 0, of sum 1, of the logistic regression that tells the two apart.
-std::vector<double> telling_weights(const std::vector<std::vector<double>>& known,
-                                    const std::vector<std::vector<double>>& unknown) {
+std::vector<double> discriminating_weights(const std::vector<std::vector<double>>& known,
+                                           const std::vector<std::vector<double>>& unknown) {
   const std::size_t count = known.front().size();
   const std::size_t both = count + unknown.front().size();
   Judged judged;
@@ -107,9 +107,9 @@ std::vector<double> even_weights(std::size_t experts) {
 
 std::vector<double> weights_of(const Classes& classes, const std::vector<std::vector<double>>& known,
                                const Observations& unknown) {
-  const bool can_be_told = classes.names.size() > 2 && !unknown.doubts.empty();
-  return can_be_told ? telling_weights(known, ranks_of_unknown(classes, unknown))
-                     : even_weights(classes.experts.size());
+  const bool can_be_learned = classes.names.size() > 2 && !unknown.doubts.empty();
+  return can_be_learned ? discriminating_weights(known, ranks_of_unknown(classes, unknown))
+                        : even_weights(classes.experts.size());
 }
 
 /// How many of n scores may lie above a limit that, as sure as kConfidence, has the share of all below it (S. S. Wilks,

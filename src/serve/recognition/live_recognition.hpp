@@ -38,12 +38,12 @@ class LiveRecognition {
   recognition::StreamRecogniser recogniser_;
   FrameResampler resampler_;
   /// The pose that was published last.
-  struct Told {
+  struct Published {
     std::size_t likeliest = 0;
     recognition::Verdict verdict = recognition::Verdict::known;
     Nanos time{};
   };
-  std::optional<Told> told_{};
+  std::optional<Published> published_{};
 };
 
 }  // namespace dermis::serve

@@ -50,7 +50,7 @@ class SuitRecognition final : public Part {
   FrameJoiner joiner_;
   EventTopic topic_;
   std::mutex readings_mutex_;
-  std::optional<std::vector<float>> told_{};  ///< Further readings that no frame has seen yet.
+  std::optional<std::vector<float>> pending_{};  ///< Further readings that no frame has seen yet.
   // Used by the thread of the first array alone.
   std::vector<float> further_;
   std::optional<Nanos> further_time_{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "calibration/circuit_fit/telling_presses.hpp"
+#include "calibration/circuit_fit/discriminating_presses.hpp"
 
 #include <fmt/core.h>
 
@@ -115,8 +115,8 @@ double sum_of_best(std::vector<Distances>& pairs, const Square& square) {
 
 }  // namespace
 
-std::vector<PressPair> telling_presses(const std::vector<const CommonRatio*>& circuits, const CircuitFrames& frames,
-                                       double sure_square) {
+std::vector<PressPair> discriminating_presses(const std::vector<const CommonRatio*>& circuits,
+                                              const CircuitFrames& frames, double sure_square) {
   std::vector<Prediction> predictions;
   for (const CommonRatio* const circuit : circuits) predictions.emplace_back(*circuit);
   const double variance = std::pow(noise_of_presses(frames), 2) * circuits.front()->scatter.noise_variance;
@@ -125,15 +125,15 @@ std::vector<PressPair> telling_presses(const std::vector<const CommonRatio*>& ci
     pairs.push_back(distances_of(predictions, pair, variance));
   }
   // A circuit that no pair would distinguish from the first does not hide the others.
-  std::vector<std::size_t> tellable;
+  std::vector<std::size_t> distinguishable;
   for (std::size_t k = 0; k + 1 < predictions.size(); ++k) {
     if (sum_of_best(pairs, [k](const Distances& pair) { return pair.squares[k]; }) >= sure_square)
-      tellable.push_back(k);
+      distinguishable.push_back(k);
   }
-  if (tellable.empty()) return {};
+  if (distinguishable.empty()) return {};
   sum_of_best(pairs, [&](const Distances& pair) {
     double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t k : tellable) least = std::min(least, pair.squares[k]);
+    for (const std::size_t k : distinguishable) least = std::min(least, pair.squares[k]);
     return least;
   });
   std::vector<PressPair> presses;
