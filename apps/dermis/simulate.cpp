@@ -60,7 +60,7 @@ Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOp
   return simulation::Simulator::create(array, physics, options.scene, options.seed, options.frames);
 }
 
-/// As the same frames are named among sources; other options are not told.
+/// The name of the same frames among sources, without other options.
 std::string source_of(const SimulateOptions& options) {
   return fmt::format("sim:{}?seed={}", options.scene, options.seed);
 }

@@ -432,7 +432,7 @@ class Source:
     def uri(self) -> str: ...
     @property
     def shape(self) -> tuple[int, int] | None:
-        """(rows, cols); None where only the first frame will tell."""
+        """(rows, cols); None where only the first frame will show it."""
     @property
     def is_live(self) -> bool: ...
     @property

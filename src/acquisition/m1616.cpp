@@ -3,7 +3,7 @@
 
 // M1616, a 16x16 mat of mail-order shops: AA AB AC, 256 readings of 16 bits, big-endian, then 4 bytes of unknown
 // meaning. Publications on it leave open whether its packet of 516 bytes counts the header. It is 519 bytes in all, or
-// 516 with one byte after the readings. The distance between headers tells.
+// 516 with one byte after the readings. The distance between headers shows which.
 #include <array>
 
 #include "acquisition/mark_chain_decoder.hpp"

@@ -108,7 +108,7 @@ class ProtocolDetector {
         {trait.name, trait.has_checksum ? 1 : kFramesWithoutChecksum, std::move(options), std::move(decoder).value()});
   }
 
-  /// Packets of WiReSens do not tell their size nor that of a frame: they are learnt first.
+  /// Packets of WiReSens contain neither their size nor that of a frame: these are learnt first.
   void try_wiresens(std::span<const std::uint8_t> bytes, std::size_t from) {
     std::optional<ProtocolOptions> learnt = learn_wiresens(bytes.subspan(from), known_, name_only_);
     if (!learnt) return;
@@ -208,7 +208,7 @@ class AutoDecoder final : public Decoder {
     if (best == nullptr) return false;
     name_ = best->name;
     ProtocolOptions options = best->options;
-    if (!options.shape) options.shape = best->decoder->shape();  // a pause may have told it
+    if (!options.shape) options.shape = best->decoder->shape();  // a pause may have shown it
     chosen_ = make_decoder(options).value();
     detector_.reset();
     return true;

@@ -36,7 +36,7 @@ class RowLayoutLearner {
   void forget() noexcept;
 
   [[nodiscard]] const std::optional<RowLayout>& layout() const noexcept { return layout_; }
-  /// As given or announced; empty where only learning tells it.
+  /// As given or announced; empty where only learning can find it.
   [[nodiscard]] const std::optional<FrameShape>& shape() const noexcept { return shape_; }
   /// Says what the lines so far lack, and the mend; empty where nothing can be said.
   [[nodiscard]] std::string advice() const;

@@ -15,7 +15,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxRounds = 20;
-constexpr int kEstimateRounds = 3;  // what the neighbours of a taxel tell hardly depends on it
+constexpr int kEstimateRounds = 3;  // the estimate from a taxel's neighbours hardly depends on it
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kShortSiemens = 20.0;  // of a shorted crossing that is kept
@@ -131,7 +131,7 @@ void FaultInversion::hide_sensed_line(std::size_t taxel) noexcept {
   }
 }
 
-/// Two taxels are between the two nodes, and only their sum is told.
+/// Two taxels are between the two nodes, and only their sum is determined.
 void FaultInversion::join(std::size_t a, std::size_t b) noexcept {
   const std::size_t cols = array_.cols;
   if (a / cols == b / cols) mask_pair(Axis::column, a % cols, b % cols);

@@ -14,9 +14,9 @@
 
 namespace dermis::compensation {
 
-/// Conductances of taxels whose readings tell nothing of them. For three frames a taxel stays what it was; then its
-/// neighbours tell. In most circuits the others of its line tell, too. Let g be the line's load (at virtual ground, the
-/// conductance of its driver). A taxel that is taken as x where it is X makes all others
+/// Conductances of taxels whose readings do not determine them. For three frames a taxel keeps its value; then its
+/// neighbours determine it. In most circuits the others of its line are evidence, too. Let g be the line's load (at
+/// virtual ground, the conductance of its driver). A taxel that is taken as x where it is X makes all others
 ///
 ///   s = (g + x) / (g + X)
 ///
@@ -30,7 +30,7 @@ class MissingTaxels {
   [[nodiscard]] std::span<std::uint8_t> missing() noexcept { return missing_; }
   [[nodiscard]] bool is_missing(std::size_t taxel) const noexcept { return missing_[taxel] != 0; }
 
-  /// A frame is one older than the last, which tells nothing any more if it is 50 ms ago.
+  /// A frame is one older than the last, whose values are stale after 50 ms.
   void start_frame(Nanos time) noexcept;
 
   /// Readings or conductances from those of their neighbours.

@@ -57,7 +57,7 @@ class PossibleReadings {
   void forget() noexcept;
 
  private:
-  /// The head of a sensed line, as a reading tells it.
+  /// The head of a sensed line, as its reading shows it.
   struct Head {
     double current = 0.0;    ///< of a ratio of 1
     double offset = 0.0;     ///< the current of a ratio of 0

@@ -25,7 +25,7 @@ class SharedErrors final : public CircuitErrors {
  public:
   explicit SharedErrors(const ArrayDescription& array);
 
-  /// Whether variances() tells the noise of readings; otherwise ConductanceErrors::noise_siemens has to.
+  /// Whether variances() contains the noise of readings; otherwise ConductanceErrors::noise_siemens must.
   [[nodiscard]] bool tells_noise() const noexcept { return tells_noise_; }
 
   void variances(const ConductanceErrors& errors, std::span<const WeightedConductances> sums,

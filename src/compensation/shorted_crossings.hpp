@@ -16,8 +16,8 @@ namespace dermis::compensation {
 ///
 /// The one reading too many, t_k, is not used elsewhere. Where one column is loaded, the readings of J are first made
 /// those without its load: y / (1 - Rd_k y_kJ). In the state's matrices G_kJ is all that leaves the node but for the
-/// driver and the taxels of row k, so that (a) holds. Two columns that touch one row tell but the sum of their taxels;
-/// it stands in the first. These functions allocate nothing.
+/// driver and the taxels of row k, so that (a) holds. Two columns that touch one row determine only the sum of their
+/// taxels; it stands in the first. These functions allocate nothing.
 
 /// Readings of one loaded column become those without its load.
 void take_loads_away(GroundedRowsState& state) noexcept;

@@ -115,7 +115,7 @@ bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
 }
 
 /// Most of the loads are about what they were, those that have just jumped aside: they may fall back. Where there are
-/// no others, nothing tells.
+/// no others, there is no evidence.
 bool Spikes::follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept {
   double loads[kAtOnce] = {};
   double changed[kAtOnce] = {};

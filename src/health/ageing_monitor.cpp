@@ -15,7 +15,7 @@ namespace dermis::health {
 namespace {
 
 constexpr double kLeastSpread = 0.05;  // of gains: less is not worth a calibration
-constexpr double kLeastPercent = 0.5;  // that is told
+constexpr double kLeastPercent = 0.5;  // that is reported
 constexpr double kSigmas = 3.0;
 constexpr std::size_t kLeastBlocks = 16;
 constexpr float kMostWeight = 8.0F;  // of the touches that a square remembers of each way

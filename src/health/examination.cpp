@@ -102,7 +102,7 @@ class Examination::Implementation {
     }
     if (!first_time_) first_time_ = raw.time;
     last_time_ = raw.time;
-    if (troubles_.is_silent(raw, force, pipeline)) return;  // tells nothing of the sheet
+    if (troubles_.is_silent(raw, force, pipeline)) return;  // no evidence on the sheet
     follow_temperature(pipeline.conditioned());
     follow_supply(raw);
     follow(pipeline.line_faults().faults(), frame, model_.array, counted_.faults);

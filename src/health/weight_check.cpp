@@ -20,7 +20,7 @@ constexpr double kLeastChange = 0.03;    // of a gain: less is not worth a calib
 constexpr double kSomethingElse = 2.0;   // times the weight, or a part of it
 constexpr double kNewtonsPerGram = 9.80665e-3;
 constexpr double kSigmas = 3.0;
-constexpr double kTooMuch = 0.1;      // of a gain: a check that cannot tell as much has not told much
+constexpr double kTooMuch = 0.1;      // of a gain: a check that is less sure is of little use
 constexpr double kLeastSigma = 1e-3;  // relative
 
 bool is_near(double ratio) {

@@ -12,7 +12,7 @@
 
 namespace dermis::importers {
 
-/// One thing that a DSA recording tells.
+/// One event of a DSA recording.
 struct DsaEvent {
   enum class Kind { matrix, frame, temperatures, end };
   Kind kind = Kind::end;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kMend = "; dermis recover writes what can be read into a new file";
 
-/// A chunk as the summary tells of it.
+/// A chunk as the summary describes it.
 struct ChunkPlace {
   std::uint64_t first_time;
   std::uint64_t last_time;

@@ -78,7 +78,7 @@ bool has_images(const McapReader& reader, std::string_view folder, std::uint64_t
   });
 }
 
-/// From the summary of a file of dermis alone; returns false where that does not tell.
+/// From the summary of a file of dermis alone; returns false where that does not suffice.
 bool read_totals(const McapReader& reader, RecordingInfo& info) {
   if (!reader.statistics()) return false;
   for (const RecordingDescription& description : descriptions_of(reader)) info.arrays.push_back(info_of(description));

@@ -21,7 +21,7 @@ namespace dermis::report {
 [[nodiscard]] Figure coverage_figure(const calibration::Evaluation& evaluation);
 
 /// A load over time as dermis gives it, beside the truth, and its loop of loading and unloading. No panel where the
-/// labels tell nothing of time.
+/// labels have no evidence on time.
 [[nodiscard]] Figure touch_figure(const calibration::Evaluation& evaluation);
 
 /// Tactile images of the example frames.

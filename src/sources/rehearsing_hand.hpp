@@ -31,7 +31,7 @@ class RehearsingHand {
   std::vector<double> force_n_;
   bool is_on_ = false;
   double seconds_ = 0.0;          // since the hand moved
-  double release_seconds_ = 0.0;  // since it was told to take the weights off
+  double release_seconds_ = 0.0;  // since the guide asked to take the weights off
 };
 
 }  // namespace dermis::sources

@@ -92,7 +92,7 @@ class Client {
   Ask ask_;
   OutgoingQueue queue_;
   std::size_t most_control_bytes_;
-  ChannelId next_channel_ = 0;                          // the first that it was not told of
+  ChannelId next_channel_ = 0;                          // the first that it has not heard of
   std::map<std::uint32_t, ChannelId> channel_of_;       // by subscription
   std::map<ChannelId, std::uint32_t> subscription_of_;  // by channel; one each
   std::set<std::string, std::less<>> followed_;
@@ -100,7 +100,7 @@ class Client {
   bool takes_pictures_ = true;      // of the present moment
   std::uint64_t moment_begin_ = 0;  // of queue_.binary_bytes()
   std::uint64_t moment_bytes_ = 0;  // of the last moment whose pictures it took
-  bool is_asking_ = false;          // what it tells meanwhile is not read
+  bool is_asking_ = false;          // its messages meanwhile are not read
 };
 
 }  // namespace dermis::stream

@@ -31,7 +31,7 @@ constexpr std::size_t kMostWaitingBytes = 64U << 20U;  // published, not yet han
 constexpr std::size_t kMostVisitors = 64;              // connections that are no clients of the stream
 constexpr std::size_t kMostAtOnce = 16;                // connections that are taken in a row
 constexpr double kMostConnects = 1000;                 // in a second, after as many at once as there are visitors
-constexpr double kMostUpgrades = 100;                  // in a second: who becomes a client is told of all channels
+constexpr double kMostUpgrades = 100;                  // in a second: a new client gets the list of all channels
 constexpr double kMostUpgradesAtOnce = 16;
 
 std::string random_session() {

@@ -19,7 +19,7 @@ class TakenWindow {
   /// `bytes`: of the `sent` ones so far; less than before is left out.
   void take(std::uint64_t bytes, std::uint64_t sent, Clock::time_point now);
 
-  /// Whether `next` bytes may follow `sent` ones; always where the client tells nothing.
+  /// Whether `next` bytes may follow `sent` ones; always where the client sends no reports.
   [[nodiscard]] bool is_open(std::uint64_t sent, std::uint64_t next) const noexcept;
 
  private:

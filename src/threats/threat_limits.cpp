@@ -18,7 +18,7 @@ constexpr std::size_t kMostLimits = 1000;
 constexpr double kMostSeconds = 1e6;
 constexpr double kPascalsPerKilopascal = 1000.0;
 
-/// The key of a limit, whose name tells its unit.
+/// The key of a limit, whose name has its unit.
 struct LimitKey {
   std::string_view name;
   double si;  // what 1 of it is

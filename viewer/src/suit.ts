@@ -68,7 +68,7 @@ export interface ArrayDescription {
   limits?: Limit[];
 }
 
-/** An array of which nothing is written yet: what its source tells. */
+/** An array of which nothing is written yet, as its source shows it. */
 export interface ArraySetup {
   /** Empty: the user chooses where the array is. */
   from: string;

@@ -35,7 +35,7 @@ struct PressPair {
   double newtons = 0.0;
 };
 
-/// The resistances of a circuit as the calibration frames tell them.
+/// The resistances of a circuit as the calibration frames determine them.
 struct CircuitFit {
   ArrayDescription array;  ///< Nothing is unknown any more.
   /// Relative standard errors of drive_ohm and load_ohm (1: nothing is known); 0 where the value was given. They hold

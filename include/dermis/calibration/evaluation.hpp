@@ -85,7 +85,7 @@ struct EstimatorResult {
   ErrorSummary total_relative_error;   ///< |sum / total - 1| of totals above 0.
 };
 
-/// Where in its touch a known force was, as far as the labels tell: they are at most a second apart.
+/// Where in its touch a known force was, by the labels, which are at most a second apart.
 struct TouchTime {
   std::optional<double> seconds_since_onset;  ///< Since the first label above zero after one of zero.
   std::optional<bool> is_unloading;           ///< Whether the last change of the force, of more than 1 %, was a fall.

@@ -61,7 +61,7 @@ struct GuidedData {
 
 /// Walks a person through the calibration of one live array: unloaded first, then press after press, each recognised
 /// from the frames. While the person works, what is there is fitted on a thread of its own and judged by presses that
-/// were left out. Where they do not tell the circuit, the pairs of taxels that would are asked for after the last
+/// were left out. Where they do not determine the circuit, the pairs of taxels that would are asked for after the last
 /// press, once. Thread-safe.
 class GuidedCalibration {
  public:

@@ -26,7 +26,7 @@ struct KnownPress {
 struct GainChange {
   double sheet = 0.0;          ///< Of all taxels,
   double sheet_sigma = 0.0;    ///< and its standard deviation.
-  double spread = 0.0;         ///< Standard deviation over the taxels besides; 0: not told apart.
+  double spread = 0.0;         ///< Standard deviation over the taxels besides; 0: not distinguished.
   std::vector<double> taxels;  ///< Change of each taxel, that of the sheet included [taxels].
 };
 

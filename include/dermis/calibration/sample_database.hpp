@@ -54,7 +54,7 @@ struct SampleDatabase {
   std::vector<std::string> remarks;  ///< Sentences on errors in labels and readings, and on what is left out.
   /// Where circuit and ADC are not as described and stay so: forces are less sure, a sentence each.
   std::vector<std::string> doubts;
-  /// Too few presses on two to six taxels tell whether circuit and ADC are as described; eight are needed.
+  /// Too few presses on two to six taxels show whether circuit and ADC are as described; eight are needed.
   bool lacks_proof = false;
   /// Relative residual of presses on several taxels under circuit and ADC, beside that of single presses; 0: nothing.
   double unexplained_share = 0.0;

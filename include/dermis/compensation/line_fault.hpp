@@ -39,7 +39,7 @@ struct LineFaultTraits {
   LineFaultEffect effect = LineFaultEffect::silent;
   LineFaultScope scope = LineFaultScope::line;
   std::optional<Axis> axis;        ///< Axis of the line or lines; empty for taxels and drivers.
-  bool hides_conductance = false;  ///< No reading tells the conductance of the masked taxels.
+  bool hides_conductance = false;  ///< No reading determines the conductance of the masked taxels.
 };
 
 [[nodiscard]] const LineFaultTraits& traits_of(LineFaultKind kind) noexcept;

@@ -23,7 +23,7 @@ class CircuitErrors;
 /// The conductances of a frame and how wrong they may be, for errors that several taxels share.
 struct ConductanceErrors {
   std::vector<float> siemens;        ///< [taxels] [S]
-  std::vector<float> noise_siemens;  ///< Standard deviation of each by noise; empty where `circuit` tells it [S].
+  std::vector<float> noise_siemens;  ///< Standard deviation of each by noise; empty where `circuit` has it [S].
   std::vector<float> doubt_siemens;  ///< Standard deviation of taxels that are estimated, 0 of the others [S].
   double sigma_ratio = 0.0;          ///< Standard deviation of every reading over the supply.
   double supply_doubt = 0.0;         ///< Relative standard deviation of a supply that is not trusted.

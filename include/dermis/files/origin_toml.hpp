@@ -23,7 +23,7 @@ struct FramesOrigin {
 /// Writes origin.toml into the folder of the frames.
 [[nodiscard]] Status write_origin(const std::string& frames_path, const std::string& source);
 
-/// The source of the frames, if an origin.toml beside them tells it of these very bytes; else empty.
+/// The source of the frames, if an origin.toml beside them names it for these very bytes; else empty.
 [[nodiscard]] std::string simulated_source(const std::string& frames_path);
 
 }  // namespace dermis::files

@@ -49,7 +49,7 @@ struct ForceNetworks {
 
   // The uncertainty that calibration found; see ForceFusion.
   double temperature_sigma_celsius = 0.0;  ///< Noise of the temperature sensor [C], >= 0.
-  /// Lowest and highest of the temperatures between which nothing tells how the forces bend; equal: there are none.
+  /// Lowest and highest of the temperatures between which the bend of the forces is unknown; equal: there are none.
   std::array<double, 2> temperature_gap_celsius{};
   std::vector<float> offset_sigma_siemens;  ///< Standard deviation of unloaded.offset_siemens [S], >= 0.
   /// Relative error of the force from causes without a term of their own (misfit, hysteresis, creep), > 0, at

@@ -44,7 +44,7 @@ struct AgeingEvidence {
 /// / (1 + (c / 0.7)^4), where c is the difference of ln F between the taxels.
 ///
 /// The comparison misses a gain that all taxels of the array, of a row or of a column share: that takes a known weight
-/// (WeightCheck). Touches that all come to the same place tell nothing. A square remembers a weight of eight of each
+/// (WeightCheck). Touches that all come to the same place are no evidence. A square remembers a weight of eight of each
 /// way. Not thread-safe.
 class AgeingMonitor {
  public:

@@ -56,7 +56,7 @@ class ThreatWatch {
     Status source = Done{};                              ///< The failure, or that most frames had no force.
   };
 
-  /// Waits until it is over, or for `time`. A threat is told here before it is logged. Thread-safe.
+  /// Waits until it is over, or for `time`. A threat is reported here before it is logged. Thread-safe.
   [[nodiscard]] News wait(std::chrono::milliseconds time);
 
  private:

@@ -44,8 +44,8 @@ class UnloadedReadings {
   bool is_done_ = false;
 };
 
-/// Frames of an array as loads: newtons of a model, or readings, tared if asked. Where there is no load to tell, 0.
-/// Not thread-safe.
+/// Frames of an array as loads: newtons of a model, or readings, tared if asked. Where there is no load, 0. Not
+/// thread-safe.
 class ArrayLoads {
  public:
   [[nodiscard]] static Result<ArrayLoads> open(const ArrayLoadInput& input);
@@ -61,7 +61,7 @@ class ArrayLoads {
   [[nodiscard]] Quantity quantity() const noexcept { return work_ ? Quantity::force : Quantity::counts; }
   [[nodiscard]] Nanos time() const noexcept { return raw_.time; }
 
-  /// The array as far as it is known: with the pitch by a model; empty where only the first frame will tell.
+  /// The array as far as it is known: with the pitch by a model; empty where only the first frame will show it.
   [[nodiscard]] std::optional<recognition::SensedArray> array() const;
   [[nodiscard]] bool is_live() const { return frames_->is_live(); }
 

@@ -40,7 +40,7 @@ class SourceRecogniser {
   [[nodiscard]] Result<std::optional<SourceRecognition>> next();
 
   [[nodiscard]] const recognition::Classes& classes() const noexcept { return recogniser_.classes(); }
-  /// False: each pose is told from a single frame, and gestures must come at the rate of the examples.
+  /// False: each pose is recognised in a single frame, and gestures must come at the rate of the examples.
   [[nodiscard]] bool knows_rate() const noexcept { return knows_rate_; }
 
  private:

@@ -61,7 +61,7 @@ struct Learned {
 /// Labelled segments and their features, of which classes are learned. Thread-safe once made.
 class LearningSet {
  public:
-  /// Computes the features of all labels. `progress` is told the share that is done. Fails on what
+  /// Computes the features of all labels. `progress` gets the share that is done. Fails on what
   /// LabelledFrames::validate() refuses.
   [[nodiscard]] static Result<LearningSet> create(const LabelledFrames& data,
                                                   const std::function<void(double)>& progress = {});

@@ -9,7 +9,7 @@
 
 #include "dermis/core/result.hpp"
 
-/// Where touches begin and end in a stream: docs/recognition.md tells the rule.
+/// Where touches begin and end in a stream: docs/recognition.md has the rule.
 namespace dermis::recognition {
 
 /// The limits of a touch, as forces (sums of the readings of a frame) and frames.

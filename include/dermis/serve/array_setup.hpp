@@ -25,8 +25,8 @@ struct DescribedArray {
 class ArraySetup {
  public:
   /// Reads the first frame of the source that the URI `from` names, for at most 8 s, and begins to answer clients.
-  /// Bytes of which no frame can be made are no error: the page tells what they lack. Fails where the URI is wrong, its
-  /// device is not there, or the port cannot be bound.
+  /// Bytes that make no frame are no error: the page says what they lack. Fails where the URI is wrong, its device is
+  /// not there, or the port cannot be bound.
   ///
   /// Where `from` is empty, clients choose: a serial port of this machine, an address, a recording of the current
   /// folder, or the simulator. Only clients of this machine may: a server that others can reach needs `from`. Nothing

@@ -17,7 +17,7 @@
 namespace dermis::serve {
 
 struct SessionOptions {
-  /// `notice` must be thread-safe: arrays and recordings tell it their lines, too.
+  /// `notice` must be thread-safe: it gets lines of arrays and recordings, too.
   stream::ServerOptions server{};
   std::vector<stream::Asset> page{};  ///< The page for browsers; empty: there is the stream alone.
   /// A recording to begin with, .mcap; those that clients begin take their names from it. Empty: none.

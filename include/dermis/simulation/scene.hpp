@@ -79,7 +79,7 @@ struct SceneKind {
   const char* name;
   ScenePace pace;
   bool is_of_any_length;  ///< Takes a number of frames.
-  bool has_contacts;      ///< Tells SceneFrame::contacts.
+  bool has_contacts;      ///< Fills SceneFrame::contacts.
 };
 
 /// All scenes.

@@ -26,7 +26,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kLeastPresses = 8;  // on several taxels, that tell anything
+constexpr std::size_t kLeastPresses = 8;  // on several taxels, for any evidence
 constexpr int kSteps = 4;                 // of Gauss-Newton
 constexpr double kLimit = 4.0;            // sigmas from which on a press is an outlier
 constexpr double kEvidence = 30.0;        // squares that a part must explain

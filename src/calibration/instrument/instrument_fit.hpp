@@ -21,7 +21,7 @@ struct InstrumentFit {
   /// The relative difference of presses on several taxels from single ones, beyond chance and beyond all that was
   /// found. 0: they agree, or there are none.
   double unexplained = 0.0;
-  /// Too few presses on several taxels tell whether the instrument is as described.
+  /// Too few presses on several taxels show whether the instrument is as described.
   bool lacks_proof = false;
 };
 
@@ -31,7 +31,8 @@ struct InstrumentFit {
 /// Offset and supply that are to be fitted are left out.
 [[nodiscard]] ArrayDescription without_unknown_instrument(ArrayDescription array);
 
-/// Sets what the description leaves open of the settling to what single presses tell (measure_settling()), or to none.
+/// Sets a settling that the description leaves open to the measured one of single presses (measure_settling()), or to
+/// none.
 [[nodiscard]] InstrumentFit fit_settling(const ArrayDescription& array, std::span<const RawFrame> frames,
                                          std::span<const Load> loads);
 

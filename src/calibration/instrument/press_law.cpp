@@ -252,7 +252,7 @@ struct LearnedLaws {
   double scatter = 0.0;  // of a single press about its law
 };
 
-/// Empty: too few presses that tell.
+/// Empty: too few presses that are evidence.
 std::optional<LearnedLaws> learn_laws(const Presses& presses, const InvertedFrames& inverted,
                                       const std::vector<double>& unloaded, const Scale& scale) {
   if (!scale.is_there()) return std::nullopt;

@@ -39,13 +39,13 @@ struct InstrumentMisfit {
   std::vector<double> idle;
 };
 
-/// The taxels whose readings, while idle, stand so far above 0 that they tell what lowers them [taxels].
+/// The taxels whose idle readings stand so far above 0 that they show what lowers them [taxels].
 [[nodiscard]] std::vector<bool> readable_taxels(const Presses& presses, const InvertedFrames& inverted);
 
 /// `inverted`: of frames_of(presses), all there. A press must not change what idle taxels conduct. Each taxel has a law
 /// `ln F = a + b z + c z^2 + d z^3 + e z^4` of `z = ln(conductance above the unloaded one)`. All taxels share c, d and
-/// e; temperature shifts the law. Empty: too few presses to tell, conductances that follow no law, or `readable` taxels
-/// that would conduct nothing.
+/// e; temperature shifts the law. Empty: too few presses, conductances that follow no law, or `readable` taxels that
+/// would conduct nothing.
 [[nodiscard]] std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const InvertedFrames& inverted,
                                                         std::size_t cols, const std::vector<bool>& readable);
 

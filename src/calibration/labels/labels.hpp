@@ -41,7 +41,7 @@ class LoadsOfFrames {
   std::vector<std::uint32_t> first_;  // of each frame in loads_ [frames + 1]
 };
 
-/// Forces of every taxel that the loads of one frame tell: `known_newtons` [taxels], `totals` and `unloaded`. Taxels
+/// Known forces of every taxel by the loads of one frame: `known_newtons` [taxels], `totals` and `unloaded`. Taxels
 /// that the sheet does not have carry nothing.
 void expand_loads(const ArrayDescription& array, std::span<const Load> loads, Sample& sample);
 

@@ -179,7 +179,7 @@ Nanos usual_interval(const std::vector<Nanos>& times) {
   return intervals.empty() ? Nanos{} : upper_median(std::move(intervals));
 }
 
-/// Each piece after a pause is told as a recording of its own, which begins earlier than the last one ended.
+/// Each piece after a pause counts as a recording of its own, which begins earlier than the last one ended.
 std::vector<Nanos> times_of_pieces(const std::vector<Nanos>& times) {
   const Nanos pause = std::max(kLeastPause, kIntervalsOfPause * usual_interval(times));
   std::vector<Nanos> of_pieces;

@@ -32,8 +32,8 @@ struct LearnedMemory {
 /// The frames are so close in time that most loads are seen as they come, lie and go.
 [[nodiscard]] bool is_continuous(std::span<const RawFrame> frames);
 
-/// Labels name loads on the same taxels at least every 1.5 s: slower frames tell of memory, too. `frames`: the
-/// recording of `database`, or empty.
+/// Labels name loads on the same taxels at least every 1.5 s: slower frames show memory, too. `frames`: the recording
+/// of `database`, or empty.
 [[nodiscard]] bool loads_follow_each_other(const SampleDatabase& database, std::span<const RawFrame> frames);
 
 /// Learns the law of MaterialMemory from a continuous recording with labels. Networks give the felt force in every

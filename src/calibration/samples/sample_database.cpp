@@ -102,7 +102,7 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, std::span<c
   sample.sigma_siemens.assign(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end());
   sample.taxels = conditioned.taxels;
   expand_loads(array, loads, sample);
-  // A reading at the end of the ADC no longer tells its force, of one that is missing the neighbours tell some.
+  // A reading at the end of the ADC no longer shows its force. The neighbours of a missing one show some.
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
     if (conductance.taxels[taxel] != TaxelStatus::ok) {
       sample.known_newtons[taxel] = std::numeric_limits<float>::quiet_NaN();

@@ -9,7 +9,7 @@
 
 namespace dermis::calibration {
 
-/// Tells the presses and the touches in one place apart. A press is samples in a row under the same load. In a touch
+/// Numbers the presses and the touches in one place. A press is samples in a row under the same load. In a touch
 /// presses follow each other, as where a weight is put onto another: what one touch changes, all of them have in
 /// common.
 class PressNumbers {

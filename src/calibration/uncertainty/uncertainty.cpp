@@ -125,7 +125,7 @@ double mean_square_error(const std::vector<TestedLoad>& loads) {
   return std::max(sum / static_cast<double>(std::max<std::size_t>(loads.size(), 1)), kLeast);
 }
 
-/// How surely single presses tell the exponent of the law that taxels share.
+/// How surely single presses determine the exponent of the law that taxels share.
 struct ExponentEvidence {
   double mean_log_newtons = 0.0;  ///< Where the exponent has no part in forces.
   double variance = 0.0;          ///< Of the exponent, relative.

@@ -174,7 +174,7 @@ void BankTraining::draw_batch() {
     for (std::size_t k = 0; k < kBatch; ++k) {
       const bool want_loaded = (k < kBatch / 2 && !choice.loaded.empty()) || choice.unloaded.empty();
       const std::vector<std::uint32_t>& from = want_loaded ? choice.loaded : choice.unloaded;
-      if (from.empty()) break;  // no sample tells of this taxel: its chosen weights stay 0
+      if (from.empty()) break;  // no sample has this taxel: its chosen weights stay 0
       const std::uint32_t sample = from[choice.random.below(from.size())];
       chosen_[taxel * kBatch + k] = sample;
       chosen_weights_[taxel * kBatch + k] = weights_[sample * networks + taxel];

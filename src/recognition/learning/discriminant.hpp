@@ -18,7 +18,7 @@ struct Teaching {
   Matrix examples;                   ///< [examples, columns]
   std::vector<std::size_t> classes;  ///< Of each, below `class_count`.
   std::size_t class_count = 0;
-  /// [any, columns]: differences that do not tell classes apart. Their squares are added to those within the classes.
+  /// [any, columns]: differences that do not distinguish classes. Their squares are added to those within the classes.
   Matrix strays{};
 };
 

@@ -129,7 +129,7 @@ Expert train_expert(const TrainingTable& table, const ExpertColumns& columns, co
   return expert;
 }
 
-/// The experts that tell anything apart, each with what it says of examples that it had not learned from.
+/// The experts that distinguish anything, each with its answers on examples that it had not learned from.
 struct Panel {
   std::vector<ExpertColumns> columns;
   std::vector<ExpertChoice> choices;

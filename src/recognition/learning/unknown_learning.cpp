@@ -25,7 +25,7 @@ struct Observations {
 /// for there is none.
 Observations observe(Judged judged, const Matrix& scores, const std::vector<Matrix>& distances,
                      bool without_their_class) {
-  // So many examples do not tell what is more certain: of n that are right the next may be wrong by 1 / (n + 2).
+  // So many examples allow no greater certainty: after n right ones the next may be wrong by 1 / (n + 2).
   const double least_doubt = 1.0 / static_cast<double>(judged.classes.size() + 2);
   Observations result{std::vector<std::vector<double>>(distances.size()), {}};
   for (std::size_t i = 0; i < judged.classes.size(); ++i) {
@@ -73,7 +73,7 @@ std::vector<std::vector<double>> ranks_of_unknown(const Classes& classes, const 
   return ranks;
 }
 
-/// Weights >= 0, of sum 1, of the logistic regression that tells the two apart.
+/// Weights >= 0, of sum 1, of the logistic regression that distinguishes the two.
 std::vector<double> discriminating_weights(const std::vector<std::vector<double>>& known,
                                            const std::vector<std::vector<double>>& unknown) {
   const std::size_t count = known.front().size();

@@ -86,7 +86,7 @@ class HealthPart final : public Part {
   Topic health_;
   Topic statistics_;
   AgeingWatch ageing_;
-  std::uint64_t left_out_ = 0;  // when it was told last
+  std::uint64_t left_out_ = 0;  // when it was reported last
   std::uint64_t left_out_of_dds_ = 0;
   std::vector<std::uint8_t> message_;
 };

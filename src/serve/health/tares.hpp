@@ -68,7 +68,7 @@ class Tares final : public Part {
   mutable std::mutex mutex_;       // of the following
   std::vector<Zero> zeros_;        // of each array
   std::deque<std::string> log_;    // the newest first
-  std::vector<std::string> news_;  // that follow() has not told
+  std::vector<std::string> news_;  // that follow() has not returned yet
 };
 
 }  // namespace dermis::serve

@@ -104,7 +104,7 @@ void ThreatPublisher::keep_standing(Watched& watched) {
   }
 }
 
-/// Tells clients which limits began or ended, and with `all` how the other limits stand.
+/// Publishes which limits began or ended, and with `all` how the other limits stand.
 void ThreatPublisher::tell(Watched& watched, Nanos time, bool all) {
   bool is_news = all;
   for (const ThreatState& state : watched.monitor.states()) {

@@ -23,7 +23,7 @@ export class ArrayLive {
   /** Where the centre of pressure has been in the last two seconds, as long as something touches. */
   readonly centre = new Trail();
 
-  /** The force of each contact, at its place: what /contacts tells of the suit, in the plane of the array. */
+  /** The force of each contact, at its place: as /contacts gives it for the suit, in the plane of the array. */
   addCentre(): void {
     let [force, x, y] = [0, 0, 0];
     for (let index = 0; index < this.contacts.count; ++index) {
@@ -94,7 +94,7 @@ export class LiveData {
     this.events.add("threat", isBegin ? threat.crossedS : threat.stampS, isBegin ? threat.name : `${threat.name} over`, threat.array);
   }
 
-  /** The first value tells how it was, not that it changed. */
+  /** The first value is the present state, not a change. */
   #seeTare(tare: unknown): void {
     if (typeof tare !== "boolean" || tare === this.#tare) return;
     if (this.#tare !== undefined) this.events.add("tare", this.latestS, tare ? "tare" : "tare taken back");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-/** A touch that a person has named, as /recognition/examples tells it; `picture` only at first. */
+/** A touch that a person has named, as /recognition/examples has it; `picture` only at first. */
 export interface TaughtTouch {
   id: number;
   class: string;
