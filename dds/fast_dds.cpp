@@ -120,7 +120,7 @@ class FastWriter final : public Writer, private fast::DataWriterListener {
   std::atomic<std::int32_t> readers_{0};
 };
 
-/// By UDP alone: memory shared with other versions of Fast DDS would not be understood.
+/// UDP is the only transport: other versions of Fast DDS would not understand our shared memory.
 fast::DomainParticipantQos participant_qos(bool loopback_only) {
   fast::DomainParticipantQos qos;
   qos.name("dermis");

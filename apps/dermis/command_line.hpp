@@ -54,7 +54,7 @@ class Command {
   /// of them.
   template <typename Value>
   Option input(const std::string& name, Value& value, const std::string& help);
-  /// The same for what no stream brings: a model, classes, and whatever is read more than once.
+  /// The same for files that no stream can bring: a model, classes, and all that are read more than once.
   Option input_file(const std::string& name, std::string& path, const std::string& help);
   /// An option that names a file to write; "-" is the standard output. The action is not called where that would
   /// overwrite what is not to be.

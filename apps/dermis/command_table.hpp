@@ -25,7 +25,7 @@ struct OptionRow {
 
 /// A command with what it takes, as --help shows it.
 struct CommandTable {
-  std::string name;  ///< With those of the commands above it: "dermis circuit invert".
+  std::string name;  ///< Name with those of the commands above it: "dermis circuit invert".
   std::string summary;
   std::vector<OptionRow> options;
   std::vector<OptionRow> arguments;

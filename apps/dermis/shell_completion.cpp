@@ -73,7 +73,7 @@ std::string in_quotes(std::string_view text) {
   return "'" + inside + "'";
 }
 
-/// As zsh wants what stands in brackets or before a colon.
+/// Quotes a text in brackets or before a colon for zsh.
 std::string zsh_text(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

@@ -296,7 +296,7 @@ class Threat:
     def stands(self) -> bool: ...
     @property
     def quantity(self) -> str:
-        """As threats.toml names it, such as 'contact_force'."""
+        """The name in threats.toml, such as 'contact_force'."""
     @property
     def limit(self) -> float: ...
     @property
@@ -320,7 +320,7 @@ class ThreatMonitor:
 
     def __init__(self, limits: _Path, model: Model, *, name: str | None = None) -> None: ...
     def process(self, force: ForceFrame) -> list[Threat]:
-        """Those that began or ended with this frame."""
+        """Threats that began or ended with this frame."""
     @property
     def standing(self) -> list[Threat]: ...
     def reset(self) -> None:
@@ -453,7 +453,7 @@ class SuitArray:
     contacts: ContactTracker
     def __init__(self, name: str, model: Model, source: Source) -> None: ...
     def latest(self, timeout_s: float | None = None) -> ForceFrame | None:
-        """As Source.latest()."""
+        """Does the same as Source.latest()."""
 
 class Suit:
     """All arrays of a suit.toml (docs/suit.md), by their names. Devices are read in the background. `recording`: of the suit,

@@ -19,7 +19,7 @@ constexpr std::size_t kEqualFrames = 3;
 /// reading under a growing load does it, too, but stops.
 constexpr std::size_t kClockFrames = 8;
 
-/// The same where no more will come.
+/// The same where no more lines will come.
 constexpr std::size_t kClockFramesAtEnd = 4;
 
 /// Lines without a separator before a line is believed to be a frame: more than a frame has rows, if it has so many
@@ -30,7 +30,7 @@ std::size_t lines_without_separator(std::size_t values) {
   return values < 400 ? 16 : 4;
 }
 
-/// The same where no more will come: frames of which there is but one are not likely.
+/// The same where no more lines will come: a single frame is not likely.
 std::size_t lines_at_end(std::size_t values) {
   return values < 49 ? 33 : 4;
 }

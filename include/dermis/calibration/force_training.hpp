@@ -32,7 +32,7 @@ struct TrainingReport {
   std::size_t worst_taxel = 0;
   std::size_t groups = 0;            ///< Groups of taxels in reading order on which tables were compared with networks.
   std::size_t groups_on_tables = 0;  ///< Groups where tables were clearly better and are used.
-  std::vector<std::size_t> table_taxels;  ///< That have a look-up table in the place of their network.
+  std::vector<std::size_t> table_taxels;  ///< Taxels with a look-up table in place of their network.
   bool is_one_load = false;               ///< All loads are about the same: straight lines, no law could be learned.
   std::string choice;                     ///< One sentence: which networks were trained and what decided it.
 };
@@ -47,8 +47,8 @@ struct TestedLoad {
   std::vector<std::size_t> taxels;  ///< That carry it.
   double newtons = 0.0;             ///< The load, > 0.
   double residual_n = 0.0;          ///< Of the training [N].
-  double noise_n = 0.0;             ///< As large as the noise of the load [N].
-  double error_n = 0.0;             ///< As large as the error on a new load in the same place [N].
+  double noise_n = 0.0;             ///< Scaled to the noise of the load [N].
+  double error_n = 0.0;             ///< Scaled to the error on a new load in the same place [N].
   double leverage = 0.0;            ///< Leverage of the load on its own estimate: network::FittedResidual.
   std::size_t touch = 0;            ///< First sample of its touch, whose loads have errors in common.
 };

@@ -38,7 +38,7 @@ struct GainChange {
 
 /// A model with gains of today.
 struct Recalibration {
-  pipeline::Model model;  ///< With other gains; its provenance says why.
+  pipeline::Model model;  ///< The model with other gains; its provenance says why.
   GainChange change;
   std::size_t presses = 0;
   std::size_t taxels = 0;    ///< That were pressed.

@@ -28,7 +28,7 @@ inline constexpr double kMostDriftOfUnloaded = 0.5;
 
 /// The change that a tare found from the zero before it [taxels].
 struct TareStep {
-  std::vector<double> siemens;                ///< As far as it is more than noise [S], >= 0.
+  std::vector<double> siemens;                ///< Only where it is more than noise [S], >= 0.
   std::vector<std::uint8_t> is_beyond_drift;  ///< 1: more than kMostDriftOfUnloaded u beside the noise.
 };
 

@@ -35,7 +35,7 @@ struct SphereSolid {
 
 /// Triangles of a file, which only a viewer reads.
 struct MeshSolid {
-  std::string file;  ///< As the description of the body names it.
+  std::string file;  ///< Its name in the description of the body.
   Vector3 scale{1.0, 1.0, 1.0};
 };
 

@@ -122,7 +122,7 @@ struct ForceFrame {
   std::vector<float> signal_to_noise{};
   ForceSums sums{};  ///< Empty where the frame was not made by unit 4; sums then are those of `newtons`.
 
-  /// The force on the whole array. To be used in place of a sum of `newtons`, in which noise does not cancel. Taxels
+  /// The force on the whole array. Use it in place of a sum of `newtons`, in which noise does not cancel. Taxels
   /// without a force are left out. The standard deviation counts what taxels share: noise through the circuit, supply,
   /// drivers, temperature. Allocates nothing after the first call of a thread.
   [[nodiscard]] TotalForce total() const noexcept;
@@ -130,7 +130,7 @@ struct ForceFrame {
   /// The same of some taxels: their indices, each once.
   [[nodiscard]] TotalForce total(std::span<const std::size_t> taxels) const noexcept;
 
-  /// The same of several regions, one total each; what they have in common is found once.
+  /// The same of several regions, one total each; common parts are computed once.
   void find_totals(std::span<const std::span<const std::size_t>> regions, std::span<TotalForce> totals) const noexcept;
 };
 

@@ -10,8 +10,8 @@
 
 namespace dermis {
 
-/// Which way round a device sends its lines: how its frames become frames of the array. The members are applied in
-/// their order. By default nothing changes.
+/// The directions in which a device sends its lines: how its frames become frames of the array. The members are applied
+/// in their order. By default nothing changes.
 struct LineOrder {
   std::size_t skip_columns = 0;          ///< First columns that are no taxels, 0 ... kMaxLines - 1.
   bool transpose = false;                ///< A row as sent is a column.

@@ -29,7 +29,7 @@ struct Topic {
   /// Size of one message. A reliable subscriber that does not follow has up to 32 MB kept for it, but ten
   /// messages at least.
   std::size_t message_bytes = 1024;
-  bool is_kept = false;  ///< Who subscribes later gets the last message, too ("transient local").
+  bool is_kept = false;  ///< Later subscribers get the last message, too ("transient local").
 };
 
 using TopicId = std::size_t;

@@ -85,7 +85,7 @@ struct FileFormat {
   const char* otherwise;         ///< The error of any other file.
 };
 
-/// That the file is of the format, and has not lost its checksum. The error names no path.
+/// Checks that the file is of the format and has not lost its checksum. The error names no path.
 [[nodiscard]] Status check_format(const SafetensorsFile& file, const FileFormat& format);
 
 /// A line for the reader of a file of ours that is older than the checksums: damage to it does not show. It is empty

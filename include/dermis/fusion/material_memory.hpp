@@ -12,8 +12,8 @@
 
 namespace dermis::fusion {
 
-/// The memory of the material of a sheet: how the force that it feels, which the networks give, follows the load. The
-/// same for all taxels, as it belongs to the rubber.
+/// The memory of the material of a sheet: how the force that it feels, which the networks give, follows the load. It is
+/// the same for all taxels, as it belongs to the rubber.
 struct MemoryLaw {
   static constexpr std::array<double, 4> kCreepSeconds{0.1, 1.0, 10.0, 100.0};  ///< tau_k [s].
   static constexpr std::array<float, 3> kStopReach{0.1F, 0.3F, 1.0F};           ///< r_j.

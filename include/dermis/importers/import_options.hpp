@@ -13,7 +13,7 @@ namespace dermis::importers {
 
 /// The needed knowledge of a file of another system.
 struct ImportOptions {
-  std::optional<FrameShape> shape{};  ///< That the frames must have; empty: what the file says. 1x1 ... 1024x1024.
+  std::optional<FrameShape> shape{};  ///< Shape that the frames must have; empty: that of the file. 1x1 ... 1024x1024.
   std::optional<double> rate_hz{};    ///< Frames a second of a file without times. > 0
   std::string array{};                ///< Which of several arrays of a file; empty: the only one.
   std::function<void(const std::string&)> notice{};  ///< Told in one line what a user should know of the frames.

@@ -86,7 +86,7 @@ class LiveSuit {
   [[nodiscard]] static Result<std::unique_ptr<LiveSuit>> create(std::vector<LiveArray> arrays, LiveOptions options);
   LiveSuit(const LiveSuit&) = delete;
   LiveSuit& operator=(const LiveSuit&) = delete;
-  /// As stop().
+  /// Does the same as stop().
   ~LiveSuit();
 
   /// Once.

@@ -28,7 +28,7 @@ class FrameTroubles {
   /// The next frame of the source is not looked at.
   void skip() noexcept { ++number_; }
 
-  /// Those that were added.
+  /// The number of frames that were added.
   [[nodiscard]] std::size_t frames() const noexcept { return frames_; }
 
   /// A line for each kind of trouble that there was.
@@ -43,7 +43,7 @@ class FrameTroubles {
   /// How many frames were so, and the likely mend; empty: none.
   [[nodiscard]] std::optional<std::string> silent_frames() const;
 
-  /// That all frames are nothing but zeros, of an array that may read so where nothing touches it.
+  /// A note where all frames are zeros and an untouched array may read so.
   [[nodiscard]] std::optional<std::string> silence() const;
 
   /// Failed, with the likeliest cause, where more than half of the frames have no force, a temperature in kelvin, or

@@ -40,7 +40,7 @@ class StandingLoadWatch {
   /// Takes the results of the next frame. Frames that are rejected or not solved are ignored.
   void add(const ConductanceFrame& conductance, const ForceFrame& force);
 
-  /// From the next frame on, as if it were the first.
+  /// Takes the next frame as if it were the first.
   void begin_anew();
 
   /// Mean force of the taxels that were never released; empty where it is below 0.1 N, or before 5 s have passed.

@@ -25,8 +25,8 @@ struct SupplyRange {
   bool operator==(const SupplyRange&) const = default;
 };
 
-/// Which supplies of frames are believed. Nothing is bounded where the ADC's reference is the supply itself, for then
-/// the supply has no part in the forces. Thread-safe.
+/// Decides which supplies of frames are believed. Nothing is bounded where the ADC's reference is the supply itself,
+/// for then the supply has no part in the forces. Thread-safe.
 ///
 ///   trusted      used as it is: what was calibrated and nominal +- 10 %, 1 % more for the meter; or, where it is not
 ///                known what was calibrated, nominal +- 20 %
@@ -34,8 +34,8 @@ struct SupplyRange {
 ///   possible     from a third of nominal to three times it: the meter is probably wrong, so nominal is used; beyond it
 ///                no frame can be used
 ///
-/// Without a nominal supply (readout.supply_v) the middle of what was calibrated takes its place. Where that is unknown
-/// too, everything is trusted from a hundredth of the ADC's reference to a hundred times it.
+/// Without a nominal supply (readout.supply_v) the middle of the calibrated range takes its place. Where that is
+/// unknown too, everything is trusted from a hundredth of the ADC's reference to a hundred times it.
 class SupplyBounds {
  public:
   /// For a calibration: possible supplies are trusted.

@@ -12,7 +12,7 @@
 
 namespace dermis::recognition {
 
-/// Who may be named in an answer of predictions_of().
+/// The names that an answer of predictions_of() may contain.
 enum class Answers {
   classes,             ///< Always the likeliest class.
   classes_or_unknown,  ///< Or "unknown"; the lines have the score of it, too.

@@ -89,7 +89,7 @@ class McapWriter {
   [[nodiscard]] Status appear();
   /// Waits until the data of close_chunk() are on the disk. Another thread may call it while this one writes.
   [[nodiscard]] Status synchronise();
-  /// Writes the open chunk and the index, and puts the file in its place. To be called once.
+  /// Writes the open chunk and the index, and puts the file in its place. Call it once.
   [[nodiscard]] Status finish();
 
  private:

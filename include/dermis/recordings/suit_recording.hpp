@@ -64,7 +64,7 @@ class SuitRecordingWriter {
   /// array says how many before it are lost. Events have as much room again, so that frames do not take it.
   [[nodiscard]] Result<bool> try_write(std::size_t array, const RawFrame& frame);
   [[nodiscard]] Result<bool> try_write(const RecordedEvent& event);
-  /// To be called once, when no write() is under way or follows.
+  /// Call it once, when no write() is under way or follows.
   [[nodiscard]] Status commit();
 
  private:

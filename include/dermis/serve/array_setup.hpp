@@ -40,7 +40,7 @@ class ArraySetup {
 
   [[nodiscard]] std::uint16_t port() const noexcept;
 
-  /// Waits until a client has described the array; both are empty where `stop` was set before. To be called once.
+  /// Waits until a client has described the array; both are empty where `stop` was set before. Call it once.
   [[nodiscard]] DescribedArray run(const std::atomic<bool>& stop);
 
  private:

@@ -39,7 +39,7 @@ class Session {
   [[nodiscard]] std::uint16_t port() const noexcept;
 
   /// Runs all arrays until `stop` is set, which must end sources that wait, too; a recording is complete then. Fails
-  /// where it could not be written. To be called once.
+  /// where it could not be written. Call it once.
   [[nodiscard]] Status run(const std::atomic<bool>& stop);
 
  private:

@@ -19,7 +19,7 @@ namespace dermis::serve {
 
 /// A mesh of a body, as clients get it.
 struct BodyFile {
-  std::string name;  ///< As the description of the body names it.
+  std::string name;  ///< Its name in the description of the body.
   std::string path;  ///< "/body/0.stl"
   std::string bytes;
 };
@@ -66,7 +66,7 @@ class WornBody {
   [[nodiscard]] Pose suit_from_array(std::size_t array) const;  ///< Now.
   /// Poses of all links with all joints at 0.
   [[nodiscard]] const std::vector<Pose>& rest() const noexcept { return rest_; }
-  /// From where an array is at rest to where it is now.
+  /// The move of an array from its place at rest to its present one.
   [[nodiscard]] Pose move_of(std::size_t array) const;
 
  private:

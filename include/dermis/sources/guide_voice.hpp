@@ -30,7 +30,7 @@ class GuideVoice {
 
   void say(const GuideWords& words);
 
-  /// Those that were said last; at first, nothing is to be pressed.
+  /// The last words; at first, nothing is to be pressed.
   [[nodiscard]] GuideWords words() const;
 
  private:

@@ -102,12 +102,12 @@ class Server {
                                                               std::optional<PlaybackService> playback = {});
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
-  /// As stop().
+  /// Does the same as stop().
   ~Server();
 
   [[nodiscard]] std::uint16_t port() const noexcept;
 
-  /// Begins to serve: from now on the handlers and services may be called. To be called once.
+  /// Begins to serve: from now on the handlers and services may be called. Call it once.
   void start(Handlers handlers = {}, std::vector<Service> services = {});
 
   /// Closes all connections; waits for the handler or service that is at work, and calls none from then on.
