@@ -111,7 +111,8 @@ typedef struct dermis_total {
   size_t left_out;      /* Taxels without a force, which are not in the sum */
 } dermis_total;
 
-/* The force of the last frame on the taxels whose byte in `mask` [rows, cols] is not 0, or on all where it is NULL. Use it in place of a sum of newtons. These are cut at zero, so noise does not cancel in their sum. `count`: rows * cols. */
+/* The force of the last frame on the taxels whose byte in `mask` [rows, cols] is not 0, or on all where it is NULL. Use it
+ * in place of a sum of newtons. These are cut at zero, so noise does not cancel in their sum. `count`: rows * cols. */
 dermis_status dermis_pipeline_total(const dermis_pipeline* pipeline, const uint8_t* mask, size_t count,
                                     dermis_total* total);
 
