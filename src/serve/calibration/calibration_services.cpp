@@ -114,7 +114,7 @@ void CalibrationServices::replace(Calibration calibration) {
     std::swap(last_, calibration);
   }
   say_what_to_do();
-  // Its end may have to wait for a fit, the caller not.
+  // Its end may have to wait for a fit; the caller must not.
   if (calibration.guide) {
     ending_ = std::async(std::launch::async, [old = std::move(calibration.guide)]() mutable { old.reset(); });
   }

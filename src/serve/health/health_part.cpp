@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::int64_t kTicksToReport = std::int64_t{5} * Part::kTicksPerSecond;
 
-/// How the arrays are and how the work goes: the topics of health and statistics, and lines for the log where
-/// something is left out.
+/// The state of the arrays and of the work: the topics of health and statistics, and lines for the log where something
+/// is left out.
 class HealthPart final : public Part {
  public:
   HealthPart(Host& host, Topic health, Topic statistics)

@@ -81,7 +81,7 @@ void Tares::tare(std::size_t array, pipeline::TareOver over, const std::string& 
   zero.refusal.clear();
 }
 
-/// Those that were refused; all, where none was.
+/// The arrays whose tare was refused; all where none was.
 void Tares::force(const std::string& client) {
   const auto is_refused = [](const Zero& zero) { return !zero.refusal.empty(); };
   const bool is_any = std::any_of(zeros_.begin(), zeros_.end(), is_refused);

@@ -37,7 +37,7 @@ class Tares final : public Part {
   void model_changed(std::size_t array) override;
 
   /// Changes of zeros by clients that are done, a line each: "2026-11-22 10:15:00 UTC: chest was tared by
-  /// 127.0.0.1:53412". To be called again and again.
+  /// 127.0.0.1:53412". Call it again and again.
   [[nodiscard]] std::vector<std::string> follow();
 
  private:

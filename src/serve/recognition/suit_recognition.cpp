@@ -90,7 +90,7 @@ void SuitRecognition::hear(const live::ArrayResult& result) {
   topic_.publish(result.force.time, message_);
 }
 
-/// As they are at the time of a frame.
+/// Takes the further readings at the time of a frame.
 void SuitRecognition::read_further(Nanos time) {
   const std::lock_guard lock(readings_mutex_);
   if (pending_) {

@@ -23,8 +23,8 @@
 
 namespace dermis::serve {
 
-/// The topic /suit/recognition of docs/stream.md: what touches several arrays together, or one beside further readings.
-/// Thread-safe: each array on a thread of its own.
+/// The topic /suit/recognition of docs/stream.md: touches of several arrays together, or of one beside further
+/// readings. Thread-safe: each array on a thread of its own.
 class SuitRecognition final : public Part {
  public:
   /// By the classes of the suit, which must have some. Fails where they do not fit its arrays. `topics` and `recorder`

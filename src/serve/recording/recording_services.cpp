@@ -22,7 +22,7 @@ constexpr std::size_t kMostFileName = 255;
 constexpr const char* kMilliseconds = "a whole number of milliseconds since 1970";
 constexpr std::uint64_t kMostMilliseconds = 9'000'000'000'000;  // the year 2255; Nanos end soon after
 
-/// {"from_ms", "to_ms"}; what is missing does not bound.
+/// {"from_ms", "to_ms"}; a missing one sets no bound.
 Result<Selection> selection_of(const JsonRequest& request) {
   Selection selection{Nanos::min(), Nanos::max()};
   for (const auto& [field, end] : {std::pair("from_ms", &selection.first), std::pair("to_ms", &selection.last)}) {

@@ -41,7 +41,7 @@ class SuitRecorder {
   SuitRecorder(std::string wanted, Arrays arrays, Failed failed, Written written = {});
   SuitRecorder(const SuitRecorder&) = delete;
   SuitRecorder& operator=(const SuitRecorder&) = delete;
-  /// As end().
+  /// Does the same as end().
   ~SuitRecorder();
 
   /// Fails where the file cannot be made, or a recording goes on. `path`: of a file that is not there yet; empty: the
@@ -60,7 +60,7 @@ class SuitRecorder {
   /// Path of the present or the last recording.
   [[nodiscard]] std::string path() const;
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_.load(); }
-  /// Frames and events that the present or the last recording has not, because its disk did not follow.
+  /// Frames and events that are missing in the present or the last recording, because its disk was too slow.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_.load(); }
 
  private:

@@ -148,7 +148,7 @@ Status read_threats(const std::string& path, const Notice& notice, ServedSuit& s
   return Done{};
 }
 
-/// Where an array is on a body that stands at rest.
+/// The place of an array on a body at rest.
 struct RestPlace {
   WornBody::Carried carried;
   Pose suit_from_array;

@@ -198,7 +198,7 @@ class ArraySetup::Implementation {
     return json_text(nlohmann::json{{"file", model}});
   }
 
-  /// Waits for a frame of such an array: what sends none is not served, as its map would stay blank. Those of
+  /// Waits for a frame of such an array: a source without one is not served, as its map would stay blank. Those of
   /// recordings are turned already.
   Status check_frames(const ArrayDescription& array) {
     const FrameShape shape{array.rows, array.cols};

@@ -9,7 +9,7 @@
 
 namespace dermis::serve {
 
-/// Where an array is pressed of which nothing is known: at the reading that is farthest from its rest. Not thread-safe.
+/// Finds where an unknown array is pressed: at the reading farthest from its rest. Not thread-safe.
 class TouchFinder {
  public:
   static constexpr std::size_t kRestFrames = 15;  ///< The first ones: nothing may press meanwhile.

@@ -16,8 +16,8 @@
 
 namespace dermis::serve {
 
-/// Reads a source, from its making to its end, for what it sends and where the array is touched. A recording is read at
-/// its own pace. Thread-safe.
+/// Reads a source as long as it lives, for its readings and for where the array is touched. A recording is read at its
+/// own pace. Thread-safe.
 class TouchWatch {
  public:
   struct Seen {

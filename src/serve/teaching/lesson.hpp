@@ -38,7 +38,7 @@ struct LearnedLesson {
   recognition::Learned learned;
 };
 
-/// A person names touches while they happen, and classes are learned of them. One array listens at a time; each has
+/// A person names touches while they happen, and classes are learned from them. One array listens at a time; each has
 /// its examples. Thread-safe; learn() for one thread at a time.
 class Lesson {
  public:
