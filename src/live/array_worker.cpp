@@ -161,7 +161,7 @@ bool ArrayWorker::was_sought_back() const noexcept {
   return last_time_ - frame_.raw.time > kLate;
 }
 
-/// A recording was sought back: the frame counts, and what touched the array then is not followed from now.
+/// A recording was sought back: the frame counts, and touches from before are not followed on.
 void ArrayWorker::begin_anew() {
   pipeline_->process(frame_.raw, frame_.force);
   tracker_.forget();

@@ -21,7 +21,7 @@ using recognition::LoadRecording;
 
 constexpr double kMostRateDifference = 0.1;  // of the first recording
 
-/// A recording, and what it says of its frames.
+/// A recording, and its notes on its frames.
 struct ReadRecording {
   LoadRecording recording;
   Layout layout;

@@ -24,7 +24,7 @@ ArrayDescription array_of(const Layout& layout) {
   return array;
 }
 
-/// Whether these classes can name what comes from `input`.
+/// Whether these classes can name touches of `input`.
 Status check_classes(const Classes& classes, const RecognitionInput& input) {
   if (classes.layout.extras > 0 && input.loads.extra.empty()) {
     return bad_field("extra", "the classes of " + input.classes + " need " + std::to_string(classes.layout.extras) +

@@ -38,8 +38,8 @@ using Question = std::function<Answer()>;
 /// there.
 using Ask = std::function<void(Question)>;
 
-/// One client of the stream, as the protocol has it: what it asked for and what waits for it. Knows no socket.
-/// Not thread-safe. Many members: what it follows, what waits, and how far it is.
+/// One client of the stream, as the protocol has it: its requests and its waiting messages. Knows no socket. Not
+/// thread-safe. Many members: its subscriptions, its waiting messages, and its progress.
 class Client {
  public:
   /// `offer` must outlive it and its questions. `address`: "127.0.0.1:53412". `is_sdk`: speaks foxglove.sdk.v1, which
@@ -50,7 +50,7 @@ class Client {
   Client& operator=(const Client&) = delete;
   ~Client();
 
-  /// Says what there is. To be called once.
+  /// Announces the offer. Call it once.
   void greet(const std::string& name, const std::string& session, std::span<const Channel> channels);
   /// Once for each channel, in the order of their ids; those that it knows by greet() are left out.
   void advertise(const Channel& channel);

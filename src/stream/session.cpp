@@ -22,7 +22,7 @@ constexpr std::size_t kMostMessageBytes = 1U << 20U;  // from a client
 constexpr std::uint32_t kMostHeaderBytes = 8192;
 constexpr double kMostRequests = 200;              // at once, and then in a second; the next has to wait
 constexpr double kMostRequestBytes = 256U << 10U;  // in a second, after a message of the most bytes
-constexpr int kSendBuffer = 256 << 10;             // [bytes]; what waits there cannot be dropped any more
+constexpr int kSendBuffer = 256 << 10;             // [bytes]; data waiting there cannot be dropped any more
 constexpr seconds kRequestTime{5};                 // from the connection, or the last answer, to the end of the request
 constexpr seconds kIdleTime{30};
 
@@ -234,7 +234,7 @@ void Session::on_answer(const Answer& answer) {
   read_on();
 }
 
-/// Ends the connection of a client that does what it must not.
+/// Ends the connection of a client that breaks the rules.
 void Session::cut(const std::string& why) {
   owner_.on_cut(peer_ + ": closed: it " + why);
   end();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFirstRate = 12.5e3;  // [bytes/s]
 constexpr double kKept = 0.8;          // of the rate, while so little is sent that nothing is known of it
-constexpr double kQueued = 0.15;       // [s]; what takes longer waits for the line
+constexpr double kQueued = 0.15;       // [s]; longer times mean that messages wait for the line
 constexpr std::chrono::milliseconds kLeastTime{150};
 
 double seconds(TakenWindow::Clock::duration span) {

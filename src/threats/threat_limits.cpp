@@ -21,7 +21,7 @@ constexpr double kPascalsPerKilopascal = 1000.0;
 /// The key of a limit, whose name has its unit.
 struct LimitKey {
   std::string_view name;
-  double si;  // what 1 of it is
+  double si;  // its size in SI units
 };
 
 constexpr LimitKey kNewtons{"limit_n", 1.0};

@@ -36,7 +36,8 @@ struct ServerOptions {
   std::string token;
   std::string name = "dermis";    ///< Told to clients.
   std::size_t most_clients = 64;  ///< Clients of the stream, 1 ... 1000; more are refused with 503.
-  /// Per client; beyond it the oldest data messages are dropped, and who lets as many bytes of answers wait is cut off.
+  /// Per client; beyond it the oldest data messages are dropped. A client with as many bytes of waiting answers is cut
+  /// off.
   std::size_t client_queue_bytes = 2U << 20U;
   std::function<void(const std::string&)> notice{};  ///< One line for the log; called on the server's thread.
 

@@ -41,7 +41,7 @@ struct Zone {
   bool operator==(const Zone&) const = default;
 };
 
-/// One line of what must not be.
+/// One limit.
 struct ThreatLimit {
   std::string name;
   ThreatQuantity quantity = ThreatQuantity::contact_force;

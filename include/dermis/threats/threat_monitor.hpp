@@ -18,13 +18,13 @@
 
 namespace dermis::threats {
 
-/// Over which force_rate is taken.
+/// The window of force_rate.
 inline constexpr Nanos kRateWindow = std::chrono::milliseconds(30);
 
 /// A value is beyond a limit only where so many standard deviations less still are.
 inline constexpr double kThreatSigmas = 2.0;
 
-/// A value that is held against a limit.
+/// A value that is compared with a limit.
 struct ThreatValue {
   double value = 0.0;      ///< In the unit of the quantity.
   double sigma = 0.0;      ///< Standard deviation; 0 where `value` is a lower bound (a taxel is saturated).
