@@ -12,8 +12,8 @@ namespace {
 constexpr float kPressedSigmas = 3.0F;  // of the additive noise: a taxel that stands out less is not pressed
 constexpr double kSharpShare = 0.9;     // of a contact's force, on two taxels
 
-/// The force surely exceeds value - 2 sigma. Infinite: the value is a lower bound itself. Beyond the calibrated range
-/// sigma is that of a logarithm.
+/// The sigma with which the force surely exceeds value - 2 sigma. Infinite: the value is a lower bound itself. Beyond
+/// the calibrated range sigma is that of a logarithm.
 double sigma_of_bound(double value, double sigma, bool is_beyond_range) {
   if (!std::isfinite(sigma)) return 0.0;
   if (!is_beyond_range || !(value > 0.0)) return sigma;
