@@ -104,7 +104,7 @@ async function isTrueEverywhere(server, ...states) {
   await becomes(page, "live");
   for (const view of VIEWS.filter((name) => name !== "calibration")) {
     await page.locator(`[data-tab=${view}]`).click();
-    await page.waitForTimeout(1500);
+    await page.waitForTimeout(500);
     await isTrue(page, ...states);
     assert.equal(await part(page, "connection").textContent(), "Live");
   }

@@ -4,4 +4,13 @@ import "./styles/page.css";
 import "./styles/views.css";
 import { App } from "./app";
 
-new App().begin();
+try {
+  new App().begin();
+} catch (error) {
+  // A blank page says nothing: a browser without WebGL 2, for one, gets this line.
+  const line = document.createElement("p");
+  line.setAttribute("role", "alert");
+  line.textContent = error instanceof Error ? error.message : String(error);
+  document.body.replaceChildren(line);
+  throw error;
+}

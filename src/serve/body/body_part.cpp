@@ -20,8 +20,8 @@ constexpr std::size_t kMostJointsBytes = std::size_t{64} << 10U;
 /// Where the arrays are, and the body that carries them where there is one.
 class BodyPart final : public Part {
  public:
-  BodyPart(const ServedSuit& suit, Host& host, Topic transforms)
-      : suit_(suit), host_(host), transforms_(std::move(transforms)) {}
+  BodyPart(const ServedSuit& suit, Host& host, const Topic& transforms)
+      : suit_(suit), host_(host), transforms_(transforms) {}
 
   [[nodiscard]] std::vector<stream::Service> services() override {
     if (!suit_.body) return {};
@@ -29,7 +29,7 @@ class BodyPart final : public Part {
   }
 
   /// Offers the meshes of the body, which /suit.json names, and publishes the present places for later nodes.
-  [[nodiscard]] Status begin() override {
+  [[nodiscard]] Status prepare() override {
     publish(Ends::dds);
     if (!suit_.body) return Done{};
     for (const BodyFile& file : suit_.body->files()) {

@@ -23,8 +23,8 @@ constexpr std::int64_t kTicksToReport = std::int64_t{5} * Part::kTicksPerSecond;
 /// is left out.
 class HealthPart final : public Part {
  public:
-  HealthPart(Host& host, Topic health, Topic statistics)
-      : host_(host), health_(std::move(health)), statistics_(std::move(statistics)), ageing_(host.suit) {}
+  HealthPart(Host& host, const Topic& health, const Topic& statistics)
+      : host_(host), health_(health), statistics_(statistics), ageing_(host.suit) {}
 
   void hear(const live::ArrayResult& result) override { ageing_.add(result); }
   void model_changed(std::size_t array) override { ageing_.begin_anew(array, *host_.models.of(array)); }
@@ -34,7 +34,7 @@ class HealthPart final : public Part {
     if (tick % 30 == 5) publish_health();
     if (tick % kTicksToReport == 0) report_left_out();
   }
-  void end() override { report_left_out(); }
+  void finish() override { report_left_out(); }
 
   void diagnose(std::vector<messages::Diagnosis>& diagnoses) const override {
     for (std::size_t k = 0; k < host_.suit.arrays.size(); ++k) {

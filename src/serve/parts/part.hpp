@@ -39,7 +39,7 @@ class Part {
   [[nodiscard]] virtual std::vector<stream::Service> services() { return {}; }
   [[nodiscard]] virtual std::vector<LiveParameter> parameters() { return {}; }
   /// Does the rest of the work before clients come. Errors end the session.
-  [[nodiscard]] virtual Status begin() { return Done{}; }
+  [[nodiscard]] virtual Status prepare() { return Done{}; }
 
   /// Takes every frame of every array with its results.
   virtual void hear(const live::ArrayResult& /*result*/) {}
@@ -53,7 +53,7 @@ class Part {
   /// Adds the problems of the arrays.
   virtual void diagnose(std::vector<messages::Diagnosis>& /*diagnoses*/) const {}
   /// After the last frame.
-  virtual void end() {}
+  virtual void finish() {}
 };
 
 }  // namespace dermis::serve

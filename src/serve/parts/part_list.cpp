@@ -12,9 +12,9 @@ void PartList::add(std::unique_ptr<Part> part) {
   parts_.push_back(std::move(part));
 }
 
-Status PartList::begin() {
+Status PartList::prepare() {
   for (const auto& part : parts_) {
-    if (Status begun = part->begin(); !begun) return begun;
+    if (Status prepared = part->prepare(); !prepared) return prepared;
   }
   return Done{};
 }
@@ -44,8 +44,8 @@ std::vector<messages::Diagnosis> PartList::diagnoses() const {
   return diagnoses;
 }
 
-void PartList::end() const {
-  for (const auto& part : parts_) part->end();
+void PartList::finish() const {
+  for (const auto& part : parts_) part->finish();
 }
 
 std::vector<stream::Service> PartList::services() const {

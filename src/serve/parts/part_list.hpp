@@ -14,14 +14,14 @@ namespace dermis::serve {
 class PartList {
  public:
   void add(std::unique_ptr<Part> part);
-  [[nodiscard]] Status begin();
+  [[nodiscard]] Status prepare();
 
   void hear(const live::ArrayResult& result) const;
   void tick(std::int64_t tick) const;
   void model_changed(std::size_t array) const;
   [[nodiscard]] Status use_classes(std::size_t array, const recognition::Classes& classes) const;
   [[nodiscard]] std::vector<messages::Diagnosis> diagnoses() const;
-  void end() const;
+  void finish() const;
 
   [[nodiscard]] std::vector<stream::Service> services() const;
   [[nodiscard]] std::vector<stream::Parameter> parameters() const;

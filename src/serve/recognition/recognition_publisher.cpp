@@ -17,7 +17,7 @@ RecognitionPublisher::RecognitionPublisher(const ServedSuit& suit, Topics& topic
   for (const ServedArray& array : suit.arrays) arrays_.emplace_back().array = &array;
 }
 
-Status RecognitionPublisher::begin() {
+Status RecognitionPublisher::prepare() {
   for (std::size_t k = 0; k < arrays_.size(); ++k) {
     const std::optional<recognition::Classes>& classes = arrays_[k].array->classes;
     if (!classes) continue;

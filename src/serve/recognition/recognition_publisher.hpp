@@ -29,7 +29,7 @@ class RecognitionPublisher final : public Part {
   RecognitionPublisher(const ServedSuit& suit, Topics& topics, SuitRecorder& recorder);
 
   /// Takes the classes into use that the suit names.
-  [[nodiscard]] Status begin() override;
+  [[nodiscard]] Status prepare() override;
   /// Errors: "array 'chest': ...", where they do not fit.
   [[nodiscard]] Status use_classes(std::size_t array, const recognition::Classes& classes) override;
   void hear(const live::ArrayResult& result) override;

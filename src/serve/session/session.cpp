@@ -85,7 +85,7 @@ Status Session::Implementation::make_parts() {
 }
 
 Status Session::Implementation::start() {
-  if (Status begun = parts_.begin(); !begun) return begun;
+  if (Status prepared = parts_.prepare(); !prepared) return prepared;
   host_->show_suit();
   server_->start(handlers(), parts_.services());
   const std::string& wanted = host_->options.record;
@@ -115,7 +115,7 @@ Status Session::Implementation::run(const std::atomic<bool>& stop) {
   }
   if (suit_.playback) suit_.playback->stop();
   live_->stop();
-  parts_.end();
+  parts_.finish();
   return recorder_->end();
 }
 

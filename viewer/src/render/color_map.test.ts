@@ -44,6 +44,12 @@ describe("the colour map", () => {
     expect(cssGradient(true)).toContain(`${colorOf(0.01, true)} 1.00%`);
   });
 
+  it("leaves a sheet at rest the white of its panel in the light theme", () => {
+    expect(rgbOf(0, true)).toEqual([1, 1, 1]);
+    expect(rgbOf(TOE_SHARE, true)).toEqual(rgbOf(TOE_SHARE * (1 + 1e-12), true).map((value) => expect.closeTo(value, 6)));
+    expect(shaderSource()).toContain("vec3(1.0), white");
+  });
+
   it("is the palette of terminals, pictures and reports", () => {
     const header = readFileSync("../src/report/palette.hpp", "utf8");
     const rows = [...header.matchAll(/\{(-?[\d.]+), (-?[\d.]+), (-?[\d.]+)\}/g)].map((match) => match.slice(1).map(Number));

@@ -35,11 +35,13 @@ function channel(share: number, index: 0 | 1 | 2): number {
 
 /**
  * Red, green and blue in 0 ... 1 of a share of the scale; beyond its ends the colour of the end. The light theme reads the
- * palette backwards (`fromLight`): there an empty map is pale.
+ * palette backwards (`fromLight`). There a sheet at rest has the white of its panel, which the first percent leaves.
  */
 export function rgbOf(share: number, fromLight = false): [number, number, number] {
-  const place = fromLight ? 1 - toed(share) : toed(share);
-  return [channel(place, 0), channel(place, 1), channel(place, 2)];
+  const place = fromLight ? 1 - Math.max(toed(share), TOE_COLORS) : toed(share);
+  const white = fromLight ? Math.max(0, 1 - Math.max(0, share) / TOE_SHARE) : 0;
+  const mixed = (index: 0 | 1 | 2): number => channel(place, index) * (1 - white) + white;
+  return [mixed(0), mixed(1), mixed(2)];
 }
 
 export function colorOf(share: number, fromLight = false): string {
@@ -67,8 +69,9 @@ export function shaderSource(): string {
 vec3 color_map(float share) {
   float inside = clamp(share, 0.0, 1.0);
   float x = inside < ${TOE_SHARE} ? inside * ${slope(TOE_COLORS / TOE_SHARE)} : ${TOE_COLORS} + (inside - ${TOE_SHARE}) * ${slope((1 - TOE_COLORS) / (1 - TOE_SHARE))};
-  if (from_light) x = 1.0 - x;
-  return clamp(${horner}, 0.0, 1.0);
+  if (from_light) x = 1.0 - max(x, ${TOE_COLORS});
+  float white = from_light ? max(0.0, 1.0 - inside / ${TOE_SHARE}) : 0.0;
+  return mix(clamp(${horner}, 0.0, 1.0), vec3(1.0), white);
 }
 
 float opposite(vec3 color) {

@@ -51,6 +51,8 @@ class ArrayView implements View {
   #layoutDue = true;
   #mapsDue = true;
   #overlayDue = true;
+  /** By the ids of contacts: labels say the same. */
+  #forcesInTable = new Map<number, number>();
   #textDue = true;
   #contactsVersion = -1;
   #textMs = 0;
@@ -111,8 +113,8 @@ class ArrayView implements View {
       this.#maps.draw();
       this.#mapsDue = false;
     }
-    this.#drawContacts(array);
     if (this.#textDue && nowMs - this.#textMs >= TEXT_PERIOD_MS) this.#showText(array, nowMs);
+    this.#drawContacts(array);
   }
 
   key(event: KeyboardEvent): boolean {
@@ -268,11 +270,12 @@ class ArrayView implements View {
     if (!hasNews && !this.#overlayDue) return;
     this.#contactsVersion = shown?.version ?? -1;
     this.#overlayDue = false;
-    this.#textDue = true;
+    if (hasNews) this.#textDue = true;
     const { contacts, centre, load } = this.#choices;
     this.#overlay.draw(this.#areas, array, {
       load: this.#areas[load] ?? NOWHERE,
       contacts: contacts.value ? shown : undefined,
+      forces: this.#forcesInTable,
       centre: centre.value ? shown?.centre : undefined,
       region: this.#pointer.preview ?? live.region.region.value,
       cursor: this.#pointer.cursor,
@@ -290,6 +293,9 @@ class ArrayView implements View {
     setData(this.element, "frames", String(display.framesDrawn));
     const shown = live.arrays[suit.indexOf(array.name)];
     if (shown === undefined) return;
+    const { contacts, count } = shown.contacts;
+    this.#forcesInTable = new Map(contacts.slice(0, count).map(({ id, forceN }) => [id, forceN]));
+    this.#overlayDue = true;
     this.#contacts.show(shown, array.calibrated);
     this.#summary.show(array, shown, array.calibrated ? force! : raw!);
     this.#summary.showRegion(live.region.region.value?.array === array.name ? live.region : undefined);

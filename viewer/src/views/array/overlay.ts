@@ -24,6 +24,8 @@ export interface Marks {
   /** The map of forces or pressures, which alone has contacts and their centre. */
   readonly load: Area;
   readonly contacts: ArrayLive | undefined;
+  /** [N] by the ids of contacts, as the table shows them; others have their own. */
+  readonly forces: ReadonlyMap<number, number>;
   readonly centre: Trail | undefined;
   readonly region: Region | undefined;
   /** -1: nowhere. */
@@ -73,7 +75,7 @@ export class Overlay {
     this.#pen.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
   }
 
-  draw(areas: readonly Area[], array: ArrayDescription, { load, contacts, centre, region, cursor, pins }: Marks): void {
+  draw(areas: readonly Area[], array: ArrayDescription, { load, contacts, forces, centre, region, cursor, pins }: Marks): void {
     this.#pen.save();
     this.#pen.resetTransform();
     this.#pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -88,7 +90,7 @@ export class Overlay {
       if (area === load) room.take(label);
     }
     if (load.width === 0) return;
-    if (contacts !== undefined) this.#drawContacts(load, array, contacts, room);
+    if (contacts !== undefined) this.#drawContacts(load, array, contacts, forces, room);
     if (centre !== undefined) this.#drawCentre(centre, scaleOf(load, array));
   }
 
@@ -153,7 +155,7 @@ export class Overlay {
     this.#textTwice(String(label), left + 3, top + 2);
   }
 
-  #drawContacts(area: Area, array: ArrayDescription, live: ArrayLive, room: LabelRoom): void {
+  #drawContacts(area: Area, array: ArrayDescription, live: ArrayLive, forces: ReadonlyMap<number, number>, room: LabelRoom): void {
     const { originX, originY, pixelsX, pixelsY } = scaleOf(area, array);
     const pen = this.#pen;
     pen.save();
@@ -171,7 +173,7 @@ export class Overlay {
       const reach = 0.75 * Math.sqrt(contact.areaM2 / Math.PI);
       const x = originX + (contact.x + reach) * pixelsX + 4;
       const y = originY + (contact.y - reach) * pixelsY - 22;
-      this.#drawLabel(contact, live.slots.indexOf(contact.id), x, y, area, room);
+      this.#drawLabel(contact, forces.get(contact.id) ?? contact.forceN, live.slots.indexOf(contact.id), x, y, area, room);
     }
     pen.restore();
   }
@@ -206,9 +208,9 @@ export class Overlay {
   }
 
   /** With its corner at x and y or where there is room near it; without any, its line in the table has to do. */
-  #drawLabel(contact: Contact, slot: number, x: number, y: number, area: Area, room: LabelRoom): void {
+  #drawLabel(contact: Contact, forceN: number, slot: number, x: number, y: number, area: Area, room: LabelRoom): void {
     const pen = this.#pen;
-    const text = `#${contact.id}  ${contact.forceN.toFixed(contact.forceN < 10 ? 2 : 1)} N`;
+    const text = `#${contact.id}  ${forceN.toFixed(forceN < 10 ? 2 : 1)} N`;
     pen.font = FONT;
     const width = pen.measureText(text).width + 16;
     const place = room.place({ x: x - area.left + 0.5 * width, y: y - area.top + 0.5 * LABEL_HEIGHT, width, height: LABEL_HEIGHT });
