@@ -16,7 +16,7 @@
 #include "dermis/core/frame_source.hpp"
 #include "dermis/core/result.hpp"
 
-/// What the sources of the Python module share. python/dermis/__init__.pyi is the reference of what they bind.
+/// Shared by the sources of the Python module. python/dermis/__init__.pyi is the reference of what they bind.
 namespace dermis::python {
 
 namespace py = pybind11;

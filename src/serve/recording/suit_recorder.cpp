@@ -57,7 +57,7 @@ void SuitRecorder::stop() {
   recording_ = false;
 }
 
-/// How it ended is told here, too: once, and by a thread that nobody waits for.
+/// The end is reported here, too: once, and by a thread that nobody waits for.
 void SuitRecorder::close(recordings::SuitRecordingWriter& writer) {
   outcome_ = writer.commit();
   if (!outcome_) return failed_(outcome_.error().message);
