@@ -82,7 +82,7 @@ void SuitRecorder::await_closing() {
 
 void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
   write_with([&](recordings::SuitRecordingWriter& writer) {
-    const Result<bool> taken = writer.try_write(array, raw);
+    Result<bool> taken = writer.try_write(array, raw);
     if (taken) ++(*taken ? frames_ : left_out_);
     return taken;
   });
@@ -90,7 +90,7 @@ void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
 
 void SuitRecorder::write(const recordings::RecordedEvent& event) {
   write_with([&](recordings::SuitRecordingWriter& writer) {
-    const Result<bool> taken = writer.try_write(event);
+    Result<bool> taken = writer.try_write(event);
     if (taken && !*taken) ++left_out_;
     return taken;
   });
