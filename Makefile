@@ -64,6 +64,7 @@ bench: setup
 docs: setup
 	/usr/bin/python3 scripts/check_docs.py
 	/usr/bin/python3 scripts/sentences.py >/dev/null
+	/usr/bin/python3 scripts/sentences.py --comments
 
 package: setup
 	scripts/setup package

@@ -271,7 +271,7 @@ struct Outcome {
   std::string circuit;  // the kind that was taken, or why there is no model
   bool is_right = false;
   bool is_none = false;
-  bool is_told = true;
+  bool is_distinguishable = true;
   double median = 1.0;
   double seconds = 0.0;
   calibration::Coverage coverage;
@@ -301,9 +301,9 @@ Outcome calibrate(const ArrayDescription& array, const Kind& truth, const Record
   }
   if (database->circuit_fit) {
     const calibration::CircuitFit& fit = *database->circuit_fit;
-    outcome.is_told = std::none_of(fit.candidates.begin(), fit.candidates.end(),
-                                   [](const auto& candidate) { return candidate.indistinguishable; });
-    outcome.presses = outcome.is_told ? fit.driver_presses : fit.telling_presses;
+    outcome.is_distinguishable = std::none_of(fit.candidates.begin(), fit.candidates.end(),
+                                              [](const auto& candidate) { return candidate.indistinguishable; });
+    outcome.presses = outcome.is_distinguishable ? fit.driver_presses : fit.discriminating_presses;
   }
   outcome.circuit = name_of(database->array.readout);
   outcome.is_right = is_kind(database->array.readout, truth);
@@ -331,7 +331,7 @@ struct Tally {
 void count(const Outcome& found, const Outcome& known, Tally& tally) {
   ++tally.arrays;
   if (found.is_none) ++tally.none;
-  if (!found.is_told) {
+  if (!found.is_distinguishable) {
     ++tally.doubted;
     return;
   }
@@ -342,7 +342,9 @@ void count(const Outcome& found, const Outcome& known, Tally& tally) {
 void print(std::uint64_t seed, const Specimen& specimen, const Outcome& found, const Outcome& known, bool asked) {
   const ArrayDescription& truth = specimen.array;
   const simulation::RubberOptions& rubber = specimen.physics.rubber;
-  const std::string verdict = !found.is_told ? "cannot tell" : found.is_right ? "right" : "WRONG: " + found.circuit;
+  const std::string verdict = !found.is_distinguishable ? "cannot tell"
+                              : found.is_right          ? "right"
+                                                        : "WRONG: " + found.circuit;
   fmt::print(
       "seed {}: {}x{} {}, {}, drivers {:.0f} ohm +- {:.0f} %, loads {:.0f} ohm, {} bit, rubber {:.0f} ohm at 10 N, "
       "{:.0f} "

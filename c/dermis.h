@@ -72,16 +72,16 @@ const char* dermis_model_name(const dermis_model* model);
 
 /* ---- frames ---- */
 
-/* What a device said. */
+/* A frame as the device sent it. */
 typedef struct dermis_raw_frame {
-  int64_t time_ns;            /* Of the host or of the device; it must not go back. */
+  int64_t time_ns;            /* Time of the host or of the device; it must not go back. */
   double temperature_celsius; /* NaN: not known. */
   double supply_v;            /* > 0; NaN: not known. */
   const float* counts;        /* [rows, cols], ADC readings */
   size_t count;               /* rows * cols */
 } dermis_raw_frame;
 
-/* What the robot wants. */
+/* Forces for the robot. */
 typedef struct dermis_force_frame {
   int64_t time_ns;
   uint32_t status;              /* DERMIS_FRAME_... */
@@ -100,7 +100,7 @@ typedef struct dermis_pipeline dermis_pipeline;
 dermis_status dermis_pipeline_create(const dermis_model* model, dermis_pipeline** pipeline);
 void dermis_pipeline_free(dermis_pipeline* pipeline);
 
-/* Counts to newtons. What is wrong with a frame is in its status; only NULL pointers are an error. Allocates nothing after
+/* Counts to newtons. Errors of a frame are in its status; only NULL pointers are an error. Allocates nothing after
  * the first frame. */
 dermis_status dermis_pipeline_process(dermis_pipeline* pipeline, const dermis_raw_frame* raw, dermis_force_frame* force);
 
@@ -111,8 +111,8 @@ typedef struct dermis_total {
   size_t left_out;      /* Taxels without a force, which are not in the sum */
 } dermis_total;
 
-/* The force of the last frame on the taxels whose byte in `mask` [rows, cols] is not 0, or on all where it is NULL. To be
- * used in place of a sum of newtons, which are cut at zero: in that, noise does not cancel. `count`: rows * cols. */
+/* The force of the last frame on the taxels whose byte in `mask` [rows, cols] is not 0, or on all where it is NULL. Use it
+ * in place of a sum of newtons. These are cut at zero, so noise does not cancel in their sum. `count`: rows * cols. */
 dermis_status dermis_pipeline_total(const dermis_pipeline* pipeline, const uint8_t* mask, size_t count,
                                     dermis_total* total);
 
@@ -123,7 +123,7 @@ dermis_status dermis_pipeline_tare(dermis_pipeline* pipeline);
 /* The same, whatever stands there: it reads 0 N from then on. */
 dermis_status dermis_pipeline_tare_force(dermis_pipeline* pipeline);
 
-/* Of the last tare: "r3c4 to r5c6 read 48 N: take it off and tare again"; "" where it was not refused, or goes on. */
+/* For a refused tare: "r3c4 to r5c6 read 48 N: take it off and tare again". Otherwise "", also while a tare goes on. */
 const char* dermis_pipeline_tare_refused(dermis_pipeline* pipeline);
 
 /* Back to the zero before the last tare. */

@@ -34,7 +34,7 @@ using Message = std::span<const std::uint8_t>;
 constexpr std::size_t kMostBytesOfATopic = std::size_t{32} << 20U;
 constexpr std::size_t kFewestMessages = 10;
 constexpr std::size_t kMostMessages = 1000;
-// What was lost is sent again after this.
+// Lost data are sent again after this.
 constexpr std::uint32_t kHeartbeatNanos = 10'000'000;
 constexpr std::uint32_t kProgramsOnThisMachine = 32;
 
@@ -120,7 +120,7 @@ class FastWriter final : public Writer, private fast::DataWriterListener {
   std::atomic<std::int32_t> readers_{0};
 };
 
-/// By UDP alone: memory shared with other versions of Fast DDS would not be understood.
+/// UDP is the only transport: other versions of Fast DDS would not understand our shared memory.
 fast::DomainParticipantQos participant_qos(bool loopback_only) {
   fast::DomainParticipantQos qos;
   qos.name("dermis");

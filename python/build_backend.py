@@ -49,7 +49,7 @@ def record_line(name, content):
 
 
 def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
-    """By this pip asks for numpy before it builds for minutes."""
+    """So pip asks for numpy before it builds for minutes."""
     folder = Path(metadata_directory) / info()
     folder.mkdir()
     (folder / "METADATA").write_text(metadata())

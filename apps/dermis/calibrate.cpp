@@ -130,7 +130,7 @@ nlohmann::ordered_json circuit_json(const calibration::CircuitFit& fit) {
                                  {"statements", fit.statements},
                                  {"telling_presses", nlohmann::ordered_json::array()},
                                  {"candidates", nlohmann::ordered_json::array()}};
-  for (const calibration::PressPair& pair : fit.telling_presses) {
+  for (const calibration::PressPair& pair : fit.discriminating_presses) {
     json["telling_presses"].push_back(
         {{"taxels", {fit.array.taxel_name(pair.first), fit.array.taxel_name(pair.second)}}, {"newtons", pair.newtons}});
   }

@@ -21,8 +21,8 @@ constexpr std::chrono::seconds kGrace{2};
 constexpr std::chrono::milliseconds kLook{5};
 constexpr int kSignalled = 128;  // as shells say it
 
-/// A group of its own, so that what it starts is stopped with it; no file of ours but the output, so that it holds no
-/// device.
+/// The child has a group of its own, so that its own children are stopped with it. It gets no file of ours but the
+/// output, so that it holds no device.
 class SpawnSettings {
  public:
   SpawnSettings() {

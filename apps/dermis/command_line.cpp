@@ -75,7 +75,7 @@ void check_text(CLI::Option& option, const std::vector<Value>& /*value*/) {
   check_text(option, Value());
 }
 
-/// What "-" means.
+/// The meaning of "-".
 std::function<std::string(std::string)> stream_for_dash(const std::string& stream) {
   return [stream](const std::string& name) { return name == "-" ? stream : name; };
 }
@@ -108,7 +108,7 @@ const CLI::App& chosen_command(const CLI::App& app) {
   return named.empty() ? app : chosen_command(*named.back());
 }
 
-/// What is wrong with an argument that nothing takes, and the name that may have been meant.
+/// Names the problem of an unknown argument, and the name that may have been meant.
 std::string unknown(const std::string& argument, const CLI::App& command) {
   const bool is_option = argument.starts_with('-');
   const std::set<std::string> known = is_option ? options_of(command) : commands_of(command);
@@ -173,7 +173,7 @@ void add_version(CLI::App& app, Action& chosen) {
   });
 }
 
-/// What --help shows of the command with these names, "circuit" "forward".
+/// The --help of the command with these names, "circuit" "forward".
 Result<std::string> help_of(const CLI::App& app, const std::vector<std::string>& names) {
   const CLI::App* command = &app;
   std::string full_name = app.get_name();

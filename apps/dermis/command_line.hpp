@@ -19,7 +19,7 @@ class Option;
 
 namespace dermis::app {
 
-/// What the chosen command does; the exit status of the process where it does not fail.
+/// The work of the chosen command; the exit status of the process where it does not fail.
 using Action = std::function<Result<int>()>;
 
 /// An option of a command, to say more of it.
@@ -39,7 +39,7 @@ class Option {
   CLI::Option* option_;
 };
 
-/// A command whose options are being declared. What they are parsed into must live as long as the action.
+/// A command whose options are being declared. The variables for its options must live as long as the action.
 class Command {
  public:
   Command(CLI::App& app, Action& chosen) : app_(app), chosen_(chosen) {}
@@ -54,7 +54,7 @@ class Command {
   /// of them.
   template <typename Value>
   Option input(const std::string& name, Value& value, const std::string& help);
-  /// The same for what no stream brings: a model, classes, and whatever is read more than once.
+  /// The same for files that no stream can bring: a model, classes, and all that are read more than once.
   Option input_file(const std::string& name, std::string& path, const std::string& help);
   /// An option that names a file to write; "-" is the standard output. The action is not called where that would
   /// overwrite what is not to be.

@@ -12,7 +12,7 @@ namespace dermis::app {
 /// An option or an argument as --help shows it.
 struct OptionRow {
   std::vector<std::string> names;    ///< "-h" and "--help"; of an argument its one name, "in".
-  std::string value;                 ///< What its value is, "TEXT" or "simple|rubber"; empty for a flag.
+  std::string value;                 ///< Kind of its value, "TEXT" or "simple|rubber"; empty for a flag.
   std::vector<std::string> choices;  ///< The names that it knows, where there is a list of them.
   std::string default_value;         ///< Empty where none is shown.
   std::string help;
@@ -25,14 +25,14 @@ struct OptionRow {
 
 /// A command with what it takes, as --help shows it.
 struct CommandTable {
-  std::string name;  ///< With those of the commands above it: "dermis circuit invert".
+  std::string name;  ///< Name with those of the commands above it: "dermis circuit invert".
   std::string summary;
   std::vector<OptionRow> options;
   std::vector<OptionRow> arguments;
   std::vector<CommandTable> commands;
 };
 
-/// What --help knows of a command and of all that are below it.
+/// The --help of a command and of all that are below it.
 [[nodiscard]] CommandTable command_table(const CLI::App& app);
 
 }  // namespace dermis::app

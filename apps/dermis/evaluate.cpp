@@ -82,7 +82,7 @@ void print_text(const Evaluation& evaluation) {
   }
 }
 
-/// Of the forces.
+/// Checks the options for an evaluation of forces.
 Status check_needed(const EvaluateOptions& options) {
   if (options.model.empty()) return bad_input("--model is required");
   if (options.frames.empty()) return bad_input("--frames is required");

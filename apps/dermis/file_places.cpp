@@ -62,7 +62,7 @@ std::string file_of(const std::string& name) {
   return source ? source->file : std::string();
 }
 
-/// What a suit.toml names, which is read with it; nothing of any other file.
+/// The files that a suit.toml names, which are read with it; none for any other file.
 std::vector<std::string> files_of_suit(const std::string& path) {
   const Result<std::string> text = files::read_file(path, kMostToml);
   if (!text) return {};

@@ -10,11 +10,11 @@
 
 namespace dermis::app {
 
-/// What "-" stands for.
+/// The files behind "-".
 inline constexpr const char* kStandardInput = "/dev/stdin";
 inline constexpr const char* kStandardOutput = "/dev/stdout";
 
-/// The files that a command reads and writes, and the rule that keeps it from overwriting any. What is added must live
+/// The files that a command reads and writes, and the rule that keeps it from overwriting any. Added options must live
 /// as long as this.
 class FilePlaces {
  public:

@@ -147,7 +147,7 @@ struct Described {
   std::vector<report::Fact> calibration{};
 };
 
-/// Of a file that is one by its content; empty of any other.
+/// Reads a file that is a description by its content; empty for any other.
 Result<std::optional<Described>> read_described(const std::string& path) {
   constexpr std::size_t kLooked = 4096;
   const std::string_view kind = files::kind_of(files::first_bytes_of(path, kLooked));

@@ -4,8 +4,8 @@
 
 namespace dermis::app {
 
-/// From here on, SIGINT, SIGTERM and SIGHUP end the process at once, with nothing half-written and the status that a
-/// shell gives it: 128 and the signal. For work of which a half is worth nothing, before it starts threads; live
+/// From here on, SIGINT, SIGTERM and SIGHUP end the process at once, with nothing half-written. The exit status is that
+/// of a shell: 128 and the signal. Call it before work whose half is worth nothing, and before it starts threads; live
 /// commands look at stop_flag().
 void end_when_interrupted();
 

@@ -92,7 +92,7 @@ std::string heading(const std::string& name, const std::string& summary) {
                      roff(name), roff(summary));
 }
 
-/// What every page ends with.
+/// The end of every page.
 std::string closing(const std::vector<std::string>& pages) {
   std::string text =
       ".SH EXIT STATUS\n0: done; 1: the work failed, or less was read than there should be; 2: bad usage or input.\n"

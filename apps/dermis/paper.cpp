@@ -100,7 +100,7 @@ void print_text(const PaperReproduction& found) {
              100.0 * max_relative_error(found.evaluation, "dermis"));
 }
 
-/// A folder that cannot be written is told before minutes of work, not after them.
+/// A folder that cannot be written is an error before minutes of work, not after them.
 Status check_folder(const std::string& directory) {
   std::error_code error;
   std::filesystem::create_directories(directory, error);

@@ -24,7 +24,7 @@ std::string utc(std::time_t seconds) {
   return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(seconds));
 }
 
-/// "multitouch/frames.csv, written 2026-11-25 22:13 UTC, fnv1a64:0123456789abcdef", as far as the system tells.
+/// "multitouch/frames.csv, written 2026-11-25 22:13 UTC, fnv1a64:0123456789abcdef", as far as the system knows.
 std::string describe(const std::string& path) {
   std::string words = path;
   struct stat status {};

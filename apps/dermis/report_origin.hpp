@@ -17,7 +17,7 @@ struct JudgedFiles {
   std::string model;
 };
 
-/// What a report says of these files: simulated or measured, when, with which hashes, by which dermis.
+/// The origin of these files for a report: simulated or measured, when, with which hashes, by which dermis.
 [[nodiscard]] report::Origin report_origin(const JudgedFiles& files, const std::vector<RawFrame>& frames);
 
 }  // namespace dermis::app

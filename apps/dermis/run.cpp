@@ -50,7 +50,7 @@ Status check_outputs(const operation::ForceTablePaths& tables) {
   return Done{};
 }
 
-/// What is told of the frames at the end.
+/// The watches that report on the frames at the end.
 struct Watches {
   FrameTroubles troubles;
   pipeline::StandingLoadWatch standing;
@@ -127,7 +127,7 @@ Status run(const RunOptions& options) {
   const FrameTroubles& troubles = watches.troubles;
   Status status = Done{};
   if (Status solved = solve(**operation, phase, *tables, watches, status); !solved) return solved;
-  // What a device gave until it failed is worth having; a file that is wrong is to be mended.
+  // The frames of a device until it failed are worth having; a wrong file is to be mended.
   if (!status && !(*operation)->frames->is_live()) return status;
   if (status && troubles.frames() == 0) {
     const char* const when = options.settle_s > 0.0 ? " after settling" : "";

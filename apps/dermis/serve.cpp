@@ -56,7 +56,7 @@ std::string_view environment(const char* name) {
   return value != nullptr ? value : "";
 }
 
-/// As the nodes of ROS 2 that are started from the same shell have it.
+/// The domain of ROS 2 nodes that are started from the same shell.
 Result<std::uint64_t> domain_of_ros() {
   const std::string_view text = environment("ROS_DOMAIN_ID");
   std::uint64_t domain = 0;

@@ -11,7 +11,7 @@
 
 namespace dermis::app {
 
-/// --rows and --cols of the frames of a file, which some formats do not tell.
+/// --rows and --cols of the frames of a file, which some formats do not contain.
 struct ShapeOptions {
   std::optional<std::size_t> rows;
   std::optional<std::size_t> cols;

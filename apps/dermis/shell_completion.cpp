@@ -41,7 +41,7 @@ std::vector<std::string> valued_options(const CommandTable& command, bool files)
   return names;
 }
 
-/// What may follow a command: the names of its commands and its options.
+/// The words that may follow a command: the names of its commands and its options.
 std::vector<std::string> words_after(const CommandTable& command) {
   std::vector<std::string> words;
   for (const CommandTable& part : command.commands) words.push_back(last_word(part.name));
@@ -55,7 +55,7 @@ std::string bash_case(const CommandTable& command) {
                      joined(valued_options(command, false), " "), command.arguments.size());
 }
 
-/// What is offered where the value of an option is one of some names.
+/// The offered words where the value of an option is one of some names.
 std::string bash_choices(const CommandTable& command) {
   std::string cases;
   for (const OptionRow& option : command.options) {
@@ -73,7 +73,7 @@ std::string in_quotes(std::string_view text) {
   return "'" + inside + "'";
 }
 
-/// As zsh wants what stands in brackets or before a colon.
+/// Quotes a text in brackets or before a colon for zsh.
 std::string zsh_text(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

@@ -60,12 +60,12 @@ Result<std::unique_ptr<simulation::Simulator>> create_simulator(const SimulateOp
   return simulation::Simulator::create(array, physics, options.scene, options.seed, options.frames);
 }
 
-/// As the same frames are named among sources; other options are not told.
+/// The name of the same frames among sources, without other options.
 std::string source_of(const SimulateOptions& options) {
   return fmt::format("sim:{}?seed={}", options.scene, options.seed);
 }
 
-/// What the simulator tells of the truth besides the frames themselves.
+/// The simulator's truth besides the frames themselves.
 struct Truth {
   std::vector<Load> loads;
   std::string contacts = "frame,id,shape,x_mm,y_mm,diameter_mm,force_n,taxel_force_n\n";

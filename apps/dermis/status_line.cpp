@@ -15,7 +15,7 @@ namespace {
 std::mutex stderr_mutex;
 bool line_is_open = false;
 
-/// ", 12 s left"; empty while nobody can tell, at the end, and below a second.
+/// ", 12 s left"; empty while it is unknown, at the end, and below a second.
 std::string time_left(std::chrono::steady_clock::time_point start, double share) {
   const double past_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double left_s = share > 0.0 ? past_s * (1.0 - share) / share : 0.0;

@@ -11,8 +11,8 @@
 
 namespace dermis::app {
 
-/// A line on stderr, below the status line where there is one. That nobody reads it ends no work: unlike fmt::print(),
-/// it does not throw. Thread-safe.
+/// A line on stderr, below the status line where there is one. Work goes on when nobody reads the line: unlike
+/// fmt::print(), it does not throw. Thread-safe.
 void say(const std::string& text);
 
 /// The error of printing to the standard output.

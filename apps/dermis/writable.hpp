@@ -10,7 +10,7 @@
 
 namespace dermis::app {
 
-/// A folder that is missing or full is told before the work, not after it.
+/// A folder that is missing or full is an error before the work, not after it.
 inline Status check_writable(const std::string& path) {
   const bool is_special = std::filesystem::exists(path) && !std::filesystem::is_regular_file(path);
   if (is_special) return Done{};

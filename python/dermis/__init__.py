@@ -44,7 +44,7 @@ class FrameStatus(_enum.IntFlag):
 
 
 class TaxelStatus(_enum.IntEnum):
-    """What is known about one taxel of one frame."""
+    """The knowledge of one taxel in one frame."""
 
     OK = 0
     SATURATED = 1
@@ -103,7 +103,7 @@ Source.__anext__ = _next_frame
 
 
 def evaluate(model, frames, loads):
-    """What `dermis evaluate --json` prints, as a dict."""
+    """The output of `dermis evaluate --json`, as a dict."""
     import json
 
     return json.loads(_evaluate_json(model, frames, loads))

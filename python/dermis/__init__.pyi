@@ -71,7 +71,7 @@ class ArrayDescription:
     def taxel_name(self, row: int, col: int) -> str: ...
 
 class Model:
-    """What turns the counts of one array into newtons: a model file of `dermis calibrate`."""
+    """Turns the counts of one array into newtons: a model file of `dermis calibrate`."""
 
     @property
     def array(self) -> ArrayDescription: ...
@@ -225,7 +225,7 @@ class Pipeline:
         Recording, and may have what else stands here."""
     @property
     def why_rejected(self) -> str:
-        """Of the last frame: what was wrong, and what is expected; '' where it was not rejected."""
+        """The error of the last frame, and the expected value; '' where it was not rejected."""
     def tare(self, *, force: bool = False) -> None:
         """Takes the next second, at least 10 frames, for unloaded. Under a load the tare is refused, with a UserWarning;
         force takes whatever load stands there as zero."""
@@ -238,7 +238,7 @@ class Pipeline:
         """Follows the offsets of idle taxels slowly (docs/tare-and-drift.md). Off at first."""
 
 class Contact:
-    """What touches the array in one place. Pairs are (x, y): x along the columns, y along the rows."""
+    """A contact with the array in one place. Pairs are (x, y): x along the columns, y along the rows."""
 
     @property
     def id(self) -> int: ...
@@ -297,12 +297,12 @@ class Threat:
     def stands(self) -> bool: ...
     @property
     def quantity(self) -> str:
-        """As threats.toml names it, such as 'contact_force'."""
+        """The name in threats.toml, such as 'contact_force'."""
     @property
     def limit(self) -> float: ...
     @property
     def value(self) -> float:
-        """Of the last frame,"""
+        """The value in the last frame,"""
     @property
     def sigma(self) -> float:
         """its standard deviation,"""
@@ -321,7 +321,7 @@ class ThreatMonitor:
 
     def __init__(self, limits: _Path, model: Model, *, name: str | None = None) -> None: ...
     def process(self, force: ForceFrame) -> list[Threat]:
-        """Those that began or ended with this frame."""
+        """Threats that began or ended with this frame."""
     @property
     def standing(self) -> list[Threat]: ...
     def reset(self) -> None:
@@ -413,7 +413,7 @@ def calibrate(
     """`dermis calibrate`. Frames that no load names are not labelled; progress(stage, share) hears how far it is."""
 
 def evaluate(model: Model, frames: Recording | _Path, loads: Iterable[Load] | _Path) -> dict[str, Any]:
-    """What `dermis evaluate --json` prints."""
+    """The output of `dermis evaluate --json`."""
 
 class Source:
     """Frames of a device, a recording or the simulator, one after another. A device is read in the background: 4,096 frames
@@ -425,7 +425,7 @@ class Source:
     async def __anext__(self) -> RawFrame: ...
     def latest(self, timeout_s: float | None = None) -> RawFrame | None:
         """The newest frame of a device; older ones that wait are passed over. Where none has come since the last call it
-        waits, and raises TimeoutError after timeout_s. Of a file the next frame. None at the end."""
+        waits, and raises TimeoutError after timeout_s. A file gives the next frame. None at the end."""
     def __enter__(self) -> Source: ...
     def __exit__(self, *error: type[BaseException] | BaseException | TracebackType | None) -> None: ...
     def close(self) -> None: ...
@@ -433,13 +433,13 @@ class Source:
     def uri(self) -> str: ...
     @property
     def shape(self) -> tuple[int, int] | None:
-        """(rows, cols); None where only the first frame will tell."""
+        """(rows, cols); None where only the first frame will show it."""
     @property
     def is_live(self) -> bool: ...
     @property
     def dropped(self) -> int: ...
     def notices(self) -> Sequence[str]:
-        """What a user should know, since the last call."""
+        """Notices for the user since the last call."""
 
 def open(uri: _Path, array: ArrayDescription | _Path | None = None) -> Source:
     """A device or the simulator by its URI (docs/devices.md), or a file of frames by its path."""
@@ -454,7 +454,7 @@ class SuitArray:
     contacts: ContactTracker
     def __init__(self, name: str, model: Model, source: Source) -> None: ...
     def latest(self, timeout_s: float | None = None) -> ForceFrame | None:
-        """As Source.latest()."""
+        """Does the same as Source.latest()."""
 
 class Suit:
     """All arrays of a suit.toml (docs/suit.md), by their names. Devices are read in the background. `recording`: of the suit,

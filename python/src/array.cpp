@@ -13,7 +13,7 @@
 namespace dermis::python {
 namespace {
 
-/// With a warning of Python where the file is of before there were checksums.
+/// Warns in Python where the file is older than the checksums.
 std::shared_ptr<pipeline::Model> read_model(const std::string& path) {
   auto model = std::make_shared<pipeline::Model>(value_or_raise(pipeline::read_model(path)));
   const std::optional<std::string> note = files::checksum_note(path, pipeline::kModelFormat);

@@ -21,7 +21,7 @@ namespace dermis::pipeline {
 struct Model;
 }  // namespace dermis::pipeline
 
-/// What the sources of the Python module share. python/dermis/__init__.pyi is the reference of what they bind.
+/// Shared by the sources of the Python module. python/dermis/__init__.pyi is the reference of what they bind.
 namespace dermis::python {
 
 namespace py = pybind11;

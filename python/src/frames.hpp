@@ -43,7 +43,7 @@ struct Recording {
 /// A Recording, or the path of a file of frames.
 Recording recording_of(const py::object& object);
 
-/// What comes beside the counts of frames, as Python gives it: times or a rate, and one number a frame, one for all, or
+/// The data beside the counts of frames, as Python gives it: times or a rate, and one number a frame, one for all, or
 /// None.
 struct FrameSeries {
   py::object time_ns;

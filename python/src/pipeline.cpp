@@ -19,7 +19,7 @@ Nanos steady_now() {
   return std::chrono::steady_clock::now().time_since_epoch();
 }
 
-/// What `beside` says belongs to counts alone.
+/// The data in `beside` belong to counts alone.
 Recording frames_of(const pipeline::Model& model, const py::object& frames, const FrameSeries& beside) {
   const bool is_whole = py::isinstance<Recording>(frames) || is_path(frames);
   if (!is_whole) return recording_of(frames, &model.array, beside);
@@ -109,7 +109,7 @@ class SharedPipeline {
   /// Once for each tare that was refused or has taken a load.
   void warn_of_tare() {
     const pipeline::Tare& tare = pipeline_.last_tare();
-    if (!tare.has_ended() || std::exchange(told_tare_, tare.number) == tare.number) return;
+    if (!tare.has_ended() || std::exchange(reported_tare_, tare.number) == tare.number) return;
     std::string text = pipeline::describe(tare, model_->array);
     if (tare.state == pipeline::Tare::State::refused) text = "not tared: " + text + ", or tare(force=True)";
     if (!text.empty() && PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
@@ -134,7 +134,7 @@ class SharedPipeline {
   std::shared_ptr<pipeline::Model> model_;
   FrameShape shape_;
   pipeline::Pipeline pipeline_;
-  std::uint64_t told_tare_ = 0;
+  std::uint64_t reported_tare_ = 0;
   RawFrame raw_;
   std::mutex mutex_;
 };

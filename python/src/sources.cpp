@@ -129,7 +129,7 @@ class Source {
     return more;
   }
 
-  /// Without a timeout it waits as long as that takes.
+  /// Waits for a frame, without a timeout as long as that takes.
   bool pop(RawFrame& frame, std::optional<double> timeout_s) {
     using Clock = std::chrono::steady_clock;
     const auto end = Clock::now() + std::chrono::duration<double>(timeout_s.value_or(0.0));

@@ -210,7 +210,7 @@ class UdpStream final : public AsioStream {
   [[nodiscard]] std::string name() const override { return host_and_port(uri_.host, uri_.port); }
 
  private:
-  /// That nobody listens there (ICMP) ends nothing: somebody may, soon.
+  /// The stream goes on when nobody listens there (ICMP): somebody may, soon.
   static Transferred ignoring_unheard(Transferred transferred) { return {transferred.bytes, End::none}; }
 
   static constexpr std::size_t kMaxDatagram = 1400;  // one Ethernet frame: no fragments that are lost together

@@ -8,8 +8,8 @@
 namespace dermis::acquisition {
 namespace {
 
-// Eight bytes at a time: the CRC is linear, so the remainders of the eight add up [Kounavis, Berry, "Novel Table
-// Lookup-Based Algorithms for High-Performance CRC Generation", IEEE Transactions on Computers 57 (2008)].
+// Eight bytes at a time: the CRC is linear, so the remainders of the eight add up. Source: Kounavis, Berry, "Novel
+// Table Lookup-Based Algorithms for High-Performance CRC Generation", IEEE Transactions on Computers 57 (2008).
 constexpr std::size_t kSlice = 8;
 
 /// Remainder of each byte with 0 ... 7 bytes of zeros behind it.

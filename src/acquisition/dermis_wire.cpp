@@ -145,7 +145,7 @@ class DermisDecoder final : public WindowDecoder {
   std::size_t max_size_;
   std::size_t searched_ = 0;  ///< Bytes of the window that hold no zero.
   bool has_begun_ = false;    ///< A zero was seen: what comes is a whole packet, not the end of one.
-  bool is_too_long_ = false;  ///< What comes is the end of a piece that is no packet.
+  bool is_too_long_ = false;  ///< The incoming bytes are the end of a piece that is no packet.
   std::vector<std::uint8_t> packet_;
   FrameNumbers numbers_;
 };

@@ -26,7 +26,7 @@ int milliseconds(Nanos timeout) {
   return static_cast<int>(std::clamp<long long>(whole, 0, 1'000'000));
 }
 
-/// What poll() says of the descriptor within the time.
+/// The result of poll() on the descriptor within the time.
 short poll_for(int descriptor, short events, Nanos timeout) {
   pollfd request{descriptor, events, 0};
   return ::poll(&request, 1, milliseconds(timeout)) > 0 ? request.revents : short{0};
@@ -114,7 +114,7 @@ class PseudoTerminal final : public ByteStream {
       return failed(std::string("cannot make a pseudo-terminal: ") + std::strerror(errno));
     }
     name_ = name.data();
-    // Opened and closed once, a slave that nobody has open is told by POLLHUP.
+    // Opened and closed once, a slave that nobody has open gives POLLHUP.
     const int slave = ::open(name_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
     const bool is_raw = slave >= 0 && set_raw_8n1(slave, kBaud);
     const int error = errno;

@@ -16,8 +16,8 @@
 namespace dermis::acquisition {
 
 /// The stream of a device that may not be there yet, or may go away and come back. It is back when it sends, or stays
-/// for a second: who accepts and closes at once is asked less and less often, once a second in the end. A call takes
-/// 100 ms at most. Not thread-safe.
+/// for a second. A peer that accepts and closes at once is asked less and less often, once a second in the end. A call
+/// takes 100 ms at most. Not thread-safe.
 class DeviceConnection {
  public:
   enum class State {
@@ -35,8 +35,8 @@ class DeviceConnection {
   /// One try to open a stream that is waiting or away. Fails where it can never open, and where it was away too long.
   [[nodiscard]] Status try_open();
 
-  /// What arrives within 50 ms. Ends the connection where the stream ends.
-  /// `device_was_here`: who closes a connection without a frame before was not the device, so another is waited for.
+  /// Reads the bytes that arrive within 50 ms. Ends the connection where the stream ends. `device_was_here`: who closes
+  /// a connection without a frame before was not the device, so another is waited for.
   [[nodiscard]] Result<std::size_t> read(std::span<std::uint8_t> into, bool device_was_here);
 
   /// A request that is lost is no error: it is repeated.

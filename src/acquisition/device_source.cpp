@@ -22,8 +22,8 @@ using namespace std::chrono_literals;  // NOLINT(google-build-using-namespace): 
 using State = DeviceConnection::State;
 
 constexpr Nanos kConnectTimeout = 5s;
-constexpr Nanos kPause = 100ms;  // then the decoder is told
-constexpr Nanos kSilence = 2s;   // then the user is told
+constexpr Nanos kPause = 100ms;  // then the decoder gets a pause
+constexpr Nanos kSilence = 2s;   // then the user gets a notice
 constexpr Nanos kRepeatRequest = 1s;
 
 class DeviceSource final : public FrameSource {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 2> kHeader = {0xAA, 0x55};
 
-/// Arrays that are built; their sizes differ, so that the size of the frames tells the shape.
+/// Arrays that are built; their sizes differ, so that the size of the frames determines the shape.
 constexpr std::array<FrameShape, 4> kKnownShapes = {{{16, 32}, {12, 32}, {16, 16}, {32, 32}}};
 
 std::size_t frame_size_of(const FrameShape& shape) {

@@ -15,8 +15,8 @@
 
 namespace dermis::acquisition {
 
-/// Tells when each frame was taken: by the device's clock where it has one, else by the arrival of its last byte.
-/// Times rise strictly, on the host's clock. Not thread-safe.
+/// Finds when each frame was taken: by the device's clock where it has one, else by the arrival of its last byte. Times
+/// rise strictly, on the host's clock. Not thread-safe.
 class FrameClock {
  public:
   /// `bytes` more have arrived.

@@ -13,9 +13,9 @@ namespace dermis::acquisition {
 class FrameNumbers {
  public:
   /// The device counts modulo 2^sequence_bits, and its clock [time_unit] modulo 2^32. More than `max_lost` missing
-  /// frames, a step back of the number or of the clock by less than half of its range, and a clock beyond 2^62 ns are a
-  /// restart of the device: no frames are lost, and both go on from what it says. With `datagrams`, frames whose number
-  /// is up to 63 back, and whose clock is not ahead, are late or doubled instead.
+  /// frames are a restart of the device. So are a step back of the number or of the clock by less than half of its
+  /// range, and a clock beyond 2^62 ns. No frames are lost then, and both go on from the device's values. With
+  /// `datagrams`, frames whose number is up to 63 back, and whose clock is not ahead, are late or doubled instead.
   FrameNumbers(unsigned sequence_bits, Nanos time_unit, std::uint32_t max_lost, bool datagrams) noexcept
       : mask_(UINT32_MAX >> (32U - sequence_bits)), time_unit_(time_unit), max_lost_(max_lost), datagrams_(datagrams) {}
 

@@ -8,7 +8,7 @@
 
 namespace dermis::acquisition {
 
-/// What bytes look like of which no protocol makes frames, as a sentence without its full stop.
+/// Describes bytes of which no protocol makes frames, as a sentence without its full stop.
 [[nodiscard]] std::string look_of_bytes(std::span<const std::uint8_t> bytes);
 
 }  // namespace dermis::acquisition

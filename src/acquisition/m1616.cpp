@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
 // M1616, a 16x16 mat of mail-order shops: AA AB AC, 256 readings of 16 bits, big-endian, then 4 bytes of unknown
-// meaning. What is published on it leaves open whether its packet of 516 bytes counts the header: 519 bytes in all, or
-// 516 with one byte after the readings. The distance between headers tells.
+// meaning. Publications on it leave open whether its packet of 516 bytes counts the header. It is 519 bytes in all, or
+// 516 with one byte after the readings. The distance between headers shows which.
 #include <array>
 
 #include "acquisition/mark_chain_decoder.hpp"

@@ -31,7 +31,7 @@ std::optional<std::size_t> MarkChainDecoder::frame_size() const noexcept {
   return frame_sizes_.size() == 1 ? std::optional(frame_sizes_.front()) : std::nullopt;
 }
 
-/// With marks at the end, nothing but a frame that is whole or not can come first.
+/// With marks at the end, the first bytes are a frame, whole or not.
 void MarkChainDecoder::begin_again() {
   in_step_ = taken_ > 0;
   was_in_step_ = false;

@@ -14,13 +14,14 @@
 namespace dermis::acquisition {
 
 /// Frames of constant size that begin or end with a constant mark, without length or checksum, and whose readings may
-/// look like the mark. What tells a mark from such readings is that others stand at multiples of the frame size from
-/// it:
-/// - Frames begin where a chain of marks in a row does. Readings that stand still make a chain too: those of the last
-///   frame are remembered. Where several chains are left, the one is taken that
-///   goes on from the last frame but for a few bytes, else none until all others break.
-/// - A frame is delivered when a mark stands before and after it, or the device pauses after it: bytes were neither
-///   dropped nor added.
+/// look like the mark. A mark differs from such readings because others stand at multiples of the frame size from it.
+///
+/// Frames begin where a chain of marks in a row does. Constant readings make a chain too, so those of the last frame
+/// are remembered. Where several chains are left, the one is taken that goes on from the last frame but for a few
+/// bytes. Otherwise none is taken until all others break.
+///
+/// A frame is delivered when a mark stands before and after it, or the device pauses after it: bytes were neither
+/// dropped nor added.
 class MarkChainDecoder : public WindowDecoder {
  protected:
   enum class MarkAt { begin, end };
@@ -68,7 +69,7 @@ class MarkChainDecoder : public WindowDecoder {
   std::vector<std::size_t> frame_sizes_;  ///< One, once it is known.
   bool in_step_ = false;                  ///< A frame begins at the front of the window.
   bool was_in_step_ = false;              ///< One would, had no bytes been lost or added since the last.
-  bool after_mark_ = false;               ///< What was taken before the window ended with a mark.
+  bool after_mark_ = false;               ///< The bytes taken before the window ended with a mark.
   std::size_t frames_compared_ = 0;       ///< Over how many frames chains are followed at present.
   std::vector<std::uint8_t> last_payload_;
   std::vector<std::uint8_t> marks_in_phase_;  ///< Number of marks at each position modulo the frame size.

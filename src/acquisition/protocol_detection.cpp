@@ -17,8 +17,8 @@ constexpr std::size_t kStep = 256;                          // bytes between two
 constexpr std::size_t kFirstWiresensTrial = 16 * kStep;  // bytes; the next ones after twice as many, as it is not cheap
 constexpr std::uint64_t kFramesWithoutChecksum = 4;
 
-/// Those with a checksum first, then text, then binary forms, the one with the least to check last: where several
-/// decode the same bytes, the first is meant.
+/// The order is protocols with a checksum, then text, then binary forms, with the least checked last. Where several
+/// decode the same bytes, the first one is right.
 struct Trait {
   std::string_view name;
   bool has_checksum;
@@ -49,8 +49,7 @@ void drain(Decoder& decoder, RawFrame& frame) {
 /// Shows the same bytes to all decoders.
 class ProtocolDetector {
  public:
-  /// What the options say is taken as known. `name_only`: protocols count too whose frames cannot be had without being
-  /// told more.
+  /// Known options are taken as they are. `name_only`: protocols whose frames need further options count, too.
   ProtocolDetector(const ProtocolOptions& known, bool name_only) : known_(known), name_only_(name_only) {
     for (const Trait& trait : kByStrictness) add(trait, known_);
     if (name_only) {
@@ -109,7 +108,7 @@ class ProtocolDetector {
         {trait.name, trait.has_checksum ? 1 : kFramesWithoutChecksum, std::move(options), std::move(decoder).value()});
   }
 
-  /// Packets of WiReSens do not tell their size nor that of a frame: they are learnt first.
+  /// Packets of WiReSens contain neither their size nor that of a frame: these are learnt first.
   void try_wiresens(std::span<const std::uint8_t> bytes, std::size_t from) {
     std::optional<ProtocolOptions> learnt = learn_wiresens(bytes.subspan(from), known_, name_only_);
     if (!learnt) return;
@@ -209,7 +208,7 @@ class AutoDecoder final : public Decoder {
     if (best == nullptr) return false;
     name_ = best->name;
     ProtocolOptions options = best->options;
-    if (!options.shape) options.shape = best->decoder->shape();  // a pause may have told it
+    if (!options.shape) options.shape = best->decoder->shape();  // a pause may have shown it
     chosen_ = make_decoder(options).value();
     detector_.reset();
     return true;

@@ -74,7 +74,7 @@ class Writer {
       const FrameQueue::Pop popped = queue_.pop(frame, kTick);
       if (popped == FrameQueue::Pop::end) return;
       if (popped == FrameQueue::Pop::frame && !write(frame)) return queue_.leave();
-      // To wake up costs as much as to write a frame: some are gathered first.
+      // Waking up costs as much as writing a frame, so some are gathered first.
       if (queue_.statistics().depth == 0) std::this_thread::sleep_for(kGather);
       const Clock::time_point now = Clock::now();
       if (now < next_progress) continue;

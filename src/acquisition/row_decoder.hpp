@@ -17,9 +17,9 @@
 
 namespace dermis::acquisition {
 
-/// Frames as text: a line per row and a separator between frames, or a line per frame. What is not known beforehand is
-/// learnt from frames that repeat; the bytes are kept meanwhile, so that these frames are delivered too. A frame is
-/// delivered with its last row, and the line after it has to be a separator.
+/// Frames as text: a line per row and a separator between frames, or a line per frame. Unknown sizes are learnt from
+/// frames that repeat. The bytes are kept meanwhile, so that these frames are delivered too. A frame is delivered with
+/// its last row, and the line after it has to be a separator.
 class RowDecoder : public Decoder {
  public:
   RowDecoder(const RowSyntax& syntax, const std::optional<FrameShape>& shape);

@@ -19,7 +19,7 @@ constexpr std::size_t kEqualFrames = 3;
 /// reading under a growing load does it, too, but stops.
 constexpr std::size_t kClockFrames = 8;
 
-/// The same where no more will come.
+/// The same where no more lines will come.
 constexpr std::size_t kClockFramesAtEnd = 4;
 
 /// Lines without a separator before a line is believed to be a frame: more than a frame has rows, if it has so many
@@ -30,7 +30,7 @@ std::size_t lines_without_separator(std::size_t values) {
   return values < 400 ? 16 : 4;
 }
 
-/// The same where no more will come: frames of which there is but one are not likely.
+/// The same where no more lines will come: a single frame is not likely.
 std::size_t lines_at_end(std::size_t values) {
   return values < 49 ? 33 : 4;
 }
@@ -51,7 +51,7 @@ double mean_difference(std::span<const float> values, std::size_t width, std::si
   return sum / static_cast<double>(values.size() - lag * width);
 }
 
-/// Of all shapes of so many taxels the one nearest to a square, such as 12x10.
+/// The shape of so many taxels that is nearest to a square, such as 12x10.
 FrameShape near_square(std::size_t taxels) {
   auto cols = static_cast<std::size_t>(std::sqrt(static_cast<double>(taxels)));
   while (cols > 1 && taxels % cols != 0) --cols;
@@ -151,7 +151,7 @@ void RowLayoutLearner::learn_given_block() {
   if (block_before_.cols == shape_->cols + 1 && clock_blocks_ >= kEqualFrames) layout_ = {*shape_, false, 1};
 }
 
-/// Of blocks without an end.
+/// Learns from blocks without an end.
 void RowLayoutLearner::learn_block(bool at_end) {
   if (!block_before_.even || equal_blocks_ < kEqualFrames) return;
   const std::size_t cols = block_before_.cols;

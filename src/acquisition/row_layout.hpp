@@ -36,11 +36,11 @@ class RowLayoutLearner {
   void forget() noexcept;
 
   [[nodiscard]] const std::optional<RowLayout>& layout() const noexcept { return layout_; }
-  /// As given or announced; empty where only learning tells it.
+  /// As given or announced; empty where only learning can find it.
   [[nodiscard]] const std::optional<FrameShape>& shape() const noexcept { return shape_; }
-  /// What the lines so far lack, and the mend; empty where nothing can be said.
+  /// Says what the lines so far lack, and the mend; empty where nothing can be said.
   [[nodiscard]] std::string advice() const;
-  /// Of lines that may be frames, the size nearest to a square; empty where that is not so, and where it is known.
+  /// The size nearest to a square of lines that may be frames; empty where they are not, and where the size is known.
   [[nodiscard]] std::optional<FrameShape> likely_shape() const;
 
  private:
@@ -67,7 +67,7 @@ class RowLayoutLearner {
     bool all_rise;  // their first numbers
   };
 
-  /// What makes lines believed to be frames: something between them, their mere number, or the end of the stream.
+  /// The sign that lines are frames: something between them, their mere number, or the end of the stream.
   enum class Sign { divided, number, end };
 
   void take_row(std::span<const std::uint8_t> line, const ParsedLine& parsed);
@@ -103,7 +103,7 @@ class RowLayoutLearner {
   bool has_period_ = false;       // they are rows of longer frames
 };
 
-/// What to print, for rows of which nothing shows where a frame begins.
+/// Says what to print for rows that do not show where a frame begins.
 [[nodiscard]] std::string unseparated_rows(std::size_t readings);
 
 }  // namespace dermis::acquisition

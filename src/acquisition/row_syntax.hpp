@@ -22,10 +22,10 @@ struct ParsedLine {
   LineKind kind = LineKind::damaged;
   std::size_t values = 0;  ///< Numbers in the row, those included that had no place.
   double first = 0.0;      ///< The first of them. It may be more than a reading can be: a clock.
-  std::size_t cols = 0;    ///< Columns of the frame, where the line tells them; else 0.
+  std::size_t cols = 0;    ///< Columns of the frame, where the line has them; else 0.
 };
 
-constexpr std::uint32_t kMaxTextReading = (1U << 24U) - 1;  ///< Of the widest converters, and exact as float.
+constexpr std::uint32_t kMaxTextReading = (1U << 24U) - 1;  ///< The most of the widest converters, and exact as float.
 
 /// Whether a frame may also be one line of rows * cols values.
 enum class SingleLines {

@@ -5,7 +5,7 @@
 namespace dermis::acquisition {
 
 /// Raw bytes, 8 data bits, no parity, 1 stop bit, no flow control, at any baud, also one without a constant B<n>.
-/// False: errno tells why; the driver may also take a baud that is near and not this one (EINVAL).
+/// False: errno has the reason; the driver may also take a baud that is near and not this one (EINVAL).
 [[nodiscard]] bool set_raw_8n1(int descriptor, unsigned baud);
 
 }  // namespace dermis::acquisition

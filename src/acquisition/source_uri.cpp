@@ -55,7 +55,7 @@ const std::array<Scheme, 9>& schemes() {
   return kAll;
 }
 
-/// What stands before the first ':' where it looks like the name of a scheme.
+/// The text before the first ':' where it looks like the name of a scheme.
 std::optional<std::string> scheme_name(std::string_view text) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos || colon == 0) return std::nullopt;

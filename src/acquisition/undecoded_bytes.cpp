@@ -19,7 +19,7 @@ constexpr std::size_t kMostKept = std::size_t{256} << 10U;
 constexpr std::size_t kUnknownFrameBytes = 4096;
 constexpr std::size_t kMostBytesPerTaxel = 6;  // "65535 "
 
-/// What the decoder of that name says of the bytes.
+/// The reason that the decoder of that name gives for the bytes.
 UndecodedReason advice_of(const std::string& name, ProtocolOptions options, std::span<const std::uint8_t> bytes) {
   options.name = name;
   const Result<std::unique_ptr<Decoder>> decoder = make_decoder(options);

@@ -11,7 +11,7 @@
 
 namespace dermis::acquisition {
 
-/// What the first bytes of a window turned out to be.
+/// The verdict on the first bytes of a window.
 struct Verdict {
   enum class Kind {
     undecided,  ///< More bytes are needed; at the end of the stream: nothing of what is left is a frame.
@@ -23,7 +23,7 @@ struct Verdict {
   std::size_t size = 0;
 };
 
-/// A decoder that judges the bytes at the front of a window until it needs more: derived classes recognise and read,
+/// A decoder that judges the bytes at the front of a window until it needs more. Derived classes recognise and read;
 /// this one keeps the bytes and counts.
 class WindowDecoder : public Decoder {
  public:

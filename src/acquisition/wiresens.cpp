@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-// WiReSens (WiSensToolkit.cpp, GenericReceiver.py): packets of as many readings each, little-endian: sender, 1 byte;
-// index of the first reading, 2; readings, 2 each; packet number, 4; on serial lines then "wr", which is not escaped.
-// Packets follow each other through frame after frame and may straddle their borders. The number counts the packets
-// that were built; those that the device expects the receiver to predict are not sent.
+// WiReSens (WiSensToolkit.cpp, GenericReceiver.py), little-endian packets of as many readings each: sender, 1 byte;
+// index of the first reading, 2; readings, 2 each; packet number, 4. On serial lines "wr" follows, which is not
+// escaped. Packets follow each other through frame after frame and may straddle their borders. The number counts the
+// packets that were built; those that the device expects the receiver to predict are not sent.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,8 +21,8 @@ namespace {
 
 constexpr std::size_t kMaxTaxels = 65536;
 constexpr std::size_t kMaxNodesPerPacket = 32767;
-/// Packets in a row that have to fit together where the stream begins anew; one less where they continue it after
-/// bytes were skipped, and only one behind a delimiter.
+/// Packets in a row that have to fit together where the stream begins anew. It is one less where they continue after
+/// skipped bytes, and only one behind a delimiter.
 constexpr std::size_t kChain = 3;
 class WireSensDecoder final : public Decoder {
  public:
@@ -222,7 +222,7 @@ void WireSensDecoder::consume(const Packet& packet) {
   packet_end_ = window_.position();
 }
 
-/// The frame that is being read is over. What it has no reading for holds the one before.
+/// The frame that is being read is over. Taxels without a reading in it keep the one before.
 bool WireSensDecoder::deliver(RawFrame& frame) {
   const bool whole = open_.seen_from_start && !open_.damaged;
   if (whole) {

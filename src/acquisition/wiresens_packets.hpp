@@ -66,7 +66,7 @@ inline bool follows(const Packet& before, const Packet& packet, const PacketForm
   return (before.start + step * format.nodes) % format.taxels == packet.start;
 }
 
-/// What packets tell of their number of readings, their delimiters and the number of taxels, which has to be that of
+/// Learns from packets their number of readings, their delimiters and the number of taxels. That number must be that of
 /// `known.shape`, or else a square or `any_size`: as one row then. Empty where the bytes are no such packets.
 [[nodiscard]] std::optional<ProtocolOptions> learn_wiresens(std::span<const std::uint8_t> bytes,
                                                             const ProtocolOptions& known, bool any_size);

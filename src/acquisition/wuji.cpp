@@ -6,8 +6,8 @@
 //               u16 number at 3080, u32 milliseconds at 3082, u16 CRC at 3086
 //   1550 bytes: AA 55, u16 1550, u8 hand, 1 unused, 768 x i16 at 6, u16 number at 1542, u32 milliseconds at 1544,
 //               u16 CRC at 1548
-// CRC-16-CCITT over the bytes from 2 to before the CRC. What the CRC of the long form covers is not published: the same
-// is taken.
+// CRC-16-CCITT over the bytes from 2 to before the CRC. The range of the CRC of the long form is not published: the
+// same is taken.
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -26,7 +26,7 @@ auto timed(CalibrationReport& report, const char* stage, Work work) {
   return result;
 }
 
-/// What is wrong with the labels may be why nothing can be learned from them.
+/// Errors in the labels may be the reason why nothing can be learned from them.
 Error with_remarks(Error error, const std::vector<std::string>& remarks) {
   if (!remarks.empty()) error.message += fmt::format("; {}", fmt::join(remarks, "; "));
   return error;
@@ -52,7 +52,7 @@ std::map<std::string, std::string> provenance(const ArrayDescription& array, con
   return facts;
 }
 
-/// What most of the array is worth, before anything else is said.
+/// Remarks on the quality of most of the array, before any other.
 void remark_unpressed(const ArrayDescription& array, CalibrationReport& report) {
   const UncertaintyReport& uncertainty = report.uncertainty;
   const auto& sigma = uncertainty.relative_sigma_of_unpressed;
@@ -128,7 +128,7 @@ Result<Calibration> calibrate(const SampleDatabase& database, std::span<const Ra
   report.training = std::move(training->report);
   if (database.circuit_fit) {
     report.circuit = database.circuit_fit->statements;
-    report.telling_presses = database.circuit_fit->telling_presses;
+    report.discriminating_presses = database.circuit_fit->discriminating_presses;
   }
   calibration.model.provenance = provenance(database.array, report);
   return calibration;

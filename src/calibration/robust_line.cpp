@@ -39,7 +39,7 @@ RobustLine fit_weighted(std::span<const Point> points, bool has_slope, const Wei
   return line;
 }
 
-/// Of this slope, with half of the points above it.
+/// The line of this slope with half of the points above it.
 RobustLine median_line(std::span<const Point> points, double slope) {
   RobustLine line;
   line.slope = slope;

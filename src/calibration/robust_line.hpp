@@ -29,7 +29,7 @@ inline constexpr double kHuberSigmas = 1.345;  // 95 % of the efficiency of leas
 [[nodiscard]] RobustLine huber_step(std::span<const Point> points, const RobustLine& line, double limit);
 
 /// The line on which most of the points lie: least squares over those within four standard deviations of Huber's
-/// estimate (1964), each deviation being at least `least_deviation` > 0. At least one point; `has_slope`: else level.
+/// estimate (1964). Each deviation is at least `least_deviation` > 0. At least one point; `has_slope`: else level.
 [[nodiscard]] RobustLine fit_robust_line(std::span<const Point> points, bool has_slope, double least_deviation);
 
 }  // namespace dermis::calibration

@@ -9,7 +9,7 @@
 namespace dermis::compensation {
 
 /// Anderson's mixing (J. ACM 12:547, 1965): speeds up, and often makes convergent, a fixed-point iteration x <- x +
-/// f(x) by the step that would bring f to zero, were it linear in the span of the last steps.
+/// f(x). It takes the step that would bring f to zero, were it linear in the span of the last steps.
 class AndersonMixing {
  public:
   AndersonMixing(std::size_t unknowns, std::size_t depth);

@@ -47,7 +47,7 @@ Inversion flexitac(const ArrayDescription& array, double tolerance, const Invers
       std::make_unique<Transposed>(std::move(rows_driven), array.rows, array.cols));
 }
 
-/// Of the readings that came, most are invalid now: nothing can be told of the others.
+/// Most readings that came are invalid now, so nothing can be said about the others.
 bool are_most_taken(const std::vector<TaxelStatus>& came, const std::vector<TaxelStatus>& left) {
   const auto before = std::count(came.begin(), came.end(), TaxelStatus::invalid);
   const auto after = std::count(left.begin(), left.end(), TaxelStatus::invalid);
@@ -68,7 +68,7 @@ void follow_slopes(const std::vector<float>& noise_gain, std::vector<double>& si
   }
 }
 
-/// Of all taxels, in the mean square: a sum does not tell them apart.
+/// The root mean square over all taxels: a sum does not distinguish them.
 double mean_noise_gain(const std::vector<float>& noise_gain) {
   if (noise_gain.empty()) return 1.0;
   double sum = 0.0;

@@ -7,8 +7,8 @@
 
 namespace dermis::compensation {
 
-/// The inverse of a square matrix by Gauss-Jordan elimination of blocks, each a matrix product; pivots are sought
-/// within a block only, which suits matrices of unit diagonal that are well conditioned.
+/// The inverse of a square matrix by Gauss-Jordan elimination of blocks, each a matrix product. Pivots are sought
+/// within a block only, which suits well-conditioned matrices of unit diagonal.
 class DenseInverse {
  public:
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

@@ -10,9 +10,9 @@
 
 namespace dermis::compensation {
 
-/// What drivers do that are known only to a standard deviation, where idle rows are grounded through them. A driver k
-/// that is wrong by s moves its row by s times its current, in all scans. With the symbols of GroundedRows, the
-/// readings fixed (docs/derivations.md, "Wrong drivers"),
+/// The effect of drivers that are known only to a standard deviation, where idle rows are grounded through them. A
+/// driver k that is wrong by s moves its row by s times its current, in all scans. With the symbols of GroundedRows,
+/// the readings fixed (docs/derivations.md, "Wrong drivers"),
 ///
 ///   d G_ij / d s_k = L_ik p_kj + G_ij (Rd_i L_ik sum_m p_km + c_kj) - [i = k] G_ij^2
 ///   L = diag(G 1) - G diag(eta) G^T,   p_kj = y_kj / w_j
@@ -20,9 +20,9 @@ namespace dermis::compensation {
 ///   one loaded:  c_kj = G_kj y_kj / sum_i (1 + G_ij Rd_i) y_ij
 ///
 /// of which the last term takes away what the taxel would have of it alone, which its calibration by presses has
-/// learned with its law. Exact for ideal drivers and at virtual ground; otherwise without the term that couples a taxel
-/// to those of other rows and columns at once, as in GroundedRows::propagate_noise. Of the errors' variance a share,
-/// drive_error_correlation, is common to all drivers.
+/// learned with its law. The result is exact for ideal drivers and at virtual ground. Otherwise it lacks the term that
+/// couples a taxel to those of other rows and columns at once, as in GroundedRows::propagate_noise. A share of the
+/// errors' variance, drive_error_correlation, is common to all drivers.
 ///
 /// Many members: the symbols of the formula, as add() may not allocate.
 class DriverError {

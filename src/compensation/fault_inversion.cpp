@@ -15,7 +15,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr int kMaxRounds = 20;
-constexpr int kEstimateRounds = 3;  // what the neighbours of a taxel tell hardly depends on it
+constexpr int kEstimateRounds = 3;  // the estimate from a taxel's neighbours hardly depends on it
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();  // a reading that is not used
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 constexpr double kShortSiemens = 20.0;  // of a shorted crossing that is kept
@@ -131,7 +131,7 @@ void FaultInversion::hide_sensed_line(std::size_t taxel) noexcept {
   }
 }
 
-/// Two taxels are between the two nodes, and only their sum is told.
+/// Two taxels are between the two nodes, and only their sum is determined.
 void FaultInversion::join(std::size_t a, std::size_t b) noexcept {
   const std::size_t cols = array_.cols;
   if (a / cols == b / cols) mask_pair(Axis::column, a % cols, b % cols);
@@ -172,8 +172,8 @@ void FaultInversion::add_to_circuit(const LineFault& fault, LumpedCircuit& circu
   }
 }
 
-/// A conductance of a driven line k and a sensed line j that is wrong by d changes the others by the share Rd_k d, or
-/// RL_j d, to first order.
+/// A conductance of a driven line k and a sensed line j that is wrong by d changes the others to first order. Their
+/// share is Rd_k d, or RL_j d.
 void FaultInversion::add_doubt(std::span<const double> siemens, std::span<double> sigma_siemens) const noexcept {
   if (array_.readout.circuit == Circuit::none || lines_are_faulty_) return;
   const Axis driven = driven_axis(array_);
@@ -218,7 +218,7 @@ InversionResult FaultInversion::invert(CrosstalkInversion& healthy, std::span<co
   subtract_supplied_rows(ratio);
   average_shorted_lines();
   std::copy(measured_.begin(), measured_.end(), equivalent_.begin());
-  // What another circuit takes tells nothing of the frames without a fault.
+  // The work in another circuit is no example for frames without a fault.
   if (lines_are_faulty_ || crossings_.are_kept) healthy.start_frame(kUnbounded);
   if (!lines_are_faulty_) return keep_estimates(healthy, siemens);
   missing_.estimate(equivalent_);

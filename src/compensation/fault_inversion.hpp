@@ -20,21 +20,21 @@ namespace dermis::compensation {
 ///
 ///   T' = T + T_healthy(G) - T_faulty(G),   G <- invert_healthy(T')
 ///
-/// Taxels whose conductance no reading tells (on a silent line, stuck, without a reading in this frame) are estimated
-/// (MissingTaxels). Without faults of lines, the healthy inversion keeps those estimates. An open row still couples the
-/// columns through them: eliminating it adds -g g^T / sum(g) to their equations. Shorted crossings are in both
-/// circuits: the inversion solves them, or keeps their taxels at a large conductance. For resistive lines, switches,
-/// real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit: the readings of faulty lines
-/// are replaced by those of their neighbours, and the rest is solved as if healthy.
+/// Taxels whose conductance no reading determines (on a silent line, stuck, without a reading in this frame) are
+/// estimated (MissingTaxels). Without faults of lines, the healthy inversion keeps those estimates. An open row still
+/// couples the columns through them: eliminating it adds -g g^T / sum(g) to their equations. Shorted crossings are in
+/// both circuits: the inversion solves them, or keeps their taxels at a large conductance. For resistive lines,
+/// switches, real amplifiers, `none` and arrays of more than 256 lines there is no faulty circuit. There the readings
+/// of faulty lines are replaced by those of their neighbours, and the rest is solved as if healthy.
 class FaultInversion {
  public:
   FaultInversion(const ArrayDescription& array, double tolerance_ratio, const ReferenceConductances& references);
 
-  /// `healthy` is told of shorted crossings. Allocates nothing.
+  /// `healthy` gets the shorted crossings. Allocates nothing.
   void set_faults(std::span<const LineFault> faults, CrosstalkInversion& healthy);
   [[nodiscard]] bool any() const noexcept { return any_; }
 
-  /// What the readings of a line can be together still holds: none is at the supply or joined with another.
+  /// The bounds on the readings of a line together still hold: none is at the supply or joined with another.
   [[nodiscard]] bool keeps_bounds() const noexcept { return keeps_bounds_; }
 
   /// The taxel has no force of its own to report.
@@ -43,7 +43,7 @@ class FaultInversion {
   /// Learns which taxels of the next frame have no reading; whether that frame needs invert().
   [[nodiscard]] bool concerns(std::span<const TaxelStatus> taxels) noexcept;
 
-  /// Frames that follow each other in time tell what taxels were.
+  /// Frames that follow each other in time give the last values of taxels.
   void start_frame(Nanos time) noexcept { missing_.start_frame(time); }
 
   /// Adds to the standard deviations what the others of a line owe to a taxel whose conductance is only estimated.
@@ -67,7 +67,7 @@ class FaultInversion {
     LumpedCircuit faulty;
   };
 
-  /// Of each taxel [taxels].
+  /// The masks of each taxel [taxels].
   struct Masks {
     explicit Masks(const ArrayDescription& array);
 

@@ -111,7 +111,7 @@ void FloatingRows::start() noexcept {
   }
 }
 
-/// What leaves through the loads is what the driver lets in.
+/// The current out through the loads equals the current in through the driver.
 void FloatingRows::find_potentials() noexcept {
   for (Index row = 0; row < raised_.rows(); ++row) {
     const double current = raised_.row(row).cwiseProduct(load_siemens_).sum();
@@ -126,7 +126,8 @@ void FloatingRows::find_potentials() noexcept {
   }
 }
 
-/// M from M + M S M = D, S = sum over the rows of b/c p p^T: with M = sqrt(D) E^-1 sqrt(D) it is E^2 - E = T.
+/// Finds M from M + M S M = D, where S is the sum over the rows of b/c p p^T. With M = sqrt(D) E^-1 sqrt(D) it is E^2 -
+/// E = T.
 void FloatingRows::couple_columns() noexcept {
   const Index cols = load_siemens_.size();
   scale_ = (0.5 * logarithms_.head(cols)).array().exp().matrix().transpose();

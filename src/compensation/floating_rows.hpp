@@ -14,8 +14,8 @@
 namespace dermis::compensation {
 
 /// The divider whose idle rows float and whose lines have no resistance, by a fixed point of as many numbers as there
-/// are lines ("Floating rows" in docs/derivations.md): with the sum D_j of what hangs on each column and a factor b_i
-/// of each row given, all conductances follow from the readings, and those give D and b anew. A reading below what its
+/// are lines ("Floating rows" in docs/derivations.md). Given the sum D_j of the conductances on each column and a
+/// factor b_i of each row, all conductances follow from the readings. These give D and b anew. A reading below what its
 /// neighbours alone explain is raised until its taxel is at 0 S. Usually settles in 5 to 20 passes of about 35 cols^3 +
 /// 4 rows cols^2 multiplications, where a single product with the Jacobian takes rows^2 cols^2.
 ///
@@ -30,10 +30,10 @@ class FloatingRows {
   /// false: the drivers cannot carry what these readings [rows, cols] take from them, whatever the taxels are.
   [[nodiscard]] bool allows(std::span<const double> ratio) const noexcept;
 
-  /// The conductances [rows, cols] of readings that it allows, those of taxels without a reading as `siemens` has them,
-  /// until a pass changes nothing by more than `enough` (relative; of raised readings, over the supply). Starts from
-  /// the last frame that settled. Returns what the last pass has changed, more than `enough` where it does not settle,
-  /// infinity where it runs away. Allocates nothing.
+  /// The conductances [rows, cols] of readings that it allows; taxels without a reading keep those in `siemens`. Passes
+  /// go on until one changes nothing by more than `enough` (relative; for raised readings, over the supply). Starts
+  /// from the last frame that settled. Returns what the last pass has changed, more than `enough` where it does not
+  /// settle, infinity where it runs away. Allocates nothing.
   [[nodiscard]] double solve(std::span<const double> ratio, double enough, std::span<double> siemens) noexcept;
 
   /// Does not start from the last frame.

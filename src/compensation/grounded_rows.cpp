@@ -324,13 +324,14 @@ void GroundedRows::choose_step() noexcept {
   }
 }
 
-/// The first order of the circuit's equations about the solution, d(S D^-1 y) = d(G diag(w)), without the term that
-/// couples a taxel to those of other rows and columns at once:
+/// Takes the first order of the circuit's equations about the solution, d(S D^-1 y) = d(G diag(w)). The term that
+/// couples a taxel to those of other rows and columns at once is left out:
 ///
 ///   dG_ij = base_ij + Rd_i G_ij sum_j' base_ij' + RL_j G_ij sum_i' base_i'j,   base_ij = (S D^-1)_ii dy_ij / w_j
 ///
-/// Beside the exact Jacobian, 16x16 taxels of 1-100 kohm, drivers up to 50 ohm, loads of 100 ohm to 1 kohm: at most 5 %
-/// too large, with one load 8 %. Near a fold of the circuit (see the class) up to three times too small.
+/// Compared with the exact Jacobian it is at most 5 % too large, with one load 8 %. That is for 16x16 taxels of 1-100
+/// kohm, drivers up to 50 ohm, and loads of 100 ohm to 1 kohm. Near a fold of the circuit (see the class) up to three
+/// times too small.
 void GroundedRows::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
   for (std::size_t col = 0; col < state_.cols; ++col) sigma_column_[col] = sigma_ratio * reading_siemens_[col];
   spread_noise(state_, sigma_column_, sigma_);

@@ -14,16 +14,16 @@
 
 namespace dermis::compensation {
 
-/// Circuits whose idle rows are grounded through their drivers and whose columns end in resistors RL to ground, all of
-/// them at once or only the one that is read (IdleColumns). With y_kj the current into the load of column j while row k
-/// is driven, over the supply [S], formula (1) of docs/derivations.md reads
+/// Circuits whose idle rows are grounded through their drivers and whose columns end in resistors RL to ground. Either
+/// all columns are loaded at once or only the one that is read (IdleColumns). With y_kj the current into the load of
+/// column j while row k is driven, over the supply [S], formula (1) of docs/derivations.md reads
 ///
 ///   y = D S^-1 G diag(w),   S = A - G diag(eta) G^T,   D = diag(1/Rd),   A = D + diag(G 1)
 ///   all loaded:  eta_j = RL_j w_j,         w_j = 1 / (1 + RL_j sum_i G_ij)
 ///   one loaded:  eta_j = 1 / sum_i G_ij,   w_j = (1 - sum_i G_ij Rd_i y_ij / sum_i G_ij) / (1 + RL_j sum_i G_ij)
 ///
-/// (one loaded: T_kj = D_k K_jk / (1 + K_jj/RL_j), K the resistances of the unloaded circuit) and G is the fixed point
-/// of (4), which inverts no matrix and, written with Rd, also holds for ideal drivers:
+/// (one loaded: T_kj = D_k K_jk / (1 + K_jj/RL_j), K the resistances of the unloaded circuit). G is the fixed point of
+/// (4), which inverts no matrix and, written with Rd, also holds for ideal drivers:
 ///
 ///   (a)  a = 1 + Rd . G 1
 ///   (b)  Z = S D^-1 y = diag(a) y - G diag(eta) G^T diag(Rd) y
@@ -32,29 +32,27 @@ namespace dermis::compensation {
 ///   (d)  G <- max(Z, 0) diag(s)
 ///   (e)  y <- y' = max(y, G diag(eta) G^T diag(Rd) y' / a)
 ///
-/// (e): a taxel whose current is below what its neighbours cause is held at 0 S and its current taken as what they
-/// cause, so that the others are solved with it at 0. It starts from the textbook's G (exact for Rd = 0, and for RL = 0
-/// formula (2)) or from the last frame's, moved by the change of the textbook's. Where the plain iteration does not
-/// shrink quickly (heavy loads on weak drivers), Anderson's mixing of ln G takes over.
+/// (e): a taxel whose current is below the one that its neighbours cause is held at 0 S. Its current is taken as the
+/// caused one, so that the others are solved with it at 0. It starts from the textbook's G, which is exact for Rd = 0,
+/// and for RL = 0 with formula (2). Or it starts from the last frame's, moved by the change of the textbook's. Where
+/// the plain iteration does not shrink quickly (heavy loads on weak drivers), Anderson's mixing of ln G takes over.
 ///
 /// A taxel without a reading keeps its conductance: its y is what that draws at the present G, which (a) to (c) give.
 ///
 /// Certificate. With the present G and R = Z - G diag(w), y - y(G) = D S^-1 R for all loaded. D S^-1 >= 0 as S is an
-/// M-matrix; its columns sum to at most 1, as 1^T S >= 1^T D (the current of every row is at most that of its driver);
-/// and its diagonal is at least 1/a, as S D^-1 <= diag(a). Its other elements of column i are thus at most 1 - 1/a_i,
-/// and
+/// M-matrix. Its columns sum to at most 1, as 1^T S >= 1^T D (the current of every row is at most that of its driver).
+/// Its diagonal is at least 1/a, as S D^-1 <= diag(a). Its other elements of column i are thus at most 1 - 1/a_i, and
 ///
 ///   |y - y(G)|_kj <= max_i |R_ij| + sum_i (1 - 1/a_i) |R_ij| = b_j
 ///
 /// With one load w_j depends on y, which adds at most T_kj max(Rd)/RL_j b_j: |y - y(G)|_kj <= (1 + max(Rd)/RL_j) b_j.
 ///
-/// Amplifiers (`transimpedance`): RL is what the column sees, the switch and the feedback resistor over 1 + gain, to a
-/// voltage e = offset gain / (1 + gain); the reading is (I load_ohm - offset) / (1 + 1/gain). The currents that e alone
-/// drives into the array are common to all scans; they are found anew for every G and added to y.
+/// Amplifiers (`transimpedance`): the column sees the resistance RL, the switch and the feedback resistor over 1 +
+/// gain, to a voltage e = offset gain / (1 + gain). The reading is (I load_ohm - offset) / (1 + 1/gain). The currents
+/// that e alone drives into the array are common to all scans; they are found anew for every G and added to y.
 ///
-/// G is not always unique: on large arrays of low resistance beside weak drivers (max Rd sum_j G_ij above about 2)
-/// two arrays can give the same readings. The one found is that which the readings lead to from G = 0 as all of them
-/// grow.
+/// G is not always unique. On large arrays of low resistance beside weak drivers (max Rd sum_j G_ij above about 2) two
+/// arrays can give the same readings. The result is the one that is reached from G = 0 as all readings grow.
 class GroundedRows final : public CrosstalkInversion {
  public:
   /// `array` is a divider or transimpedance with grounded idle rows.
@@ -67,7 +65,7 @@ class GroundedRows final : public CrosstalkInversion {
   [[nodiscard]] double siemens_per_ratio() const noexcept override;
 
  private:
-  /// What the offsets of amplifiers do [stride].
+  /// The effect of the amplifiers' offsets [stride].
   struct Sources {
     explicit Sources(std::size_t stride);
 

@@ -24,8 +24,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::CappedTag<double, 8>;
 using Vec = hn::Vec<D>;
 
-constexpr double kLeastShare = 1e-6;      // What a column leaves of the supply stays positive under noise.
-constexpr double kLeastLineRatio = 0.05;  // What a row leaves of the supply, for the estimate.
+constexpr double kLeastShare = 1e-6;      // The share of the supply that a column leaves stays positive under noise.
+constexpr double kLeastLineRatio = 0.05;  // The least share of the supply that a row leaves, for the estimate.
 
 /// (c): `sum` of Z; for one loaded column the mean of Rd y weighted by Z+ is `drop` over `weight`. Kept taxels draw
 /// G w, with the w that this gives.

@@ -9,9 +9,9 @@
 
 namespace dermis::compensation {
 
-/// What the iteration of GroundedRows works on; grounded_rows.hpp says what the symbols mean. Matrices are
-/// [rows, stride], row-major: zeros fill up the columns to whole SIMD vectors.
-/// Many members: the symbols of formula (4), of the circuit, the frame and the iterate.
+/// The state of the iteration of GroundedRows; grounded_rows.hpp explains the symbols. Matrices are [rows, stride],
+/// row-major: zeros fill up the columns to whole SIMD vectors. Many members: the symbols of formula (4), of the
+/// circuit, the frame and the iterate.
 struct GroundedRowsState {
   /// A taxel without a reading, whose conductance is given.
   struct KeptTaxel {
@@ -24,7 +24,7 @@ struct GroundedRowsState {
   struct ShortedCrossing {
     std::size_t row;
     std::size_t col;
-    bool is_second;  ///< Of its row: its column stands for no conductances, they are in the column of the first.
+    bool is_second;  ///< The second one of its row: its conductances are in the column of the first.
   };
 
   GroundedRowsState(std::size_t row_count, std::size_t col_count, IdleColumns columns);

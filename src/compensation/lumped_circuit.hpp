@@ -11,10 +11,10 @@
 
 namespace dermis::compensation {
 
-/// The nodal equations of a circuit with faults in it: row and column lines are nodes, and every fault is a change of
-/// a conductance between two nodes, 0 V or the supply. Ideal drivers and virtual grounds are
-/// conductances far above all others; what they leave cancels in the difference of two circuits, which is all that
-/// FaultInversion uses. Lines and switches have no resistance of their own.
+/// The nodal equations of a circuit with faults in it. Row and column lines are nodes, and every fault changes a
+/// conductance between two nodes, 0 V or the supply. Ideal drivers and virtual grounds are conductances far above all
+/// others. Their errors cancel in the difference of two circuits, which is all that FaultInversion uses. Lines and
+/// switches have no resistance of their own.
 class LumpedCircuit {
  public:
   /// `array` has a known circuit that is not `none`.
@@ -67,7 +67,7 @@ class LumpedCircuit {
   std::vector<double> right_;      // [nodes, right_columns]: sources, then probes; then the voltages
 };
 
-/// Reading of a row (or column) over that of the next one where both are one node: grounded idle rows work against the
+/// Reading of a row (or column) over that of the next one where both are one node. Grounded idle rows work against the
 /// driven one through their drivers.
 [[nodiscard]] double ratio_of_shorted_lines(const ArrayDescription& array, Axis axis, std::size_t line) noexcept;
 

@@ -12,8 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace dermis::compensation::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Rows row ... row + Rows - 1 of the product, columns col ... col + 2 lanes(d) - 1 (or lanes(d), without `Pair`),
-/// held in registers while the inner dimension goes by.
+/// Rows row ... row + Rows - 1 of the product, columns col ... col + 2 lanes(d) - 1 (or lanes(d), without `Pair`). They
+/// are held in registers while the inner dimension goes by.
 template <std::size_t Rows, bool Pair, class D>
 HWY_INLINE void multiply_block(D d, const StridedMatrix& a, const double* HWY_RESTRICT b, std::size_t row,
                                std::size_t col, std::size_t inner, std::size_t cols, double* HWY_RESTRICT out) {

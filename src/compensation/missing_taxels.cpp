@@ -13,7 +13,7 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr std::uint8_t kLong = 4;  // frames without a reading, from which on the last conductance tells nothing
+constexpr std::uint8_t kLong = 4;  // frames without a reading, from which on the last conductance is stale
 constexpr Nanos kLongestGap = std::chrono::milliseconds(50);  // likewise, since the last frame
 constexpr double kDoubtOfEstimate = 0.7;                      // relative
 constexpr double kDoubtOfHeld = 0.15;
@@ -21,7 +21,7 @@ constexpr double kFloorShare = 1e-3;       // of the largest conductance: where 
 constexpr double kMostRise = 1.0;          // of the logarithm above both neighbours
 constexpr double kUnloadedScatter = 0.02;  // at least, of the middle of a line
 constexpr double kShiftByPressed = 1.0;    // of that middle where a third is pressed, in median deviations
-constexpr std::size_t kFewest = 4;         // taxels that tell
+constexpr std::size_t kFewest = 4;         // taxels that are evidence
 constexpr int kSteps = 8;
 
 /// The value between four of which some are known: on a parabola, as the logarithm of a Gaussian contact is. Beyond the
@@ -113,11 +113,11 @@ std::optional<double> MissingTaxels::logarithm(std::span<const double> values, s
   return std::log(std::max(values[taxel], floor) / typical_siemens_[taxel]);
 }
 
-/// On the row and on the column; the geometric mean where both tell.
+/// On the row and on the column; the geometric mean where both give one.
 void MissingTaxels::estimate(std::span<double> values) const noexcept {
   const double floor = kFloorShare * *std::max_element(values.begin(), values.end());
   if (!(floor > 0.0)) return;
-  // Of the taxels at `place` on a line, -2, -1, +1 and +2 steps away.
+  // The taxels -2, -1, +1 and +2 steps from `place` on a line.
   const auto along = [&](std::size_t taxel, std::size_t place, std::size_t size, std::size_t step) {
     std::array<std::optional<double>, 4> near;
     if (place > 1) near[0] = logarithm(values, taxel - 2 * step, floor);

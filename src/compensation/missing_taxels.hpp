@@ -14,14 +14,14 @@
 
 namespace dermis::compensation {
 
-/// Conductances of taxels whose readings tell nothing of them. For three frames a taxel stays what it was; then its
-/// neighbours tell. In most circuits the others of its line tell, too: with g the line's load (at virtual ground, the
-/// conductance of its driver), a taxel that is taken as x where it is X makes all of them
+/// Conductances of taxels whose readings do not determine them. For three frames a taxel keeps its value; then its
+/// neighbours determine it. In most circuits the others of its line are evidence, too. Let g be the line's load (at
+/// virtual ground, the conductance of its driver). A taxel that is taken as x where it is X makes all others
 ///
 ///   s = (g + x) / (g + X)
 ///
-/// times what they are. Of unloaded ones that is known, as they are in the rest of the array. Both are weighed by their
-/// standard deviations, in logarithms.
+/// times what they are. The true values of unloaded ones are known from the rest of the array. Both are weighed by
+/// their standard deviations, in logarithms.
 class MissingTaxels {
  public:
   MissingTaxels(const ArrayDescription& array, const ReferenceConductances& references);
@@ -30,7 +30,7 @@ class MissingTaxels {
   [[nodiscard]] std::span<std::uint8_t> missing() noexcept { return missing_; }
   [[nodiscard]] bool is_missing(std::size_t taxel) const noexcept { return missing_[taxel] != 0; }
 
-  /// A frame is one older than the last, which tells nothing any more if it is 50 ms ago.
+  /// A frame is one older than the last, whose values are stale after 50 ms.
   void start_frame(Nanos time) noexcept;
 
   /// Readings or conductances from those of their neighbours.

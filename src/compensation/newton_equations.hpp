@@ -12,9 +12,9 @@ namespace dermis::compensation {
 
 /// The linear equations of a step of Newton's method, where a circuit stands.
 ///
-/// They are solved by GMRES. In units of y and divided by the derivative of each reading by its own taxel they are so
-/// well conditioned that 5 to 60 products with J suffice, whatever the circuit; for lines of no resistance a product
-/// takes rows^2 cols^2 multiplications, an LU decomposition rows^3 cols^3 / 3.
+/// They are solved by GMRES. They are scaled by the units of y and by the derivative of each reading by its own taxel.
+/// So they are so well conditioned that 5 to 60 products with J suffice, whatever the circuit. For lines of no
+/// resistance a product takes rows^2 cols^2 multiplications, an LU decomposition rows^3 cols^3 / 3.
 class NewtonEquations {
  public:
   /// `circuit` is to outlive it.
@@ -30,7 +30,7 @@ class NewtonEquations {
   /// `damping` is added to the diagonal, as Levenberg and Marquardt do; `accuracy` is relative to the right sides.
   void solve(double damping, double accuracy) noexcept;
 
-  /// Of every taxel, over its column_scale() [S].
+  /// The change of every taxel, over its column_scale() [S].
   [[nodiscard]] const std::vector<double>& solution() const noexcept { return solution_; }
   /// The change of x that the solution asks for.
   [[nodiscard]] double change(std::size_t taxel) const noexcept;

@@ -21,7 +21,7 @@ constexpr int kBoldSteps = 5;             // that may lead uphill, where no way 
 constexpr double kBoldRise = 4.0;         // of the misfits
 constexpr double kRounding = 1e-13;       // of the largest reading: what remains of a residual in double precision
 constexpr double kRoundingMerit = 1e-12;  // below it a step that does not halve the misfits is rounding
-// Of the solution of a step's equations: the better, the nearer the solution is.
+// Accuracy of a step's equations: the better, the nearer the solution is.
 constexpr double kAccuracy = 0.1;
 constexpr double kBestAccuracy = 1e-6;
 constexpr double kLeastAccuracy = 1e-2;

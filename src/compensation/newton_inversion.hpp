@@ -26,16 +26,16 @@ namespace dermis::compensation {
 /// max(r, -x) = 0. Its Newton step holds those taxels at 0 S for which x + r <= 0 and solves for the others. Steps are
 /// bounded, halved, and then damped as Levenberg and Marquardt do, until |max(r, -x)| falls.
 ///
-/// Two solutions: a divider with grounded idle rows whose drivers and loads are large beside its taxels (row and column
-/// together) can have two positive arrays with the same readings, apart by a fold where det(J) = 0; about 2 of 100
-/// random arrays of 16x16 do, with taxels from 200 ohm, drivers to 200 ohm and loads to 10 kohm. The start from the
+/// Two solutions: a divider with grounded idle rows can have two positive arrays with the same readings, apart by a
+/// fold where det(J) = 0. Its drivers and loads must be large beside its taxels (row and column together). About 2 of
+/// 100 random arrays of 16x16 do, with taxels from 200 ohm, drivers to 200 ohm and loads to 10 kohm. The start from the
 /// textbook estimate then gives the array on the idle one's side of the fold, det(J) > 0.
 ///
-/// Floating rows of lines without resistance are solved by FloatingRows; Newton's method starts from there where that
-/// is not to the tolerance, and anew where it does not settle.
+/// FloatingRows solves floating rows of lines without resistance. Newton's method starts from there where that is not
+/// to the tolerance, and anew where it does not settle.
 ///
-/// Floating lines read every taxel through all others. What noise becomes there is in the nature of the circuit: at
-/// 16x16 the relative noise of a reading grows by 25 to 104 (rms, two terminals), of a single one by thousands.
+/// Floating lines read every taxel through all others. So it is in the nature of the circuit that noise grows. At 16x16
+/// the relative noise of a reading grows by 25 to 104 (rms, two terminals), of a single one by thousands.
 class NewtonInversion final : public CrosstalkInversion {
  public:
   /// `model` is of `array`.

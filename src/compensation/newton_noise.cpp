@@ -23,7 +23,7 @@ double random_sign(Random& random) noexcept {
   return random.below(2) == 0 ? 1.0 : -1.0;
 }
 
-/// What an ohm of its driver does to a taxel that is pressed alone: its calibration has learned that with its law.
+/// The effect of an ohm of its driver on a taxel that is pressed alone: its calibration has learned that with its law.
 double alone(const ScaledCircuit& circuit, const NewtonEquations& equations, std::size_t taxel) noexcept {
   return circuit.siemens()[taxel] * circuit.siemens()[taxel] / equations.column_scale()[taxel];
 }

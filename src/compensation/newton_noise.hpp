@@ -14,7 +14,7 @@
 
 namespace dermis::compensation {
 
-/// What an ohm of every driver does to the readings, and by how much drivers may be wrong.
+/// The effect of an ohm of every driver on the readings, and the possible errors of drivers.
 class DriverErrors {
  public:
   /// None where the drivers are exact or their errors are not counted.
@@ -37,7 +37,7 @@ class DriverErrors {
 
 /// The variance of every taxel from the noise of its readings and the errors of the drivers.
 ///
-/// In units of x, with B = (d x / d ratio) J (d siemens / d x): the sums of squares of the rows of B^-1 (d x / d
+/// In units of x, with B = (d x / d ratio) J (d siemens / d x), it is the sum of squares of each row of B^-1 (d x / d
 /// ratio). A driver that is wrong by s moves all taxels by -B^-1 (d x / d ohm) s, with the readings fixed.
 class NewtonNoise {
  public:

@@ -61,8 +61,8 @@ class OffsetDrift::Implementation {
     Nanos last_time{};
     std::size_t frames = 0;
     double temperature_sum = 0.0;
-    std::vector<double> sum;            // Of the frames; then their mean beside the calibration [S].
-    std::vector<double> sigma;          // Of one reading, in the last frame [S].
+    std::vector<double> sum;            // Sum of the frames; then their mean beside the calibration [S].
+    std::vector<double> sigma;          // Standard deviation of one reading, in the last frame [S].
     std::vector<std::uint8_t> trouble;  // Not 0: some frame had a status other than ok.
   };
 

@@ -26,7 +26,7 @@ constexpr double kLeastOfShort = 0.25;  // of the supply: where up to three shor
 constexpr double kLittleLeft = 0.6;     // readings of a line together, over what a taxel of 0 ohm reads alone
 constexpr std::size_t kAtOnce = 4;      // sums that do not wait for each other
 
-/// Of a line of so many taxels: where more of its readings are impossible, none of them tells anything.
+/// Most impossible readings of a line of so many taxels: with more, none of its readings counts.
 std::size_t most_bad(std::size_t taxels) {
   return std::max<std::size_t>(2, taxels / 4);
 }

@@ -21,8 +21,8 @@ enum class ReadingVerdict { possible, unknown, shorted, impossible };
 ///
 /// and its resistance at most slack / I, if no other taxel carries current to the line. Where idle rows float others
 /// do; then slack / I is that of them all, and low only under a wide press. Where idle rows are grounded, the readings
-/// of a column are less than the supply together, as they are when all rows are driven at once. Of one column alone,
-/// what they leave tells the resistances,
+/// of a column are together less than the supply, as they are when all rows are driven at once. For one column alone,
+/// the rest of the supply gives the resistances,
 ///
 ///   Rd_k + 1 / G_kj  =  RL_j (1 - sum_k' r_k'j) / r_kj
 ///
@@ -32,11 +32,11 @@ class PossibleReadings {
  public:
   explicit PossibleReadings(const ArrayDescription& array);
 
-  /// Taxels whose reading the circuit cannot give, or only where row and column touch, become invalid, the worst of a
-  /// line first; all of a line where they are many. `sigma_ratio` is the noise of a reading. Allocates nothing.
+  /// Taxels become invalid whose reading the circuit cannot give, or only where row and column touch. The worst of a
+  /// line are first; all of a line where they are many. `sigma_ratio` is the noise of a reading. Allocates nothing.
   void check(std::span<const double> ratio, double sigma_ratio, std::span<TaxelStatus> taxels) noexcept;
 
-  /// Of each reading; `unknown` where it is invalid, and on a line with many bad ones, of which none tells anything.
+  /// The verdict on each reading; `unknown` where it is invalid, and on a line with many bad ones, where none counts.
   /// The worst of a line is judged first: the current of an impossible reading is not there, that of a short is.
   /// `verdicts` [taxels]. Allocates nothing.
   void judge(std::span<const double> ratio, double sigma_ratio, std::span<const TaxelStatus> taxels,
@@ -57,14 +57,14 @@ class PossibleReadings {
   void forget() noexcept;
 
  private:
-  /// The head of a sensed line, as a reading tells it.
+  /// The head of a sensed line, as its reading shows it.
   struct Head {
     double current = 0.0;    ///< of a ratio of 1
     double offset = 0.0;     ///< the current of a ratio of 0
     double ohm = 0.0;        ///< to
     double emf = 0.0;        ///< this voltage
     double short_ohm = 0.0;  ///< No taxel has less.
-    double most_sum = 0.0;   ///< Of its readings, below which none is a short.
+    double most_sum = 0.0;   ///< Sum of its readings below which none is a short.
   };
 
   [[nodiscard]] std::size_t taxel_of(std::size_t driven, std::size_t sensed) const noexcept {
@@ -82,7 +82,7 @@ class PossibleReadings {
                     std::span<ReadingVerdict> verdicts) const noexcept;
   void doubt_bad_lines(std::span<ReadingVerdict> verdicts) const noexcept;
 
-  /// What is left of the slack, negative where the verdict is not `possible`.
+  /// The rest of the slack, negative where the verdict is not `possible`.
   struct Margins {
     double of_short;
     double of_circuit;

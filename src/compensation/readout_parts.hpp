@@ -46,8 +46,8 @@ inline ArrayDescription with_supply_in_drivers(ArrayDescription array) {
   return array;
 }
 
-/// The lines along which one taxel takes from the readings of the others: the sensed ones where idle lines are
-/// grounded, the rows at virtual ground; of other circuits none.
+/// The lines along which one taxel takes from the readings of the others. They are the sensed ones where idle lines are
+/// grounded, and the rows at virtual ground; other circuits have none.
 inline std::optional<Axis> sharing_axis(const ArrayDescription& array) noexcept {
   if (array.readout.circuit == Circuit::transimpedance) return Axis::row;
   if (!has_grounded_idle_lines(array.readout)) return std::nullopt;

@@ -10,10 +10,10 @@
 
 namespace dermis::compensation {
 
-/// Node potentials of a network of resistors by star-mesh elimination: a node of pivot g = sum of all conductances at
+/// Node potentials of a network of resistors by star-mesh elimination. A node of pivot g = sum of all conductances at
 /// it is taken out, and each pair of its neighbours q, r gains g_pq g_pr / g. This is a sparse Cholesky factorisation
-/// of the nodal equations without a single subtraction, so that every potential is right to a few roundings of itself
-/// however far apart the conductances are; 0 S is a conductance like any other.
+/// of the nodal equations without a single subtraction. So every potential is right to a few roundings of itself,
+/// however far apart the conductances are. 0 S is a conductance like any other.
 ///
 /// Nodes 0 ... free_nodes - 1 are eliminated in this order, the others are held at given potentials.
 class ResistorNetwork {
@@ -27,10 +27,10 @@ class ResistorNetwork {
   void eliminate(std::span<const double> edge_siemens, std::span<const double> ground_siemens) noexcept;
 
   /// In: injected currents of the free nodes, potentials of the held ones [nodes, any]. Out: potentials of all. A part
-  /// of the network with no path to 0 V or a held node has its root at 0 V; no net current may be injected there.
+  /// of the network with no path to 0 V or a held node has its root at 0 V. No net current may be injected there.
   void solve(Potentials& potentials) const noexcept;
 
-  /// The root of a floating part of the network (the same for all its nodes), kGround for a node with a path to 0 V or
+  /// The root of a floating part of the network (the same for all its nodes). kGround for a node with a path to 0 V or
   /// to a held node.
   [[nodiscard]] std::size_t root(std::size_t node) const noexcept { return root_[node]; }
   static constexpr std::size_t kGround = static_cast<std::size_t>(-1);

@@ -55,7 +55,7 @@ void SaggingSupply::forget() noexcept {
   std::fill(left_.begin(), left_.end(), 1.0);
 }
 
-/// What a taxel takes more of the supply lowers its own reading: about once more.
+/// A taxel that takes more of the supply lowers its own reading: about once more.
 void SaggingSupply::propagate_noise(double sigma_ratio, std::span<double> sigma_siemens) noexcept {
   ideal_->propagate_noise(sigma_ratio, sigma_siemens);
   for (std::size_t k = 0; k < left_.size(); ++k) sigma_siemens[k] /= left_[k] * left_[k];

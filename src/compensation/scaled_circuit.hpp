@@ -12,9 +12,9 @@
 
 namespace dermis::compensation {
 
-/// A reading and its taxel on the scale x(g) = asinh(g / 2 g_n): the logarithm of a conductance above the noise of its
-/// reading g_n, proportional to it below, and 0 at 0 S. A reading I_ds (current over the supply) stands there as the
-/// conductance that it would mean without crosstalk, y = I / (1 - (rho_d + rho_s) I), the textbook divider.
+/// A reading and its taxel on the scale x(g) = asinh(g / 2 g_n). It is the logarithm of a conductance above the noise
+/// of its reading g_n, proportional to it below, and 0 at 0 S. A reading I_ds (current over the supply) stands there as
+/// the conductance without crosstalk, y = I / (1 - (rho_d + rho_s) I), the textbook divider.
 struct ReadingScale {
   double gain = 1.0;    // d ratio / d current [ohm]
   double offset = 0.0;  // ratio at no current

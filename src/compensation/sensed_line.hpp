@@ -8,8 +8,8 @@
 
 namespace dermis::compensation {
 
-/// What stands at the head of a sensed line: a resistance rho to a source emf (over the supply), and the reading
-/// r = gain I + offset of the current I that leaves the line [1 V of supply / ohm].
+/// The head of a sensed line: a resistance rho to a source emf (over the supply). The reading is r = gain I + offset
+/// for the current I that leaves the line [1 V of supply / ohm].
 struct SensedLine {
   double rho = 0.0;
   double gain = 0.0;
@@ -20,8 +20,8 @@ struct SensedLine {
 };
 
 /// A load is the resistance itself, behind the switch where lines share one. An amplifier of open-loop gain A0 and
-/// offset off (over the supply) reads r = (I RL - off) / (1 + 1/A0) and holds its input at off A0 / (1 + A0) + I RL /
-/// (1 + A0), behind the column's switch.
+/// offset off (over the supply) reads r = (I RL - off) / (1 + 1/A0). It holds its input, behind the column's switch, at
+/// off A0 / (1 + A0) + I RL / (1 + A0).
 inline SensedLine sensed_line(const Readout& readout, std::size_t line) noexcept {
   const double load = readout.load_ohm[line];
   const double column_switch = readout.column_switch_ohm.empty() ? 0.0 : readout.column_switch_ohm[line];

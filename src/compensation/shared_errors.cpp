@@ -24,7 +24,7 @@ bool has_grounded_lines(const Readout& readout) {
 
 }  // namespace
 
-/// What all sums of a frame share.
+/// The data that all sums of a frame share.
 struct SharedErrors::Frame {
   std::vector<double> siemens;       // G_ij [driven, sensed]
   std::vector<double> driven_sum;    // sum_j G_ij [driven]

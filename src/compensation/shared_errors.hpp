@@ -20,12 +20,12 @@ namespace dermis::compensation {
 ///   a driver k [S/ohm]     sum_ij c_ij d G_ij / d s_k                DriverError, with y = diag(1/a) G diag(w)
 ///
 /// Circuits with floating rows or resistive lines are taken as if they were ideal and grounded, but for noise and
-/// drivers: there each taxel's own standard deviation counts (ConductanceErrors::noise_siemens), as if independent.
+/// drivers. There each taxel's own standard deviation counts (ConductanceErrors::noise_siemens), as if independent.
 class SharedErrors final : public CircuitErrors {
  public:
   explicit SharedErrors(const ArrayDescription& array);
 
-  /// Whether variances() tells the noise of readings; otherwise ConductanceErrors::noise_siemens has to.
+  /// Whether variances() contains the noise of readings; otherwise ConductanceErrors::noise_siemens must.
   [[nodiscard]] bool tells_noise() const noexcept { return tells_noise_; }
 
   void variances(const ConductanceErrors& errors, std::span<const WeightedConductances> sums,

@@ -6,9 +6,9 @@
 
 namespace dermis::compensation {
 
-/// Shorted crossings in the equations of GroundedRows. Where row k and column J touch they are one node, of the driver
-/// of k and, if all columns are loaded, the load of J. So J is no column any more: its taxels G_iJ lead from row i to
-/// row k. With t = y_J RL_J, the node's voltage,
+/// Shorted crossings in the equations of GroundedRows. Where row k and column J touch they are one node. It has the
+/// driver of k and, if all columns are loaded, the load of J. So J is no column any more: its taxels G_iJ lead from row
+/// i to row k. With t = y_J RL_J, the node's voltage,
 ///
 ///   S = A - G diag(eta) G^T - C,   eta_J = 0,   C_ik = C_ki = G_iJ,   A_kk with 1/RL_J where all are loaded
 ///   (b) of rows i and k:  Z_ij less G_iJ Rd_k y_kj,   Z_kj less sum_i G_iJ Rd_i y_ij
@@ -16,8 +16,8 @@ namespace dermis::compensation {
 ///
 /// The one reading too many, t_k, is not used elsewhere. Where one column is loaded, the readings of J are first made
 /// those without its load: y / (1 - Rd_k y_kJ). In the state's matrices G_kJ is all that leaves the node but for the
-/// driver and the taxels of row k, so that (a) holds. Two columns that touch one row tell but the sum of their taxels;
-/// it stands in the first. These functions allocate nothing.
+/// driver and the taxels of row k, so that (a) holds. Two columns that touch one row determine only the sum of their
+/// taxels; it stands in the first. These functions allocate nothing.
 
 /// Readings of one loaded column become those without its load.
 void take_loads_away(GroundedRowsState& state) noexcept;

@@ -68,7 +68,7 @@ void Spikes::check(const ConditionedFrame& frame, std::span<TaxelStatus> taxels)
   follow(ratio, frame.sigma_ratio, taxels);
 }
 
-/// What had no reading in the last frame is not compared with one from before: others have changed since.
+/// A taxel without a reading in the last frame is not compared with an older one: others have changed since.
 void Spikes::renew(std::span<const double> ratio, std::span<const TaxelStatus> taxels) noexcept {
   const bool all_are_read = std::find(taxels.begin(), taxels.end(), TaxelStatus::invalid) == taxels.end();
   if (all_are_read && !std::exchange(any_stale_, false)) return;
@@ -115,7 +115,7 @@ bool Spikes::any_jump(std::span<const double> ratio) const noexcept {
 }
 
 /// Most of the loads are about what they were, those that have just jumped aside: they may fall back. Where there are
-/// no others, nothing tells.
+/// no others, there is no evidence.
 bool Spikes::follows_last(std::span<const double> ratio, double sigma_ratio) const noexcept {
   double loads[kAtOnce] = {};
   double changed[kAtOnce] = {};

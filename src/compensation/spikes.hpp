@@ -18,9 +18,9 @@ namespace dermis::compensation {
 ///
 ///   f = (1 - s) / (1 - s_last)
 ///
-/// where s is the sum of the readings of a column (dividers with grounded rows), or Rd sum_j I_kj of a row (columns at
-/// virtual ground). Where those that were loaded, or the unloaded ones together, should fall and none does, the
-/// largest jump is a spike. A jump that stays is believed after some frames.
+/// where s is the sum of the readings of a column (dividers with grounded rows), or Rd sum_j I_kj of a row (virtual
+/// ground). Where those that were loaded, or the unloaded ones together, should fall and none does, the largest jump is
+/// a spike. A jump that stays is believed after some frames.
 class Spikes {
  public:
   explicit Spikes(const ArrayDescription& array);

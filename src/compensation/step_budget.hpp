@@ -8,15 +8,15 @@
 
 namespace dermis::compensation {
 
-/// Work that one frame may take: much as long as frames are solved. After some in a row that are not, a frame may take
-/// some times what the solved ones took; now and then one may take much again.
+/// Work that one frame may take: much as long as frames are solved. After some unsolved ones in a row, a frame may take
+/// a few times the work of the solved ones. Now and then one may take much again.
 class StepBudget {
  public:
   /// `least`: of any frame, much is 8 times that; 0: nothing is ever bounded.
   explicit StepBudget(double least) : least_(least) {}
 
-  /// `share` of what a frame may take; below 1 it is another attempt at the same frame, infinite: nothing is bounded,
-  /// and this frame is no example.
+  /// `share` of the allowed work of a frame; below 1 it is another attempt at the same frame. Infinite: nothing is
+  /// bounded, and this frame is no example.
   void start_frame(double share = 1.0) noexcept {
     const bool is_retry = share < 1.0;
     if (!is_retry) unsolved_ = is_solved_ ? 0 : unsolved_ + 1;

@@ -9,13 +9,13 @@
 
 namespace dermis::compensation {
 
-/// What a wrong supply does: all readings of a frame are wrong by one factor, 1 + d. Differentiating formula (1) of
+/// The effect of a wrong supply: all readings of a frame are wrong by one factor, 1 + d. Differentiating formula (1) of
 /// docs/derivations.md, for ideal drivers exactly and for others nearly,
 ///
 ///   d ln G_ij = (1 + Rd_i sum_k G_ik) (1 + Rl_j sum_k G_kj) d        (without the second factor at virtual ground)
 ///
-/// so that the more a line is loaded the more it counts (drivers up to 50 ohm, a quarter of the taxels at 200 to 2000
-/// ohm: 0.6 to 1.6 times the true change). Lines with resistance and floating lines are taken as if they were ideal and
+/// so that a more loaded line counts more. With drivers up to 50 ohm and a quarter of the taxels at 200 to 2000 ohm it
+/// is 0.6 to 1.6 times the true change. Lines with resistance and floating lines are taken as if they were ideal and
 /// grounded.
 class SupplyError {
  public:

@@ -11,13 +11,13 @@
 
 namespace dermis::contacts {
 
-/// What sums over the taxels of a stressed area tell about its contact: force, centre of the forces, area, pressures
-/// and axes. Of the result id, phase, onset and velocity are left. `taxels` by falling force, at least one.
+/// Describes a contact by sums over the taxels of its stressed area: force, centre of the forces, area, pressures and
+/// axes. The result lacks id, phase, onset and velocity. `taxels` by falling force, at least one.
 [[nodiscard]] Contact sum_up(const TaxelPlane& plane, const ForceFrame& force, std::span<const std::uint32_t> taxels);
 
-/// Each taxel weighs the root of its force times its signal. Of the forces alone, one that hardly stands out of the
-/// noise at the rim weighs what its law makes of that noise, which comes and goes; of the signals alone, what unlike
-/// taxels differ by. Saturated taxels have no signal: there it is `of_forces`, the centre of the forces.
+/// Each taxel weighs the root of its force times its signal. By force alone, a taxel at the rim near the noise would
+/// weigh as its law magnifies that noise, which comes and goes. By signal alone, the differences between taxels would
+/// count. Saturated taxels have no signal: there it is `of_forces`, the centre of the forces.
 [[nodiscard]] PlaneVector centre_of_mass(const TaxelPlane& plane, const ForceFrame& force,
                                          std::span<const std::uint32_t> taxels, PlaneVector of_forces);
 

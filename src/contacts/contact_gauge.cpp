@@ -50,8 +50,8 @@ float ContactGauge::scatter_of_weak_taxels(const ForceFrame& force, std::span<co
   return search_.scatter_of_weak_taxels(*measured.patch);
 }
 
-/// The centre of mass is that of the signals, each of which has a noise of one: where all taxels follow one power law,
-/// it does not depend on the force. Saturated taxels have no signal: there it is that of the forces.
+/// The centre of mass is that of the signals, each of which has a noise of one. It does not depend on the force where
+/// all taxels follow one power law. Saturated taxels have no signal: the centre of the forces is used there.
 void ContactGauge::correct(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const {
   const auto along = plane_.rows == 1 ? &PlaneVector::x : &PlaneVector::y;
   double sum = 0.0;
@@ -74,8 +74,8 @@ void ContactGauge::correct(const ForceFrame& force, std::span<const std::uint32_
   if (sigma > 0.0) contact.sigma_position_m.*along = sigma;
 }
 
-/// One or two taxels tell no more than the table. On a block of three or four, the patch of about the radius that
-/// presses them is taken, and the table tells how far off others that fit may be.
+/// One or two taxels give no more than the table. On a block of three or four, the patch of about the radius that
+/// presses them is taken. The table gives the deviation of other patches that fit.
 std::optional<ContactPlace> ContactGauge::place(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                                 double pressed_sigma, const ExpectedContact* expected,
                                                 Measurement& measured) {
@@ -148,7 +148,7 @@ double ContactGauge::reach(std::span<const std::uint32_t> taxels, PlaneVector pl
 ContactPlace ContactGauge::blend(const FoundPatch& found, const Contact& contact) const {
   const PlaneVector mass = contact.position;
   const PlaneVector sigma_mass = contact.sigma_position_m;
-  const auto variance = [&](const PlaneVector& sigma) {  // along the axes that the taxels tell
+  const auto variance = [&](const PlaneVector& sigma) {  // along the axes that the taxels determine
     return (plane_.cols > 1 ? sigma.x * sigma.x : 0.0) + (plane_.rows > 1 ? sigma.y * sigma.y : 0.0);
   };
   const double ratio =

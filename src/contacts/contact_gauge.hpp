@@ -18,16 +18,16 @@
 
 namespace dermis::contacts {
 
-/// A contact as the taxels of one stressed area tell it.
+/// A contact as the taxels of one stressed area show it.
 struct Measurement {
   Contact contact;                ///< All but id, phase, onset and velocity.
   std::uint32_t peak = 0;         ///< Its strongest taxel.
-  std::optional<PatchFit> patch;  ///< About the peak, in radii of a taxel; none: the taxels do not tell it.
+  std::optional<PatchFit> patch;  ///< About the peak, in radii of a taxel; none: the taxels do not determine it.
 
   [[nodiscard]] PatchProfile profile() const noexcept { return patch ? patch->profile : PatchProfile::hertz; }
 };
 
-/// Fine positioning and the size of the force.
+/// Finds the exact position and the force of a contact.
 class ContactGauge {
  public:
   /// `strip`: learned positions, which then take the place of the fit; consistent. `plane`, that of the array, is to
@@ -40,18 +40,19 @@ class ContactGauge {
   [[nodiscard]] Measurement measure(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                     double pressed_sigma, const ExpectedContact* expected);
 
-  /// What the weak taxels in and around the area of `measured` differ by from its patch, which there is [N].
+  /// The deviation of the weak taxels in and around the area of `measured` from its patch, which must exist [N].
   [[nodiscard]] float scatter_of_weak_taxels(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                              double pressed_sigma, const Measurement& measured);
 
  private:
-  /// Of the table, of the patch, which it leaves in `measured`, or of both. Empty where the taxels do not tell it.
+  /// The place from the table, from the patch, which it leaves in `measured`, or from both. Empty where the taxels do
+  /// not determine it.
   [[nodiscard]] std::optional<ContactPlace> place(const ForceFrame& force, std::span<const std::uint32_t> taxels,
                                                   double pressed_sigma, const ExpectedContact* expected,
                                                   Measurement& measured);
   /// Puts a contact on a strip to the learned position.
   void correct(const ForceFrame& force, std::span<const std::uint32_t> taxels, Contact& contact) const;
-  /// A fit and the centre of mass: the more uncertain the fit beside it, the more of the centre of mass, without a
+  /// Mixes a fit and the centre of mass. The more uncertain the fit is, the more the centre of mass counts, without a
   /// jump.
   [[nodiscard]] ContactPlace blend(const FoundPatch& found, const Contact& contact) const;
   [[nodiscard]] double reach(std::span<const std::uint32_t> taxels, PlaneVector place) const;

@@ -45,7 +45,7 @@ std::size_t ContactParting::part(const ForceFrame& force, std::span<std::uint32_
   return explained;
 }
 
-/// With the first of them.
+/// Keeps those that hang together with the first of them.
 void ContactParting::keep_what_hangs_together(std::vector<std::uint32_t>& taxels) const {
   std::size_t kept = 1;
   for (std::size_t k = 0; k < kept; ++k) {
@@ -56,7 +56,7 @@ void ContactParting::keep_what_hangs_together(std::vector<std::uint32_t>& taxels
   taxels.resize(kept);
 }
 
-/// What another contact presses is weak against this one's peak, or there would be a valley.
+/// The force of another contact is weak against this one's peak, or there would be a valley.
 bool ContactParting::stands_out(const ForceFrame& force, std::uint32_t taxel, const Measurement& measured,
                                 Evidence evidence, float scatter) const {
   const float newtons = force.newtons[taxel];

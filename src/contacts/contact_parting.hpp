@@ -13,10 +13,10 @@
 
 namespace dermis::contacts {
 
-/// What a taxel must show that is not of the contact measured.
+/// The evidence that a taxel must show of another contact than the one measured.
 struct Evidence {
   double onset_sigma = 0.0;  ///< Standard deviations of its force, material included, that it must stand out by.
-  double share = 1.0;        ///< Of all that is asked of it.
+  double share = 1.0;        ///< Share of the full evidence that is asked for.
 };
 
 /// Finds a weak contact beside a strong one, which makes no valley between them.
@@ -25,14 +25,14 @@ class ContactParting {
   /// `plane` is to outlive it.
   explicit ContactParting(const TaxelPlane& plane);
 
-  /// Of the taxels of `measured`, those that its patch does not explain and that hang together are put last, both parts
-  /// by falling force; returns how many stay. `held`: the taxels of contacts that are there, one of which must be among
-  /// those put last; where empty, the strongest that is unexplained.
+  /// Puts last those taxels of `measured` that its patch does not explain and that hang together, both parts by falling
+  /// force. Returns how many come before them. `held`: the taxels of present contacts, one of which must be among those
+  /// put last. Where it is empty, the strongest unexplained taxel must be.
   [[nodiscard]] std::size_t part(const ForceFrame& force, std::span<std::uint32_t> taxels, const Measurement& measured,
                                  Evidence evidence, std::span<const std::uint32_t> held);
 
-  /// Whether `taxel` stands out of the patch of `measured`, which there is. `scatter`: what a taxel may differ by from
-  /// the patch beside its noise [N].
+  /// Whether `taxel` stands out of the patch of `measured`, which must exist. `scatter`: deviation of a taxel from the
+  /// patch beside its noise [N].
   [[nodiscard]] bool stands_out(const ForceFrame& force, std::uint32_t taxel, const Measurement& measured,
                                 Evidence evidence, float scatter) const;
 

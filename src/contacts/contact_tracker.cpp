@@ -71,7 +71,7 @@ class ContactTracker::Implementation {
     keep_strongest();
     tracks_.update(force, found_, report.contacts);
     add_up(report);
-    // What contacts have in common adds up; what they have not, does so in squares.
+    // Errors that contacts share add up; the others add in squares.
     if (report.centre_of_pressure) report.sigma_total_n = std::max(report.sigma_total_n, totals_.back().sigma_newtons);
   }
 
@@ -83,7 +83,7 @@ class ContactTracker::Implementation {
   static constexpr double kReachPitches = 2.0;
   static constexpr double kPitchesApart = 1.7;
 
-  /// From so many standard deviations of the noise on a taxel is pressed.
+  /// A taxel is pressed from so many standard deviations of the noise on.
   [[nodiscard]] double pressed_sigma() const { return options.release_share * options.onset_sigma; }
 
   void find_held_taxels(Nanos time) {
@@ -115,7 +115,7 @@ class ContactTracker::Implementation {
     regions_.push_back(std::span<const std::size_t>(touched_).subspan(before));
   }
 
-  /// With what the taxels' errors have in common.
+  /// Includes the errors that the taxels share.
   void find_sigmas(const ForceFrame& force) {
     regions_.emplace_back(touched_);
     totals_.resize(regions_.size());
@@ -146,8 +146,8 @@ class ContactTracker::Implementation {
            }) > 1;
   }
 
-  /// The other one stands out of all that the first one's taxels differ by from its patch, and their patches do not
-  /// overlap; those found on the parts of an elongated one do, near each other.
+  /// The other one stands out of all deviations of the first one's taxels from its patch, and their patches do not
+  /// overlap. Contacts found on parts of an elongated one do overlap, near each other.
   [[nodiscard]] bool are_apart(const ForceFrame& force, std::span<const std::uint32_t> one,
                                std::span<const std::uint32_t> other, double share) {
     const Measurement measured = gauge_.measure(force, one, pressed_sigma(), nullptr);
@@ -159,7 +159,7 @@ class ContactTracker::Implementation {
            distance >= share * (std::sqrt(a.area_m2 / std::numbers::pi) + std::sqrt(b.area_m2 / std::numbers::pi));
   }
 
-  /// `taxel` stands out of what the weak taxels around `area` differ by from its patch. All do where it has none.
+  /// `taxel` stands out of the deviations of the weak taxels around `area` from its patch. All do where it has none.
   [[nodiscard]] bool stands_out(const ForceFrame& force, std::span<const std::uint32_t> area, std::uint32_t taxel,
                                 const Measurement& measured, Evidence evidence) {
     if (!measured.patch) return true;
@@ -167,7 +167,7 @@ class ContactTracker::Implementation {
     return parting_.stands_out(force, taxel, measured, evidence, scatter);
   }
 
-  /// No taxel of another area beside it is stronger; else it is the rim of that one.
+  /// No taxel of another area beside it is stronger; otherwise it is the rim of that area.
   [[nodiscard]] bool is_top(const ForceFrame& force, std::span<const std::uint32_t> area, std::uint32_t taxel) const {
     for (const std::size_t beside : Neighbours(plane_.rows, plane_.cols, taxel)) {
       if (!(force.newtons[beside] > force.newtons[taxel])) continue;
@@ -180,8 +180,8 @@ class ContactTracker::Implementation {
     return is_strong(force, taxels, expected_at(taxels.front()) != nullptr ? options.release_share : 1.0);
   }
 
-  /// `share`: of the thresholds of an onset. Each taxel adds the square of what it shows over the noise, less what one
-  /// shows that just counts as pressed: so one taxel needs onset_sigma, several together need less each, and noise that
+  /// `share`: of the thresholds of an onset. Each taxel adds the square of its signal over the noise, less that of a
+  /// taxel that just counts as pressed. So one taxel needs onset_sigma, and several together need less each. Noise that
   /// takes a taxel just over the threshold adds nothing.
   [[nodiscard]] bool is_strong(const ForceFrame& force, std::span<const std::uint32_t> taxels, double share) const {
     const double pressed = pressed_sigma();

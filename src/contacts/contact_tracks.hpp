@@ -29,7 +29,7 @@ class AxisFilter {
   double variance_velocity_ = 0.0;
 };
 
-/// What the frames before let expect of a contact.
+/// The expectation of a contact by the frames before.
 struct ExpectedContact {
   PlaneVector place;
   double radius_m = 0.0;
@@ -50,7 +50,7 @@ class ContactTracks {
  public:
   static constexpr double kBlindSeconds = 0.5;
 
-  /// Nothing that is `reach_m` or more from its predicted place is taken for the same contact.
+  /// A contact `reach_m` or more from the predicted place is another one.
   explicit ContactTracks(double reach_m);
 
   /// Replaces `contacts` by those of this frame, released ones included, by id.

@@ -10,7 +10,7 @@
 
 namespace dermis::contacts {
 
-/// What one taxel says about a patch; lengths in radii of the taxel.
+/// The evidence of one taxel on a patch; lengths in radii of the taxel.
 struct FitTaxel {
   float x = 0.0F;
   float y = 0.0F;
@@ -26,8 +26,8 @@ struct Patch {
   float newtons = 0.0F;  ///< In all, between the taxels too.
 };
 
-/// What is known of a patch before anything is measured: its radius, normal in the logarithm, and, across a strip of
-/// taxels, which tells nothing of it, its place.
+/// Prior knowledge of a patch: its radius, normal in the logarithm, and its place across a strip of taxels, which does
+/// not measure it.
 struct PatchPrior {
   float log_radius = 0.0F;
   float sigma = 1.0F;

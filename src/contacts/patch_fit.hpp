@@ -22,7 +22,7 @@ struct PatchFit {
                                  const PatchPrior& prior) noexcept;
 
 /// `most_likely` with the mean place and radius of all patches of its profile, each by its likelihood, and the variance
-/// over them: few taxels are explained nearly as well by larger and smaller patches at other places.
+/// over them. Larger and smaller patches at other places explain few taxels nearly as well.
 [[nodiscard]] PatchFit mean_over_radii(std::span<const FitTaxel> taxels, const PatchFit& most_likely,
                                        const PatchPrior& prior) noexcept;
 

@@ -20,8 +20,8 @@ double pressure(PatchProfile profile, double r, double radius) {
   return 1.5 * mean * std::sqrt(std::max(0.0, 1.0 - r * r / (radius * radius)));
 }
 
-/// The circles around the patch's centre that lie within the taxel of radius 1, and the part of the others that does:
-/// the midpoint rule in the angle t with r = middle + half sin t, which takes the roots at both ends of r away.
+/// Integrates over the circles around the patch's centre that lie within the taxel of radius 1, and the part of the
+/// others that does. The midpoint rule in the angle t with r = middle + half sin t removes the roots at both ends of r.
 double share(PatchProfile profile, double distance, double radius) {
   double sum = distance < 1.0 ? share_within(profile, 1.0 - distance, radius) : 0.0;
   const double low = std::min(std::abs(distance - 1.0), radius);

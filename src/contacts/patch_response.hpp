@@ -11,12 +11,12 @@
 
 namespace dermis::contacts {
 
-/// How the pressure of a patch of radius a falls from its centre: p(r) ~ sqrt(1 - r^2/a^2) under a ball on a soft
-/// ground (Hertz), p(r) = constant under a flat punch or air.
+/// How the pressure of a patch of radius a falls from its centre. Under a ball on a soft ground p(r) ~ sqrt(1 -
+/// r^2/a^2) (Hertz); under a flat punch or air p(r) = constant.
 enum class PatchProfile { hertz, flat };
 
-/// Share of a round patch's force that lies on a round taxel, as a function of the distance between their centres and
-/// of the logarithm of the patch's radius, with its slopes. Lengths are in radii of the taxel. A table, bilinear
+/// Share of a round patch's force that lies on a round taxel, with its slopes. It is a function of the distance between
+/// their centres and of the logarithm of the patch's radius. Lengths are in radii of the taxel. A table, bilinear
 /// between its knots; one for each profile, computed once in a process.
 class PatchResponse {
  public:
@@ -49,7 +49,7 @@ class PatchResponse {
     /// Share of the upper row.
     [[nodiscard]] float up() const noexcept { return up_; }
 
-    /// Of the patch's force.
+    /// Share of the patch's force.
     [[nodiscard]] float share(float distance) const noexcept {
       const Cell at = cell(distance);
       const float lower = at.lower[3] + at.right * (at.lower[7] - at.lower[3]);

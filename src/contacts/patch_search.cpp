@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kPriorRadiusPitches = 0.75;  // fingers and heels of hands on a pitch of 10 mm
 constexpr float kPriorSigma = 0.6F;
-constexpr float kMismatchOfTaxel = 0.003F;  // what the shape of a real patch differs by from the model's
+constexpr float kMismatchOfTaxel = 0.003F;  // deviation of a real patch's shape from the model's
 constexpr float kMismatchOfPeak = 0.0005F;
 constexpr float kPlainMisfit = 2.0F;        // chi squared per degree of freedom, up to which noise explains a misfit
 constexpr float kMostShareOfOther = 0.35F;  // of a peak, that a contact without a valley before it can have
 
-/// Of a place anywhere on a cell of this pitch [1/radii of a taxel^2].
+/// Strength of the prior for a place anywhere on a cell of this pitch [1/radii of a taxel^2].
 double strength_on_cell(double pitch_m, double taxel_radius_m) {
   return 12.0 * std::pow(taxel_radius_m / pitch_m, 2);
 }
@@ -117,8 +117,8 @@ Patch PatchSearch::start_at(const ExpectedContact& start, double newtons) const 
   return patch;
 }
 
-/// Where the patch leaves more than noise explains, every taxel differs by something beside its noise: the material is
-/// uneven, or the patch not round. Else the taxels of the least noise, at the rim, would place it alone.
+/// Where the residual of the patch exceeds the noise, every taxel has a deviation beside its noise: the material is
+/// uneven, or the patch not round. Otherwise the taxels of the least noise, at the rim, would place it alone.
 void PatchSearch::add_mismatch(const PatchFit& fit) {
   float squares = 0.0F;
   for (const FitTaxel& taxel : taxels_) squares += square_of_residual(fit, taxel);

@@ -27,7 +27,7 @@ struct ContactPlace {
 struct FoundPatch {
   PatchFit most_likely;  ///< About the strongest taxel of the area, in radii of a taxel.
   ContactPlace place;    ///< The mean over patches that explain the taxels nearly as well.
-  double misfit = 1.0;   ///< Of the first fit, over what noise explains; at least 1.
+  double misfit = 1.0;   ///< Misfit of the first fit relative to the noise; at least 1.
 };
 
 /// A taxel so weak beside the peak of a contact that another contact may press it without a valley between them.
@@ -37,19 +37,19 @@ struct FoundPatch {
 class PatchSearch {
  public:
   static constexpr std::size_t kSmall = 4;        ///< Taxels that patches of many sizes press.
-  static constexpr std::size_t kMostTaxels = 40;  ///< Of more the centre of mass is as good.
+  static constexpr std::size_t kMostTaxels = 40;  ///< With more, the centre of mass is as good.
 
   /// `plane` is to outlive it.
   explicit PatchSearch(const TaxelPlane& plane);
 
-  /// Takes the taxels of an area, by falling force, at most kMostTaxels, and those around it. Left out are those from
-  /// `pressed_sigma` standard deviations of the noise on, which belong to other contacts.
+  /// Takes the taxels of an area, by falling force, at most kMostTaxels, and those around it. Those from
+  /// `pressed_sigma` standard deviations of the noise on belong to other contacts and are left out.
   void gather(const ForceFrame& force, std::span<const std::uint32_t> taxels, double pressed_sigma);
 
-  /// From `start` and a force of that size. Empty where the taxels tell nothing.
+  /// Starts from `start` and a force of that size. Empty where the taxels determine nothing.
   [[nodiscard]] std::optional<FoundPatch> find(const ExpectedContact& start, double newtons);
 
-  /// What the weak ones of the taxels differ by from `patch` [N].
+  /// The deviation of the weak taxels from `patch` [N].
   [[nodiscard]] float scatter_of_weak_taxels(const PatchFit& patch) const;
 
  private:

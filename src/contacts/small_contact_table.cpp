@@ -26,8 +26,8 @@ double place_between_ends(std::size_t index) {
   return (2.0 * static_cast<double>(index) + 1.0) / static_cast<double>(kPlaces) - 1.0;
 }
 
-/// Likelihood of a share at each knot of its root; the knots lie as dense as linear interpolation needs, so a knot
-/// stands for all that is nearer to it than to others.
+/// Likelihood of a share at each knot of its root. The knots lie as dense as linear interpolation needs, so a knot
+/// stands for all values nearer to it than to others.
 template <std::size_t Knots>
 struct Likelihood {
   Likelihood(float share, float noise) {

@@ -20,8 +20,9 @@ struct TaxelSpacing {
   bool operator==(const TaxelSpacing&) const = default;
 };
 
-/// What a contact on one to four taxels shows: the strongest one, the stronger of its two neighbours in the row and in
-/// the column, and the taxel diagonal to it between these. All others show nothing. Shares of the strongest force.
+/// The shape of a contact on one to four taxels. These are the strongest, the stronger of its two neighbours in row and
+/// column, and the taxel diagonal to it between these. All others show nothing. The values are shares of the strongest
+/// force.
 struct SmallContact {
   float across = 0.0F;
   float down = 0.0F;
@@ -38,9 +39,10 @@ struct SmallContactPlace {
   float log_radius = 0.0F;
 };
 
-/// Up to four taxels do not tell place, radius and force of a patch: many fit them alike, and the most likely one may
-/// be at the end of what is possible. So this is the mean and the variance over all round patches that would show the
-/// same, Hertz and flat ones, all radii from a quarter to two pitches alike; tabulated for an array.
+/// Up to four taxels do not determine place, radius and force of a patch. Many patches fit them alike, and the most
+/// likely one may be at the end of the possible range. So this gives the mean and the variance over all round patches
+/// that would show the same, Hertz and flat ones, tabulated for an array. All radii from a quarter to two pitches count
+/// alike.
 class SmallContactTable {
  public:
   /// Tables are shared by arrays of the same spacing. Thread-safe.

@@ -14,25 +14,25 @@ namespace dermis::contacts {
 /// Finds the pressed taxels of a frame that hang together (8 neighbours), and parts them at the valleys between peaks.
 ///
 /// Taxels are taken by falling force. One with no neighbour that was taken before begins an area, any other one joins
-/// that of its strongest neighbour. Where two areas meet, they become one unless the lower peak stands out of the
-/// meeting point by noise (kValleySigma) and by a share of itself (kValleyShare), and shows a higher signal, too: a
-/// valley of the forces alone may be what unlike taxels were calibrated to. The first two count half (kHeldShare)
-/// between two areas that hold a contact each already. Taxels without force carry the lower of two opposite neighbours,
-/// so that a dead line does not cut what lies across it; they are in no area.
+/// that of its strongest neighbour. Two areas that meet become one unless the lower peak stands out of the meeting
+/// point. It must do so by noise (kValleySigma) and by a share of itself (kValleyShare). The peak must also show a
+/// higher signal: a valley of the forces alone may come from the calibration of unlike taxels. The first two count half
+/// (kHeldShare) between two areas that hold a contact each already. Taxels without force carry the lower of two
+/// opposite neighbours, so that a dead line does not cut an area across it. They belong to no area.
 class StressedAreas {
  public:
   static constexpr float kValleySigma = 4.0F;
   static constexpr float kValleyShare = 0.1F;
-  static constexpr float kHeldShare = 0.5F;  ///< Of what parts two contacts: keeps them apart that are there already.
+  static constexpr float kHeldShare = 0.5F;  ///< Keeps contacts apart that are there already.
 
-  /// `overlapping`: each taxel feels what presses beside it, so that a valley of the forces parts no contacts.
+  /// `overlapping`: each taxel feels loads beside it, so that a valley of the forces parts no contacts.
   StressedAreas(std::size_t rows, std::size_t cols, bool overlapping);
 
   /// A taxel is pressed from `sigma` standard deviations of the additive noise on.
   /// `held`: the taxels nearest to the contacts of the frame before.
   void find(const ForceFrame& force, double sigma, std::span<const std::uint32_t> held);
 
-  /// The taxels of each area, by falling force; what is written there is forgotten by the next find().
+  /// The taxels of each area, by falling force; the next find() overwrites them.
   [[nodiscard]] std::span<const std::span<std::uint32_t>> areas() const noexcept { return areas_; }
 
  private:

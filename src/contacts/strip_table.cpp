@@ -13,7 +13,7 @@ StripTable::Place StripTable::at(double centre) const noexcept {
   const auto above = std::upper_bound(centre_m.begin(), centre_m.end(), centre);
   const auto right = std::clamp<std::ptrdiff_t>(above - centre_m.begin(), 1, std::ssize(centre_m) - 1);
   const auto upper = static_cast<std::size_t>(right);
-  // Beyond the ends that of the last piece: the position there is constant, but not for being known.
+  // Beyond the ends the sigma is that of the last piece: the position there is constant, but not because it is known.
   const double slope = (position_m[upper] - position_m[upper - 1]) / (centre_m[upper] - centre_m[upper - 1]);
   const double inside = std::clamp(centre, centre_m.front(), centre_m.back());
   return {position_m[upper - 1] + slope * (inside - centre_m[upper - 1]), slope};

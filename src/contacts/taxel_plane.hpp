@@ -28,7 +28,7 @@ struct TaxelPlane {
   double row_pitch_m;
   double col_pitch_m;
   double taxel_area_m2;
-  double taxel_radius_m;  ///< Of a disc of the same area; on a strip no larger than fits in the pitch along it.
+  double taxel_radius_m;  ///< Radius of a disc of the same area; on a strip no larger than fits in the pitch along it.
   std::vector<PlaneVector> places;  ///< Centres in radii of a taxel [taxels].
 };
 

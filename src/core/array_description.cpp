@@ -105,7 +105,7 @@ std::string short_text(double value) {
   return text.str();
 }
 
-/// What is far from all skins and mats was written in another unit.
+/// A value far from all skins and mats was written in another unit.
 Status validate_geometry(const ArrayDescription& array) {
   constexpr double kLeastPitchMm = 0.05;
   constexpr double kMostPitchMm = 1000.0;

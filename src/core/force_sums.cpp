@@ -21,7 +21,7 @@ double square(double value) {
   return value * value;
 }
 
-/// Of a frame that tells forces and standard deviations alone: errors count as independent.
+/// The total of a frame with forces and standard deviations alone: errors count as independent.
 TotalForce independent_total(const ForceFrame& force, Region region) {
   TotalForce total;
   double variance = 0.0;
@@ -38,7 +38,7 @@ TotalForce independent_total(const ForceFrame& force, Region region) {
   return total;
 }
 
-/// What sums of forces make of conductances. Its memory is kept from call to call.
+/// Sums of forces as sums of conductances. Its memory is kept from call to call.
 class ConductanceSums {
  public:
   void clear(std::span<const Region> regions) {
@@ -57,7 +57,7 @@ class ConductanceSums {
     WeightedConductances& sum = sums_.back();
     sum = {{sum.taxels.data(), sum.taxels.size() + 1}, {sum.weight.data(), sum.weight.size() + 1}};
   }
-  /// Of each sum.
+  /// Variance of each sum.
   [[nodiscard]] std::span<const double> variances(const ConductanceErrors& errors) {
     variances_.assign(sums_.size(), 0.0);
     if (taxels_.empty()) return variances_;  // a rejected frame may have no conductances

@@ -24,8 +24,8 @@ Vector3 of_unit_length(const Vector3& a, const Vector3& otherwise) {
   return length > kRoundOff ? 1.0 / length * a : otherwise;
 }
 
-/// Where two directions along a surface leave none out of it, because neighbours are missing or stand in one place: as
-/// near to z as the surface allows.
+/// The normal where two directions along a surface determine none, because neighbours are missing or stand in one
+/// place. It is as near to z as the surface allows.
 Vector3 normal_of(const Vector3& by_x, const Vector3& by_y) {
   const Vector3 outwards = cross(by_x, by_y);
   const double length = std::sqrt(dot(outwards, outwards));

@@ -9,11 +9,11 @@
 #include "dermis/core/result.hpp"
 #include "dermis/dds/publisher.hpp"
 
-/// What the plugin of Fast DDS does. It is loaded when asked for: linked, it would cost every command its start and 9
+/// The work of the plugin of Fast DDS. It is loaded when asked for: linked, it would cost every command its start and 9
 /// MB.
 namespace dermis::dds {
 
-/// Of one topic.
+/// Writes one topic.
 class Writer {
  public:
   Writer() = default;

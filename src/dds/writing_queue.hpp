@@ -40,7 +40,7 @@ class WritingQueue {
   std::mutex mutex_;  // Of what follows.
   std::condition_variable wake_;
   bool stopping_ = false;
-  std::size_t bytes_ = 0;  // Of those that wait or are being written.
+  std::size_t bytes_ = 0;  // Size of the messages that wait or are being written.
   std::vector<Waiting> waiting_;
   std::vector<std::vector<std::uint8_t>> spare_;
   std::thread thread_;

@@ -12,7 +12,7 @@ namespace dermis::files {
 /// The text of a configuration; of a file that is too large, more than check_config_text() lets pass.
 [[nodiscard]] Result<std::string> read_config_text(const std::string& path);
 
-/// What the TOML parser itself does not bound: 1 MiB, and the parts of a dotted key. `name` stands for the path.
+/// Bounds that the TOML parser itself does not check: 1 MiB, and the parts of a dotted key. `name` stands for the path.
 [[nodiscard]] Status check_config_text(std::string_view text, const std::string& name);
 
 }  // namespace dermis::files

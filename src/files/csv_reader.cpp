@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kFirstBufferBytes = std::size_t{1} << 16U;
 constexpr std::size_t kMaxLineBytes = std::size_t{1} << 25U;
 
-/// What is taken or saved for CSV, and is none here.
+/// Texts that are mistaken for CSV or saved as it, and are none here.
 std::string foreign_text(std::string_view line) {
   if (const auto other = wrong_kind(line, kTableKind)) return *other;
   const auto has = [line](char c) { return line.find(c) != std::string_view::npos; };

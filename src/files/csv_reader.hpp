@@ -13,8 +13,8 @@
 namespace dermis::files {
 
 /// Lines of a CSV file, read in large pieces. Takes LF and CRLF, a UTF-8 byte order mark and a last line without an
-/// end; passes over blank lines; refuses lines of more than 32 MiB, and texts whose first line has no commas but
-/// semicolons or tabs, or quotes, or is UTF-16. The stream must outlive the reader.
+/// end, and passes over blank lines. Refuses lines of more than 32 MiB. Refuses texts whose first line has no commas
+/// but semicolons or tabs, or quotes, or is UTF-16. The stream must outlive the reader.
 class CsvReader {
  public:
   CsvReader(std::istream& in, std::string name);
@@ -28,7 +28,7 @@ class CsvReader {
   /// Number of the last line, from 1.
   [[nodiscard]] std::size_t line_number() const noexcept { return line_number_; }
 
-  /// Of the last line: "name:line".
+  /// Place of the last line: "name:line".
   [[nodiscard]] std::string place() const;
 
   /// Bad input at the last line: "name:line: message".

@@ -37,7 +37,7 @@ std::optional<Column> column_named(std::string_view name) {
 
 using Cells = std::vector<std::string_view>;
 
-/// What the taxels of a header are held against: the array's shape, or the one that its last column names.
+/// The expected taxels of a header: the array's shape, or the one that its last column names.
 struct Expected {
   FrameShape shape;
   const char* authority;

@@ -13,7 +13,7 @@
 
 namespace dermis::files {
 
-/// What a .npy file says of its array (numpy.lib.format).
+/// The header of a .npy file for its array (numpy.lib.format).
 struct NpyHeader {
   char kind = 'u';             ///< 'u', 'i' or 'f'.
   std::size_t item_bytes = 2;  ///< 1, 2, 4, 8; of floats 4, 8.

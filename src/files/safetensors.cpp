@@ -283,7 +283,7 @@ std::string header_of(const SafetensorsFile& file, const std::map<std::string, s
   return text;
 }
 
-/// Of the file as it is written without a checksum: whoever writes the same content otherwise keeps it.
+/// Checksum of the file as it is written without one: a program that writes the same content otherwise keeps it.
 std::string checksum_of(const SafetensorsFile& file) {
   ContentHash hash;
   hash.add(header_of(file, file.metadata));

@@ -20,8 +20,8 @@ constexpr float kNoUpperBound = std::numeric_limits<float>::infinity();
 constexpr double kUnlearnedPerCelsius = 0.005;  // 1/C, standard deviation of the temperature coefficient of rubber
 constexpr float kCommonSigmas = 2.0F;           // of an error that all taxels share
 
-// Beyond the heaviest calibrated load the exponent stays what it is there: uncertain by the first, and changing by the
-// second for every factor e of the force. docs/derivations.md, "Beyond the calibrated loads".
+// Beyond the heaviest calibrated load the exponent stays as it is there. It is uncertain by the first, and changes by
+// the second for every factor e of the force. docs/derivations.md, "Beyond the calibrated loads".
 constexpr float kExponentSigma = 0.2F;
 constexpr float kExponentChange = 0.3F;
 constexpr float kLineExponentSigma = 0.3F;  // below the first load of a table: a line, where rubber has a power

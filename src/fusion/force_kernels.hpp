@@ -20,7 +20,7 @@ struct ExcessConductance {
 /// on below zero. Where e = 0 the network is asked for one standard deviation, of which the detection limit is made.
 void conductance_inputs(const ExcessConductance& excess, std::span<float> inputs) noexcept;
 
-/// What forces and their standard deviations are made of; each vector [taxels] where nothing else is said.
+/// The inputs of forces and their standard deviations; each vector [taxels] where nothing else is said.
 struct ForceSources {
   ExcessConductance excess;
   std::span<const float> log_gain;
@@ -38,7 +38,7 @@ struct ForceSources {
   float knots_per_log = 0.0F;                 ///< Knots for a rise of ln(newtons) by one.
 };
 
-/// What comes of them, each [taxels], by the formulas of ForceNetworks and ForceFusion.
+/// The results, each [taxels], by the formulas of ForceNetworks and ForceFusion.
 struct FusedForces {
   std::span<float> newtons;
   std::span<float> sigma_newtons;

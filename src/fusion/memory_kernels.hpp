@@ -20,7 +20,7 @@ struct MemoryStep {
   std::span<float> logarithm;                                     ///< ln(1 + f), likewise
   std::span<float> late_newtons;                                  ///< s_k [4, taxels], likewise
   std::span<float> stops;                                         ///< m_j [3, taxels], likewise
-  ForceSums* sums = nullptr;                                      ///< Of the felt forces, then of the freed ones.
+  ForceSums* sums = nullptr;                                      ///< Sums of the felt forces, then of the freed ones.
 };
 
 /// Felt forces become those that are freed of the memory; NaN stays.

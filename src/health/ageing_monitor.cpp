@@ -15,7 +15,7 @@ namespace dermis::health {
 namespace {
 
 constexpr double kLeastSpread = 0.05;  // of gains: less is not worth a calibration
-constexpr double kLeastPercent = 0.5;  // that is told
+constexpr double kLeastPercent = 0.5;  // that is reported
 constexpr double kSigmas = 3.0;
 constexpr std::size_t kLeastBlocks = 16;
 constexpr float kMostWeight = 8.0F;  // of the touches that a square remembers of each way
@@ -23,7 +23,7 @@ constexpr float kMostRelativeSigma = 0.25F;
 constexpr float kContrast = 0.7F;   // of ln F in a square, from which on it counts less
 constexpr double kVariances = 4.0;  // of ln g, in that of d
 
-// Squares that share taxels are alike: the correlation of their squared d is 1/4 with each of four neighbours and 1/16
+// Squares that share taxels are alike. The correlation of their squared d is 1/4 with each of four neighbours and 1/16
 // with each of four others.
 constexpr double kSharing = 1.0 + 4.0 * 0.25 + 4.0 * 0.0625;
 
@@ -58,7 +58,7 @@ double calibrated_spread(const fusion::ForceNetworks& networks) {
   return spreads.empty() ? 0.0 : upper_median(std::move(spreads));
 }
 
-/// Of a square whose taxels differ by so much: at the rim of a touch shapes differ most.
+/// Weight of a square whose taxels differ by so much: at the rim of a touch shapes differ most.
 float weight_of(float contrast) {
   const float square = contrast * contrast / (kContrast * kContrast);
   return 1.0F / (1.0F + square * square);

@@ -109,7 +109,7 @@ class Judge {
     return std::any_of(reading_.begin(), reading_.end(), [&](double reading) { return reading > full_scale; });
   }
 
-  std::function<void()> judged_;  // is told of every circuit
+  std::function<void()> judged_;  // is called for every circuit
   std::vector<Pattern> patterns_;
   double noise_ratio_;
   std::vector<double> reading_;

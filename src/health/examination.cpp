@@ -44,7 +44,7 @@ bool is_explained(const LineFault& dead, const LineFault& line, const ArrayDescr
   return line.place == (*traits.axis == Axis::row ? dead.place / array.cols : dead.place % array.cols);
 }
 
-/// Of the faults so far, which stand and which have gone at this frame.
+/// Updates which of the faults so far stand and which have gone at this frame.
 void follow(std::span<const LineFault> present, std::size_t frame, const ArrayDescription& array,
             std::vector<FaultHistory>& faults) {
   std::erase_if(faults, [&](const FaultHistory& known) {
@@ -102,7 +102,7 @@ class Examination::Implementation {
     }
     if (!first_time_) first_time_ = raw.time;
     last_time_ = raw.time;
-    if (troubles_.is_silent(raw, force, pipeline)) return;  // tells nothing of the sheet
+    if (troubles_.is_silent(raw, force, pipeline)) return;  // no evidence on the sheet
     follow_temperature(pipeline.conditioned());
     follow_supply(raw);
     follow(pipeline.line_faults().faults(), frame, model_.array, counted_.faults);

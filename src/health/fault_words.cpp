@@ -10,7 +10,7 @@ namespace {
 using compensation::LineFault;
 using compensation::LineFaultEffect;
 
-/// What the fault is, and what to look at.
+/// The fault, and the parts to look at.
 std::pair<std::string, std::string> diagnosis(const LineFault& fault, const ArrayDescription& array) {
   const std::string place = place_name(fault, array);
   switch (traits_of(fault.kind).effect) {

@@ -11,10 +11,10 @@
 
 namespace dermis::health {
 
-/// What is wrong by the values of the diagnosis, in plain words, a sentence each, worst first.
+/// The problems by the values of the diagnosis, in plain words, a sentence each, worst first.
 [[nodiscard]] std::vector<std::string> findings_of(const Diagnosis& diagnosis, const pipeline::Model& model);
 
-/// What presses look like that is not sure to be a fault.
+/// Descriptions of presses that may be a fault or not.
 [[nodiscard]] std::vector<std::string> remarks_on(std::span<const compensation::LineFault> suspicions,
                                                   const ArrayDescription& array);
 

@@ -12,7 +12,7 @@
 
 namespace dermis::health {
 
-/// Taxels that tell nothing though no fault has been found: they have no force in any frame, or a high reading that
+/// Taxels without information though no fault has been found: they have no force in any frame, or a high reading that
 /// never changes.
 class MuteTaxels {
  public:

@@ -7,8 +7,8 @@
 
 namespace dermis::health {
 
-/// Noise against what the model says, from how much the taxels that nothing touches differ from one frame to the next,
-/// each in its own standard deviations: in the median of the frames, without the taxels that differ most.
+/// Noise against the model's, from the differences of untouched taxels between frames, each in its own standard
+/// deviations. The median of the frames counts, without the taxels that differ most.
 class NoiseMeter {
  public:
   /// Deviations of the taxels from their unloaded conductance in standard deviations; NaN: touched, or held at 0 S.

@@ -13,7 +13,7 @@ class OffsetMeter {
  public:
   explicit OffsetMeter(std::size_t taxels) : share_(taxels), frames_(taxels) {}
 
-  /// What a taxel that nothing touches conducts, over what it was calibrated to conduct unloaded.
+  /// Takes the conductance of an untouched taxel over its calibrated unloaded one.
   void add(std::size_t taxel, double share) {
     share_[taxel] += share;
     ++frames_[taxel];

@@ -10,7 +10,7 @@
 
 namespace dermis::health {
 
-/// What the taxels conduct where nothing touches them, and which of them are touched.
+/// The conductances of the untouched taxels, and which ones are touched.
 class UnloadedTaxels {
  public:
   explicit UnloadedTaxels(const pipeline::Model& model) : model_(model), expected_(model.array.taxel_count()) {}

@@ -20,23 +20,24 @@ constexpr double kLeastChange = 0.03;    // of a gain: less is not worth a calib
 constexpr double kSomethingElse = 2.0;   // times the weight, or a part of it
 constexpr double kNewtonsPerGram = 9.80665e-3;
 constexpr double kSigmas = 3.0;
-constexpr double kTooMuch = 0.1;      // of a gain: a check that cannot tell as much has not told much
+constexpr double kTooMuch = 0.1;      // of a gain: a check that is less sure is of little use
 constexpr double kLeastSigma = 1e-3;  // relative
 
 bool is_near(double ratio) {
   return ratio < kSomethingElse && ratio > 1.0 / kSomethingElse;
 }
 
-/// Of the logarithm of the mean ratio. What the model says of a force, and what the presses show of it if that is more.
+/// Standard deviation of the logarithm of the mean ratio. It is the model's for a force, or the scatter of the presses
+/// if that is more.
 double sigma_of(const std::vector<WeighedPress>& presses, double log_ratio, double weight_n) {
-  double told = 0.0;
+  double modelled = 0.0;
   double seen = 0.0;
   for (const WeighedPress& press : presses) {
-    told += std::pow(press.sigma_newtons / press.newtons, 2);
+    modelled += std::pow(press.sigma_newtons / press.newtons, 2);
     seen += std::pow(std::log(press.newtons / weight_n) - log_ratio, 2);
   }
   const auto count = static_cast<double>(presses.size());
-  const double of_one = std::max(told / count, count > 1.0 ? seen / (count - 1.0) : 0.0);
+  const double of_one = std::max(modelled / count, count > 1.0 ? seen / (count - 1.0) : 0.0);
   return std::max(std::sqrt(of_one / count), kLeastSigma);
 }
 

@@ -135,7 +135,7 @@ class Dsa final : public FrameSource {
  private:
   /// Once.
   void tell_time_backwards(Nanos time) {
-    if (time < last_time_ && !std::exchange(has_told_time_, true) && options_.notice) {
+    if (time < last_time_ && !std::exchange(has_noted_time_, true) && options_.notice) {
       options_.notice(events_.place() + ": the time_stamp of the frame is before that of the last one");
     }
     last_time_ = time;
@@ -191,7 +191,7 @@ class Dsa final : public FrameSource {
   std::vector<Temperature> temperatures_;
   std::size_t frames_ = 0;
   Nanos last_time_{};
-  bool has_told_time_ = false;
+  bool has_noted_time_ = false;
 };
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 namespace dermis::importers {
 
-/// One thing that a DSA recording tells.
+/// One event of a DSA recording.
 struct DsaEvent {
   enum class Kind { matrix, frame, temperatures, end };
   Kind kind = Kind::end;
@@ -23,8 +23,8 @@ struct DsaEvent {
 };
 
 /// Reads the XML of a DSA recording, compressed by bzip2 or not, event by event. Memory: an event of at most 64 MiB.
-/// Document types are refused, and so no entity can grow; so is what else no recording has: tags of more than 1 MiB,
-/// names of more than 64 KiB in all, more than 32 elements in each other. Not thread-safe.
+/// Document types are refused, so no entity can grow. No recording has tags of more than 1 MiB, names of more than 64
+/// KiB in all, or more than 32 nested elements: these are refused, too. Not thread-safe.
 class DsaEvents {
  public:
   /// `in` must be able to seek.

@@ -26,7 +26,7 @@ inline void begin_frame(RawFrame& frame, Nanos time) {
 /// When frame `index` of a file without times was taken.
 [[nodiscard]] Result<Nanos> time_of_frame(const std::string& place, std::size_t index, double rate_hz);
 
-/// Tells that the last frame is left out.
+/// Gives notice that the last frame is left out.
 void tell_cut(const ImportOptions& options, const std::string& place, std::size_t frames);
 
 /// A source of frames that its open() has found to be good.

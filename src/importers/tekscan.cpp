@@ -117,7 +117,7 @@ class Tekscan final : public FrameSource {
     return false;
   }
 
-  /// Of frames behind each other without a number too little.
+  /// Finds the next of frames that follow each other without a number too little.
   Status find_next_frame() {
     frame_number_.reset();
     while (!frame_number_) {

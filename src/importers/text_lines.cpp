@@ -49,7 +49,7 @@ std::string plain(std::string_view unit) {
 TextLines::TextLines(std::unique_ptr<std::istream> in, std::string name)
     : in_(std::move(in)), name_(std::move(name)), piece_(kPieceBytes) {}
 
-/// What has come already, at least a byte; false at the end.
+/// Takes the bytes that have come already, at least one; false at the end.
 bool TextLines::fill() {
   if (in_->peek() == std::istream::traits_type::eof()) return false;
   const std::streamsize size = in_->readsome(piece_.data(), static_cast<std::streamsize>(piece_.size()));

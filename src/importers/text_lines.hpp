@@ -32,7 +32,7 @@ class TextLines {
   [[nodiscard]] Status rewind();
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  /// Of the last line: "name:line".
+  /// Place of the last line: "name:line".
   [[nodiscard]] std::string place() const;
   /// Bad input at the last line.
   [[nodiscard]] Error error(const std::string& message) const;
@@ -81,8 +81,8 @@ class Cells {
 /// Reads the values of a row, all of `row`; what follows must be empty. Else says what is wrong with the line.
 [[nodiscard]] Status parse_row(std::string_view line, Cells::Separator separator, std::span<float> row);
 
-/// What a reading in this unit is to be multiplied by: pressures become kilopascals, forces newtons, "raw" stays.
-/// Empty: the unit is not known.
+/// The factor on a reading in this unit: pressures become kilopascals, forces newtons, "raw" stays. Empty: the unit is
+/// not known.
 [[nodiscard]] std::optional<double> factor_of_unit(std::string_view unit);
 /// The units of factor_of_unit(), for messages.
 [[nodiscard]] std::string known_units();

@@ -269,7 +269,7 @@ void UrdfReader::take_joint_part(std::string_view part, const Attributes& attrib
   named.joint.axis = {axis[0], axis[1], axis[2]};
 }
 
-/// Of one that is told alone, the other is 0, as URDF says.
+/// With one limit given, the other is 0, as URDF says.
 void UrdfReader::take_limit(const Attributes& attributes) {
   if (!attributes.find("lower") && !attributes.find("upper")) return;
   std::array<double, 1> lowest{};

@@ -54,7 +54,7 @@ std::optional<Nanos> parse_time(std::string_view text) {
   return time + seconds;
 }
 
-/// What stands above the pressures.
+/// The lines above the pressures.
 struct Heading {
   std::string sensor;
   FrameShape shape;

@@ -17,7 +17,7 @@ struct ZipEntry {
   std::string name;
   std::uint64_t offset = 0;            ///< Of its header.
   std::uint64_t compressed_bytes = 0;  ///< Behind the header.
-  std::uint32_t crc32 = 0;             ///< Of the bytes that are not compressed.
+  std::uint32_t crc32 = 0;             ///< CRC of the bytes that are not compressed.
   bool is_deflated = false;            ///< Else it stands there as it is.
 };
 
@@ -25,8 +25,8 @@ struct ZipEntry {
 /// wrong, where there is none, and on files that are encrypted or compressed by anything but deflate.
 [[nodiscard]] Result<std::vector<ZipEntry>> list_zip(std::istream& in);
 
-/// The bytes of a file of the archive; they end early where the archive is cut or damaged, and the stream
-/// is bad() where it cannot be read. Memory: 128 KiB.
+/// The bytes of a file of the archive. They end early where the archive is cut or damaged, and the stream is bad()
+/// where it cannot be read. Memory: 128 KiB.
 class ZipEntryStream final : public std::istream {
  public:
   /// `in` stands at the first byte behind the header of the entry.

@@ -161,7 +161,7 @@ bool ArrayWorker::was_sought_back() const noexcept {
   return last_time_ - frame_.raw.time > kLate;
 }
 
-/// A recording was sought back: the frame counts, and what touched the array then is not followed from now.
+/// A recording was sought back: the frame counts, and touches from before are not followed on.
 void ArrayWorker::begin_anew() {
   pipeline_->process(frame_.raw, frame_.force);
   tracker_.forget();
@@ -176,7 +176,7 @@ void ArrayWorker::place_contacts() {
   }
 }
 
-/// What is put there later counts from when nothing stood there.
+/// A load that is put there later counts from when nothing stood there.
 void ArrayWorker::follow_standing() {
   standing_.watch.add(pipeline_->conductance(), frame_.force);
   if (standing_.watch.is_any_loaded()) return;

@@ -17,7 +17,7 @@
 
 namespace dermis::live {
 
-/// What becomes of the zero of an array.
+/// The next step for the zero of an array.
 enum class ZeroRequest { keep, tare, tare_over_load, undo, reset };
 
 /// One array at work on a thread of its own. Thread-safe.
@@ -38,7 +38,7 @@ class ArrayWorker {
   [[nodiscard]] ArrayStatistics statistics() const;
 
  private:
-  /// What other threads ask for.
+  /// Requests of other threads.
   struct Changes {
     std::optional<LiveSettings> settings;
     ZeroRequest zero = ZeroRequest::keep;
@@ -67,13 +67,13 @@ class ArrayWorker {
     std::uint64_t rejected = 0;
   };
 
-  /// What rests on the array.
+  /// The load that rests on the array.
   struct Standing {
     pipeline::StandingLoadWatch watch;
     bool since_first = true;  // frame
   };
 
-  /// What other threads see.
+  /// State that other threads see.
   struct Published {
     mutable std::mutex mutex;
     ArrayStatistics statistics;
@@ -106,7 +106,7 @@ class ArrayWorker {
 
   Requests requests_;
 
-  // Of the worker's thread alone.
+  // Used by the worker's thread alone.
   std::unique_ptr<pipeline::Pipeline> pipeline_;
   LiveSettings settings_;
   contacts::ContactTracker tracker_;

@@ -16,8 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace dermis::messages::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Converts the counts that fill whole vectors, as long as they are words (a conversion to 16 bits and back leaves all
-/// bits); returns how many.
+/// Converts the counts that fill whole vectors, as long as they are words, and returns how many. A conversion to 16
+/// bits and back leaves all bits of a word.
 std::size_t vectors_to_uint16([[maybe_unused]] const float* counts, [[maybe_unused]] std::size_t count,
                               [[maybe_unused]] std::uint8_t* out) {
   std::size_t i = 0;

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: 2026 The dermis authors
-"""Usage: generate.py MSG_FOLDER OUT.cpp: writes the types of messages (ros_messages.hpp, live_messages.hpp) from their
-.msg files, and the assertions that the enumerations of C++ are those of the files."""
+"""Usage: generate.py MSG_FOLDER OUT.cpp
+
+Writes the types of messages (ros_messages.hpp, live_messages.hpp) from their .msg files, and the assertions that the
+enumerations of C++ are those of the files.
+"""
 
 import hashlib
 import json
@@ -45,7 +48,7 @@ CONSTANT = re.compile(r"^(?:uint8|uint16|byte) ([A-Z]\w*)=(\d+)", re.MULTILINE)
 MEMBER_TYPE = re.compile(r"^(\w+/\w+)", re.MULTILINE)
 MEMBER = re.compile(r"^([\w/]+)(\[\])? (\w+)(?: *#.*)?$", re.MULTILINE)
 
-# Of type_description_interfaces/FieldType, which type hashes are made of.
+# Values of type_description_interfaces/FieldType, from which type hashes are made.
 NESTED_TYPE = 1
 TYPE_IDS = {"int8": 2, "uint8": 3, "int16": 4, "uint16": 5, "int32": 6, "uint32": 7, "int64": 8, "uint64": 9,
             "float32": 10, "float64": 11, "bool": 15, "byte": 16, "string": 17}

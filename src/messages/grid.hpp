@@ -31,7 +31,7 @@ inline constexpr std::size_t kSigmaOffset = 4;
 inline constexpr std::size_t kCellStatusOffset = 8;
 inline constexpr std::size_t kCellBytes = 9;
 
-/// What a grid is of: when, how large, where.
+/// The place of a grid: when, how large, where.
 struct GridPlace {
   Nanos time;
   FrameShape shape;

@@ -22,8 +22,8 @@ HWY_BEFORE_NAMESPACE();
 namespace dermis::network::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// What 2^z needs in each precision. `series`: minimax polynomial of (2^r - 1) / r on [-1/2, 1/2], the lowest power
-/// first (Remez); 2^r is then right to 9.2e-8 in float and 2e-17 in double before rounding.
+/// The constants of 2^z in each precision. `series`: minimax polynomial of (2^r - 1) / r on [-1/2, 1/2], the lowest
+/// power first (Remez). 2^r is then right to 9.2e-8 in float and 2e-17 in double before rounding.
 template <typename Real>
 struct PowerOfTwo;
 
@@ -72,8 +72,8 @@ HWY_INLINE hn::Vec<D> power_series(D d, hn::Vec<D> r) {
   return sum;
 }
 
-/// What the sum of a neuron is multiplied with before log_sigmoid_of_power() and tanh_of_power(). The engine scales
-/// weights and thresholds instead, once an epoch.
+/// The factor on the sum of a neuron before log_sigmoid_of_power() and tanh_of_power(). The engine scales weights and
+/// thresholds instead, once an epoch.
 inline constexpr double kLogSigmoidPower = -1.4426950408889634;  // -log2(e)
 inline constexpr double kTanhPower = 2.0 * 1.4426950408889634;   // 2 log2(e)
 

@@ -21,8 +21,8 @@
 namespace dermis::operation {
 namespace {
 
-/// Writes frames with the forces that a pipeline makes of them. What is complete is kept though most frames may have
-/// none, but commit() then fails.
+/// Writes frames with the forces that a pipeline makes of them. Complete frames are kept though most may have none, but
+/// commit() then fails.
 class ForceSink : public FrameSink {
  public:
   ForceSink(const FrameOutput& output, pipeline::Pipeline pipeline)

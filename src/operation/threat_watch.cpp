@@ -62,7 +62,7 @@ Status ThreatWatch::watch() {
   return troubles_.verdict();
 }
 
-/// Whether a threat began or ended. Who waits is told before anything is written.
+/// Whether a threat began or ended. Waiting callers hear of it before anything is written.
 bool ThreatWatch::process() {
   operation_.pipeline.process(raw_, force_);
   troubles_.add(raw_, force_, operation_.pipeline, operation_.frames.get());

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kMisfit = "do not fit the circuit of the array";
 constexpr const char* kPowered = "is the array connected and powered?";
 
-/// Where the source does not tell it, by the number of the frame.
+/// By the number of the frame where the source has no place.
 std::string place_of(const std::string& prefix, const FrameSource* source, std::size_t number) {
   const std::string place = source != nullptr ? source->place() : "";
   return place.empty() ? fmt::format("{}frame {}", prefix, number) : place;

@@ -21,7 +21,7 @@ using recognition::LoadRecording;
 
 constexpr double kMostRateDifference = 0.1;  // of the first recording
 
-/// A recording, and what it says of its frames.
+/// A recording, and its notes on its frames.
 struct ReadRecording {
   LoadRecording recording;
   Layout layout;
@@ -39,7 +39,7 @@ std::string text_of(const Layout& layout) {
   return text + " taxels";
 }
 
-/// By the median of the intervals; 0 where they tell nothing.
+/// By the median of the intervals; 0 where they show none.
 double rate_of(const std::vector<Nanos>& times) {
   if (times.size() < 2) return 0.0;
   std::vector<Nanos> intervals;

@@ -36,7 +36,7 @@ Result<std::vector<ArrayLoadInput>> arrays_of_suit(const LoadInput& input, const
   return arrays;
 }
 
-/// What is to be opened: what `from` names, or each array of a recording that holds several.
+/// The sources to be opened: the one that `from` names, or each array of a recording with several.
 Result<std::vector<ArrayLoadInput>> arrays_of(const LoadInput& input, const sources::SourceName& from) {
   std::vector<ArrayLoadInput> arrays = {{.from = input.from, .model = input.model, .source = input.source}};
   arrays.front().tare = input.tare;

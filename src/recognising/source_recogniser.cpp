@@ -14,7 +14,7 @@ using recognition::Layout;
 using recognition::Recognition;
 using recognition::StreamRecogniser;
 
-/// What the frames of the source look like: those of the examples, side by side.
+/// The array of the source's frames: those of the examples, side by side.
 ArrayDescription array_of(const Layout& layout) {
   ArrayDescription array;
   const bool is_one = layout.arrays.size() == 1 && layout.arrays.front().taxel_count() == layout.readings;
@@ -24,7 +24,7 @@ ArrayDescription array_of(const Layout& layout) {
   return array;
 }
 
-/// Whether these classes can name what comes from `input`.
+/// Whether these classes can name touches of `input`.
 Status check_classes(const Classes& classes, const RecognitionInput& input) {
   if (classes.layout.extras > 0 && input.loads.extra.empty()) {
     return bad_field("extra", "the classes of " + input.classes + " need " + std::to_string(classes.layout.extras) +
@@ -37,7 +37,7 @@ Status check_classes(const Classes& classes, const RecognitionInput& input) {
   return Done{};
 }
 
-/// What the frames of the source look like.
+/// The layout of the source's frames.
 Layout layout_of(const LoadSource& source, const Classes& classes, double rate_hz) {
   Layout layout = classes.layout;
   const std::optional<Layout> found = source.layout();

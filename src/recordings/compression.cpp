@@ -50,7 +50,7 @@ void Compressor::append(std::span<const std::uint8_t> bytes, std::vector<std::ui
   }
 }
 
-/// What one call of a library did.
+/// The work of one call of a library.
 struct Decompressor::Step {
   std::size_t taken = 0;
   std::size_t made = 0;

@@ -10,7 +10,7 @@
 namespace dermis::recordings {
 namespace {
 
-/// What the frames of a file have besides their counts, and the format that is written may have no place for.
+/// The data of a file's frames besides their counts, for which the written format may have no place.
 struct Extras {
   bool is_timed = false;
   bool has_temperature = false;

@@ -28,7 +28,7 @@ Result<std::unique_ptr<Interface>> as(Result<std::unique_ptr<Opened>> opened) {
   return std::unique_ptr<Interface>(*std::move(opened));
 }
 
-/// ": the images of ... are in 'json'", where the file tells.
+/// ": the images of ... are in 'json'", where the file has it.
 std::string why_not(const std::string& path) {
   const RecordingPlace place = recording_place(path);
   const Result<FrameFormat> format = frame_format(place.path);
@@ -40,7 +40,7 @@ std::string why_not(const std::string& path) {
 /// A file that may have no frame, or not all that it was to have.
 class FrameFile final : public FrameSource {
  public:
-  /// `loss`: told at the end of a recording that was not written to its own. Empty: it was.
+  /// `loss`: called at the end of a recording that was not written to its own end. Empty: it was.
   FrameFile(std::string path, std::unique_ptr<FrameSource> frames, std::function<void(const std::string&)> loss)
       : path_(std::move(path)), frames_(std::move(frames)), loss_(std::move(loss)) {}
 

@@ -64,7 +64,7 @@ bool was_simulated(const std::filesystem::path& folder) {
          std::filesystem::exists(folder / "frames.csv", ignored);
 }
 
-/// Of a file that can be read from its beginning again; else nothing.
+/// The first bytes of a file that can be read from its beginning again; else nothing.
 std::string first_bytes(const std::string& path) {
   constexpr std::size_t kLooked = 4096;
   return files::first_bytes_of(path, kLooked);
@@ -88,7 +88,7 @@ FrameFormat text_format(const std::string& path, FrameFormat by_name) {
   return by_name;
 }
 
-/// What files of a format begin as; empty where they may begin as anything.
+/// The kind of file that a format begins as; empty where it may begin as anything.
 std::string_view kind_of_format(FrameFormat format) {
   switch (format) {
     case FrameFormat::mcap: return files::kMcapKind;

@@ -21,11 +21,11 @@ class GrowingFile {
   /// Removes a file that has not appeared.
   ~GrowingFile();
 
-  /// Appends the bytes. What it has written of them when it fails stays until cut_back().
+  /// Appends the bytes. Bytes that it has written when it fails stay until cut_back().
   [[nodiscard]] Status append(std::span<const std::uint8_t> bytes);
   /// The last append() failed for want of room.
   [[nodiscard]] bool is_full() const noexcept { return is_full_; }
-  /// append() goes on at an earlier size. What is behind stays on the disk until cut_back(): within room(), append()
+  /// append() goes on at an earlier size. The bytes behind stay on the disk until cut_back(): within room(), append()
   /// needs no more of it. A pipe cannot go back.
   void go_back_to(std::uint64_t size);
   /// How many bytes the file has on the disk, with those that cut_back() would remove.

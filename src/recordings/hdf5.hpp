@@ -30,7 +30,7 @@ class QuietHdf5 {
   void* print_data_ = nullptr;
 };
 
-/// What HDF5 says of its last failure in this thread, at its root.
+/// The last failure of HDF5 in this thread, at its root.
 [[nodiscard]] std::string hdf5_reason();
 
 /// An identifier of HDF5 and how to close it.

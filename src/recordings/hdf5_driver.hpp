@@ -9,7 +9,7 @@
 namespace dermis::recordings {
 
 /// Lets HDF5 read and write `file` instead of a path (its "virtual file driver"); `file` must outlive the HDF5 file.
-/// HDF5 is told that every write worked: what did not is in file.status().
+/// HDF5 always gets success from a write: errors are in file.status().
 [[nodiscard]] bool set_atomic_file_driver(hid_t file_access, files::AtomicFile& file);
 
 }  // namespace dermis::recordings

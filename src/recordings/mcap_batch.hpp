@@ -23,18 +23,19 @@ struct PlacedRecord {
   Opcode opcode{};
   std::size_t offset = 0;
   std::size_t bytes = 0;
-  Bytes rest;  ///< Of its index, behind place and length.
+  Bytes rest;  ///< Rest of its index, behind place and length.
 };
 
-/// What goes to the file at once.
+/// The data that go to the file at once.
 struct Batch {
   Bytes records;                     ///< Whole ones, before the chunk.
-  std::vector<PlacedRecord> placed;  ///< Of them, those that have an index.
-  Bytes declarations;                ///< Of them, schemas and channels, for the summary.
+  std::vector<PlacedRecord> placed;  ///< Those records that have an index.
+  Bytes declarations;                ///< Their schemas and channels, for the summary.
   Bytes chunk;                       ///< The records in it.
   std::uint64_t first_time = 0;
   std::uint64_t last_time = 0;
-  std::vector<Bytes> indexes;  ///< Of each channel from 1 on: time and place of each of its messages in the chunk.
+  /// Index of each channel from 1 on: time and place of each of its messages in the chunk.
+  std::vector<Bytes> indexes;
 
   [[nodiscard]] bool is_empty() const { return records.empty() && chunk.empty(); }
   /// With as much room.

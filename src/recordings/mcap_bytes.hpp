@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-/// The bytes of MCAP (https://mcap.dev/spec): a record is its opcode, the length of its body as u64, and its body;
-/// numbers are little-endian; texts, maps and arrays begin with their length in bytes as u32.
+/// The bytes of MCAP (https://mcap.dev/spec). A record is its opcode, the length of its body as u64, and its body.
+/// Numbers are little-endian; texts, maps and arrays begin with their length in bytes as u32.
 namespace dermis::recordings {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as the machine holds them");

@@ -18,7 +18,7 @@ struct KeptRecords {
   std::vector<McapAttachment> attachments;
   std::vector<McapMetadata> metadata;
   std::size_t bytes = 0;
-  std::uint64_t end = 0;                                ///< Of the last record that was kept.
+  std::uint64_t end = 0;                                ///< End of the last record that was kept.
   std::vector<std::pair<Opcode, std::uint64_t>> index;  ///< Their places.
   std::uint64_t count = 0;                              ///< How many the index should have.
   bool is_complete = false;                             ///< All are known from the index.

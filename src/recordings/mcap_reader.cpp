@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kMend = "; dermis recover writes what can be read into a new file";
 
-/// A chunk as the summary tells of it.
+/// A chunk as the summary describes it.
 struct ChunkPlace {
   std::uint64_t first_time;
   std::uint64_t last_time;
@@ -40,7 +40,7 @@ struct McapReader::State {
 
   std::uint64_t data_place = 0;           ///< Where the records begin, and
   std::optional<std::uint32_t> data_crc;  ///< the checksum of what is before.
-  std::vector<ChunkPlace> chunks;         ///< Of the summary, in the order to be read.
+  std::vector<ChunkPlace> chunks;         ///< Chunks of the summary, in the order to be read.
   bool goes_by_chunks = false;            ///< Else from record to record of the file.
   std::size_t next_chunk = 0;
   bool ended = false;

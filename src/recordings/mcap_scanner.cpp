@@ -11,7 +11,7 @@
 namespace dermis::recordings {
 namespace {
 
-/// What a record may have to be read whole.
+/// The size up to which a record is read whole.
 std::uint64_t most_bytes(Opcode opcode) {
   constexpr std::uint64_t kChunkHeaderBytes = 64;
   const bool is_large = opcode == Opcode::chunk || opcode == Opcode::message || opcode == Opcode::message_index;

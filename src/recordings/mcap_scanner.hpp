@@ -36,7 +36,7 @@ class McapScanner {
 
   enum class Step {
     record,
-    end,   ///< Of the file, after a whole record.
+    end,   ///< End of the file, after a whole record.
     cut,   ///< The rest of the file is no whole record.
     wrong  ///< The byte here is no opcode.
   };
@@ -50,14 +50,14 @@ class McapScanner {
     place_ = place;
     crc_ = crc;
   }
-  /// Of the bytes up to place(), from the beginning of the file or where go_to() began it; empty where not known.
+  /// CRC of the bytes up to place(), from the beginning of the file or from go_to(); empty where not known.
   [[nodiscard]] const std::optional<std::uint32_t>& crc() const noexcept { return crc_; }
 
-  /// Of a file that was written to its end.
+  /// The footer of a file that was written to its end.
   struct Footer {
     std::uint64_t place = 0;
     std::uint64_t summary = 0;  ///< Where it begins; 0: there is none.
-    std::uint32_t crc = 0;      ///< Of the summary and of the footer up to here; 0: not given.
+    std::uint32_t crc = 0;      ///< CRC of the summary and of the footer up to here; 0: not given.
     Bytes checked_bytes;        ///< Of the footer.
   };
   [[nodiscard]] Result<std::optional<Footer>> footer();

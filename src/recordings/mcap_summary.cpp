@@ -13,9 +13,9 @@
 namespace dermis::recordings {
 namespace {
 
-constexpr std::size_t kBlockBytes = std::size_t{64} << 10U;  ///< Of spilled bytes that are read again.
+constexpr std::size_t kBlockBytes = std::size_t{64} << 10U;  ///< Size of spilled bytes that are read again.
 
-/// What the records of a summary tell.
+/// The statistics of a summary's records.
 class Statistics {
  public:
   explicit Statistics(ByteView records);
@@ -148,7 +148,7 @@ void append_offset(Opcode opcode, std::uint64_t begin, std::uint64_t end, Bytes&
   append_number(offsets, end - begin);
 }
 
-/// Of the data up to `place`, behind which the end stands.
+/// The end behind the data up to `place`.
 EndOfFile end_of_file(std::uint64_t place, std::uint32_t data_crc, ByteView records, const Statistics& statistics,
                       std::uint64_t index_bytes) {
   EndOfFile end;

@@ -13,13 +13,13 @@
 
 namespace dermis::recordings {
 
-/// What the end of a file tells of the batches in it. The indexes of chunks, of which a day has millions, are spilled.
+/// The end of a file for the batches in it. The indexes of chunks, of which a day has millions, are spilled.
 class McapSummary {
  public:
   /// Spills beside `path`.
   explicit McapSummary(const std::string& path) : chunk_indexes_(path), batches_(path) {}
 
-  // Of the batch that is being written.
+  // Records of the batch that is being written.
   Bytes records;      ///< Behind those of earlier batches: schemas, channels, indexes of attachments and metadata.
   Bytes chunk_index;  ///< Empty where the batch has no chunk.
 
@@ -45,7 +45,7 @@ class McapSummary {
   };
 
   SpilledBytes chunk_indexes_;
-  SpilledBytes batches_;  ///< What was written of each of them.
+  SpilledBytes batches_;  ///< The written part of each of them.
   Written last_;
 };
 

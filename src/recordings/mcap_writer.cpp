@@ -32,7 +32,7 @@ struct McapWriter::State {
         compressor(chunk_compression),
         summary(file.place_beside()) {}
 
-  // Of the thread that adds.
+  // Used by the thread that adds.
   Batch open;
   std::vector<WrittenChannel> channels;  ///< Of the numbers 1, 2, ...
   std::vector<McapChannel> schemas;      ///< Of the numbers 1, 2, ...
@@ -41,7 +41,7 @@ struct McapWriter::State {
   std::vector<Batch> sealed;
   std::vector<Batch> spare;
 
-  // Of the thread that writes.
+  // Used by the thread that writes.
   Batch writing;
   GrowingFile file;
   McapCompression compression;
@@ -85,7 +85,7 @@ std::uint16_t McapWriter::State::schema_id(const McapChannel& channel) {
   return id;
 }
 
-/// What was added waits to be written.
+/// Added data now wait to be written.
 void McapWriter::State::seal() {
   if (open.is_empty()) return;
   const std::scoped_lock lock(mutex);

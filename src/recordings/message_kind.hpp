@@ -8,7 +8,7 @@
 
 namespace dermis::recordings {
 
-/// What the messages of a topic are to the frames.
+/// The meaning of a topic's messages for the frames.
 enum class MessageKind : std::uint8_t { none, image, acquisition, temperature };
 
 /// Frames are read of messages in CDR alone.

@@ -21,7 +21,7 @@ struct FrameCounts {
   std::uint64_t last_log_time = 0;
 };
 
-/// What is counted while the messages of a file go by.
+/// The counts of the messages of a file, as they go by.
 class RecordingCounts {
  public:
   void count(const McapMessage& message, const McapChannel& channel);
@@ -29,9 +29,9 @@ class RecordingCounts {
   [[nodiscard]] const std::map<std::uint16_t, std::uint64_t>& messages() const noexcept { return messages_; }
   /// Why the first image is no frame that is none; empty: all are.
   [[nodiscard]] const std::string& unread() const noexcept { return unread_; }
-  /// Of the images in a folder of topics.
+  /// Counts of the images in a folder of topics.
   [[nodiscard]] FrameCounts in_folder(const std::string& folder) const;
-  /// Of the first topic of images; losses are those of all topics.
+  /// Counts of the first topic of images; losses are those of all topics.
   [[nodiscard]] FrameCounts first() const;
 
  private:

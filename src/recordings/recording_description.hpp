@@ -13,7 +13,7 @@
 
 namespace dermis::recordings {
 
-/// What a recording says of an array; empty what it does not say.
+/// The description of an array in a recording; empty where there is none.
 struct RecordingDescription {
   std::string name;
   std::string folder;  ///< "/chest/", of its topics
@@ -23,7 +23,7 @@ struct RecordingDescription {
   std::string software;
 };
 
-/// Of each array that is described in what was read so far; at most 4096, each name once.
+/// The description of each array in the part that was read so far; at most 4096, each name once.
 [[nodiscard]] std::vector<RecordingDescription> descriptions_of(const McapReader& mcap);
 
 /// "/left/raw" -> "/left/"

@@ -4,7 +4,7 @@
 
 #include <string>
 
-/// What stands in the MCAP files of dermis besides the messages.
+/// The content of MCAP files of dermis besides the messages.
 namespace dermis::recordings {
 
 /// At the beginning: what is recorded, one for each array.

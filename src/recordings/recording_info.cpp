@@ -59,7 +59,7 @@ void set_topics(const McapReader& reader, const Counts& counts, RecordingInfo& i
   }
 }
 
-/// What the end of the file says of an array; of the only one it is said without its name.
+/// The end of the file about an array; for the only one it has no name.
 const McapMetadata* totals_of(const McapReader& reader, const std::string& name, bool is_only_one) {
   const std::vector<McapMetadata>& all = reader.metadata();
   const auto found = std::find_if(all.begin(), all.end(), [&](const McapMetadata& metadata) {
@@ -78,7 +78,7 @@ bool has_images(const McapReader& reader, std::string_view folder, std::uint64_t
   });
 }
 
-/// From the summary of a file of dermis alone; returns false where that does not tell.
+/// From the summary of a file of dermis alone; returns false where that does not suffice.
 bool read_totals(const McapReader& reader, RecordingInfo& info) {
   if (!reader.statistics()) return false;
   for (const RecordingDescription& description : descriptions_of(reader)) info.arrays.push_back(info_of(description));
@@ -105,7 +105,7 @@ void set_counts(const FrameCounts& counts, RecordedArrayInfo& array) {
   array.shape = counts.shape ? counts.shape : array.shape;
 }
 
-/// Of a file of which all was read.
+/// Takes the counts of a file that was read whole.
 void take_counts(const McapReader& reader, const RecordingCounts& counts, RecordingInfo& info) {
   const std::vector<RecordingDescription> descriptions = descriptions_of(reader);
   info.arrays.clear();
@@ -142,7 +142,7 @@ std::string why_unread(const McapChannel& channel) {
   return {};
 }
 
-/// Of the arrays that should have frames and have none.
+/// The reason for arrays that should have frames and have none.
 std::string why_unread(const McapReader& reader, const Counts& counts, const RecordingInfo& info) {
   for (const RecordedArrayInfo& array : info.arrays) {
     if (array.frames > 0) continue;

@@ -66,14 +66,14 @@ class RecoveryRun {
   ChannelTable table_;
   std::map<std::uint16_t, std::uint16_t> written_channels_;  ///< By the numbers they have in the file.
   RecordingCounts counts_;
-  std::map<std::string, std::string> names_;  ///< Of the arrays, by the folders of their topics.
+  std::map<std::string, std::string> names_;  ///< Names of the arrays, by the folders of their topics.
   bool last_chunk_was_damaged_ = false;
-  std::uint64_t kept_end_ = 0;      ///< Of the last record that was kept.
+  std::uint64_t kept_end_ = 0;      ///< End of the last record that was kept.
   std::uint64_t searched_end_ = 0;  ///< No chunk begins before that has not been tried.
   std::uint64_t kept_bytes_ = 0;    ///< Of all records that were kept.
   std::uint64_t data_end_ = 0;
   std::uint64_t work_ = 0;  ///< Bytes that were read in vain, or tried as chunks.
-  std::string first_loss_;  ///< What was wrong with the first damaged chunk.
+  std::string first_loss_;  ///< The problem of the first damaged chunk.
   Recovery recovery_;
 };
 
@@ -190,7 +190,7 @@ bool RecoveryRun::take_message(ByteView body) {
   return true;
 }
 
-/// Of a damaged chunk, it tells how many messages it had.
+/// It counts the messages of a damaged chunk.
 bool RecoveryRun::take_message_index(ByteView body) {
   constexpr std::size_t kEntryBytes = 16;
   ByteReader reader(body);

@@ -25,7 +25,7 @@ Nanos time_of(std::uint64_t log_time) {
 struct ReadArray {
   std::optional<FrameShape> shape;
 
-  // What came before the image, of the same frame and so of the same log time.
+  // The messages before the image, of the same frame and so of the same log time.
   RawFrame acquisition;
   std::optional<std::uint64_t> acquisition_time;
   double celsius = 0.0;
@@ -50,7 +50,7 @@ void ReadArray::add_to(RawFrame& frame, std::uint64_t log_time) {
   temperature_time.reset();
 }
 
-/// What the messages of a channel are to the frames.
+/// The meaning of a channel's messages for the frames.
 struct Use {
   MessageKind kind = MessageKind::none;
   std::size_t array = 0;
@@ -83,7 +83,7 @@ class SuitRecordingReader::Implementation {
   std::string path_;
   std::vector<RecordedArray> arrays_;
   std::vector<ReadArray> read_;
-  std::map<std::string, std::size_t, std::less<>> folders_;  ///< Of the topics of the arrays; empty: not known yet.
+  std::map<std::string, std::size_t, std::less<>> folders_;  ///< Folders of the arrays' topics; empty: not known yet.
   std::map<std::uint16_t, Use> uses_;
   std::optional<std::size_t> only_;
   std::uint64_t begin_time_ = 0;  ///< Frames of earlier log times are left out.

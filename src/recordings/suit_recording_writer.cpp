@@ -36,7 +36,7 @@ struct Topic {
   const char* name;
   const messages::MessageType& type;
   std::optional<std::uint16_t> channel{};
-  std::vector<std::uint8_t> message{};  ///< Of the frame that is being written.
+  std::vector<std::uint8_t> message{};  ///< Bytes of the frame that is being written.
   bool is_in_frame = false;
 };
 
@@ -133,7 +133,7 @@ class SuitRecordingWriter::Implementation {
   bool live_;
   std::size_t chunk_bytes_;
 
-  std::mutex mutex_;  ///< Of what is added to mcap_, and of the next three.
+  std::mutex mutex_;  ///< Guards additions to mcap_ and the next three.
   Status status_ = Done{};
   Clock::time_point chunk_due_ = Clock::time_point::max();
   std::size_t waiting_chunks_ = 0;

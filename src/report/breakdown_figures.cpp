@@ -58,7 +58,7 @@ std::vector<double> quantities(const Breakdown& breakdown, const Evaluation& eva
   return values;
 }
 
-/// Mean of the values in the bin, on the scale of the axis: a bin from 5 to 6 V may hold nothing but 5.0 V.
+/// Mean of the values in the bin, on the scale of the axis. A bin from 5 to 6 V may hold nothing but 5.0 V.
 double place_of(const Breakdown& breakdown, const BreakdownBin& bin, std::span<const double> values) {
   if (breakdown.whole_numbers) return bin.low;
   const bool is_logarithmic = breakdown.scale == Scale::logarithmic;

@@ -9,8 +9,8 @@
 
 namespace dermis::report {
 
-/// What the estimators give against the known loads, as the paper's Fig. 11 to 13: a panel for each level of force,
-/// where the loads have a few levels, or else a panel for each estimator.
+/// The forces of the estimators against the known loads, as in the paper's Fig. 11 to 13. There is a panel for each
+/// level of force, where the loads have a few levels, or else for each estimator.
 [[nodiscard]] Figure calibration_figure(const calibration::Evaluation& evaluation);
 
 /// Errors against force, temperature, supply, number of contacts and time since the onset.
@@ -21,7 +21,7 @@ namespace dermis::report {
 [[nodiscard]] Figure coverage_figure(const calibration::Evaluation& evaluation);
 
 /// A load over time as dermis gives it, beside the truth, and its loop of loading and unloading. No panel where the
-/// labels tell nothing of time.
+/// labels have no evidence on time.
 [[nodiscard]] Figure touch_figure(const calibration::Evaluation& evaluation);
 
 /// Tactile images of the example frames.

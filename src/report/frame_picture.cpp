@@ -39,7 +39,7 @@ constexpr Colour kNothing{226, 227, 230};
 constexpr Colour kMark{255, 255, 255};
 constexpr Colour kMarkEdge{20, 20, 24};
 
-/// What a picture is painted with.
+/// The tools for painting a picture.
 class Brush {
  public:
   Brush() = default;

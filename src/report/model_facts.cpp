@@ -13,7 +13,7 @@
 namespace dermis::report {
 namespace {
 
-/// Of what a calibration says; the rest follows.
+/// Order of the facts of a calibration; the rest follows.
 constexpr std::array kOrder = {"labelled frames", "rejected frames", "loads",        "temperature", "supply",
                                "circuit",         "networks",        "memory",       "fit error",   "uncertainty",
                                "dead taxels",     "remarks",         "recalibration"};

@@ -6,8 +6,9 @@
 
 namespace dermis::report {
 
-/// The palette of every map, also in the browser (viewer/src/render/color_map.ts, held equal by a test): coefficients
-/// of place^0, place^1, ... for red, green and blue in sRGB, in [0, 1]. Fitted to even steps in Oklab.
+/// The palette of every map, also in the browser (viewer/src/render/color_map.ts, held equal by a test). The
+/// coefficients are those of place^0, place^1, ... for red, green and blue in sRGB, in [0, 1]. Fitted to even steps in
+/// Oklab.
 constexpr std::array<std::array<double, 3>, 7> kPalette = {{{0.0479, 0.0528, 0.1676},
                                                             {0.4204, 0.5649, 1.3116},
                                                             {6.8652, -0.6374, 4.4242},

@@ -31,8 +31,8 @@ class Raster {
   double scale_;
 };
 
-/// Lines of a text in an own plotter's hand: `size` is the height of a capital; the point is the left end of the base
-/// line. Letters that it has not are boxes.
+/// Lines of a text in a plotter's hand. `size` is the height of a capital; the point is the left end of the base line.
+/// Unknown letters are boxes.
 [[nodiscard]] std::vector<std::vector<Point>> text_strokes(std::string_view text, Point place, double size);
 [[nodiscard]] double stroke_text_width(std::string_view text, double size);
 

@@ -9,7 +9,7 @@
 namespace dermis::report {
 namespace {
 
-/// A letter as lines between points of two digits, x and y: capitals stand between y = 0 and the base line at y = 6,
+/// A letter as lines between points of two digits, x and y. Capitals stand between y = 0 and the base line at y = 6,
 /// small letters begin at y = 2, tails end at y = 8. Lines are parted by blanks.
 struct Glyph {
   char letter;

@@ -27,7 +27,7 @@ struct Touch {
   std::vector<bool> falls;
 };
 
-/// One with loading and unloading tells more than one without, and a long one more than a short one.
+/// One with loading and unloading shows more than one without, and a long one more than a short one.
 bool tells_more(const Touch& a, const Touch& b) {
   const auto rank = [](const Touch& touch) {
     const auto falling = std::count(touch.falls.begin(), touch.falls.end(), true);

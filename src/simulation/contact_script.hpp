@@ -21,7 +21,7 @@ class ContactScript {
 
   ContactScript(const ArrayDescription& array, std::size_t frames, std::uint64_t seed);
 
-  /// What touches the array in frame `index`, and the force on each taxel [N], which `force_n` gets added.
+  /// The contacts in frame `index`, and the force on each taxel [N], which is added to `force_n`.
   void frame(std::size_t index, std::vector<AppliedContact>& contacts, std::vector<double>& force_n) const;
 
  private:

@@ -108,7 +108,7 @@ HWY_INLINE void sweep(D d, std::size_t first, std::size_t last, std::size_t col,
 }
 
 /// Gauss and Jordan, in place. The matrix stays symmetric but for the signs between rows that have and have not been
-/// pivots, so the pivot's column is read from its row.
+/// pivots. So the pivot's column is read from its row.
 template <class D, typename Real = hn::TFromD<D>>
 HWY_INLINE void invert(D d, Workspace<Real>& work) {
   for (std::size_t pivot = 0; pivot < work.cols; ++pivot) {

@@ -15,9 +15,9 @@ inline constexpr std::size_t kMostFastLines = 64;
 /// A divider with grounded idle rows, all columns loaded, lines and supply without resistance, of a size that fits.
 [[nodiscard]] bool fits_grounded_divider(const ArrayDescription& array) noexcept;
 
-/// The readings of such an array over the supply, in SIMD lanes. The row lines are eliminated by hand, their block of
-/// the nodal equations being diagonal, which also admits drivers of 0 ohm; a symmetric, diagonally dominant system is
-/// left for the columns,
+/// The readings of such an array over the supply, in SIMD lanes. The row lines are eliminated by hand: their block of
+/// the nodal equations is diagonal, which also admits drivers of 0 ohm. A symmetric, diagonally dominant system is left
+/// for the columns,
 ///
 ///   C = diag(1/RL_j + sum_i G_ij) - sum_i (Rd_i / a_i) g_i g_i^T,   a_i = 1 + Rd_i sum_j G_ij,   g_i row i of G,
 ///

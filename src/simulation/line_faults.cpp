@@ -70,7 +70,7 @@ Status check_taxels(const char* field, const std::vector<std::string>& names, co
   return Done{};
 }
 
-/// What a line is tied to beside its taxels: a voltage (over the supply) through a conductance, or rigidly.
+/// The connection of a line beside its taxels: a voltage (over the supply) through a conductance, or rigidly.
 struct Tie {
   double siemens = 0.0;
   double ratio = 0.0;
@@ -239,7 +239,7 @@ class Scan {
     return (nodes_.current_into(node, voltages) + driver_current(driven, node)) / feedback_siemens;
   }
 
-  /// Of the drivers of rows that are shorted to this column at virtual ground, over the supply [S].
+  /// Current of the drivers of rows that are shorted to this column at virtual ground, over the supply [S].
   [[nodiscard]] double driver_current(std::size_t driven, std::size_t node) const {
     double current = 0.0;
     for (std::size_t row = 0; row < array_.rows; ++row) {

@@ -25,7 +25,7 @@ double share_within(PatchShape shape, double rho) {
 
 }  // namespace
 
-// All lengths over the patch's radius, in rings around its centre: rings within the disc have a closed form, of the
+// All lengths are over the patch's radius, in rings around its centre. Rings within the disc have a closed form; of the
 // others the arc within the disc counts. r = middle - half cos(angle) takes the roots out of both ends of the integral.
 double force_on_disc(PatchShape shape, double force_n, double patch_radius_m, double disc_radius_m, double distance_m) {
   const double disc = disc_radius_m / patch_radius_m;

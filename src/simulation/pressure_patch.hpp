@@ -6,8 +6,8 @@
 
 namespace dermis::simulation {
 
-/// Force that a round patch puts on a round taxel whose centre is `distance_m` away [N]: the integral of the pressure
-/// over what both have in common, to 1e-4 of the patch's force.
+/// Force that a round patch puts on a round taxel whose centre is `distance_m` away [N]. It is the integral of the
+/// pressure over their common area, to 1e-4 of the patch's force.
 [[nodiscard]] double force_on_disc(PatchShape shape, double force_n, double patch_radius_m, double disc_radius_m,
                                    double distance_m);
 

@@ -35,9 +35,9 @@ ArrayXd array_or_zero(const std::vector<double>& values, Index size) {
   return values.empty() ? ArrayXd::Zero(size) : as_array(values);
 }
 
-/// What stands at the end of each sensed line: a resistor to a source, and the reading for the current through it.
-/// A divider's resistor leads to 0 V; an amplifier's input is seen behind its switch and stands at
-/// offset gain/(1 + gain) + I load/(1 + gain). Voltages are over the supply.
+/// The end of each sensed line: a resistor to a source, and the reading for the current through it. A divider's
+/// resistor leads to 0 V; an amplifier's input is seen behind its switch and stands at offset gain/(1 + gain) + I
+/// load/(1 + gain). Voltages are over the supply.
 struct Sinks {
   ArrayXd ohm;
   ArrayXd source;
@@ -71,8 +71,7 @@ Electronics electronics(const ArrayXd& driven_ohm, const ArrayXd& sensed_ohm, In
   return {series, Table::Zero(terminals, cases), Table::Zero(terminals, cases)};
 }
 
-/// What is left of the supply behind its own resistance, where the driven line takes so much of an ideal one of 1 V
-/// [S].
+/// The rest of the supply behind its own resistance, where the driven line takes so much of an ideal one of 1 V [S].
 template <typename Siemens>
 auto left_of_supply(double supply_ohm, const Siemens& taken) {
   return 1.0 / (1.0 + supply_ohm * taken);
@@ -97,8 +96,8 @@ Table idle_driven_grounded(const TerminalNetwork& network, const ArrayXd& drive_
   return sinks.readings((left.matrix().asDiagonal() * sunk.topRows(driven)).rowwise() + sunk.row(driven));
 }
 
-// Case k: unit current into line k, all driven lines floating: its resistance is V_kk, so the driver, which sees the
-// voltage of the sensed lines' sources against it, drives (1 - V_k,last)/(drive_ohm_k + V_kk) into it.
+// Case k has unit current into line k, with all driven lines floating, so its resistance is V_kk. The driver sees the
+// voltage of the sensed lines' sources against it, and drives (1 - V_k,last)/(drive_ohm_k + V_kk) into it.
 Table idle_driven_floating(const TerminalNetwork& network, const ArrayXd& drive_ohm, const Sinks& sinks) {
   const Index driven = drive_ohm.size();
   const Index sensed = sinks.ohm.size();
@@ -130,7 +129,7 @@ Table one_load_grounded(const TerminalNetwork& network, const ArrayXd& drive_ohm
   return (left_of_supply(supply_ohm, taken.array()) * current.array()).matrix() * load_ohm.matrix().asDiagonal();
 }
 
-// A series of driver, array and load; the array's resistance between line k and sensed line j is the voltage of a unit
+// A series of driver, array and load. The array's resistance between line k and sensed line j is the voltage of a unit
 // current into line k, with line j at 0 V and all others floating.
 Table one_load_floating(const TerminalNetwork& network, const ArrayXd& drive_ohm, const ArrayXd& load_ohm,
                         const ArrayXd& switch_ohm) {

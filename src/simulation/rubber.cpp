@@ -183,8 +183,8 @@ void ConductiveRubber::creep_towards_load(double seconds) {
   }
 }
 
-// Lorentzians of equal variance with corners a decade apart add up to K/f when each has the variance K ln 10: the sum
-// over the corners f_k of 2 v / (pi f_k) / (1 + (f/f_k)^2) is, as an integral over log10 f_k, v / (f ln 10).
+// Lorentzians of equal variance with corners a decade apart add up to K/f when each has the variance K ln 10. The sum
+// over the corners f_k of `2 v / (pi f_k) / (1 + (f/f_k)^2)` is, as an integral over log10 f_k, `v / (f ln 10)`.
 void ConductiveRubber::advance_noise() {
   const double sd = std::sqrt(options_.pink_noise * std::numbers::ln10);
   for (std::size_t k = 0; k < kNoiseProcesses; ++k) {

@@ -22,8 +22,8 @@ double segment_ohm(std::span<const double> ohms, Index line) {
   return ohms.empty() ? 0.0 : ohms[static_cast<std::size_t>(line)];
 }
 
-/// The nodes of lines with resistance: first the terminals of the driven and of the sensed lines, then each taxel's
-/// node on a line of more than 0 ohm, but for the one at the terminal.
+/// The nodes of lines with resistance. First come the terminals of the driven and of the sensed lines. Then comes each
+/// taxel's node on a line of more than 0 ohm, but for the one at the terminal.
 class LineNodes {
  public:
   LineNodes(Index driven, Index sensed, std::span<const double> driven_ohm, std::span<const double> sensed_ohm)
@@ -133,9 +133,9 @@ TerminalNetwork resistive_network(const Table& taxels, std::span<const double> d
   return equations.reduced();
 }
 
-// Gaussian elimination, one terminal after another, written so that it only adds (Grassmann, Taksar and Heyman 1985):
-// a terminal that is removed leaves a conductance between each two of its neighbours, c_i c_j / (sum of all that it was
-// connected to) - the star-mesh transform - and between each of them and the sources.
+// Gaussian elimination, one terminal after another, written so that it only adds (Grassmann, Taksar and Heyman 1985). A
+// removed terminal leaves a conductance between each two of its neighbours, `c_i c_j / (sum of all that it was
+// connected to)`: the star-mesh transform. It also leaves one between each of them and the sources.
 Solution solve(TerminalNetwork network, const Electronics& electronics) {
   const Index terminals = network.rows();
   const Index cases = electronics.source_v.cols();

@@ -19,8 +19,8 @@ namespace dermis::sources {
 /// Told which share of a scene is simulated.
 using TellShare = std::function<void(double share)>;
 
-/// The scene "contacts" to be read at any moment, over and over: simulated beforehand at 100 frames/s without the noise
-/// of the instruments, interpolated in between, and with fresh noise at each reading. Not thread-safe.
+/// The scene "contacts" to be read at any moment, over and over. It is simulated beforehand at 100 frames/s without the
+/// noise of the instruments, and interpolated in between. Each reading has fresh noise. Not thread-safe.
 class ContactLoop {
  public:
   /// `frames`: length of the scene; by default 2000 (20 s), or fewer of more than 6000 taxels.

@@ -54,7 +54,7 @@ std::vector<std::size_t> RehearsingHand::taxels_of(const GuideWords& words) cons
   return taxels;
 }
 
-/// A single taxel is not forgotten: nobody would be told.
+/// A single taxel is not forgotten: the guide would not notice.
 void RehearsingHand::err(std::vector<std::size_t>& taxels) {
   const std::uint64_t kinds = taxels.size() > 1 ? 3 : 2;
   const std::size_t of = random_.below(taxels.size());

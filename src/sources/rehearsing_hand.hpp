@@ -11,14 +11,14 @@
 
 namespace dermis::sources {
 
-/// The hand of somebody who does what the guide says: puts the weights on after a while of the length of a hold, and
-/// takes them off when told. One press of eight, on average, begins with a mistake, which the hand does not see itself:
-/// told that something else is pressed than was asked for, it takes everything off and begins anew.
+/// The hand of somebody who follows the guide. It puts the weights on after about the length of a hold, and takes them
+/// off when told. One press of eight, on average, begins with a mistake, which the hand does not see itself. Told that
+/// something else is pressed than was asked for, it takes everything off and begins anew.
 class RehearsingHand {
  public:
   RehearsingHand(std::size_t taxels, std::uint64_t seed);
 
-  /// What presses on the array [taxels, N] `seconds` after the last call, by what the guide says now.
+  /// The loads on the array [taxels, N] `seconds` after the last call, by the guide's present words.
   const std::vector<double>& move(const GuideWords& words, double seconds);
 
  private:
@@ -31,7 +31,7 @@ class RehearsingHand {
   std::vector<double> force_n_;
   bool is_on_ = false;
   double seconds_ = 0.0;          // since the hand moved
-  double release_seconds_ = 0.0;  // since it was told to take the weights off
+  double release_seconds_ = 0.0;  // since the guide asked to take the weights off
 };
 
 }  // namespace dermis::sources

@@ -73,7 +73,7 @@ Result<simulation::RubberOptions> rubber_of(const acquisition::SourceUri& uri) {
   return rubber;
 }
 
-/// Of an unknown scene that of most: the simulator refuses it.
+/// An unknown scene has the pace of most: the simulator refuses it.
 ScenePace pace_of(const acquisition::SourceUri& uri) {
   const simulation::SceneKind* const scene = simulation::find_scene(uri.path);
   return scene == nullptr ? ScenePace::step : scene->pace;

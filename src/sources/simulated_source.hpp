@@ -11,7 +11,7 @@
 
 namespace dermis::sources {
 
-/// The source of a URI sim:SCENE, as open_source() tells.
+/// The source of a URI sim:SCENE, as open_source() describes it.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_simulation(const acquisition::SourceUri& uri,
                                                                    const SourceOptions& options);
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-/// Who may have the stream. A page of any site that is open in a browser can reach a server on loopback: what it
-/// cannot do is forge Host and Origin.
+/// Decides who may have the stream. A page of any site that is open in a browser can reach a server on loopback. But it
+/// cannot forge Host and Origin.
 namespace dermis::stream {
 
 /// "127.0.0.1", "127.1.2.3", "::1", "localhost".
@@ -40,7 +40,7 @@ namespace dermis::stream {
 /// "Bearer abc" -> "abc"; empty where it is anything else.
 [[nodiscard]] std::string_view bearer_token(std::string_view authorization);
 
-/// Takes as long whatever differs.
+/// Takes the same time wherever the texts differ.
 [[nodiscard]] bool equal_in_constant_time(std::string_view given, std::string_view expected);
 
 }  // namespace dermis::stream

@@ -23,7 +23,7 @@ std::vector<Parameter> parameters_of(const Offer& offer, const Names& names) {
   return all;
 }
 
-/// What went wrong.
+/// Returns the errors.
 std::vector<std::string> set_parameters(const Offer& offer, std::span<const Parameter> parameters,
                                         const std::string& client) {
   std::vector<std::string> errors;

@@ -20,7 +20,7 @@
 
 namespace dermis::stream {
 
-/// What clients can ask of: the owner of the server, and what it offers.
+/// The addressees of clients' requests: the owner of the server, and its offers.
 struct Offer {
   Handlers handlers{};
   std::vector<Service> services{};
@@ -31,15 +31,15 @@ struct Offer {
 using SubscriptionsChanged = std::function<void(ChannelId channel, int change)>;
 
 class Client;
-/// What the owner was asked, which may take its time, and what is to be done with the client then.
+/// The question to the owner, which may take its time, and the following action for the client.
 using Answer = std::function<void(Client&)>;
 using Question = std::function<Answer()>;
 /// Has a question answered, one after the other, on any thread; the answer comes on the client's, if that is still
 /// there.
 using Ask = std::function<void(Question)>;
 
-/// One client of the stream, as the protocol has it: what it asked for and what waits for it. Knows no socket.
-/// Not thread-safe. Many members: what it follows, what waits, and how far it is.
+/// One client of the stream, as the protocol has it: its requests and its waiting messages. Knows no socket. Not
+/// thread-safe. Many members: its subscriptions, its waiting messages, and its progress.
 class Client {
  public:
   /// `offer` must outlive it and its questions. `address`: "127.0.0.1:53412". `is_sdk`: speaks foxglove.sdk.v1, which
@@ -50,7 +50,7 @@ class Client {
   Client& operator=(const Client&) = delete;
   ~Client();
 
-  /// Says what there is. To be called once.
+  /// Announces the offer. Call it once.
   void greet(const std::string& name, const std::string& session, std::span<const Channel> channels);
   /// Once for each channel, in the order of their ids; those that it knows by greet() are left out.
   void advertise(const Channel& channel);
@@ -92,7 +92,7 @@ class Client {
   Ask ask_;
   OutgoingQueue queue_;
   std::size_t most_control_bytes_;
-  ChannelId next_channel_ = 0;                          // the first that it was not told of
+  ChannelId next_channel_ = 0;                          // the first that it has not heard of
   std::map<std::uint32_t, ChannelId> channel_of_;       // by subscription
   std::map<ChannelId, std::uint32_t> subscription_of_;  // by channel; one each
   std::set<std::string, std::less<>> followed_;
@@ -100,7 +100,7 @@ class Client {
   bool takes_pictures_ = true;      // of the present moment
   std::uint64_t moment_begin_ = 0;  // of queue_.binary_bytes()
   std::uint64_t moment_bytes_ = 0;  // of the last moment whose pictures it took
-  bool is_asking_ = false;          // what it tells meanwhile is not read
+  bool is_asking_ = false;          // its messages meanwhile are not read
 };
 
 }  // namespace dermis::stream

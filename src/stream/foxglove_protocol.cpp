@@ -163,7 +163,7 @@ Result<ClientRequest> parse_taken(const json& message) {
   return ClientRequest(Taken{bytes->get<std::uint64_t>()});
 }
 
-/// Reads a binary message; what does not fit reads as 0 or empty, and good() is false from then on.
+/// Reads a binary message; missing parts read as 0 or empty, and good() is false from then on.
 class BinaryReader {
  public:
   explicit BinaryReader(std::span<const std::uint8_t> bytes) : rest_(bytes) {}

@@ -15,8 +15,8 @@
 #include "dermis/stream/server.hpp"
 
 /// The Foxglove WebSocket protocol as bytes: text messages are JSON, binary ones begin with an opcode and are
-/// little-endian. Requests may be anything; what is not the protocol is an error without a place, and without a word of
-/// the request, as it goes into the log.
+/// little-endian. Requests may be anything. A request outside the protocol gives an error without a place and without a
+/// word of it, as the error goes into the log.
 namespace dermis::stream {
 
 inline constexpr std::string_view kSdkSubprotocol = "foxglove.sdk.v1";
@@ -57,7 +57,7 @@ struct PlaybackRequest {
   PlaybackCommand command{};
   std::string id{};  ///< Given back with the status that answers it.
 };
-/// What the client has taken of binary messages so far; an extension of ours (docs/stream.md).
+/// The bytes of binary messages that the client has taken so far; an extension of ours (docs/stream.md).
 struct Taken {
   std::uint64_t bytes = 0;
 };
@@ -92,7 +92,7 @@ struct ServerInfo {
 [[nodiscard]] std::string status_text(int level, std::string_view message);
 [[nodiscard]] std::string service_failure_text(const ServiceCall& call, std::string_view message);
 
-/// What stands before the payload of a data message.
+/// The header before the payload of a data message.
 using MessageDataHeader = std::array<std::uint8_t, 13>;
 [[nodiscard]] MessageDataHeader message_data_header(std::uint32_t subscription, Nanos log_time);
 [[nodiscard]] std::vector<std::uint8_t> service_response(const ServiceCall& call, std::string_view response);

@@ -26,8 +26,8 @@ struct OutgoingMessage {
   [[nodiscard]] std::size_t size() const noexcept { return (header ? header->size() : 0) + bytes->size(); }
 };
 
-/// What waits for one client. Of data the oldest are dropped where there is too much; the rest is never dropped and
-/// goes first. Not thread-safe.
+/// The messages that wait for one client. The oldest data are dropped where there is too much; the rest is never
+/// dropped and goes first. Not thread-safe.
 class OutgoingQueue {
  public:
   explicit OutgoingQueue(std::size_t most_data_bytes) : most_data_bytes_(most_data_bytes) {}
@@ -39,10 +39,10 @@ class OutgoingQueue {
   void push_binary(std::vector<std::uint8_t> bytes);
 
   [[nodiscard]] bool empty() const noexcept { return control_.empty() && data_.empty(); }
-  /// What is not data, and what it costs to keep: grows without end where a client asks and never reads.
+  /// Size of the messages that are not data: grows without end where a client asks and never reads.
   [[nodiscard]] std::size_t control_bytes() const noexcept { return control_bytes_; }
   [[nodiscard]] std::size_t data_bytes() const noexcept { return data_bytes_; }
-  /// Of all binary messages so far that were not dropped, data and others.
+  /// Bytes of all binary messages so far that were not dropped, data and others.
   [[nodiscard]] std::uint64_t binary_bytes() const noexcept { return binary_bytes_; }
 
   /// The next to be sent; the queue must not be empty.

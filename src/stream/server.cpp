@@ -31,7 +31,7 @@ constexpr std::size_t kMostWaitingBytes = 64U << 20U;  // published, not yet han
 constexpr std::size_t kMostVisitors = 64;              // connections that are no clients of the stream
 constexpr std::size_t kMostAtOnce = 16;                // connections that are taken in a row
 constexpr double kMostConnects = 1000;                 // in a second, after as many at once as there are visitors
-constexpr double kMostUpgrades = 100;                  // in a second: who becomes a client is told of all channels
+constexpr double kMostUpgrades = 100;                  // in a second: a new client gets the list of all channels
 constexpr double kMostUpgradesAtOnce = 16;
 
 std::string random_session() {
@@ -152,7 +152,7 @@ class Server::Implementation final : public SessionOwner {
   Subscriptions subscriptions_;  // outlives the sessions that the context still holds
   std::atomic<bool> parameters_pending_{false};
   asio::io_context context_{1};
-  asio::thread_pool desk_{1};  // the owner's handlers and services run here
+  asio::thread_pool desk_{1};  // the owner's handlers and services run here, one at a time as promised
   Door door_{context_};
   std::uint16_t port_ = 0;
   Connected connected_;
@@ -195,8 +195,8 @@ void Server::Implementation::accept() {
   });
 }
 
-/// Several at a time: where many come, one for each round of what the others want would keep the last waiting long. Who
-/// comes back without end waits in the queue of the system, so that the streams have the time of this thread.
+/// Accepts several at a time: with many newcomers, one for each round of other work would keep the last waiting long.
+/// Who comes back without end waits in the queue of the system, so that the streams have the time of this thread.
 void Server::Implementation::accept_waiting() {
   error_code error;
   for (std::size_t i = 0; i < kMostAtOnce && !error; ++i) {
@@ -217,7 +217,7 @@ void Server::Implementation::accept_at(Budget::Clock::time_point time) {
   door_.pause.async_wait([this](const error_code&) { accept(); });
 }
 
-/// Who says nothing, or says it slowly, has to make room: a new connection is always taken.
+/// A silent or slow peer has to make room: a new connection is always taken.
 void Server::Implementation::admit(tcp::socket socket) {
   if (connected_.visitors.size() >= kMostVisitors) {
     notices_.say("many",

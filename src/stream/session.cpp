@@ -22,11 +22,11 @@ constexpr std::size_t kMostMessageBytes = 1U << 20U;  // from a client
 constexpr std::uint32_t kMostHeaderBytes = 8192;
 constexpr double kMostRequests = 200;              // at once, and then in a second; the next has to wait
 constexpr double kMostRequestBytes = 256U << 10U;  // in a second, after a message of the most bytes
-constexpr int kSendBuffer = 256 << 10;             // [bytes]; what waits there cannot be dropped any more
+constexpr int kSendBuffer = 256 << 10;             // [bytes]; data waiting there cannot be dropped any more
 constexpr seconds kRequestTime{5};                 // from the connection, or the last answer, to the end of the request
 constexpr seconds kIdleTime{30};
 
-/// What came is wrong, rather than nothing any more.
+/// The bytes that came are wrong, rather than at their end.
 bool is_no_http(const beast::error_code& error) {
   return error.category() == make_error_code(http::error::bad_method).category() &&
          error != http::error::end_of_stream && error != http::error::partial_message;
@@ -186,8 +186,8 @@ void Session::flush() {
   });
 }
 
-/// Reads the next message, once the last one is answered and the answer on its way: who asks and does not read is not
-/// read either.
+/// Reads the next message, once the last one is answered and the answer on its way. A client that asks and does not
+/// read is not read either.
 void Session::read_on() {
   if (is_reading_ || awaits_answer_ || client_->queue().control_bytes() > 0) return;
   is_reading_ = true;
@@ -234,7 +234,7 @@ void Session::on_answer(const Answer& answer) {
   read_on();
 }
 
-/// Ends the connection of a client that does what it must not.
+/// Ends the connection of a client that breaks the rules.
 void Session::cut(const std::string& why) {
   owner_.on_cut(peer_ + ": closed: it " + why);
   end();

@@ -35,7 +35,7 @@ class SessionOwner {
   /// When the connection that has entered may become a client.
   [[nodiscard]] virtual Budget::Clock::time_point turn() = 0;
   [[nodiscard]] virtual std::unique_ptr<Client> make_client(const std::string& peer, bool is_sdk, Ask ask) = 0;
-  /// Where what the clients ask of the owner of the server may take its time.
+  /// Where the owner of the server may take its time for the clients' requests.
   [[nodiscard]] virtual boost::asio::thread_pool& desk() = 0;
   /// Known no more; twice does no harm.
   virtual void leave(const std::shared_ptr<Session>& session) = 0;
@@ -43,7 +43,7 @@ class SessionOwner {
   virtual void on_cut(const std::string& line) = 0;
 };
 
-/// One connection: HTTP, until the client asks for the stream. Of the server's thread.
+/// One connection: HTTP, until the client asks for the stream. Used by the server's thread.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   /// `owner` must outlive it.
@@ -62,7 +62,7 @@ class Session : public std::enable_shared_from_this<Session> {
  private:
   using ErrorCode = boost::beast::error_code;
 
-  /// What of them is read.
+  /// Limits on reading them.
   struct Requests {
     Budget count;
     Budget bytes;
@@ -80,7 +80,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void send_head(const std::string& path);
   void send_pieces();
   void send_piece();
-  /// Reads at the owner's desk, so that a disk that stalls holds no stream up; then goes on here.
+  /// Reads on the owner's threads, so that a stalling disk holds no stream up; then goes on here.
   void read_file(std::function<bool(FileOnItsWay&)> read, std::function<void(bool)> then);
   void upgrade();
   void on_upgrade(const ErrorCode& error, bool is_sdk);

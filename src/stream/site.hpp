@@ -18,7 +18,7 @@ namespace dermis::stream {
 
 using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 using Response = boost::beast::http::response<boost::beast::http::string_body>;
-/// What goes before a file.
+/// The head before a file.
 using FileHead = boost::beast::http::response<boost::beast::http::empty_body>;
 
 [[nodiscard]] inline std::string_view view(boost::beast::string_view text) {
@@ -28,10 +28,10 @@ using FileHead = boost::beast::http::response<boost::beast::http::empty_body>;
 /// One line of text that says why not.
 [[nodiscard]] Response make_refusal(const Request& request, boost::beast::http::status status, const std::string& line);
 
-/// `name`: by which a browser saves it.
+/// `name`: the name under which a browser saves it.
 [[nodiscard]] FileHead make_file_head(const Request& request, const std::string& name, std::uint64_t bytes);
 
-/// What is given over HTTP, and to whom. Thread-safe.
+/// The files over HTTP, and who may have them. Thread-safe.
 class Site {
  public:
   /// `options` must outlive it.
@@ -40,9 +40,9 @@ class Site {
   void set_document(std::string path, std::string content_type, std::string content);
   void set_file(std::string path, std::string file);
   [[nodiscard]] Response answer(const Request& request) const;
-  /// The file that is asked for, by who may have it. Nothing: answer() does.
+  /// The requested file, where the client may have it. Nothing: answer() replies.
   [[nodiscard]] std::optional<std::string> file(const Request& request) const;
-  /// Nothing: who asks may have the stream.
+  /// Nothing: the client may have the stream.
   [[nodiscard]] std::optional<Response> refuse_upgrade(const Request& request) const;
 
  private:
@@ -59,7 +59,7 @@ class Site {
 
   const ServerOptions& options_;
   const std::vector<Asset> assets_;
-  mutable std::mutex mutex_;  // Of what follows.
+  mutable std::mutex mutex_;  // Guards the members below.
   std::map<std::string, std::shared_ptr<const Document>, std::less<>> documents_;
   std::map<std::string, std::string, std::less<>> files_;
 };

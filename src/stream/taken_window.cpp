@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFirstRate = 12.5e3;  // [bytes/s]
 constexpr double kKept = 0.8;          // of the rate, while so little is sent that nothing is known of it
-constexpr double kQueued = 0.15;       // [s]; what takes longer waits for the line
+constexpr double kQueued = 0.15;       // [s]; longer times mean that messages wait for the line
 constexpr std::chrono::milliseconds kLeastTime{150};
 
 double seconds(TakenWindow::Clock::duration span) {
@@ -20,8 +20,8 @@ double seconds(TakenWindow::Clock::duration span) {
 
 void TakenWindow::take(std::uint64_t bytes, std::uint64_t sent, Clock::time_point now) {
   taken_ = std::max(taken_, bytes);
-  if (!is_told_) {
-    is_told_ = true;
+  if (!has_report_) {
+    has_report_ = true;
     rate_ = kFirstRate;
     mark_ = taken_;
     marked_ = now;
@@ -35,7 +35,7 @@ void TakenWindow::take(std::uint64_t bytes, std::uint64_t sent, Clock::time_poin
 }
 
 bool TakenWindow::is_open(std::uint64_t sent, std::uint64_t next) const noexcept {
-  if (!is_told_ || sent < taken_ + kLeastBytes) return true;
+  if (!has_report_ || sent < taken_ + kLeastBytes) return true;
   return static_cast<double>(sent - taken_ + next) < rate_ * seconds(kLongest);
 }
 

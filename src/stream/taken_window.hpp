@@ -7,8 +7,8 @@
 
 namespace dermis::stream {
 
-/// How much may be on its way to a client that tells what it has taken: what it takes in kLongest, so that nothing
-/// that comes is much older. Not thread-safe.
+/// How much may be on its way to a client that reports what it has taken. It is the amount that it takes in kLongest,
+/// so that nothing arrives much older. Not thread-safe.
 class TakenWindow {
  public:
   using Clock = std::chrono::steady_clock;
@@ -19,11 +19,11 @@ class TakenWindow {
   /// `bytes`: of the `sent` ones so far; less than before is left out.
   void take(std::uint64_t bytes, std::uint64_t sent, Clock::time_point now);
 
-  /// Whether `next` bytes may follow `sent` ones; always where the client tells nothing.
+  /// Whether `next` bytes may follow `sent` ones; always where the client sends no reports.
   [[nodiscard]] bool is_open(std::uint64_t sent, std::uint64_t next) const noexcept;
 
  private:
-  bool is_told_ = false;
+  bool has_report_ = false;
   std::uint64_t taken_ = 0;
   double rate_ = 0.0;  // [bytes/s], that it can take
   std::uint64_t mark_ = 0;

@@ -9,11 +9,11 @@
 namespace dermis::threats {
 namespace {
 
-constexpr float kPressedSigmas = 3.0F;  // of the additive noise: what stands out less is not pressed
+constexpr float kPressedSigmas = 3.0F;  // of the additive noise: a taxel that stands out less is not pressed
 constexpr double kSharpShare = 0.9;     // of a contact's force, on two taxels
 
-/// So that value - 2 sigma is what the force surely exceeds. Infinite: the value is a lower bound itself. Beyond the
-/// calibrated range sigma is that of a logarithm.
+/// The sigma with which the force surely exceeds value - 2 sigma. Infinite: the value is a lower bound itself. Beyond
+/// the calibrated range sigma is that of a logarithm.
 double sigma_of_bound(double value, double sigma, bool is_beyond_range) {
   if (!std::isfinite(sigma)) return 0.0;
   if (!is_beyond_range || !(value > 0.0)) return sigma;
@@ -53,7 +53,7 @@ ThreatValue taxel_force(const Area& area, const ForceFrame& force) {
   return worst;
 }
 
-/// Of the contacts in the area that are held, the one with the largest `value_of`.
+/// The held contact in the area with the largest `value_of`.
 template <typename ValueOf>
 ThreatValue worst_contact(const Area& area, const ContactReport& report, ValueOf value_of) {
   ThreatValue worst;
@@ -108,7 +108,7 @@ ThreatValue sharp_pressure(const ThreatLimit& limit, const Area& area, const Con
   return hardest.value + second >= kSharpShare * contact.force_n ? pressure(hardest, area) : ThreatValue{};
 }
 
-/// On pressed taxels alone: what a rate is taken of has little noise.
+/// On pressed taxels alone, so that a rate has little noise.
 ThreatValue pressed_force(const Area& area, const ForceFrame& force) {
   ThreatValue total;
   double variance = 0.0;

@@ -9,7 +9,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/threats/threat_monitor.hpp"
 
-/// What one frame holds against the limits.
+/// The values of one frame for the limits.
 namespace dermis::threats {
 
 /// The taxels of an array that a limit is for.
@@ -31,7 +31,7 @@ struct Area {
   [[nodiscard]] PlaneVector place_of(std::size_t row, std::size_t col) const noexcept;
 };
 
-/// All but force_rate, which takes several frames. 0 where nothing presses.
+/// Measures all but force_rate, which takes several frames. 0 where nothing presses.
 [[nodiscard]] ThreatValue measure(const ThreatLimit& limit, const Area& area, const ForceFrame& force,
                                   const ContactReport& report) noexcept;
 

@@ -27,7 +27,7 @@ std::optional<RateWindow::Rate> RateWindow::add(Nanos time, double value, double
   return rate;
 }
 
-/// But for the last of them, which tells the value at `start`.
+/// Keeps the last of them, which has the value at `start`.
 void RateWindow::drop_before(Nanos start) noexcept {
   while (count_ > 1 && sample(1).time <= start) {
     first_ = (first_ + 1) % kMostSamples;
@@ -35,7 +35,7 @@ void RateWindow::drop_before(Nanos start) noexcept {
   }
 }
 
-/// Of frames that come too fast for the samples, some.
+/// Stores some of frames that come too fast for the samples.
 void RateWindow::store(const Sample& now) noexcept {
   const Nanos least = window_ / static_cast<Nanos::rep>(kMostSamples - 4);
   if (count_ > 0 && now.time - sample(count_ - 1).time < least) return;

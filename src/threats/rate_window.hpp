@@ -21,7 +21,7 @@ class RateWindow {
     double sigma = 0.0;
   };
 
-  /// Of the window that ends with this sample; empty where the samples do not reach back so far.
+  /// The rate of the window that ends with this sample; empty where the samples do not reach back so far.
   std::optional<Rate> add(Nanos time, double value, double sigma) noexcept;
 
   void forget() noexcept { count_ = 0; }

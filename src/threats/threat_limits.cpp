@@ -18,10 +18,10 @@ constexpr std::size_t kMostLimits = 1000;
 constexpr double kMostSeconds = 1e6;
 constexpr double kPascalsPerKilopascal = 1000.0;
 
-/// The key of a limit, whose name tells its unit.
+/// The key of a limit, whose name has its unit.
 struct LimitKey {
   std::string_view name;
-  double si;  // what 1 of it is
+  double si;  // its size in SI units
 };
 
 constexpr LimitKey kNewtons{"limit_n", 1.0};
@@ -114,7 +114,7 @@ bool is_printable(const std::string& name) {
   });
 }
 
-/// What is wrong; empty where nothing is.
+/// The first error; empty where there is none.
 std::string fault_of(const Zone& zone, const ThreatLimits& all) {
   if (has_twin(all.zones, zone)) return "stands twice; name one of them otherwise";
   if (zone.last_row < zone.first_row || zone.last_col < zone.first_col) return "ends before it begins";

@@ -55,7 +55,7 @@ class Watch {
     if (limit_.quantity == ThreatQuantity::force_rate) rate_.emplace(kRateWindow);
   }
 
-  /// `is_earlier`: than the frame before; what was known is of another time.
+  /// `is_earlier`: than the frame before; the present state is of another time.
   void process(const ForceFrame& force, const ContactReport& report, bool is_earlier) noexcept {
     state_.changed = false;
     if (is_earlier) forget();

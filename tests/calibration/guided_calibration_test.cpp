@@ -426,7 +426,7 @@ TEST(GuidedCalibration, finishes_without_the_pairs_that_it_asks_for) {
   ASSERT_EQ(state.stage, GuideStage::done) << state.message;
   EXPECT_EQ(state.presses_done, untold.plan.press_count());
   EXPECT_EQ(state.presses_total, untold.plan.press_count());
-  EXPECT_FALSE(guide->calibration()->report.telling_presses.empty());
+  EXPECT_FALSE(guide->calibration()->report.discriminating_presses.empty());
 }
 
 TEST(GuidedCalibration, knows_both_taxels_of_a_pair) {

@@ -279,6 +279,31 @@ TEST(Uncertainty, a_handful_of_presses_does_not_tell_more_than_is_known_of_sheet
   EXPECT_GE(covered.within_95 / covered.count, 0.9);
 }
 
+TEST(Uncertainty, loads_that_differ_by_little_do_not_tell_the_exponent) {
+  constexpr double kWeighing = 0.03;
+  Random chance(9);
+  std::vector<double> gain(48);
+  for (double& of_taxel : gain) of_taxel = std::exp(0.15 * chance.normal());
+  const auto law = [&](std::size_t taxel, double newtons) { return gain[taxel] * 1e-4 * std::pow(newtons, 0.9); };
+  PressBench bench{gain.size(), law, 0.002};
+  SampleDatabase database = bench.presses({}, 0);
+  for (int press = 0; press < 3; ++press) {
+    for (std::size_t taxel = 0; taxel < 24; ++taxel) {
+      database.samples.push_back(bench.sample(taxel, 6.0 * std::exp(kWeighing * chance.normal())));
+    }
+  }
+  for (std::size_t k = 0; k < database.samples.size(); ++k) database.samples[k].frame = k;
+  const auto calibration = calibrate(database);
+  ASSERT_TRUE(calibration) << calibration.error().message;
+  BenchForces estimates(calibration->model.networks, bench);
+  const ForceFrame light = estimates.press(40, 0.5);
+  const float share_of_light = light.sigma_newtons[40] / light.newtons[40];
+  const ForceFrame heavy = estimates.press(40, 6.0);
+  const float share_of_heavy = heavy.sigma_newtons[40] / heavy.newtons[40];
+  EXPECT_GT(share_of_light, 2.0F * share_of_heavy);
+  EXPECT_LT(share_of_heavy, 0.25F);
+}
+
 // A bladder loads all taxels, and the inversion makes much noise of such readings; a contact's are less noisy.
 TEST(Uncertainty, keeps_what_the_noise_of_the_samples_has_left_in_the_networks) {
   const ArrayDescription array = reference_array(32, 32);

@@ -80,6 +80,26 @@ class Parameters : public testing::Test {
   Tares* tares_ = nullptr;
 };
 
+/// Says its name where it is asked.
+class Saying final : public Part {
+ public:
+  explicit Saying(std::string name) : name_(std::move(name)) {}
+  void diagnose(std::vector<messages::Diagnosis>& diagnoses) const override { diagnoses.emplace_back().name = name_; }
+
+ private:
+  std::string name_;
+};
+
+TEST(PartList, threats_that_hear_a_frame_first_are_diagnosed_after_the_arrays) {
+  PartList parts;
+  parts.add(std::make_unique<Saying>("threat"));
+  parts.add(std::make_unique<Saying>("array"));
+  const std::vector<messages::Diagnosis> diagnoses = parts.diagnoses();
+  ASSERT_EQ(diagnoses.size(), 2U);
+  EXPECT_EQ(diagnoses[0].name, "array");
+  EXPECT_EQ(diagnoses[1].name, "threat");
+}
+
 TEST_F(Parameters, begin_with_the_defaults) {
   const contacts::ContactOptions contacts;
   const std::map<std::string, ParameterValue> expected = {{"/contacts/onset_sigma", contacts.onset_sigma},

@@ -9,7 +9,7 @@ export interface Zone {
   cols: [number, number];
 }
 
-/** What must not be exceeded, in a zone or (null) anywhere on the array. */
+/** A value that must not be exceeded, in a zone or (null) anywhere on the array. */
 export interface Limit {
   name: string;
   quantity: string;
@@ -24,14 +24,17 @@ export interface PlacedPose {
   rotation: [number, number, number, number];
 }
 
-/** What is seen of a link. `size`: sides of a box; radius and length of a cylinder; radius of a sphere; scale of a mesh. */
+/**
+ * The visible shape of a link. `size`: sides of a box; radius and length of a cylinder; radius of a sphere; scale of a
+ * mesh.
+ */
 export interface BodyVisual {
   pose: PlacedPose;
   solid: "box" | "cylinder" | "sphere" | "mesh";
   size: number[];
-  /** Of a mesh: where the server has it; missing where it does not give it. */
+  /** URL of a mesh on the server; missing where it does not give it. */
   file?: string;
-  /** Of a mesh: as the description names it. */
+  /** Name of a mesh in the description. */
   name?: string;
   rgba?: [number, number, number, number];
 }
@@ -53,19 +56,19 @@ export interface ArrayDescription {
   full_scale_n: number;
   positions: [number, number, number][];
   normals: [number, number, number][];
-  /** Of the array's frame in the suit's, as the positions have it. */
+  /** Pose of the array's frame in the suit's, as the positions have it. */
   pose: PlacedPose;
-  /** Of the body, which carries it; missing where there is none. */
+  /** Link of the body that carries it; missing where there is none. */
   link?: string;
   /** No taxel has a force yet: there are counts alone. */
   calibrated: boolean;
-  /** What its touches are named; missing where they are not. */
+  /** Names for its touches; missing where they have none. */
   classes?: string[];
   /** Missing where nothing is limited. */
   limits?: Limit[];
 }
 
-/** An array of which nothing is written yet: what its source tells. */
+/** An array of which nothing is written yet, as its source shows it. */
 export interface ArraySetup {
   /** Empty: the user chooses where the array is. */
   from: string;

@@ -39,7 +39,7 @@ export function cssColor(variable: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(variable).trim();
 }
 
-/** Of a CSS variable that holds #rrggbb, in 0 ... 1. */
+/** The colour of a CSS variable that holds #rrggbb, in 0 ... 1. */
 export function rgbColor(variable: string): Rgb {
   const bits = Number.parseInt(cssColor(variable).slice(1), 16);
   return [((bits >> 16) & 255) / 255, ((bits >> 8) & 255) / 255, (bits & 255) / 255];

@@ -7,7 +7,7 @@ import type { Stream } from "./stream/stream";
 import type { Suit } from "./suit";
 import type { Theme } from "./theme";
 
-/** What a view works with. */
+/** The objects that a view works with. */
 export interface ViewContext {
   readonly stream: Stream;
   readonly suit: Suit;

@@ -60,12 +60,12 @@ class ClockMapping {
   [[nodiscard]] bool has_restarted(Nanos device_time, Nanos arrival) const noexcept;
   void add(const Pair& pair);
 
-  Hull hull_;  ///< Of the last 15 to 30 s.
-  Hull next_;  ///< Of the last 0 to 15 s: takes over when hull_ spans 30 s.
+  Hull hull_;  ///< Covers the last 15 to 30 s.
+  Hull next_;  ///< Covers the last 0 to 15 s: takes over when hull_ spans 30 s.
   std::optional<Nanos> first_device_;
   Nanos first_arrival_{};
   Nanos last_device_{};
-  double slope_ = 0.0;  ///< Of the lag over device time: -drift / (1 + drift).
+  double slope_ = 0.0;  ///< Slope of the lag over device time: -drift / (1 + drift).
   double offset_ns_ = 0.0;
 };
 

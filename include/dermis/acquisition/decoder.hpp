@@ -49,7 +49,7 @@ class Decoder {
   virtual void idle() {}
 
   /// The stream ended or was interrupted here. next() then delivers a whole frame that only waited for its successor.
-  /// An incomplete frame is dropped. What was learned (size, offsets) stays, and push() may continue.
+  /// An incomplete frame is dropped. Learned values (size, offsets) stay, and push() may continue.
   virtual void finish() = 0;
 
   /// Number of bytes pushed since the beginning up to and including the last byte of the last frame of next().
@@ -64,10 +64,10 @@ class Decoder {
   /// and after a second of silence. Empty for devices that send on their own, and while they do.
   [[nodiscard]] virtual std::string_view request() const noexcept { return {}; }
 
-  /// What bytes that hold no frame lack, and the mend; empty where nothing is known.
+  /// Says what bytes that hold no frame lack, and the mend; empty where nothing is known.
   [[nodiscard]] virtual std::string advice() const { return {}; }
 
-  /// Of bytes that hold no frame, the shape that frames would likely have; empty where nothing is known.
+  /// The shape that frames would likely have, where the bytes hold no frame; empty where nothing is known.
   [[nodiscard]] virtual std::optional<FrameShape> likely_shape() const { return {}; }
 
   /// The name of the protocol that "auto" has detected; empty until then, and for decoders of one protocol.

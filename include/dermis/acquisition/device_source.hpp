@@ -32,7 +32,7 @@ struct DeviceOptions {
 /// default). It is an error if a serial device does not come back. A TCP peer that closed in an orderly way ends the
 /// source. stdin and files end at their end. tcp-listen waits for its first device without limit. Errors say in one
 /// line what to do. Reasons are a device that is missing, busy, in use or not permitted, different shapes, and 5 s of
-/// bytes that are no frames of the protocol.
+/// bytes that are not frames.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_device(SourceUri uri, const DeviceOptions& options);
 
 /// The same by the text of its URI. Also fails on one that parse_source_uri() refuses.

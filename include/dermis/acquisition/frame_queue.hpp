@@ -12,7 +12,7 @@
 
 namespace dermis::acquisition {
 
-/// What push() does while the queue is full.
+/// The behaviour of push() while the queue is full.
 enum class Overflow {
   wait,         ///< Waits for the reader: for recorders, which lose nothing.
   drop_oldest,  ///< Drops the oldest frame: for viewers, which want the newest.

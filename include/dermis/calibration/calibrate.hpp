@@ -23,17 +23,17 @@ struct StageTime {
   double seconds = 0.0;
 };
 
-/// What a calibration did and how well it fits its own samples.
+/// The course of a calibration and its fit to its own samples.
 struct CalibrationReport {
   std::size_t frames = 0;  ///< Labelled frames used.
   std::size_t frames_rejected = 0;
   std::string first_rejection;
-  std::vector<std::string> remarks;        ///< On labels and readings: SampleDatabase::remarks.
-  std::vector<std::string> doubts;         ///< On circuit and ADC: SampleDatabase::doubts.
-  bool lacks_proof = false;                ///< SampleDatabase::lacks_proof.
-  std::vector<std::string> circuit;        ///< What the fit of an unknown circuit found; empty where all was given.
-  std::vector<PressPair> telling_presses;  ///< Would tell circuits apart that the frames do not; see CircuitFit.
-  std::string memory;                      ///< What the material remembers, a sentence; empty: nothing was learned.
+  std::vector<std::string> remarks;               ///< On labels and readings: SampleDatabase::remarks.
+  std::vector<std::string> doubts;                ///< On circuit and ADC: SampleDatabase::doubts.
+  bool lacks_proof = false;                       ///< SampleDatabase::lacks_proof.
+  std::vector<std::string> circuit;               ///< The findings on an unknown circuit; empty where all was given.
+  std::vector<PressPair> discriminating_presses;  ///< Would distinguish the remaining circuits; see CircuitFit.
+  std::string memory;  ///< A sentence on the memory of the material; empty: nothing was learned.
   TrainingReport training;
   UncertaintyReport uncertainty;
   std::vector<StageTime> stages;

@@ -12,12 +12,12 @@
 
 namespace dermis::calibration {
 
-/// What a person is asked to press: every taxel with the first weight, then every taxel with the second, ...
+/// The presses that a person is asked for: every taxel with the first weight, then every taxel with the second, ...
 struct CalibrationPlan {
   std::vector<std::size_t> taxels;                ///< Row-major, none twice, in the order in which they are pressed.
   std::vector<double> weights_n;                  ///< 1 ... 16 weights of 0.01 ... 1000 N, in their order.
   Nanos unloaded_time = std::chrono::seconds(3);  ///< Quiet time at the beginning, 0.2 ... 60 s.
-  Nanos hold_time = std::chrono::seconds(1);  ///< Of every press, after it settled for a quarter of it, 0.05 ... 30 s.
+  Nanos hold_time = std::chrono::seconds(1);  ///< Time of every press, after a quarter of it to settle, 0.05 ... 30 s.
 
   [[nodiscard]] std::size_t press_count() const noexcept { return taxels.size() * weights_n.size(); }
 

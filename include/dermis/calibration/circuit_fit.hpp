@@ -17,9 +17,9 @@ namespace dermis::calibration {
 /// One of the circuits that `auto` chooses among.
 struct CircuitCandidate {
   std::string name;  ///< "divider, idle rows floating"
-  /// Root mean square of what the circuit leaves unexplained, over the noise of readings and rubber that the best one
-  /// leaves; infinity: a circuit that cannot give these readings, or is not resolved. With one resistance for all
-  /// drivers and one for all loads; circuits that leave nearly the same, with resistances of each line's own.
+  /// Root mean square of the residuals, over the noise of readings and rubber that the best circuit leaves. Infinity: a
+  /// circuit that cannot give these readings, or is not resolved. Fitted with one resistance for all drivers and one
+  /// for all loads, and with one for each line where circuits are nearly as good.
   double misfit = 0.0;
   bool chosen = false;
   bool indistinguishable = false;  ///< Less than a thousand to one worse than the chosen one.
@@ -35,20 +35,20 @@ struct PressPair {
   double newtons = 0.0;
 };
 
-/// The resistances of a circuit as the calibration frames tell them.
+/// The resistances of a circuit as the calibration frames determine them.
 struct CircuitFit {
   ArrayDescription array;  ///< Nothing is unknown any more.
   /// Relative standard errors of drive_ohm and load_ohm (1: nothing is known); 0 where the value was given. They hold
   /// the assumptions of docs/calibration.md.
   std::vector<double> drive_error;
   std::vector<double> load_error;
-  double common_drive_error = 0.0;  ///< Of the mean of the fitted drivers, relative.
+  double common_drive_error = 0.0;  ///< Relative error of the mean of the fitted drivers.
   double rubber_scatter = 0.0;      ///< Relative scatter of a press about the law of its taxel, found with the circuit.
   std::size_t frames = 0;           ///< Frames the fit used, after repeated ones were averaged.
-  std::vector<CircuitCandidate> candidates;  ///< Of `auto`; empty otherwise.
-  std::vector<PressPair> telling_presses;    ///< Would tell the circuits apart that these frames do not; at most 5.
-  std::vector<PressPair> driver_presses;     ///< Would tell the drivers that these frames leave uncertain; at most 5.
-  std::vector<std::string> statements;       ///< What was found and what the data cannot determine, in plain words.
+  std::vector<CircuitCandidate> candidates;       ///< Of `auto`; empty otherwise.
+  std::vector<PressPair> discriminating_presses;  ///< Would distinguish the remaining circuits; at most 5.
+  std::vector<PressPair> driver_presses;          ///< Would determine drivers that are uncertain; at most 5.
+  std::vector<std::string> statements;            ///< The findings and what the data cannot determine, in plain words.
 };
 
 /// Finds the resistances that are kFitOhm, and the circuit where it is Circuit::automatic, from labelled frames: single

@@ -63,8 +63,9 @@ struct SumErrors {
   std::optional<double> share_95;
 };
 
-/// dermis beside the Cramer-Rao bound: the least standard deviation that the noise of the ADC leaves to an unbiased
-/// estimator that knows the circuit and the material. Over some of the frames, evenly, and their judged taxels.
+/// dermis beside the Cramer-Rao bound. That is the least standard deviation which the noise of the ADC leaves to an
+/// unbiased estimator that knows the circuit and the material. It covers some of the frames, evenly, and their judged
+/// taxels.
 struct BoundComparison {
   std::size_t frames = 0;  ///< 0 where there is no bound: circuit "none", more than 1024 taxels, no judged taxel.
   std::size_t taxels = 0;
@@ -76,7 +77,7 @@ struct BoundComparison {
 /// How one estimator did on all frames.
 struct EstimatorResult {
   std::string name;                    ///< "dermis" first, then the baselines, then a further estimator.
-  std::string description;             ///< Of a further estimator; of the others the model tells.
+  std::string description;             ///< Describes a further estimator; the model describes the others.
   ErrorSummary relative_error;         ///< |estimate / truth - 1| of judged taxels; dimensionless.
   ErrorSummary ghost_n;                ///< Force on unloaded taxels that give one [N].
   std::size_t totals_judged = 0;       ///< `force` loads over several taxels.
@@ -84,7 +85,7 @@ struct EstimatorResult {
   ErrorSummary total_relative_error;   ///< |sum / total - 1| of totals above 0.
 };
 
-/// Where in its touch a known force was, as far as the labels tell: they are at most a second apart.
+/// Where in its touch a known force was, by the labels, which are at most a second apart.
 struct TouchTime {
   std::optional<double> seconds_since_onset;  ///< Since the first label above zero after one of zero.
   std::optional<bool> is_unloading;           ///< Whether the last change of the force, of more than 1 %, was a fall.
@@ -103,8 +104,8 @@ struct JudgedTaxel {
   TouchTime touch = {};
 };
 
-/// Share of `taxels` whose true force is within each of `sigmas` (>= 0) standard deviations of dermis' force, of those
-/// with a finite one; empty where there is none.
+/// Share of `taxels` whose true force is within each of `sigmas` (>= 0) standard deviations of dermis' force. Only
+/// finite deviations count; empty where there are none.
 [[nodiscard]] std::vector<double> covered_shares(std::span<const JudgedTaxel> taxels, std::span<const double> sigmas);
 
 /// One `force` load over several taxels of one frame, for plots.
@@ -140,7 +141,7 @@ struct TactileExample {
   std::vector<double> true_newtons;
 };
 
-/// What evaluate() found. Many members: reports show each of them.
+/// The result of evaluate(). Many members: reports show each of them.
 struct Evaluation {
   ArrayDescription array;
   std::size_t frames = 0;  ///< Labelled frames judged.

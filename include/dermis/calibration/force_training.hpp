@@ -13,7 +13,7 @@
 
 namespace dermis::calibration {
 
-/// What the training chose, why, and how well it fits. Many members: reports show each of them.
+/// The choices of the training, their reasons, and the fit. Many members: reports show each of them.
 struct TrainingReport {
   std::size_t own_networks = 0;     ///< Taxels with a network of their own.
   std::size_t shared_networks = 0;  ///< Taxels on the shared network with a gain.
@@ -30,9 +30,9 @@ struct TrainingReport {
   double median_fit_error = 0.0;        ///< Median over taxels of the root mean square relative error on own samples.
   double worst_fit_error = 0.0;         ///< The worst taxel.
   std::size_t worst_taxel = 0;
-  std::size_t groups = 0;            ///< Of taxels in reading order on which tables were held against the networks.
-  std::size_t groups_on_tables = 0;  ///< Of those, where tables were clearly better and are used.
-  std::vector<std::size_t> table_taxels;  ///< That have a look-up table in the place of their network.
+  std::size_t groups = 0;            ///< Groups of taxels in reading order on which tables were compared with networks.
+  std::size_t groups_on_tables = 0;  ///< Groups where tables were clearly better and are used.
+  std::vector<std::size_t> table_taxels;  ///< Taxels with a look-up table in place of their network.
   bool is_one_load = false;               ///< All loads are about the same: straight lines, no law could be learned.
   std::string choice;                     ///< One sentence: which networks were trained and what decided it.
 };
@@ -47,19 +47,19 @@ struct TestedLoad {
   std::vector<std::size_t> taxels;  ///< That carry it.
   double newtons = 0.0;             ///< The load, > 0.
   double residual_n = 0.0;          ///< Of the training [N].
-  double noise_n = 0.0;             ///< As large as the noise of the load [N].
-  double error_n = 0.0;             ///< As large as the error on a new load in the same place [N].
-  double leverage = 0.0;            ///< Of the load on its own estimate: network::FittedResidual.
+  double noise_n = 0.0;             ///< Scaled to the noise of the load [N].
+  double error_n = 0.0;             ///< Scaled to the error on a new load in the same place [N].
+  double leverage = 0.0;            ///< Leverage of the load on its own estimate: network::FittedResidual.
   std::size_t touch = 0;            ///< First sample of its touch, whose loads have errors in common.
 };
 
 struct ForceTraining {
   fusion::ForceNetworks networks;  ///< Their uncertainty is still to be found: fit_uncertainty().
   TrainingReport report;
-  std::vector<TestedLoad> tested_own;     ///< Of taxels with a network of their own, one taxel each.
+  std::vector<TestedLoad> tested_own;     ///< Loads on taxels with a network of their own, one taxel each.
   std::vector<TestedLoad> tested_shared;  ///< Of the shared network.
-  std::vector<TestedLoad> tested_tables;  ///< Of taxels with a look-up table, each left out of it.
-  /// Of the shared network on single taxels, with the errors of taxels that no load pressed.
+  std::vector<TestedLoad> tested_tables;  ///< Loads on taxels with a look-up table, each left out of it.
+  /// Loads of the shared network on single taxels, with the errors of taxels that no load pressed.
   std::vector<TestedLoad> tested_unpressed;
 };
 

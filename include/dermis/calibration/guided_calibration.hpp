@@ -20,7 +20,7 @@ namespace dermis::calibration {
 
 enum class GuideStage : std::uint8_t { none, unloaded, pressing, fitting, done, failed };
 
-/// What the person has to know besides the press that is asked for.
+/// The advice to the person besides the wanted press.
 enum class GuideHint : std::uint8_t {
   none,
   press,        ///< Put the weight on.
@@ -33,22 +33,22 @@ enum class GuideHint : std::uint8_t {
   one_of_two,   ///< GuideState::pressed_taxel is pressed; GuideState::missing_taxel is still to be.
 };
 
-/// What a person sees of a guided calibration. Many members: clients show each of them.
+/// The state of a guided calibration as a person sees it. Many members: clients show each of them.
 struct GuideState {
   GuideStage stage = GuideStage::none;
   GuideHint hint = GuideHint::none;
-  std::string message;                       ///< What to do now, or what was reached, or what went wrong; for a person.
+  std::string message;                       ///< For a person: the next action, the result or the problem.
   std::size_t taxel = 0;                     ///< To be pressed, row-major.
   double weight_n = 0.0;                     ///< With.
   std::optional<std::size_t> together_with;  ///< Another taxel, to be pressed at the same time with as much.
-  double reading = 1.0;                      ///< Of `taxel` now over that of the unloaded taxel: 1 unloaded, rising.
+  double reading = 1.0;                      ///< Reading of `taxel` now over the unloaded one: 1 unloaded, rising.
   std::optional<double> together_reading;    ///< The same of `together_with`.
-  double hold_share = 0.0;                   ///< Of the quiet time, the hold or the last fit that is done, 0 ... 1.
+  double hold_share = 0.0;                   ///< Done share of the quiet time, the hold or the last fit, 0 ... 1.
   std::optional<std::size_t> pressed_taxel;  ///< The one that is pressed though it should not; else that feels most.
-  std::optional<std::size_t> missing_taxel;  ///< Of two, the one that is not pressed while the other is.
+  std::optional<std::size_t> missing_taxel;  ///< The one of two that is not pressed while the other is.
   std::size_t presses_done = 0;
   std::size_t presses_total = 0;                   ///< Skipped ones left out.
-  std::optional<double> median_relative_error;     ///< Of the fit so far on presses it did not see.
+  std::optional<double> median_relative_error;     ///< Error of the fit so far on presses it did not see.
   std::optional<double> unpressed_relative_error;  ///< The same on taxels of which it saw no press.
   std::vector<std::uint8_t> taxel_presses;         ///< Kept presses of each taxel.
 };
@@ -61,7 +61,7 @@ struct GuidedData {
 
 /// Walks a person through the calibration of one live array: unloaded first, then press after press, each recognised
 /// from the frames. While the person works, what is there is fitted on a thread of its own and judged by presses that
-/// were left out. Where they do not tell the circuit, the pairs of taxels that would are asked for after the last
+/// were left out. Where they do not determine the circuit, the pairs of taxels that would are asked for after the last
 /// press, once. Thread-safe.
 class GuidedCalibration {
  public:
@@ -84,7 +84,7 @@ class GuidedCalibration {
 
   [[nodiscard]] GuideState state() const;
 
-  /// Of stage `done`; null before.
+  /// The result of stage `done`; null before.
   [[nodiscard]] std::shared_ptr<const Calibration> calibration() const;
   [[nodiscard]] GuidedData data() const;
 

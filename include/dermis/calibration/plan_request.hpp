@@ -14,9 +14,9 @@
 
 namespace dermis::calibration {
 
-/// The request of /calibration/start (docs/stream.md). What is not asked for is that of default_plan().
+/// The request of /calibration/start (docs/stream.md). Values that are not asked for are those of default_plan().
 struct PlanRequest {
-  std::string array;  ///< Empty: not told.
+  std::string array;  ///< Empty: not given.
   std::optional<std::vector<double>> weights_n;
   std::optional<std::vector<std::size_t>> taxels;
   std::optional<std::size_t> stride;  ///< 1 where all taxels are asked for.

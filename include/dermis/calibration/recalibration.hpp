@@ -17,7 +17,7 @@ namespace dermis::calibration {
 /// A press of known force, against what a model read of it.
 struct KnownPress {
   std::vector<std::size_t> taxels;  ///< That carry it.
-  std::vector<double> shares;       ///< Of the force that was read, of each of them; together 1.
+  std::vector<double> shares;       ///< Share of the read force on each of them; together 1.
   double log_ratio = 0.0;           ///< ln(known / read), mean over its labelled frames.
   double sigma = 0.0;               ///< Standard deviation of it as the model says, > 0.
 };
@@ -26,19 +26,19 @@ struct KnownPress {
 struct GainChange {
   double sheet = 0.0;          ///< Of all taxels,
   double sheet_sigma = 0.0;    ///< and its standard deviation.
-  double spread = 0.0;         ///< Standard deviation over the taxels besides; 0: not told apart.
-  std::vector<double> taxels;  ///< Of each taxel, that of the sheet included [taxels].
+  double spread = 0.0;         ///< Standard deviation over the taxels besides; 0: not distinguished.
+  std::vector<double> taxels;  ///< Change of each taxel, that of the sheet included [taxels].
 };
 
-/// What presses say of the gains. Each taxel has changed by x + y: x is common to the sheet, 0 ± 0.1 before any press;
-/// y is its own, 0 ± spread. The most likely values are those of a linear model (Gauss and Markov; kriging): little
-/// evidence moves a gain little, and a taxel that nothing pressed gets x. The spread is the likeliest one, and 0 with
-/// fewer than 5 presses or pressed taxels. Deterministic, thread-safe.
+/// Derives the change of gains from presses. Each taxel has changed by x + y: x is common to the sheet, 0 ± 0.1 before
+/// any press; y is its own, 0 ± spread. The most likely values are those of a linear model (Gauss and Markov; kriging).
+/// Little evidence moves a gain little, and a taxel that nothing pressed gets x. The spread is the likeliest one, and 0
+/// with fewer than 5 presses or pressed taxels. Deterministic, thread-safe.
 [[nodiscard]] GainChange change_of(std::span<const KnownPress> presses, std::size_t taxels);
 
 /// A model with gains of today.
 struct Recalibration {
-  pipeline::Model model;  ///< With other gains; its provenance says why.
+  pipeline::Model model;  ///< The model with other gains; its provenance says why.
   GainChange change;
   std::size_t presses = 0;
   std::size_t taxels = 0;    ///< That were pressed.

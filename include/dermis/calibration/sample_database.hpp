@@ -22,7 +22,7 @@ namespace dermis::calibration {
 struct TotalForce {
   std::vector<std::size_t> taxels;  ///< Row-major indices.
   double newtons = 0.0;             ///< >= 0
-  double felt_share = 1.0;          ///< What the material felt of it, as in Sample.
+  double felt_share = 1.0;          ///< Share of it that the material felt, as in Sample.
 };
 
 /// A labelled frame with supply and crosstalk removed.
@@ -36,8 +36,8 @@ struct Sample {
   std::vector<TaxelStatus> taxels;   ///< What is known about each [taxels].
   std::vector<float> known_newtons;  ///< Force of each taxel [taxels]: 0 where unloaded, NaN where unknown.
   std::vector<TotalForce> totals;
-  /// What the material felt of each known force, after all that came before, as a share of it [taxels]; NaN: not known.
-  /// Empty: all of it.
+  /// Share of each known force that the material felt, after all that came before [taxels]; NaN: not known. Empty: all
+  /// of it.
   std::vector<float> felt_share{};
   bool unloaded = false;  ///< Nothing presses anywhere.
 };
@@ -46,26 +46,27 @@ struct Sample {
 struct SampleDatabase {
   ArrayDescription array;
   std::vector<Sample> samples;
-  double siemens_per_count = 0.0;                    ///< Conductance of one ADC count at an unloaded taxel [S].
-  std::optional<preprocessing::SupplyRange> supply;  ///< Of all samples but outliers; empty: their frames give none.
+  double siemens_per_count = 0.0;  ///< Conductance of one ADC count at an unloaded taxel [S].
+  /// Supplies of all samples but outliers; empty: their frames give none.
+  std::optional<preprocessing::SupplyRange> supply;
   std::size_t frames_rejected = 0;
   std::string first_rejection;       ///< "frame 17: a supply of 0 V or less"; empty when none.
-  std::vector<std::string> remarks;  ///< What is wrong with labels and readings, what is left out, a sentence each.
+  std::vector<std::string> remarks;  ///< Sentences on errors in labels and readings, and on what is left out.
   /// Where circuit and ADC are not as described and stay so: forces are less sure, a sentence each.
   std::vector<std::string> doubts;
-  /// Too few presses on two to six taxels tell whether circuit and ADC are as described; eight are needed.
+  /// Too few presses on two to six taxels show whether circuit and ADC are as described; eight are needed.
   bool lacks_proof = false;
-  /// What circuit and ADC leave of presses on several taxels beside what single ones tell, relative; 0: nothing.
+  /// Relative residual of presses on several taxels under circuit and ADC, beside that of single presses; 0: nothing.
   double unexplained_share = 0.0;
   std::optional<CircuitFit> circuit_fit;  ///< Where resistances or the circuit were unknown; `array` holds its result.
 };
 
 /// Runs labelled frames after `settle_time` through units 2 and 3. Errors: no labelled frame, no unloaded frame (a
-/// frame labelled `force,all,0`), a load beyond the frames, more than a tenth of the labelled frames rejected, a
-/// circuit that cannot be inverted. Frames that are called unloaded but are pressed are left out; what is unknown of
-/// the circuit is found first: fit_circuit(). A taxel without a reading has the conductance that its neighbours
-/// suggest, and no known force. Of very many frames some become samples: see choose_samples(). `progress` gets the
-/// share of them that is done.
+/// frame labelled `force,all,0`), a load beyond the frames, a circuit that cannot be inverted. So is more than a tenth
+/// of the labelled frames rejected. Frames that are called unloaded but are pressed are left out. Unknown parts of the
+/// circuit are found first: fit_circuit(). A taxel without a reading has the conductance that its neighbours suggest,
+/// and no known force. Some of very many frames become samples: see choose_samples(). `progress` gets the share of them
+/// that is done.
 [[nodiscard]] Result<SampleDatabase> build_sample_database(const ArrayDescription& array,
                                                            std::span<const RawFrame> frames,
                                                            std::span<const Load> loads, Nanos settle_time = Nanos{0},

@@ -15,7 +15,7 @@ struct SampleTemperatures {
   bool is_input = false;  ///< Every sample has a temperature and they differ enough to learn from.
 };
 
-/// Of at least one sample.
+/// The temperatures of at least one sample.
 [[nodiscard]] SampleTemperatures sample_temperatures(const SampleDatabase& database);
 
 }  // namespace dermis::calibration

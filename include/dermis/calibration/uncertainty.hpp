@@ -14,8 +14,8 @@ namespace dermis::calibration {
 
 /// Noise of one reading [counts], rounding included. It comes from the differences of successive unloaded samples, each
 /// with the resolution of its own supply. So neither the level of a taxel nor its drift counts. Touched samples and
-/// flickering taxels are left out. It is at least 1 / sqrt(12), the noise of rounding alone. Where more than half of
-/// the taxels are at an end of the ADC in more than a tenth of the samples, what that end cuts off is part of the
+/// flickering taxels are left out. It is at least 1 / sqrt(12), the noise of rounding alone. More than half of the
+/// taxels may be at an end of the ADC in more than a tenth of the samples. The cut-off part is then part of the
 /// likelihood. Empty if there are fewer than 5 unloaded samples, or if that finds less than two counts: rounding hides
 /// the rest. Thread-safe.
 [[nodiscard]] std::optional<double> measure_adc_noise(const SampleDatabase& database);
@@ -33,10 +33,10 @@ struct UncertaintyReport {
   std::optional<double> adc_noise_counts;  ///< Empty: it could not be measured, and the array's stays.
   double temperature_sigma_celsius = 0.0;
   double supply_noise = 0.0;                                 ///< Relative.
-  std::optional<RelativeSigma> relative_sigma;               ///< Of taxels with a network of their own.
+  std::optional<RelativeSigma> relative_sigma;               ///< For taxels with a network of their own.
   std::optional<RelativeSigma> relative_sigma_of_shared;     ///< Of taxels on the shared network.
   std::optional<RelativeSigma> relative_sigma_of_tables;     ///< Of taxels with a look-up table.
-  std::optional<RelativeSigma> relative_sigma_of_unpressed;  ///< Of those of them that no load pressed.
+  std::optional<RelativeSigma> relative_sigma_of_unpressed;  ///< For such taxels that no load pressed.
   std::size_t unpressed_taxels = 0;                          ///< How many these are.
   double unexplained_share = 0.0;  ///< SampleDatabase::unexplained_share, beside all of these.
 };
@@ -46,7 +46,7 @@ struct UncertaintyReport {
 
 /// Fills in the uncertainty of `model`, in its array's readout and in its networks. The noise of the ADC and of the
 /// temperature sensor is measured. The error of the supply and the relative error of the networks (misfit, hysteresis,
-/// creep, noise of the material) are fitted together: they make the errors on tested loads likeliest. The relative
+/// creep, noise of the material) are fitted together. They make the errors on tested loads likeliest. The relative
 /// error is then scaled until 68.3 % of these errors are within one standard deviation and 95.4 % within two. Longer
 /// tails may allow no such scale. Then too many are within one by the same factor as too few are within two. Tables
 /// under loads that were not repeated are uncertain by 5 %. ForceFusion adds their uncertainty below the lightest load.

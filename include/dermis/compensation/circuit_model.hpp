@@ -38,7 +38,7 @@ class CircuitModel {
   /// Readings over the supply at the last solution [rows, cols].
   [[nodiscard]] std::span<const double> ratio() const noexcept;
 
-  /// What the supply's own resistance leaves of the supply during each reading of the last solution [rows, cols]:
+  /// Share of the supply that its own resistance leaves during each reading of the last solution [rows, cols]. It is
   /// 1/(1 + supply_ohm Y), where the driven line takes Y of an ideal one [S].
   [[nodiscard]] std::span<const double> supply_left() const noexcept;
 

@@ -49,16 +49,16 @@ class CrosstalkInversion {
 
   /// ratio [rows, cols] (reading / supply) -> siemens [rows, cols], finite and >= 0. Starts from the last frame's
   /// solution where there is one. A reading below what the neighbours alone explain gives 0 S. Where a reading is not a
-  /// number (NaN), the taxel keeps the conductance that `siemens` gives it, finite and >= 0, and the others are solved
-  /// with it. Where the readings have no solution in this circuit, or are infinite, `solved` is false and `siemens`
-  /// holds the best attempt. Allocates nothing.
+  /// number (NaN), the taxel keeps its conductance in `siemens`, finite and >= 0, and the others are solved with it.
+  /// Where the readings have no solution in this circuit, or are infinite, `solved` is false and `siemens` holds the
+  /// best attempt. Allocates nothing.
   [[nodiscard]] virtual InversionResult invert(std::span<const double> ratio, std::span<double> siemens) noexcept = 0;
 
   /// The next calls of invert() together may take this share of what one frame may; infinite: nothing limits them.
   virtual void start_frame(double /*share*/ = 1.0) noexcept {}
 
   /// From the next frame on, the row and the column of each of these taxels are one node, and their own conductances
-  /// are not solved; a second call replaces the first. false: this circuit is not solved so, the taxels are to be kept
+  /// are not solved. A second call replaces the first. false: this circuit is not solved so. The taxels are to be kept
   /// at the conductance of a short, or none of their readings used. Allocates nothing.
   [[nodiscard]] virtual bool set_shorted(std::span<const std::size_t> taxels) noexcept { return taxels.empty(); }
 
@@ -84,7 +84,7 @@ class SharedErrors;
 class Spikes;
 class SupplyError;
 
-/// What the taxels conduct, by the calibration; by it a taxel without a reading is estimated.
+/// The conductances of the taxels by the calibration, from which a taxel without a reading is estimated.
 struct ReferenceConductances {
   std::span<const double> typical = {};   ///< Under one same force, in any unit; > 0 [rows, cols], or empty.
   std::span<const double> unloaded = {};  ///< [S], 0 or less where it is not known [rows, cols], or empty.

@@ -12,7 +12,7 @@
 
 namespace dermis::compensation {
 
-/// What can be seen of a fault from the readings alone.
+/// The kinds of fault that readings alone can show.
 enum class LineFaultKind {
   silent_row,          ///< Open or shorted to 0 V: nothing arrives from the row.
   silent_column,       ///< The same of a column.
@@ -27,19 +27,19 @@ enum class LineFaultKind {
   drifting_driver,     ///< The resistance of a driver has risen: the whole line sags with its own current.
 };
 
-/// What has happened, wherever it is.
+/// The effect of a fault, wherever it is.
 enum class LineFaultEffect { silent, supplied, shorted, stuck, dead, crossed, impossible, drifting };
 
-/// What a fault is on.
+/// The place of a fault.
 enum class LineFaultScope { line, line_pair, taxel, driver };
 
-/// What is common to all faults of a kind.
+/// The traits of all faults of a kind.
 struct LineFaultTraits {
   const char* name = "";  ///< "silent_row", ...
   LineFaultEffect effect = LineFaultEffect::silent;
   LineFaultScope scope = LineFaultScope::line;
-  std::optional<Axis> axis;        ///< Of the line or lines; empty for taxels and drivers.
-  bool hides_conductance = false;  ///< No reading tells the conductance of the masked taxels.
+  std::optional<Axis> axis;        ///< Axis of the line or lines; empty for taxels and drivers.
+  bool hides_conductance = false;  ///< No reading determines the conductance of the masked taxels.
 };
 
 [[nodiscard]] const LineFaultTraits& traits_of(LineFaultKind kind) noexcept;

@@ -13,7 +13,7 @@
 
 namespace dermis::compensation {
 
-/// What calibration knows of the taxels when nothing touches them.
+/// The unloaded state of the taxels as calibration knows it.
 struct UnloadedConductance {
   UnloadedLaw law;
   std::vector<double> sigma_siemens;  ///< Standard deviation of law.offset_siemens [taxels] [S].
@@ -26,9 +26,9 @@ struct OffsetDriftOptions {
 /// More than this share of its unloaded conductance, no drift adds to a taxel.
 inline constexpr double kMostDriftOfUnloaded = 0.5;
 
-/// What a tare found above the zero before it [taxels].
+/// The change that a tare found from the zero before it [taxels].
 struct TareStep {
-  std::vector<double> siemens;                ///< As far as it is more than noise [S], >= 0.
+  std::vector<double> siemens;                ///< Only where it is more than noise [S], >= 0.
   std::vector<std::uint8_t> is_beyond_drift;  ///< 1: more than kMostDriftOfUnloaded u beside the noise.
 };
 
@@ -66,7 +66,7 @@ class OffsetDrift {
   /// for them, at most 10 s. A taxel that has not changed beyond the noise of that mean keeps its offset.
   void tare() noexcept;
   [[nodiscard]] bool taring() const noexcept;
-  /// Of the last tare that has ended.
+  /// The step of the last tare that has ended.
   [[nodiscard]] const TareStep& tare_step() const noexcept;
   /// Back to the offsets before the last tare that has ended; also ends a tare in progress.
   void undo_tare() noexcept;
@@ -76,7 +76,7 @@ class OffsetDrift {
   void set_options(const OffsetDriftOptions& options) noexcept;
   [[nodiscard]] const OffsetDriftOptions& options() const noexcept;
 
-  /// What is subtracted now, [rows, cols] [S].
+  /// The offsets that are subtracted now, [rows, cols] [S].
   [[nodiscard]] std::span<const double> offsets() const noexcept;
 
  private:

@@ -49,7 +49,7 @@ class ContactTracker {
   /// Forgets the present contacts without a release, because the next frames are of another time. Ids continue.
   void forget() noexcept;
 
-  /// From the next frame on. Contacts keep their ids.
+  /// Takes effect from the next frame on. Contacts keep their ids.
   void set_options(const ContactOptions& options) noexcept;
   [[nodiscard]] const ContactOptions& options() const noexcept;
 

@@ -27,7 +27,7 @@ enum class Circuit {
   automatic,  ///< "auto": calibration chooses the circuit that leaves least unexplained.
 };
 
-/// What a reading is.
+/// The quantity of a reading.
 enum class Quantity {
   counts,    ///< Of the ADC.
   pressure,  ///< Kilopascals: another system has calibrated it.
@@ -46,11 +46,11 @@ enum class IdleColumns {
   floating,  ///< In nothing: one load is switched from column to column.
 };
 
-/// What calibration is to find ("fit"); not a number, so nothing can compute with it.
+/// A value that calibration is to find ("fit"); not a number, so nothing can compute with it.
 inline constexpr double kFit = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kFitOhm = kFit;
 
-/// What an ADC sends, and what an ideal one would send.
+/// A reading of the ADC and the one of an ideal ADC.
 struct AdcPoint {
   double sent_counts = 0.0;
   double ideal_counts = 0.0;
@@ -86,8 +86,8 @@ struct Readout {
   std::vector<double>
       amplifier_offset_v;                ///< transimpedance: input offset of a column's amplifier [V]; needs supply_v.
   std::optional<double> amplifier_gain;  ///< transimpedance: open-loop gain, >= 1; empty: ideal.
-  std::vector<double> row_segment_ohm;   ///< Of each row line, from one taxel to the next [ohm], >= 0.
-  std::vector<double> column_segment_ohm;  ///< Of each column line, from one taxel to the next [ohm], >= 0.
+  std::vector<double> row_segment_ohm;   ///< For each row line, from one taxel to the next [ohm], >= 0.
+  std::vector<double> column_segment_ohm;  ///< For each column line, from one taxel to the next [ohm], >= 0.
   int adc_bits = 12;                       ///< Resolution [bit], 1 ... 24.
   double adc_noise_counts = 1.0;           ///< Standard deviation of a reading, rounding included [counts], > 0.
   std::vector<double> drive_error_ohm;     ///< Standard deviation of each of drive_ohm [ohm], >= 0; empty: exact.

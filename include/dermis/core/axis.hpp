@@ -15,7 +15,7 @@ enum class Axis : std::uint8_t { row, column };
 
 inline constexpr std::array<Axis, 2> kAxes{Axis::row, Axis::column};
 
-/// That of the lines that cross the lines of `axis`.
+/// The axis of the lines that cross those of `axis`.
 [[nodiscard]] constexpr Axis crossing(Axis axis) noexcept {
   return axis == Axis::row ? Axis::column : Axis::row;
 }

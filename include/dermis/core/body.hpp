@@ -35,11 +35,11 @@ struct SphereSolid {
 
 /// Triangles of a file, which only a viewer reads.
 struct MeshSolid {
-  std::string file;  ///< As the description of the body names it.
+  std::string file;  ///< Its name in the description of the body.
   Vector3 scale{1.0, 1.0, 1.0};
 };
 
-/// What is seen of a link.
+/// The visible shape of a link.
 struct BodyVisual {
   Pose link_from_visual{};
   std::variant<BoxSolid, CylinderSolid, SphereSolid, MeshSolid> solid{};
@@ -74,8 +74,8 @@ struct Body {
   [[nodiscard]] std::optional<std::size_t> link(std::string_view name) const;
 };
 
-/// Orders links and joints as Body holds them, and makes axes of moving joints of unit length. Errors: no or several
-/// first links, a link with two parents, a loop, a name that is there twice, an axis or a size of zero, as "joint
+/// Orders links and joints as Body holds them, and makes axes of moving joints of unit length. Errors are no or several
+/// first links, a link with two parents, a loop, a repeated name, and an axis or a size of zero. They read "joint
 /// 'elbow': ...".
 [[nodiscard]] Result<Body> make_body(Body unordered);
 

@@ -30,15 +30,15 @@ struct Contact {
   Nanos onset{};                   ///< Time of the frame in which it was found.
   PlaneVector position{};          ///< Centre of the pressed patch [m].
   PlaneVector sigma_position_m{};  ///< Standard deviation of both [m], > 0.
-  PlaneVector velocity{};          ///< Of the position [m/s]; 0 at onset.
+  PlaneVector velocity{};          ///< Velocity of the position [m/s]; 0 at onset.
   double force_n = 0.0;            ///< Sum of the forces on its taxels [N], >= 0, without what presses between taxels.
   double sigma_force_n = 0.0;      ///< Its standard deviation [N], > 0; infinite where a taxel is saturated.
-  double area_m2 = 0.0;            ///< Of the pressed patch [m2], > 0.
+  double area_m2 = 0.0;            ///< Area of the pressed patch [m2], > 0.
   double peak_pressure_pa = 0.0;   ///< Highest pressure on a taxel [Pa].
   double mean_pressure_pa = 0.0;   ///< force_n over the area of its taxels [Pa].
   double major_axis_m = 0.0;       ///< Standard deviation of the pressure along its longest axis [m],
   double minor_axis_m = 0.0;       ///< and across it; major >= minor >= 0.
-  double angle_rad = 0.0;          ///< Of the longest axis against x, -pi/2 < angle <= pi/2.
+  double angle_rad = 0.0;          ///< Angle of the longest axis against x, -pi/2 < angle <= pi/2.
   std::uint32_t taxels = 0;        ///< Number of taxels in it, >= 1.
 
   bool operator==(const Contact&) const = default;
@@ -51,7 +51,7 @@ struct ContactReport {
   std::vector<Contact> contacts;                    ///< By id, rising.
   double total_force_n = 0.0;                       ///< Over all contacts [N].
   double sigma_total_n = 0.0;                       ///< Its standard deviation [N].
-  std::optional<PlaneVector> centre_of_pressure{};  ///< Of all contacts; empty where there is none.
+  std::optional<PlaneVector> centre_of_pressure{};  ///< Centre of all contacts; empty where there is none.
 
   bool operator==(const ContactReport&) const = default;
 };

@@ -23,7 +23,7 @@ class CircuitErrors;
 /// The conductances of a frame and how wrong they may be, for errors that several taxels share.
 struct ConductanceErrors {
   std::vector<float> siemens;        ///< [taxels] [S]
-  std::vector<float> noise_siemens;  ///< Standard deviation of each by noise; empty where `circuit` tells it [S].
+  std::vector<float> noise_siemens;  ///< Standard deviation of each by noise; empty where `circuit` has it [S].
   std::vector<float> doubt_siemens;  ///< Standard deviation of taxels that are estimated, 0 of the others [S].
   double sigma_ratio = 0.0;          ///< Standard deviation of every reading over the supply.
   double supply_doubt = 0.0;         ///< Relative standard deviation of a supply that is not trusted.
@@ -49,13 +49,13 @@ class CircuitErrors {
                          std::span<double> variances) const noexcept = 0;
 };
 
-/// What sums of forces need beside the forces. Each vector has the size taxels, or all are empty.
+/// The data that sums of forces need beside the forces. Each vector has the size taxels, or all are empty.
 ///
 /// Forces are cut at zero, so the noise of unloaded taxels adds up in their sum. Here the law continues below zero,
 /// F(-e) = -F(e), and noise of either sign cancels.
 struct ForceSums {
   std::vector<float> newtons;              ///< Signed force [N]; NaN where there is none.
-  std::vector<float> own_variance;         ///< Of what taxels do not share: material, zero [N^2].
+  std::vector<float> own_variance;         ///< Variance that taxels do not share: material, zero [N^2].
   std::vector<float> newtons_per_siemens;  ///< d newtons / d conductance [N/S].
   std::vector<float> newtons_per_celsius;  ///< d newtons / d temperature at a fixed conductance [N/C].
   double temperature_sigma = 0.0;          ///< Standard deviation of the temperature [C].

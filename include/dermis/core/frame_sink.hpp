@@ -19,7 +19,7 @@ class FrameSink {
   /// Returns the first write error as soon as it is known.
   [[nodiscard]] virtual Status write(const RawFrame& frame) = 0;
 
-  /// Completes the file. To be called once, after the last frame.
+  /// Completes the file. Call it once, after the last frame.
   [[nodiscard]] virtual Status commit() = 0;
 };
 

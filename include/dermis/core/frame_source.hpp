@@ -21,7 +21,7 @@ struct FrameShape {
   bool operator==(const FrameShape&) const = default;
 };
 
-/// What a source has delivered, and what it has missed.
+/// The delivered and the missed frames of a source.
 struct SourceStatistics {
   std::uint64_t frames = 0;               ///< Delivered.
   std::uint64_t lost_frames = 0;          ///< Never seen: gaps in the numbers of the device.

@@ -18,7 +18,7 @@ namespace dermis {
 /// Time since an arbitrary origin of the source (the first frame, the boot of the device, 1970).
 using Nanos = std::chrono::nanoseconds;
 
-/// What is known about one taxel of one frame.
+/// The knowledge of one taxel in one frame.
 enum class TaxelStatus : std::uint8_t {
   ok,
   saturated,    ///< The ADC is at the end of its range: the force is at least the one given.
@@ -56,7 +56,7 @@ constexpr FrameStatus& operator|=(FrameStatus& a, FrameStatus b) noexcept {
 /// "ok", or the flags joined with '+', as in the status column of forces.csv.
 [[nodiscard]] std::string to_string(FrameStatus status);
 
-/// What the acquisition knows of a frame besides its readings; empty or 0 if the source cannot know it.
+/// Data on a frame besides its readings; empty or 0 if the source cannot know it.
 struct Acquisition {
   std::optional<std::uint64_t> sequence;  ///< The device's number of the frame, counted on where it wraps.
   std::optional<Nanos> device_time;       ///< The device's clock, counted on where it wraps.
@@ -68,7 +68,7 @@ struct Acquisition {
   bool operator==(const Acquisition&) const = default;
 };
 
-/// Unit 1 -> 2. What the device sent.
+/// Unit 1 -> 2. A frame as the device sent it.
 struct RawFrame {
   /// When the frame was taken. A device's frames count from 1970 by the host's steady clock. UTC sets that clock once,
   /// when the source is opened, so time never goes back. If the device has a clock, its time is mapped to the host's.
@@ -86,7 +86,7 @@ struct ConditionedFrame {
   std::optional<double> temperature_celsius;
   std::vector<double> ratio;      ///< Reading / supply, rising with pressure; dimensionless, 0 ... reference / supply.
   double sigma_ratio = 0.0;       ///< Standard deviation of every ratio, rounding included.
-  std::vector<float> noise_gain;  ///< Of each ratio's noise, where the ADC has a curve: times sigma_ratio; empty: 1.
+  std::vector<float> noise_gain;  ///< Factor on sigma_ratio for each ratio, where the ADC has a curve; empty: 1.
   double supply_doubt = 0.0;      ///< Relative standard deviation of a supply that is not trusted, beside its noise.
   std::vector<TaxelStatus> taxels;
 };
@@ -105,7 +105,7 @@ struct ConductanceFrame {
   ConductanceErrors errors{};  ///< Before any drift is taken out.
 };
 
-/// Unit 4 ->. What the robot wants.
+/// Unit 4 ->. Forces for the robot.
 struct ForceFrame {
   Nanos time{};
   FrameStatus status = FrameStatus::ok;
@@ -122,7 +122,7 @@ struct ForceFrame {
   std::vector<float> signal_to_noise{};
   ForceSums sums{};  ///< Empty where the frame was not made by unit 4; sums then are those of `newtons`.
 
-  /// The force on the whole array. To be used in place of a sum of `newtons`, in which noise does not cancel. Taxels
+  /// The force on the whole array. Use it in place of a sum of `newtons`, in which noise does not cancel. Taxels
   /// without a force are left out. The standard deviation counts what taxels share: noise through the circuit, supply,
   /// drivers, temperature. Allocates nothing after the first call of a thread.
   [[nodiscard]] TotalForce total() const noexcept;
@@ -130,7 +130,7 @@ struct ForceFrame {
   /// The same of some taxels: their indices, each once.
   [[nodiscard]] TotalForce total(std::span<const std::size_t> taxels) const noexcept;
 
-  /// The same of several regions, one total each; what they have in common is found once.
+  /// The same of several regions, one total each; common parts are computed once.
   void find_totals(std::span<const std::span<const std::size_t>> regions, std::span<TotalForce> totals) const noexcept;
 };
 

@@ -10,11 +10,11 @@
 
 namespace dermis {
 
-/// Which way round a device sends its lines: how its frames become frames of the array. The members are applied in
-/// their order. By default nothing changes.
+/// The directions in which a device sends its lines: how its frames become frames of the array. The members are applied
+/// in their order. By default nothing changes.
 struct LineOrder {
   std::size_t skip_columns = 0;          ///< First columns that are no taxels, 0 ... kMaxLines - 1.
-  bool transpose = false;                ///< What is sent as a row is a column.
+  bool transpose = false;                ///< A row as sent is a column.
   bool flip_rows = false;                ///< The last row becomes the first.
   bool flip_cols = false;                ///< The last column becomes the first.
   std::vector<std::size_t> row_order{};  ///< Row i of the array is row row_order[i] so far; empty: row i.

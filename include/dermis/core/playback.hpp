@@ -9,7 +9,7 @@
 
 namespace dermis {
 
-/// What a playback does from now on.
+/// The command to a playback from now on.
 struct PlaybackCommand {
   bool play = true;             ///< After the end it starts from the beginning, unless `seek` is set.
   double speed = 1.0;           ///< Factor on the recorded pace, clamped to 0.01 ... 100.

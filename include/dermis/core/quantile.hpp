@@ -31,7 +31,7 @@ template <typename Number>
   return ranked(std::move(values), place);
 }
 
-/// The middle one of the values (at least one). Of an even number it is the upper of the two; quantile(values, 0.5) is
+/// The middle one of the values (at least one). For an even number it is the upper of the two; quantile(values, 0.5) is
 /// the lower.
 template <typename Number>
 [[nodiscard]] Number upper_median(std::vector<Number> values) {

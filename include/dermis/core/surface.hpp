@@ -81,7 +81,7 @@ class ArraySurface {
   [[nodiscard]] static Result<ArraySurface> create(const ArrayDescription& array, const ArrayShape& shape = FlatShape{},
                                                    const Pose& suit_from_array = {}, bool mirrored = false);
 
-  /// Of each taxel, [rows, cols] row-major.
+  /// The point of each taxel, [rows, cols] row-major.
   [[nodiscard]] std::span<const SurfacePoint> taxels() const noexcept { return taxels_; }
 
   /// Place of any point of the array's plane (see core/contacts.hpp). Exact on planes and cylinders. A free shape is

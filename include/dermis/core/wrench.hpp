@@ -19,8 +19,8 @@ struct Wrench {
 /// The sum of two in the same frame.
 Wrench& operator+=(Wrench& wrench, const Wrench& other) noexcept;
 
-/// What the contacts do to what wears them: each presses with its force against the normal of its place. In the frame
-/// that `suit_from_frame` places in the suit; without one, in the suit's.
+/// The wrench of the contacts on their wearer: each presses with its force against the normal of its place. It is in
+/// the frame that `suit_from_frame` places in the suit; without one, in the suit's.
 [[nodiscard]] Wrench wrench_of(std::span<const SuitContact> contacts, const Pose& suit_from_frame = {}) noexcept;
 
 }  // namespace dermis

@@ -22,13 +22,14 @@ struct PublisherOptions {
   [[nodiscard]] Status validate() const;
 };
 
-/// What is to be published. Subscribers may be reliable or, as for the data of sensors, not.
+/// The messages to be published. Subscribers may be reliable or, as for the data of sensors, not.
 struct Topic {
   std::string name;                   ///< As ROS 2 names it: "/chest/force".
   const messages::MessageType& type;  ///< Must outlive the publisher.
-  /// Of one message. A reliable subscriber that does not follow has up to 32 MB kept for it, but ten messages at least.
+  /// Size of one message. A reliable subscriber that does not follow has up to 32 MB kept for it, but ten
+  /// messages at least.
   std::size_t message_bytes = 1024;
-  bool is_kept = false;  ///< Who subscribes later gets the last message, too ("transient local").
+  bool is_kept = false;  ///< Later subscribers get the last message, too ("transient local").
 };
 
 using TopicId = std::size_t;

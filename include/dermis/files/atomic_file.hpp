@@ -35,7 +35,7 @@ class AtomicFile {
   void read_at(std::uint64_t offset, std::span<char> bytes);
   /// The first error, or Done, as far as the buffer was written out.
   [[nodiscard]] Status status() const;
-  /// Writes the rest, waits for the disk and renames. To be called once.
+  /// Writes the rest, waits for the disk and renames. Call it once.
   [[nodiscard]] Status commit();
 
  private:

@@ -14,7 +14,7 @@ namespace dermis::files {
 class ContentHash {
  public:
   void add(std::string_view bytes) noexcept;
-  /// Of all bytes so far: "fnv1a64:" and 16 hexadecimal digits.
+  /// The hash of all bytes so far: "fnv1a64:" and 16 hexadecimal digits.
   [[nodiscard]] std::string text() const;
 
  private:

@@ -18,7 +18,7 @@ class CsvTable {
  public:
   [[nodiscard]] static Result<CsvTable> read(const std::string& path);
   /// The same from a stream; `name` stands for the path in messages. Fails on a repeated column, on a line with another
-  /// number of values than the header, and on more than 256 MiB of cells in memory.
+  /// number of values than the header, and beyond 256 MiB of cells.
   [[nodiscard]] static Result<CsvTable> read(std::istream& in, const std::string& name);
 
   [[nodiscard]] std::size_t rows() const noexcept { return lines_.size(); }

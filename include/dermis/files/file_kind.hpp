@@ -16,10 +16,11 @@ inline constexpr std::string_view kSafetensorsKind = "a safetensors file";
 inline constexpr std::string_view kTomlKind = "a TOML file";
 inline constexpr std::string_view kTableKind = "a table (CSV)";
 
-/// What a file is by its first bytes, one of the above or another that is often met; empty where they do not tell.
+/// The kind of a file by its first bytes, one of the above or another common one; empty where they do not show it.
 [[nodiscard]] std::string_view kind_of(std::string_view first_bytes);
 
-/// "is an MCAP recording, not a safetensors file", for who wanted the latter; empty where the bytes tell no other kind.
+/// "is an MCAP recording, not a safetensors file", where the latter was wanted; empty where the bytes show no other
+/// kind.
 [[nodiscard]] std::optional<std::string> wrong_kind(std::string_view first_bytes, std::string_view wanted);
 
 }  // namespace dermis::files

@@ -11,7 +11,7 @@
 
 namespace dermis::files {
 
-/// What a forces.csv holds for each taxel.
+/// The quantity in a forces.csv for each taxel.
 enum class ForceColumn {
   newtons,        ///< ForceFrame::newtons
   sigma_newtons,  ///< ForceFrame::sigma_newtons

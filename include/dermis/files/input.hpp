@@ -14,7 +14,7 @@ namespace dermis::files {
 /// A path that cannot be opened is bad input; a later error is a failure.
 [[nodiscard]] Result<std::unique_ptr<std::istream>> open_input(const std::string& path);
 
-/// To be called right after a stream went bad.
+/// Call it right after a stream went bad.
 [[nodiscard]] Error read_failure(const std::string& name);
 
 /// The first bytes of a regular file, at most max_bytes; none where it cannot be read.

@@ -9,10 +9,10 @@
 
 namespace dermis::files {
 
-/// What origin.toml says of the frames beside it (docs/file-formats.md).
+/// The origin of the frames beside origin.toml (docs/file-formats.md).
 struct FramesOrigin {
   std::string source;  ///< "sim:multitouch?seed=2"
-  std::string hash;    ///< Of the file of frames, as content_hash() gives it: of other frames it says nothing.
+  std::string hash;    ///< content_hash() of the file of frames; origin.toml holds for no other frames.
 };
 
 [[nodiscard]] std::string to_toml(const FramesOrigin& origin);
@@ -23,7 +23,7 @@ struct FramesOrigin {
 /// Writes origin.toml into the folder of the frames.
 [[nodiscard]] Status write_origin(const std::string& frames_path, const std::string& source);
 
-/// The source of the frames, if an origin.toml beside them tells it of these very bytes; else empty.
+/// The source of the frames, if an origin.toml beside them names it for these very bytes; else empty.
 [[nodiscard]] std::string simulated_source(const std::string& frames_path);
 
 }  // namespace dermis::files

@@ -78,18 +78,18 @@ class TensorReader {
 /// The same from memory; `name` stands for the path in messages.
 [[nodiscard]] Result<SafetensorsFile> safetensors_from_bytes(std::string_view bytes, const std::string& name);
 
-/// What the metadata "format" of a file of ours says.
+/// The metadata "format" of a file of ours.
 struct FileFormat {
   const char* name;              ///< Such a file has a checksum.
   const char* without_checksum;  ///< The same from before there were checksums.
   const char* otherwise;         ///< The error of any other file.
 };
 
-/// That the file is of the format, and has not lost its checksum. The error names no path.
+/// Checks that the file is of the format and has not lost its checksum. The error names no path.
 [[nodiscard]] Status check_format(const SafetensorsFile& file, const FileFormat& format);
 
-/// For who opens a file of ours: a line that says that it is of before there were checksums, so that damage to it does
-/// not show. Empty for every other file.
+/// A line for the reader of a file of ours that is older than the checksums: damage to it does not show. It is empty
+/// for every other file.
 [[nodiscard]] std::optional<std::string> checksum_note(const std::string& path, const FileFormat& format);
 
 /// Writes the file atomically, with a checksum as its metadata "checksum". The same content gives the same bytes;

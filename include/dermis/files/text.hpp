@@ -21,7 +21,7 @@ inline constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   return c == ' ' || c == '\t' || c == '\r' || c == '\f';
 }
 
-/// Without the blanks at both ends.
+/// The text without the blanks at both ends.
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
 
 /// Parses the whole text; nan and inf are numbers.

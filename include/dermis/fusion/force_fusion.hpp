@@ -20,8 +20,9 @@ inline constexpr std::size_t kInputsWithTemperature = 3;
 /// Forces at which the relative error of a network is known.
 inline constexpr std::size_t kSigmaKnots = 6;
 
-/// What calibration learns: one small BP network per taxel, (conductance, temperature) -> force. Each per-taxel vector
-/// has the size taxels; taxels without a calibration of their own carry the parameters of a shared network and a gain.
+/// The result of calibration: one small BP network per taxel, (conductance, temperature) -> force. Each per-taxel
+/// vector has the size taxels; taxels without a calibration of their own carry the parameters of a shared network and a
+/// gain.
 ///
 ///   e = siemens - (offset + per_celsius * dT),   dT = temperature - centre              excess over the unloaded taxel
 ///   newtons = gain * exp(network(ln(e / reference), e / reference - 1, dT / half_span))    and 0 where e <= 0
@@ -48,7 +49,7 @@ struct ForceNetworks {
 
   // The uncertainty that calibration found; see ForceFusion.
   double temperature_sigma_celsius = 0.0;  ///< Noise of the temperature sensor [C], >= 0.
-  /// Lowest and highest of the temperatures between which nothing tells how the forces bend; equal: there are none.
+  /// Lowest and highest of the temperatures between which the bend of the forces is unknown; equal: there are none.
   std::array<double, 2> temperature_gap_celsius{};
   std::vector<float> offset_sigma_siemens;  ///< Standard deviation of unloaded.offset_siemens [S], >= 0.
   /// Relative error of the force from causes without a term of their own (misfit, hysteresis, creep), > 0, at
@@ -93,7 +94,8 @@ struct ForceNetworks {
 /// standard deviations of it count in full.
 ///
 /// ForceFrame::sums continues the law below zero, F(-e) = -F(e), so that noise of either sign cancels. A bent law lifts
-/// the mean of a noisy e: of F is taken away p (p - 1) / 2 times the square of noise over e, which is at most 1 here.
+/// the mean of a noisy e. So p (p - 1) / 2 times the square of noise over e, which is at most 1 here, is taken away
+/// from F.
 ///
 /// Not thread-safe: one per stream.
 class ForceFusion {
@@ -104,8 +106,8 @@ class ForceFusion {
   /// Allocates nothing once `force` has the array's size.
   void process(const ConductanceFrame& conductance, ForceFrame& force) noexcept;
 
-  /// Of the frame before: the first term of sigma_newtons, the noise of readings and zero, alone [taxels] [N]. It is
-  /// new in each frame; the other terms stay as long as a touch does. Meaningless where there is no force.
+  /// The first term of sigma_newtons in the frame before: the noise of readings and zero alone [taxels] [N]. It is new
+  /// in each frame; the other terms stay as long as a touch does. Meaningless where there is no force.
   [[nodiscard]] std::span<const float> noise_newtons() const noexcept { return noise_newtons_; }
 
  private:

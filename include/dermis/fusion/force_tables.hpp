@@ -17,7 +17,7 @@ namespace dermis::fusion {
 /// Const members are thread-safe.
 struct ForceTables {
   std::vector<std::uint32_t> taxels;  ///< That have a table, rising.
-  std::size_t knots = 0;              ///< Of each table, >= 1 where there is a table.
+  std::size_t knots = 0;              ///< Knots of each table, >= 1 where there is a table.
   std::vector<float> siemens;         ///< s [tables, knots], > 0, strictly rising along the knots.
   std::vector<float> newtons;         ///< [tables, knots], > 0, strictly rising along the knots.
   std::vector<float> per_celsius;     ///< [tables], 1/C
@@ -36,11 +36,11 @@ struct ForceTables {
   /// its heaviest force to the last; 1 with a single knot.
   [[nodiscard]] float end_exponent(std::size_t table) const noexcept;
 
-  /// s at the end of the straight line from (0 S, 0 N) through the first knot [S]: that knot, or later ones on the
-  /// line. No load has determined the law below it.
+  /// s at the end of the straight line from (0 S, 0 N) through the first knot [S]. The end is that knot, or a later one
+  /// on the line. No load has determined the law below it.
   [[nodiscard]] float line_end_siemens(std::size_t table) const noexcept;
 
-  /// Of an array of `taxel_count` taxels: all vectors have the right size and every number is in its range.
+  /// For an array of `taxel_count` taxels all vectors have the right size and every number is in its range.
   [[nodiscard]] bool is_consistent(std::size_t taxel_count) const noexcept;
 };
 

@@ -11,7 +11,7 @@
 
 namespace dermis::fusion {
 
-/// What a look-up table is asked with.
+/// The input of a look-up table.
 enum class LookUpSignal {
   reading,      ///< counts / full scale, as a microcontroller has it: crosstalk and supply are in it.
   conductance,  ///< After the crosstalk inversion.

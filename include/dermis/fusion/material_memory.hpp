@@ -12,8 +12,8 @@
 
 namespace dermis::fusion {
 
-/// What the material of a sheet remembers: how the force that it feels, which the networks give, follows the load. The
-/// same for all taxels, as it belongs to the rubber.
+/// The memory of the material of a sheet: how the force that it feels, which the networks give, follows the load. It is
+/// the same for all taxels, as it belongs to the rubber.
 struct MemoryLaw {
   static constexpr std::array<double, 4> kCreepSeconds{0.1, 1.0, 10.0, 100.0};  ///< tau_k [s].
   static constexpr std::array<float, 3> kStopReach{0.1F, 0.3F, 1.0F};           ///< r_j.
@@ -27,20 +27,20 @@ struct MemoryLaw {
   bool operator==(const MemoryLaw&) const = default;
 };
 
-/// Frees the forces of the networks from what the material remembers. Of a taxel that feels u [N], after the interval
-/// dt since the frame before, with a_k = 1 - exp(-dt / tau_k):
+/// Frees the forces of the networks from what the material remembers. Let a taxel feel u [N] after the interval dt
+/// since the frame before, with a_k = 1 - exp(-dt / tau_k):
 ///
 ///   creep       f = max(0, u - sum_k c_k (1 - a_k) s_k) / (1 - sum_k c_k (1 - a_k)),   s_k <- s_k + a_k (f - s_k)
 ///   hysteresis  m_j <- clamp(m_j + d ln(1 + f/1 N) / r_j, -1, 1),   newtons = f (1 + sum_j h_j m_j / 2)
 ///
 /// The first inverts an elastic layer in series with a Kelvin-Voigt element for each tau_k, u = f (1 - sum c) + sum c
-/// s, exactly for any intervals, where the load of a frame lies on the taxel since the frame before. The second undoes
-/// stops (Prandtl 1928): the material reads low after loading and high after unloading.
+/// s. It is exact for any intervals where the load of a frame lies on the taxel since the frame before. The second
+/// undoes stops (Prandtl 1928): the material reads low after loading and high after unloading.
 ///
 /// Where nothing presses, u is the signed force of ForceFrame::sums, so the states do not add up its noise.
 ///
-/// The states are bounded by the heaviest load that was, whatever the frames are. What lies on the array in the first
-/// frame counts as lying there for long; a frame that is earlier than the one before it is the first of a recording
+/// The states are bounded by the heaviest load that was, whatever the frames are. A load on the array in the first
+/// frame counts as lying there for long. A frame that is earlier than the one before it is the first of a recording
 /// that begins anew. A taxel without a force counts as carrying its last one, a rejected frame as none at all.
 ///
 /// The noise of u is new in each frame and grows by d newtons / d u. All else that a standard deviation covers stays

@@ -9,7 +9,7 @@
 namespace dermis::fusion {
 
 /// The inverse of the networks at one force: the conductance of every taxel [S], > 0, under the force that is typical
-/// for the array. That is the median of what taxels carry at their reference conductances, at the middle of the
+/// for the array. That is the median of the taxels' forces at their reference conductances, at the middle of the
 /// calibrated temperatures. A taxel without a force has the median conductance of the others, and 1 S where none has
 /// one.
 [[nodiscard]] std::vector<double> typical_siemens(const ForceNetworks& networks);

@@ -14,10 +14,10 @@
 
 namespace dermis::health {
 
-/// What presses of unknown force say of the age of a calibration.
+/// Evidence of presses of unknown force on the age of a calibration.
 struct AgeingEvidence {
-  std::size_t comparisons = 0;        ///< Of four neighbouring taxels under one touch.
-  std::size_t blocks = 0;             ///< Of four taxels, compared under touches from different sides, as equals.
+  std::size_t comparisons = 0;        ///< Comparisons of four neighbouring taxels under one touch.
+  std::size_t blocks = 0;             ///< Blocks of four taxels, compared as equals under touches from different sides.
   std::optional<double> gain_spread;  ///< Sd over the taxels of the logarithm of their gains since the calibration;
   double spread_sigma = 0.0;          ///< its standard deviation; empty: too few blocks.
   double calibrated_spread = 0.0;     ///< So much gains may differ by the calibration itself.
@@ -34,17 +34,17 @@ struct AgeingEvidence {
 ///
 ///   d = ln F(r, c) - ln F(r, c + 1) - ln F(r + 1, c) + ln F(r + 1, c + 1)
 ///
-/// which is 0 for each pressure that is a product of one function of x and one of y: a plane, an edge, a box, a bell.
-/// Other round patches give d the sign of the quadrant around their centre in which the square lies. Gains g that have
-/// changed since the calibration add the same d of ln g under every touch. So the product of two means of d counts, one
-/// of touches whose centre lies diagonally one way and one of those the other way. Its mean over the squares is 4 times
+/// It is 0 for each pressure that is a product of functions of x and of y: a plane, an edge, a box, a bell. Other round
+/// patches give d the sign of the quadrant around their centre in which the square lies. Gains g that have changed
+/// since the calibration add the same d of ln g under every touch. So the product of two means of d counts, one of
+/// touches whose centre lies diagonally one way and one of those the other way. Its mean over the squares is 4 times
 /// the variance of ln g. Scatter from touch to touch is in no product, as the two means are of different touches.
 ///
 /// Squares at the rim of a touch count little: there shapes differ most, and what they add hides gains. The weight is 1
 /// / (1 + (c / 0.7)^4), where c is the difference of ln F between the taxels.
 ///
-/// Not seen are a gain that all taxels of the array, of a row or of a column have in common: that takes a known weight
-/// (WeightCheck). Touches that all come to the same place tell nothing. A square remembers a weight of eight of each
+/// The comparison misses a gain that all taxels of the array, of a row or of a column share: that takes a known weight
+/// (WeightCheck). Touches that all come to the same place are no evidence. A square remembers a weight of eight of each
 /// way. Not thread-safe.
 class AgeingMonitor {
  public:
@@ -53,7 +53,7 @@ class AgeingMonitor {
   /// The next frame of the array. Allocates nothing.
   void add(const ForceFrame& force) noexcept;
 
-  /// Of the touches that are over.
+  /// The evidence of the touches that are over.
   [[nodiscard]] AgeingEvidence evidence() const;
 
  private:

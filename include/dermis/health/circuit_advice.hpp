@@ -49,8 +49,8 @@ struct CircuitAdvice {
 [[nodiscard]] Result<double> adc_noise_ratio(const ArrayDescription& array);
 
 /// For taxels of that range, log-uniform, in the circuit of the array, which must be known, with the noise of its ADC.
-/// Loads from least_ohm/100 to 10 most_ohm are tried. Deterministic. `progress` is told the share that is done. Errors:
-/// no load gives readings that the ADC can take; those of adc_noise_ratio().
+/// Loads from least_ohm/100 to 10 most_ohm are tried. Deterministic. `progress` gets the share that is done. Errors: no
+/// load gives readings that the ADC can take; those of adc_noise_ratio().
 [[nodiscard]] Result<CircuitAdvice> advise_circuit(const ArrayDescription& array, const TaxelRange& taxels,
                                                    const std::function<void(double share)>& progress);
 

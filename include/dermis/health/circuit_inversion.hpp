@@ -11,8 +11,7 @@
 
 namespace dermis::health {
 
-/// What a readout circuit says of its taxels, each frame by itself and as exactly as numbers are: for who designs one.
-/// Not thread-safe.
+/// Inverts a readout circuit for its designer, each frame by itself and as exactly as numbers allow. Not thread-safe.
 class CircuitInversion {
  public:
   /// `noise_ratio`: standard deviation of a reading over the supply, > 0. Fails where
@@ -22,7 +21,7 @@ class CircuitInversion {
   /// `reading` [rows, cols]: over the supply, as the array gives it. False where no conductances give these readings.
   [[nodiscard]] bool invert(std::vector<double> reading);
 
-  /// Of the last frame [rows, cols] [S], and their standard deviations; NaN where it has no solution.
+  /// The conductances of the last frame [rows, cols] [S], and their standard deviations; NaN where it has no solution.
   [[nodiscard]] const std::vector<double>& siemens() const noexcept { return siemens_; }
   [[nodiscard]] const std::vector<double>& sigma_siemens() const noexcept { return sigma_siemens_; }
 

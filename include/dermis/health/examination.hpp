@@ -22,11 +22,10 @@ class Examination {
   Examination& operator=(Examination&&) noexcept;
   ~Examination();
 
-  /// A frame that `pipeline`, made of the same model, has just processed.
-  /// What it made of it is `force`.
+  /// A frame that `pipeline`, made of the same model, has just processed. `force`: its result.
   void add(const RawFrame& raw, const ForceFrame& force, const pipeline::Pipeline& pipeline);
 
-  /// Of all frames so far; `pipeline`: the one that processed them.
+  /// The diagnosis over all frames so far; `pipeline`: the one that processed them.
   [[nodiscard]] Diagnosis diagnosis(const pipeline::Pipeline& pipeline) const;
 
  private:

@@ -31,8 +31,8 @@ struct FaultHistory {
 struct Condition {
   /// "healthy", "dead taxels" (since calibration), "recalibrate: gains have changed by about 9 %" or "2 faults".
   std::string message;
-  /// Each fault by its place_name() with what describe() says of it, then the names of the taxels that are dead since
-  /// calibration and what is known of "gains".
+  /// Each fault by its place_name() with its describe(). Then the names of the taxels that are dead since calibration,
+  /// and the state of "gains".
   std::vector<std::pair<std::string, std::string>> details;
 };
 

@@ -14,20 +14,20 @@
 
 namespace dermis::health {
 
-/// What an array reads while an object lies still on it, all contacts together.
+/// The reading of an array while an object lies still on it, all contacts together.
 struct WeighedPress {
   double newtons = 0.0;        ///< > 0
   double sigma_newtons = 0.0;  ///< As the model says, > 0.
 };
 
-/// What an object of known weight says of a calibration.
+/// The verdict on a calibration by an object of known weight.
 struct WeightFinding {
   double weight_n = 0.0;
   std::vector<WeighedPress> presses;  ///< Of the object.
   std::size_t others = 0;    ///< Presses that read less than half or more than twice the weight: of something else.
-  double other_n = 0.0;      ///< What the last of them read [N].
+  double other_n = 0.0;      ///< Reading of the last of them [N].
   std::size_t unsteady = 0;  ///< Presses that were too short or not steady.
-  double ratio = 1.0;        ///< What the array reads over what the object weighs; geometric mean of the presses.
+  double ratio = 1.0;        ///< Reading over weight; geometric mean of the presses.
   double sigma = 0.0;        ///< Standard deviation of its logarithm, that from touch to touch included.
 
   /// A larger change of the gain counts: three standard deviations, and 3 % at least.
@@ -35,11 +35,11 @@ struct WeightFinding {
   [[nodiscard]] bool has_aged() const noexcept;
 };
 
-/// Lines of text: what was weighed, then "well: reads 1.2 % low, within 4 %" or "recalibrate: gains have changed by
-/// about 9 % (± 3 %): it reads too much". Without a press one line without an end: what is missing.
+/// Lines of text: the weight, then "well: reads 1.2 % low, within 4 %" or "recalibrate: gains have changed by about 9 %
+/// (± 3 %): it reads too much". Without a press, one line without an end names what is missing.
 [[nodiscard]] std::string describe(const WeightFinding& finding);
 
-/// Weighs a known object that is put on an array, once or several times. Of each press the steadiest second counts,
+/// Weighs a known object that is put on an array, once or several times. The steadiest second of each press counts,
 /// from one second after its onset on, that reads between half and twice the weight. Not thread-safe.
 class WeightCheck {
  public:
@@ -49,7 +49,7 @@ class WeightCheck {
   /// The next frame of the array. Allocates nothing while a press lasts.
   void add(const ForceFrame& force);
 
-  /// Of all frames so far; a press that still lasts counts.
+  /// The finding over all frames so far; a press that still lasts counts.
   [[nodiscard]] WeightFinding finding() const;
 
  private:
@@ -64,9 +64,9 @@ class WeightCheck {
   struct Press {
     Nanos onset{};
     std::optional<Piece> piece;
-    std::optional<WeighedPress> steadiest;  ///< Of the pieces that may be the weight.
+    std::optional<WeighedPress> steadiest;  ///< The steadiest piece that may be the weight.
     double deviation = 0.0;                 ///< Of `steadiest`, relative.
-    std::optional<double> other_n;  ///< Of what lay still and read less than half or more than twice the weight.
+    std::optional<double> other_n;          ///< A still reading of less than half or more than twice the weight.
   };
 
   void hold(Nanos time);

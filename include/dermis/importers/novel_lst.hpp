@@ -16,8 +16,9 @@ namespace dermis::importers {
 /// numbers of the columns and the first column those of the rows, both counted from 1 on the whole platform. Pages of
 /// the same picture are one frame. MPP and MVP, the sums of a measurement, are skipped, and so are sums of force. Cells
 /// that a table does not have are 0. Where options.shape is given, a table lies at its place on the platform; else the
-/// frames are the smallest rectangle that holds all tables. A last frame that is cut is left out, and told. The memory
-/// is that of a frame and of a line, at most 32 MiB. `in` must be able to seek; `name` stands for the path in messages.
+/// frames are the smallest rectangle that holds all tables. A last frame that is cut is left out, with a notice. The
+/// memory is that of a frame and of a line, at most 32 MiB. `in` must be able to seek; `name` stands for the path in
+/// messages.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_novel_lst(std::unique_ptr<std::istream> in,
                                                                   const std::string& name,
                                                                   const ImportOptions& options);

@@ -14,8 +14,8 @@ namespace dermis::importers {
 
 /// Frames as they come over I2C from controllers that pack their readings. A reading has 10 bits, row by row, the
 /// highest bit first, without a gap, so 4 readings have 5 bytes. A frame begins with a byte of its own. Nothing else is
-/// between the frames. The file tells neither shape nor times: options.shape and options.rate_hz do. A last frame that
-/// is cut is left out, and told. The memory is that of a frame. `name` stands for the path in messages.
+/// between the frames. The file has neither shape nor times: options.shape and options.rate_hz give them. A last frame
+/// that is cut is left out, with a notice. The memory is that of a frame. `name` stands for the path in messages.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_packed10(std::unique_ptr<std::istream> in,
                                                                  const std::string& name, const ImportOptions& options);
 

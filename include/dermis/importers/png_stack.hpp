@@ -17,7 +17,7 @@ namespace dermis::importers {
 /// A picture whose grey levels are readings: [shape.rows, shape.cols], the first row at the top.
 struct GreyPicture {
   FrameShape shape;
-  std::vector<std::uint16_t> levels;  ///< As they stand in the file: 0 ... 255, of 16 bits 0 ... 65535.
+  std::vector<std::uint16_t> levels;  ///< Values as in the file: 0 ... 255, with 16 bits 0 ... 65535.
 };
 
 /// Reads a PNG of grey levels, of 1 to 16 bits; transparency is left out. Fails on colours, and on more than 1024 rows

@@ -13,10 +13,11 @@
 namespace dermis::importers {
 
 /// ASCII exports of XSENSOR (.csv), with or without quotes. Each FRAME has its Date and Time. Each SENSOR has its Rows,
-/// Columns and the pressures below SENSELS. Pressures of any unit come as kilopascals, an empty cell as NaN. Of several
-/// sensors, options.array names one. Times count from 1970 where there is a date, by the clock of the wall where it was
-/// recorded. Groups of sensels are passed over. A last frame that is cut is left out, and told. The memory is that of a
-/// frame and of a line, at most 32 MiB. `in` must be able to seek; `name` stands for the path in messages.
+/// Columns and the pressures below SENSELS. Pressures of any unit come as kilopascals, an empty cell as NaN.
+/// options.array names one of several sensors. Times count from 1970 where there is a date, by the clock of the wall
+/// where it was recorded. Groups of sensels are passed over. A last frame that is cut is left out, with a notice. The
+/// memory is that of a frame and of a line, at most 32 MiB. `in` must be able to seek; `name` stands for the path in
+/// messages.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_xsensor(std::unique_ptr<std::istream> in,
                                                                 const std::string& name, const ImportOptions& options);
 

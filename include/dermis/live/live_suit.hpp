@@ -50,7 +50,7 @@ struct ArrayStatistics {
   std::uint64_t frames = 0;    ///< Through the pipeline.
   std::uint64_t rejected = 0;  ///< Of them.
   Nanos latency_p50{};         ///< From the arrival of the last byte to the contacts, over the last seconds;
-  Nanos latency_p99{};         ///< 0 where the source does not tell when its frames came.
+  Nanos latency_p99{};         ///< 0 where the source does not know when its frames came.
   bool ended = false;          ///< The source has no more, or failed:
   std::string error;           ///< why; empty where it just ended.
   std::vector<compensation::LineFault> faults;
@@ -86,7 +86,7 @@ class LiveSuit {
   [[nodiscard]] static Result<std::unique_ptr<LiveSuit>> create(std::vector<LiveArray> arrays, LiveOptions options);
   LiveSuit(const LiveSuit&) = delete;
   LiveSuit& operator=(const LiveSuit&) = delete;
-  /// As stop().
+  /// Does the same as stop().
   ~LiveSuit();
 
   /// Once.

@@ -26,13 +26,13 @@ class Playback {
   Playback& operator=(const Playback&) = delete;
   ~Playback();
 
-  /// Those that are played.
+  /// The arrays that are played.
   [[nodiscard]] const std::vector<recordings::RecordedArray>& arrays() const noexcept;
   [[nodiscard]] Nanos start() const noexcept;  ///< Time of the first and of
   [[nodiscard]] Nanos end() const noexcept;    ///< the last frame.
 
   /// The frames of an array, for one thread; next() waits until a frame is due, and at the end for a seek. They are as
-  /// recorded, but for arrival_steady, which is now. To be asked for once for each array.
+  /// recorded, but for arrival_steady, which is now. Ask for it once for each array.
   [[nodiscard]] std::unique_ptr<FrameSource> source(std::size_t array);
 
   PlaybackStatus control(const PlaybackCommand& command);

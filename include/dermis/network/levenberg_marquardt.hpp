@@ -85,9 +85,9 @@ struct FittedResidual {
   /// The residual with its datum left out of the fit: r / (1 - h). Allen 1974 (PRESS).
   [[nodiscard]] double left_out() const noexcept { return residual / (1.0 - leverage); }
 
-  /// r scaled to another variance. What a group has in common has the variance s^2, and m has (1 - H) s^2, as the fit
+  /// r scaled to another variance. The shared part of a group has the variance s^2. m has (1 - H) s^2, as the fit
   /// follows it. as_noise() scales m to s^2, as_new_error() to (1 + H) s^2, the variance of the error on a new group in
-  /// the same place. The fit hardly follows what data of a group differ by, so r - m stays.
+  /// the same place. The fit hardly follows the differences between data of a group, so r - m stays.
   [[nodiscard]] double as_noise() const noexcept;
   [[nodiscard]] double as_new_error() const noexcept;
 };

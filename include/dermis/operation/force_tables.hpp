@@ -34,7 +34,7 @@ class ForceTables {
   [[nodiscard]] Status commit();
 
  private:
-  /// What touches the array.
+  /// Writes the contacts on the array.
   struct ContactTable {
     [[nodiscard]] Status write(const ForceFrame& force);
     [[nodiscard]] Status commit() { return table.commit(); }

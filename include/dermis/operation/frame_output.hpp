@@ -14,24 +14,23 @@
 
 namespace dermis::operation {
 
-/// What is known of frames that are to be written.
+/// The notes on frames that are to be written.
 struct FrameOutput {
   std::string path;
   const ArrayDescription* array = nullptr;  ///< Goes into a recording.
   const pipeline::Model* model = nullptr;   ///< Not null: the forces are computed and written as well, and
   std::string model_path;                   ///< where the model is from.
-  recordings::FrameNotes notes;             ///< What the source says, where array and model do not.
+  recordings::FrameNotes notes;             ///< Notes by the source, where array and model have none.
 };
 
-/// What the file of frames that `source` reads from says of them; nothing of a device.
+/// The notes in the file of frames that `source` reads from; none for a device.
 [[nodiscard]] recordings::FrameNotes notes_of_source(const FrameSource& source, const std::string& from);
 
-/// What create_recording() would find wrong with the path whatever the frames are: to be told before a device is waited
-/// for.
+/// The errors of create_recording() that depend on the path alone, to be reported before waiting for a device.
 [[nodiscard]] Status check_output(const FrameOutput& output);
 
-/// The file that frames of `shape` are recorded in: .mcap, with the forces of the model, or any other format of frames,
-/// which cannot hold forces.
+/// The file in which frames of `shape` are recorded: .mcap with the forces of the model, or another format of frames
+/// without forces.
 [[nodiscard]] Result<std::unique_ptr<FrameSink>> create_recording(const FrameOutput& output, const FrameShape& shape);
 
 /// The forces of the model alone, as forces.csv.

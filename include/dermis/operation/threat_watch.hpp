@@ -27,7 +27,7 @@ struct ThreatEvent {
   const threats::ThreatLimit& limit;
   const threats::ThreatState& state;
   Nanos time;        ///< Of the frame.
-  Nanos first_time;  ///< Of the first frame of the source.
+  Nanos first_time;  ///< Time of the first frame of the source.
 
   [[nodiscard]] bool begins() const noexcept { return state.phase == threats::ThreatPhase::standing; }
 };
@@ -53,10 +53,10 @@ class ThreatWatch {
     bool is_over = false;     ///< The source has ended, failed or, where it is live, shown a threat.
     bool any_threat = false;  ///< One has begun.
     std::chrono::steady_clock::time_point last_frame{};  ///< When the last one with forces came.
-    Status source = Done{};                              ///< What failed, or that most frames had no force.
+    Status source = Done{};                              ///< The failure, or that most frames had no force.
   };
 
-  /// Waits until it is over, or for `time`. A threat is told here before it is logged. Thread-safe.
+  /// Waits until it is over, or for `time`. A threat is reported here before it is logged. Thread-safe.
   [[nodiscard]] News wait(std::chrono::milliseconds time);
 
  private:

@@ -21,7 +21,7 @@ enum class BankStart {
   xavier,         ///< Random, scaled by the number of connections.
 };
 
-/// Whether the paper's bank can be trained on these samples. Errors: no sample tells a force on a single taxel; an
+/// Whether the paper's bank can be trained on these samples. Errors: no sample has a known force on a single taxel; an
 /// array whose bank would have more than kMostUnknowns.
 [[nodiscard]] Status check_bank_samples(const calibration::SampleDatabase& database);
 
@@ -29,11 +29,11 @@ enum class BankStart {
 ///
 /// A network's own presses are a few of very many samples (14 of 3,584 if every taxel is pressed alone). So half of
 /// each batch is drawn from the samples that load its taxel and half from the others. Squared errors are weighted as
-/// relative ones down to half the heaviest force, and evenly below. Samples that do not tell the force of a taxel are
-/// left out for its network. Deterministic by seed.
+/// relative ones down to half the heaviest force, and evenly below. Samples without a known force of a taxel are left
+/// out for its network. Deterministic by seed.
 class BankTraining {
  public:
-  /// Errors: no sample tells a force on a single taxel; more unknowns than kMostUnknowns.
+  /// Errors: no sample has a known force on a single taxel; more unknowns than kMostUnknowns.
   [[nodiscard]] static Result<BankTraining> create(const calibration::SampleDatabase& database, std::uint64_t seed);
 
   /// Sets all parameters anew; before the first step.
@@ -53,7 +53,7 @@ class BankTraining {
   [[nodiscard]] std::vector<float> start_parameters(BankStart start, std::uint64_t seed) const;
   void draw_batch();
 
-  /// What one network may draw from.
+  /// The samples that one network may draw from.
   struct Choice {
     std::vector<std::uint32_t> loaded;    // samples that load its taxel
     std::vector<std::uint32_t> unloaded;  // samples that do not
@@ -90,8 +90,8 @@ struct TrainedBank {
 /// Steps that bring a bank to the paper's 5 %.
 inline constexpr std::size_t kBankSteps = 6000;
 
-/// From the paper's start, Adam with a rate that falls along a cosine. `progress` is told the share that is done.
-/// Errors: those of BankTraining::create; the training diverges.
+/// From the paper's start, Adam with a rate that falls along a cosine. `progress` gets the share that is done. Errors:
+/// those of BankTraining::create; the training diverges.
 [[nodiscard]] Result<TrainedBank> train_paper_bank(const calibration::SampleDatabase& database, std::size_t steps,
                                                    std::uint64_t seed,
                                                    const std::function<void(double share)>& progress = {});

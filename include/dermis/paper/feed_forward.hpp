@@ -65,8 +65,9 @@ class FeedForward {
   double error_and_gradient(std::span<const Real> parameters, const PackedSamples<Real>& samples,
                             std::span<Real> gradient);
 
-  /// Also computes the normal equations of the Levenberg-Marquardt step: J^T W J in `normal` [n, n] (both triangles), n
-  /// = parameter_count, J = d output / d parameter, in sums over patterns and outputs. The Jacobian is never stored.
+  /// Also computes the normal equations of the Levenberg-Marquardt step: J^T W J in `normal` [n, n] (both triangles),
+  /// with n = parameter_count. J = d output / d parameter, in sums over patterns and outputs. The Jacobian is never
+  /// stored.
   double normal_equations(std::span<const Real> parameters, const PackedSamples<Real>& samples,
                           std::span<Real> gradient, std::span<Real> normal);
 

@@ -19,7 +19,7 @@ struct BankBatch {
   std::span<const float> inputs;          ///< The database, [patterns, inputs].
   std::span<const float> targets;         ///< [patterns, networks * outputs].
   std::span<const std::uint32_t> chosen;  ///< Rows of the database, [networks, batch].
-  std::span<const float> weights;         ///< Of the chosen patterns, >= 0, [networks, batch]; empty: all 1.
+  std::span<const float> weights;         ///< Weights of the chosen patterns, >= 0, [networks, batch]; empty: all 1.
 };
 
 /// How a step moves the parameters against the gradient of 1/batch times eq. (6) of the batch.

@@ -12,10 +12,9 @@ namespace dermis::paper {
 /// The layers of a feed-forward network from left to right, each unit joined to all of the layer before it.
 struct NetworkDiagram {
   struct Layer {
-    std::string name;    ///< Below the layer: "hidden layer".
-    std::string remark;  ///< Below its name: "5 log-sigmoid neurons"; may be empty.
-    std::vector<std::string>
-        units;  ///< What stands in each; at least one. An empty one is drawn as dots and not joined.
+    std::string name;                ///< Below the layer: "hidden layer".
+    std::string remark;              ///< Below its name: "5 log-sigmoid neurons"; may be empty.
+    std::vector<std::string> units;  ///< The text in each; at least one. An empty one is drawn as dots and not joined.
   };
 
   std::string title;

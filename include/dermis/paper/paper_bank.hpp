@@ -16,8 +16,8 @@ namespace dermis::paper {
 /// The name of the bank among the estimators of an evaluation.
 inline constexpr const char* kPaperBankName = "paper_bank";
 
-/// The shape of the paper's networks (Fig. 8), N-N-N-1 for N taxels: N inputs, N neurons in both hidden layers, one
-/// output, log-sigmoid in all layers. If temperature is an input, there is one input more.
+/// The shape of the paper's networks (Fig. 8), N-N-N-1 for N taxels, log-sigmoid in all layers. There are N inputs, N
+/// neurons in both hidden layers and one output. If temperature is an input, there is one input more.
 [[nodiscard]] NetworkShape paper_network_shape(std::size_t taxels, bool with_temperature);
 
 /// Unknowns of the whole bank for N taxels, without temperature: 2 N^3 + N^2 connections and 2 N^2 + N thresholds;
@@ -30,7 +30,7 @@ inline constexpr const char* kPaperBankName = "paper_bank";
 inline constexpr std::size_t kMostUnknowns = std::size_t{1} << 27U;
 
 /// The paper's estimator (Fig. 7): a bank of N-N-N-1 BP networks, one a taxel. Each sees the readings of the whole
-/// array and gives the force on its own taxel; crosstalk, material and temperature are all left to the networks.
+/// array and gives the force on its own taxel. Crosstalk, material and temperature are all left to the networks.
 ///
 /// All values are normalised to the range of the calibration. Inputs become [0, 1]. A force of 0 ... heaviest_newtons
 /// becomes an output of 0.25 ... 0.75, where the paper starts its output neurons (eq. (13), (14)). Supply fluctuation

@@ -10,7 +10,7 @@
 
 namespace dermis::paper {
 
-/// Of a bank file.
+/// The format of a bank file.
 inline constexpr files::FileFormat kPaperBankFormat{"dermis paper bank 2", "dermis paper bank 1",
                                                     "is not a bank of the paper; 'dermis calibrate' writes one"};
 

@@ -45,7 +45,7 @@ struct PeaksReproduction {
   // The best 2-5-1 network found by any algorithm.
   std::size_t side = 0;        ///< 61
   std::vector<double> target;  ///< [side, side], rows along y, columns along x, both from -3 to 3.
-  std::vector<double> output;  ///< Of the best 2-5-1 network, same shape.
+  std::vector<double> output;  ///< Output of the best 2-5-1 network, same shape.
 
   std::vector<HiddenLayerFit> by_hidden;                  ///< Rising; the first is 5. By Levenberg-Marquardt.
   std::optional<std::size_t> smallest_hidden_raw;         ///< Fewest hidden units that reached the goal.
@@ -89,7 +89,7 @@ struct PaperReproduction {
   std::size_t own_samples = 0;         ///< Those that load a network's own taxel.
   std::vector<PaperPoint> points;      ///< 16 at each of 10, 20 and 50 N.
   calibration::Evaluation evaluation;  ///< Of all estimators on these points.
-  pipeline::Model model;               ///< Of dermis, with the baselines; as `evaluation` had it.
+  pipeline::Model model;               ///< Model of dermis, with the baselines; as `evaluation` had it.
   std::vector<std::pair<std::string, double>> seconds;  ///< Of each part.
 };
 

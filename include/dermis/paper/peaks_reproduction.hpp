@@ -23,7 +23,7 @@ struct PeaksEffort {
   int iterations = 1000;         ///< Of Levenberg-Marquardt, at most.
 };
 
-/// Eq. (1), (2), Fig. 5 and 6: `progress` is told the share that is done. Deterministic.
+/// Eq. (1), (2), Fig. 5 and 6: `progress` gets the share that is done. Deterministic.
 [[nodiscard]] PeaksReproduction reproduce_peaks(const PeaksEffort& effort, const std::function<void(double)>& progress);
 
 }  // namespace dermis::paper

@@ -16,11 +16,11 @@ struct Samples {
   std::size_t count = 0;          ///< P
   std::span<const Real> inputs;   ///< [count, network inputs], row-major.
   std::span<const Real> targets;  ///< t_pk, [count, network outputs], row-major.
-  std::span<const Real> weights;  ///< Of each pattern's squared error, >= 0, [count]; empty: all 1.
+  std::span<const Real> weights;  ///< Weight of each pattern's squared error, >= 0, [count]; empty: all 1.
 };
 
-/// Whether samples can be trained on: sizes that fit `inputs` and `outputs`, at least one pattern, all values finite,
-/// weights not negative and not all 0. The error names the first bad pattern.
+/// Whether samples can be trained on: sizes fit `inputs` and `outputs`, there is at least one pattern, and all values
+/// are finite. Weights must not be negative, nor all 0. The error names the first bad pattern.
 template <std::floating_point Real>
 [[nodiscard]] Status check_samples(const Samples<Real>& samples, std::size_t inputs, std::size_t outputs);
 

@@ -24,7 +24,7 @@ namespace dermis::paper {
 /// How the parameters w move against the error. Full batch: one step an epoch, from all patterns.
 enum class TrainingAlgorithm : std::uint8_t {
   /// The paper's back propagation, batches of any size. With g the gradient of 1/batch times eq. (6) of the batch (of
-  /// eq. (5) for a single pattern):  step = momentum step - rate g,  w += step.
+  /// eq. (5) for a single pattern): `step = momentum step - rate g`, `w += step`.
   gradient_descent,
 
   /// Gradient descent with momentum and adaptive rate, full batch: the rules of MATLAB's traingdx. With g the gradient
@@ -35,9 +35,9 @@ enum class TrainingAlgorithm : std::uint8_t {
   ///   else w += step, and where the error fell, rate *= rate_increase.
   adaptive_rate,
 
-  /// iRPROP- (Igel and Huesken 2000), full batch. Each parameter has a step size, 0.1 at the start. It is multiplied by
-  /// 1.2 (to at most 50) if its derivative keeps its sign, and by 0.5 (to at least 1e-6) if the sign changes. After a
-  /// change the derivative counts as 0 in this epoch and the next. w moves by the step size against the sign of its
+  /// iRPROP- (Igel and Huesken 2000), full batch. Each parameter has a step size, 0.1 at the start. The step size is
+  /// multiplied by 1.2 (to at most 50) if the derivative keeps its sign, and by 0.5 (to at least 1e-6) otherwise. After
+  /// a change the derivative counts as 0 in this epoch and the next. w moves by the step size against the sign of its
   /// derivative.
   resilient_propagation,
 
@@ -70,7 +70,7 @@ struct TrainingOptions {
   double gradient_limit = 0.0;
   /// Stop when so many epochs brought no lower error on the validation samples, >= 1. Without these, no meaning.
   std::uint64_t patience = 20;
-  std::uint64_t seed = 1;  ///< Of the order of the patterns, drawn anew each epoch where there are batches.
+  std::uint64_t seed = 1;  ///< Seed of the order of the patterns, drawn anew each epoch where there are batches.
 
   /// Names the first field that is out of its range.
   [[nodiscard]] Status validate() const;
@@ -104,7 +104,7 @@ struct TrainingState {
   double best_error = std::numeric_limits<double>::infinity();  ///< That error; infinity before the first.
   std::uint64_t best_epoch = 0;
   ErrorCurve curve;
-  /// What the algorithm remembers, in rows of parameter_count(): gradient_descent, adaptive_rate: the last step;
+  /// The memory of the algorithm, in rows of parameter_count(). gradient_descent, adaptive_rate: the last step;
   /// resilient_propagation: last derivatives, step sizes; conjugate_gradient: direction; adam: first and second moment.
   std::vector<Real> memory;
   /// adaptive_rate: rate; conjugate_gradient: lambda, curvature (0: to be measured), steps since the last restart;

@@ -8,8 +8,8 @@
 namespace dermis::pipeline {
 
 /// The model of an array whose readings another system has calibrated (readout.quantity: pressures or forces): a
-/// reading is its force, with nothing uncertain but readout.adc_noise_counts. Of an array whose readings are counts,
-/// one count is 1 N. `array` must be valid.
+/// reading is its force, with nothing uncertain but readout.adc_noise_counts. One count is 1 N for an array whose
+/// readings are counts. `array` must be valid.
 [[nodiscard]] Model direct_model(const ArrayDescription& array);
 
 }  // namespace dermis::pipeline

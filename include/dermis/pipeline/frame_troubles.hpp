@@ -21,19 +21,20 @@ class FrameTroubles {
   /// `from`: what the frames come from, for messages; empty: those do not say it.
   FrameTroubles(const ArrayDescription& array, const std::string& from);
 
-  /// What `pipeline` has just made of the next frame, `raw`. `source`: that gave it; null: only its number is told.
+  /// Takes the result of `pipeline` for the next frame, `raw`. `source`: the one that gave it; null: only the number of
+  /// the frame is reported.
   void add(const RawFrame& raw, const ForceFrame& force, const Pipeline& pipeline, const FrameSource* source = nullptr);
 
   /// The next frame of the source is not looked at.
   void skip() noexcept { ++number_; }
 
-  /// Those that were added.
+  /// The number of frames that were added.
   [[nodiscard]] std::size_t frames() const noexcept { return frames_; }
 
   /// A line for each kind of trouble that there was.
   [[nodiscard]] std::vector<std::string> describe() const;
 
-  /// What most frames say that cannot be, with the likely mend: a temperature in kelvin, or nothing but zeros of an
+  /// Impossible readings of most frames, with the likely mend: a temperature in kelvin, or nothing but zeros of an
   /// array that reads more.
   [[nodiscard]] std::optional<std::string> impossible() const;
 
@@ -42,11 +43,11 @@ class FrameTroubles {
   /// How many frames were so, and the likely mend; empty: none.
   [[nodiscard]] std::optional<std::string> silent_frames() const;
 
-  /// That all frames are nothing but zeros, of an array that may read so where nothing touches it.
+  /// A note where all frames are zeros and an untouched array may read so.
   [[nodiscard]] std::optional<std::string> silence() const;
 
-  /// Failed, with what is most likely wrong, where more than half of the frames have no force at all, a
-  /// temperature in kelvin, or nothing but zeros.
+  /// Failed, with the likeliest cause, where more than half of the frames have no force, a temperature in kelvin, or
+  /// nothing but zeros.
   [[nodiscard]] Status verdict() const;
 
  private:
@@ -69,7 +70,7 @@ class FrameTroubles {
 
   std::string prefix_;  ///< Of messages: "frames.csv: ", or nothing.
   preprocessing::MissingReadings missing_;
-  std::size_t number_ = 0;  ///< Of the last frame in its source, from 1.
+  std::size_t number_ = 0;  ///< Number of the last frame in its source, from 1.
   std::size_t frames_ = 0;
   std::size_t rejected_ = 0;
   std::size_t unsolved_ = 0;

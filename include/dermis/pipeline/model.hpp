@@ -24,7 +24,7 @@ struct Model {
   ArrayDescription array;
   fusion::ForceNetworks networks;
   std::vector<fusion::LookUpTables> baselines;
-  std::optional<fusion::MemoryLaw> memory{};    ///< Of the material, where the calibration learned one.
+  std::optional<fusion::MemoryLaw> memory{};    ///< Memory of the material, where the calibration learned one.
   std::optional<contacts::StripTable> strip{};  ///< Learned positions on a strip, where the calibration had some.
   /// Supplies of the frames of the calibration; empty: they had none, or the model is of a time that did not keep them.
   std::optional<preprocessing::SupplyRange> supply{};
@@ -34,7 +34,7 @@ struct Model {
 /// The provenance that says in what circuit and ADC are not as described; missing: nothing was noticed.
 inline constexpr const char* kDoubts = "doubts";
 
-/// Of a model file.
+/// The format of a model file.
 inline constexpr files::FileFormat kModelFormat{"dermis model 3", "dermis model 2",
                                                 "is not a dermis model; write one with 'dermis calibrate'"};
 

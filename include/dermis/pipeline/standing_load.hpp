@@ -30,17 +30,17 @@ struct StandingLoad {
 /// "r3c5 reads 1.2 N", "r3c4 to r5c6 read 48 N".
 [[nodiscard]] std::string describe(const StandingLoad& load, const ArrayDescription& array);
 
-/// Follows which taxels have been loaded since the first frame and were never released: something lies there, or the
-/// array was put on after its calibration. Drift explains a conductance up to 1.5 times the unloaded one; it is no
-/// load. Not thread-safe.
+/// Follows which taxels have been loaded since the first frame without a release. Something lies there, or the array
+/// was put on after its calibration. Drift explains a conductance up to 1.5 times the unloaded one; it is no load. Not
+/// thread-safe.
 class StandingLoadWatch {
  public:
   explicit StandingLoadWatch(const Model& model);
 
-  /// What was made of the next frame. Frames that are rejected or not solved tell nothing.
+  /// Takes the results of the next frame. Frames that are rejected or not solved are ignored.
   void add(const ConductanceFrame& conductance, const ForceFrame& force);
 
-  /// From the next frame on, as if it were the first.
+  /// Takes the next frame as if it were the first.
   void begin_anew();
 
   /// Mean force of the taxels that were never released; empty where it is below 0.1 N, or before 5 s have passed.

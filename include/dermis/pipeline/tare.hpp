@@ -10,9 +10,9 @@
 
 namespace dermis::pipeline {
 
-/// What a tare may take as zero.
+/// The readings that a tare may take as zero.
 enum class TareOver : std::uint8_t {
-  drift,     ///< What drift explains, 0.5 times the unloaded conductance; or loads below 0.1 N.
+  drift,     ///< Drift, 0.5 times the unloaded conductance; or loads below 0.1 N.
   any_load,  ///< Whatever stands there: an array that is worn.
 };
 
@@ -32,8 +32,8 @@ struct Tare {
   [[nodiscard]] bool has_ended() const noexcept { return state == State::taken || state == State::refused; }
 };
 
-/// Of a tare that was refused: "r3c4 to r5c6 read 48 N: take it off and tare again"; of one that has taken a load: "the
-/// tare takes 1.2 N on r3c4 as zero"; else "".
+/// For a refused tare: "r3c4 to r5c6 read 48 N: take it off and tare again". For one that has taken a load: "the tare
+/// takes 1.2 N on r3c4 as zero"; else "".
 [[nodiscard]] std::string describe(const Tare& tare, const ArrayDescription& array);
 
 }  // namespace dermis::pipeline

@@ -36,12 +36,11 @@ enum class Rejection {
 ///   circuit
 ///                                                                       and the supply are unknown, the factor is 1)
 ///
-/// and 1 - ratio if pressure lowers the reading. What the ADC is not ideal in is undone in the counts first
-/// (AdcCorrection). Pressure drives readings to one end of the ADC, or to
-/// readout.rail_counts. Readings within half a count of that end, or beyond it, are marked saturated. A taxel has no
-/// reading if it is NaN, infinite, above 2^adc_bits - 1, or below 0 where readings are counts. It is invalid and gets
-/// the mean ratio of its neighbours that have one. A taxel that the sheet does not have is invalid and has the ratio 0.
-/// A temperature of NaN is none.
+/// and 1 - ratio if pressure lowers the reading. Errors of the ADC against an ideal one are undone in the counts first
+/// (AdcCorrection). Pressure drives readings to one end of the ADC, or to readout.rail_counts. Readings within half a
+/// count of that end, or beyond it, are marked saturated. A taxel has no reading if it is NaN, infinite, above
+/// 2^adc_bits - 1, or below 0 where readings are counts. It is invalid and gets the mean ratio of its neighbours that
+/// have one. A taxel that the sheet does not have is invalid and has the ratio 0. A temperature of NaN is none.
 ///
 /// A supply outside of the trusted ones (SupplyBounds) is replaced by the nearest of them, or by nominal. The frame
 /// then has the status supply_clamped or supply_implausible, and supply_doubt says how far that is. Not thread-safe:

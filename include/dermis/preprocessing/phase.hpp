@@ -8,7 +8,7 @@
 
 namespace dermis::preprocessing {
 
-/// What the system is doing. The paper: the Data Pre-Processing Unit is "determined by the current phase. Only
+/// The present phase of the system. The paper: the Data Pre-Processing Unit is "determined by the current phase. Only
 /// appropriate sensor data is transferred to the arithmetic processing unit".
 enum class Phase {
   settle,     ///< The rubber and the electronics warm up: frames go nowhere.

@@ -25,8 +25,8 @@ struct SupplyRange {
   bool operator==(const SupplyRange&) const = default;
 };
 
-/// Which supplies of frames are believed. Nothing is bounded where the ADC's reference is the supply itself, for then
-/// the supply has no part in the forces. Thread-safe.
+/// Decides which supplies of frames are believed. Nothing is bounded where the ADC's reference is the supply itself,
+/// for then the supply has no part in the forces. Thread-safe.
 ///
 ///   trusted      used as it is: what was calibrated and nominal +- 10 %, 1 % more for the meter; or, where it is not
 ///                known what was calibrated, nominal +- 20 %
@@ -34,13 +34,13 @@ struct SupplyRange {
 ///   possible     from a third of nominal to three times it: the meter is probably wrong, so nominal is used; beyond it
 ///                no frame can be used
 ///
-/// Without a nominal supply (readout.supply_v) the middle of what was calibrated takes its place. Where that is unknown
-/// too, everything is trusted from a hundredth of the ADC's reference to a hundred times it.
+/// Without a nominal supply (readout.supply_v) the middle of the calibrated range takes its place. Where that is
+/// unknown too, everything is trusted from a hundredth of the ADC's reference to a hundred times it.
 class SupplyBounds {
  public:
-  /// Of a calibration: what is possible is trusted.
+  /// For a calibration: possible supplies are trusted.
   explicit SupplyBounds(const Readout& readout);
-  /// Of an array at work. `calibrated`: the supplies of its calibration; empty: not known.
+  /// For an array at work. `calibrated`: the supplies of its calibration; empty: not known.
   SupplyBounds(const Readout& readout, const std::optional<SupplyRange>& calibrated);
 
   [[nodiscard]] const SupplyRange& trusted() const noexcept { return trusted_; }
@@ -49,7 +49,7 @@ class SupplyBounds {
   [[nodiscard]] bool is_plausible(double supply_v) const noexcept {
     return plausible_.contains(supply_v) || trusted_.contains(supply_v);
   }
-  /// What readings are divided by.
+  /// The divisor of readings.
   [[nodiscard]] double used(double supply_v) const noexcept {
     return is_plausible(supply_v) ? std::clamp(supply_v, trusted_.least_v, trusted_.most_v) : nominal_v_;
   }

@@ -26,7 +26,7 @@ struct ArrayLoadInput {
   bool tare = false;                ///< The first second is unloaded.
   bool tare_force = false;          ///< With `tare` and a model: whatever load stands there.
   sources::SourceOptions source{};  ///< With a model, the array is that of the model.
-  std::string name{};               ///< What the array is called; empty: as its model says, or "array".
+  std::string name{};               ///< Name of the array; empty: as its model says, or "array".
 };
 
 /// Mean of each reading over the first second, and at least 10 frames, but at most 10 s.
@@ -44,8 +44,8 @@ class UnloadedReadings {
   bool is_done_ = false;
 };
 
-/// Frames of an array as loads: newtons of a model, or readings, tared if asked. Where there is no load to tell, 0.
-/// Not thread-safe.
+/// Frames of an array as loads: newtons of a model, or readings, tared if asked. Where there is no load, 0. Not
+/// thread-safe.
 class ArrayLoads {
  public:
   [[nodiscard]] static Result<ArrayLoads> open(const ArrayLoadInput& input);
@@ -57,11 +57,11 @@ class ArrayLoads {
   /// Whether the frame belongs to the tare; its loads are 0.
   [[nodiscard]] bool is_tare() const noexcept { return is_tare_; }
   [[nodiscard]] const std::vector<float>& loads() const noexcept { return loads_; }
-  /// What a load is: a force by a model, else a reading, whatever the source gives.
+  /// The quantity of a load: a force by a model, else a reading, whatever the source gives.
   [[nodiscard]] Quantity quantity() const noexcept { return work_ ? Quantity::force : Quantity::counts; }
   [[nodiscard]] Nanos time() const noexcept { return raw_.time; }
 
-  /// The array as far as it is known: with the pitch by a model; empty where only the first frame will tell.
+  /// The array as far as it is known: with the pitch by a model; empty where only the first frame will show it.
   [[nodiscard]] std::optional<recognition::SensedArray> array() const;
   [[nodiscard]] bool is_live() const { return frames_->is_live(); }
 
@@ -85,7 +85,7 @@ class ArrayLoads {
   bool is_tare_ = false;
 };
 
-/// What an array shows at the times of another one: its last frame until then. Not thread-safe.
+/// The loads of an array at the times of another one: its last frame until then. Not thread-safe.
 class HeldLoads {
  public:
   /// Reads its first frame; fails where there is none.
@@ -107,7 +107,7 @@ class HeldLoads {
 
   ArrayLoads array_;      ///< One frame ahead,
   bool has_next_ = true;  ///< if there is one.
-  bool is_tare_;          ///< Of the frame that is held, as what follows.
+  bool is_tare_;          ///< State of the held frame, as the members below.
   std::optional<Nanos> last_;
   std::vector<float> loads_;
   std::size_t silent_ = 0;

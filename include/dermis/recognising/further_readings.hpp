@@ -15,8 +15,9 @@ namespace dermis::recognising {
 /// Readings beside the frames of a recording that have times of their own, such as joint angles. Not thread-safe.
 class FurtherReadings {
  public:
-  /// CSV as docs/recognition.md tells: `time_s` on the clock of the frames and a column a reading; where there is a
-  /// column `recording`, its lines with this name. A cell that is empty or "nan" is a reading that is missing.
+  /// Reads CSV as docs/recognition.md describes it: `time_s` on the clock of the frames and a column a reading. Where
+  /// there is a column `recording`, only its lines with this name count. A cell that is empty or "nan" is a reading
+  /// that is missing.
   [[nodiscard]] static Result<FurtherReadings> read(const std::string& path, const std::string& recording);
 
   [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }

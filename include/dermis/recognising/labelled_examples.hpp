@@ -17,7 +17,7 @@ struct ExampleOptions {
   recognition::DatasetFiles data;
   std::vector<std::string> in;  ///< Recordings; then `data` has no frames and arrays, and its extras are
                                 ///< as for FurtherReadings::read().
-  std::string model;            ///< Of the recordings: as for LoadInput, like the next two.
+  std::string model;            ///< Model of the recordings: as for LoadInput, like the next two.
   bool tare = false;
   bool tare_force = false;
   std::vector<std::string> arrays;  ///< Empty: those of the first recording.

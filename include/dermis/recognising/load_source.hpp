@@ -15,7 +15,7 @@
 
 namespace dermis::recognising {
 
-/// What classes are learned from and recognised in; both must see the same loads in the same frames.
+/// The input that classes are learned from and recognised in; both must see the same loads in the same frames.
 struct LoadInput {
   std::string from;                 ///< As for sources::open_source(), or a recording of several arrays.
   std::string model{};              ///< As for pipeline::read_model(); of several arrays suit.toml, which names that
@@ -50,7 +50,7 @@ class LoadSource {
   [[nodiscard]] std::span<const float> extras() const noexcept;
   [[nodiscard]] Nanos time() const noexcept { return first_.time(); }
 
-  /// Of the frames, without their rate; empty where only the first frame will tell.
+  /// The layout of the frames, without their rate; empty where only the first frame will show it.
   [[nodiscard]] std::optional<recognition::Layout> layout() const;
   [[nodiscard]] std::vector<std::string> extra_names() const;
   [[nodiscard]] bool is_live() const { return first_.is_live(); }

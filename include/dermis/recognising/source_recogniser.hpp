@@ -22,10 +22,10 @@ struct RecognitionInput {
   double rate_hz = 0.0;  ///< Frames a second of the source; 0: as many as the examples had.
 };
 
-/// What was recognised in a source.
+/// The recognition in a source.
 struct SourceRecognition {
   recognition::Recognition recognition{};  ///< Its frames count from the first of the source.
-  Nanos time{};                            ///< Of the frame with which it was known.
+  Nanos time{};                            ///< Time of the frame with which it was known.
 };
 
 /// Names what happens in a source. Not thread-safe.
@@ -40,7 +40,7 @@ class SourceRecogniser {
   [[nodiscard]] Result<std::optional<SourceRecognition>> next();
 
   [[nodiscard]] const recognition::Classes& classes() const noexcept { return recogniser_.classes(); }
-  /// False: each pose is told from a single frame, and gestures must come at the rate of the examples.
+  /// False: each pose is recognised in a single frame, and gestures must come at the rate of the examples.
   [[nodiscard]] bool knows_rate() const noexcept { return knows_rate_; }
 
  private:

@@ -22,7 +22,7 @@ struct DatasetFiles {
   double rate_hz = 0.0;         ///< Frames a second; 0 where it is not known.
 };
 
-/// What the tables of a data set say, each for itself: nothing is held against the frames.
+/// Read the tables of a data set, each by itself, without a check against the frames.
 [[nodiscard]] Result<std::vector<SensedArray>> arrays_of(const files::CsvTable& table);
 [[nodiscard]] Result<std::vector<Label>> labels_of(const files::CsvTable& table, const std::string& label);
 
@@ -31,7 +31,7 @@ struct DatasetFiles {
 
 /// The frames of a recording, as loads.
 struct LoadRecording {
-  std::string name;             ///< What the column `recording` of labels.csv calls it.
+  std::string name;             ///< The name in the column `recording` of labels.csv.
   std::vector<float> frames;    ///< [frames, readings]
   std::size_t tare_frames = 0;  ///< The first so many were taken for unloaded: they are no example.
   std::vector<float> extras{};  ///< [frames, extras]

@@ -11,7 +11,7 @@
 
 namespace dermis::recognition {
 
-/// What classes answer to labels that they have not learned from.
+/// The answers of classes to labels that they have not learned from.
 struct ClassesEvaluation {
   std::vector<std::size_t> confusion;  ///< [classes, classes]: right class, likeliest class.
   std::size_t judged = 0;              ///< Labels in `confusion`: of the classes that were learned.
@@ -22,8 +22,8 @@ struct ClassesEvaluation {
   std::size_t others_unknown = 0;      ///< Of `others`: the answer was "unknown".
 };
 
-/// Fails where the frames are none that the classes can be seen in, on what LabelledFrames::validate() refuses, and
-/// where no label is of a class that was learned.
+/// Fails where the classes cannot read the frames, on all that LabelledFrames::validate() refuses, and where no label
+/// is of a learned class.
 [[nodiscard]] Result<ClassesEvaluation> evaluate_classes(const Classes& classes, const LabelledFrames& data);
 
 }  // namespace dermis::recognition

@@ -9,7 +9,7 @@
 #include "dermis/core/result.hpp"
 #include "dermis/recognition/segment.hpp"
 
-/// What classes are learned from.
+/// The examples that classes are learned from.
 namespace dermis::recognition {
 
 /// A segment of a recording whose class a person has named. Frames count from 0; both are within.
@@ -17,7 +17,7 @@ struct Label {
   std::string id{};
   std::size_t first = 0;
   std::size_t last = 0;
-  std::string name{};  ///< Of the class: UTF-8 without control characters, and not "unknown".
+  std::string name{};  ///< Name of the class: UTF-8 without control characters, and not "unknown".
   std::string
       group{};         ///< Subject or session, which are never in training and test at once; empty where none is named.
   double order = 0.0;  ///< Place in time.
@@ -44,8 +44,8 @@ struct LabelledFrames {
   [[nodiscard]] Status validate() const;
 };
 
-/// What an example looks like, [readings]: the mean of its frames with at least half of its largest force. Readings
-/// that are no load are 0.
+/// The image of an example, [readings]: the mean of its frames with at least half of its largest force. Readings that
+/// are no load are 0.
 [[nodiscard]] std::vector<float> held_image(const LabelledFrames& data, const Label& label);
 
 }  // namespace dermis::recognition

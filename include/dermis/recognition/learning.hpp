@@ -17,7 +17,7 @@
 
 namespace dermis::recognition {
 
-/// What some of the features tell by themselves.
+/// The evidence of some of the features by themselves.
 struct Aspect {
   std::string name;         ///< In plain words: "place", "force", "area", "shape", "time", "the further readings".
   double told_apart = 0.0;  ///< Mean over two classes of the share of examples that is right by it alone, 0 ... 1.
@@ -39,7 +39,7 @@ struct Judgement {
   double probability = 0.0;
 };
 
-/// What the classes know of examples that they had not learned from: of each fold by what the others taught.
+/// The results of the classes on examples that they had not learned from: each fold by what the others taught.
 struct LearningReport {
   bool by_group = false;  ///< Whole subjects or sessions were held out; else runs in order of time.
   std::size_t folds = 0;
@@ -49,7 +49,7 @@ struct LearningReport {
   double accuracy = 0.0;                   ///< Share of those that were right, 0 ... 1.
   double calibration_error = 0.0;          ///< Expected calibration error over 10 bins, 0 ... 1.
   std::vector<std::size_t> fold_of{};      ///< Of each example chosen.
-  std::vector<Judgement> judgements{};     ///< Of the examples in `confusion`, in order.
+  std::vector<Judgement> judgements{};     ///< Judgements of the examples in `confusion`, in order.
   std::optional<ConfusedPair> confused{};  ///< Most often; empty where no two are.
 };
 
@@ -61,7 +61,7 @@ struct Learned {
 /// Labelled segments and their features, of which classes are learned. Thread-safe once made.
 class LearningSet {
  public:
-  /// Computes the features of all labels. `progress` is told the share that is done. Fails on what
+  /// Computes the features of all labels. `progress` gets the share that is done. Fails on what
   /// LabelledFrames::validate() refuses.
   [[nodiscard]] static Result<LearningSet> create(const LabelledFrames& data,
                                                   const std::function<void(double)>& progress = {});
@@ -89,8 +89,8 @@ class LearningSet {
 /// How well these limits find the labels again.
 [[nodiscard]] FindingReport judge_touches(const LabelledFrames& data, const TouchLimits& limits);
 
-/// What a person should know of the examples, a line each: which classes need more of them, which two are confused, and
-/// what the accuracy does not show.
+/// Advice on the examples, a line each: which classes need more of them, which two are confused, and what the accuracy
+/// does not show.
 [[nodiscard]] std::vector<std::string> advice(const Learned& learned);
 
 }  // namespace dermis::recognition

@@ -12,15 +12,15 @@
 
 namespace dermis::recognition {
 
-/// Who may be named in an answer of predictions_of().
+/// The names that an answer of predictions_of() may contain.
 enum class Answers {
   classes,             ///< Always the likeliest class.
   classes_or_unknown,  ///< Or "unknown"; the lines have the score of it, too.
 };
 
-/// What is answered for the labels that the splits ask for, each learned anew from what it teaches: a CSV with the
-/// columns split,id,class,probability and, with classes_or_unknown, unknown_score. `set`: of all labels of `data`.
-/// `progress` is told the share that is done. Errors name the split.
+/// The answers to the labels that the splits ask for, each split learned anew: a CSV with the columns
+/// split,id,class,probability. With classes_or_unknown it also has unknown_score. `set`: of all labels of `data`.
+/// `progress` gets the share that is done. Errors name the split.
 [[nodiscard]] Result<std::string> predictions_of(const LabelledFrames& data, const LearningSet& set,
                                                  std::span<const Split> splits, Answers answers,
                                                  const std::function<void(double)>& progress = {});

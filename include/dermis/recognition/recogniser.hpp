@@ -30,10 +30,9 @@ struct Answer {
 /// Names the class of segments. Allocates only when made. Not thread-safe: one for each thread.
 class Recogniser {
  public:
-  /// `source`: of the frames to come; its arrays are those of the examples in their order. Where both pitches are known
-  /// the arrays may have other sizes, and where both rates are known the rate may be another one, at
-  /// most by a factor of 1000. Fails where the
-  /// frames are none that the classes can be seen in. Of segments longer than `most_frames` (at least 1) the end
+  /// `source`: of the frames to come; its arrays are those of the examples in their order. Where both pitches are
+  /// known, the arrays may have other sizes. Where both rates are known, the rate may differ, at most by a factor of
+  /// 1000. Fails where the classes cannot read the frames. The end of segments longer than `most_frames` (at least 1)
   /// counts.
   [[nodiscard]] static Result<Recogniser> create(Classes classes, const Layout& source, std::size_t most_frames);
   Recogniser(Recogniser&&) noexcept;

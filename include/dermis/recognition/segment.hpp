@@ -12,7 +12,7 @@
 #include "dermis/core/frames.hpp"
 #include "dermis/core/result.hpp"
 
-/// What is recognised: a piece of the stream of one or several arrays.
+/// The unit of recognition: a piece of the stream of one or several arrays.
 namespace dermis::recognition {
 
 inline constexpr std::size_t kMostLines = 1024;  ///< Rows, and columns.
@@ -50,13 +50,13 @@ struct Layout {
   std::size_t readings = 0;              ///< Of a frame, of all arrays.
   std::size_t extras = 0;                ///< Further readings beside a frame, such as joint angles.
   double rate_hz = 0.0;                  ///< Frames a second, 0.001 ... 1e6; 0 where it is not known.
-  Quantity quantity = Quantity::counts;  ///< What a reading is; counts also where nobody has said it.
+  Quantity quantity = Quantity::counts;  ///< Quantity of a reading; counts also where it is not known.
 
   [[nodiscard]] bool has_forces() const noexcept { return quantity == Quantity::force; }
   /// The least reading that means anything: kLeastNewtons, or 1 of any other quantity. Logarithms begin here.
   [[nodiscard]] double least_reading() const noexcept { return has_forces() ? kLeastNewtons : 1.0; }
 
-  /// What is wrong with it, as "arrays: ...".
+  /// The first error in it, as "arrays: ...".
   [[nodiscard]] Status validate() const;
   bool operator==(const Layout&) const = default;
 };

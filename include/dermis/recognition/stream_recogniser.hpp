@@ -13,19 +13,19 @@
 
 namespace dermis::recognition {
 
-/// What was recognised in a stream, and in which of its frames, counted from 0.
+/// The recognition in a stream, and its frames, counted from 0.
 struct Recognition {
   Touch frames{};
   Answer answer{};
 };
 
-/// Names what happens in a stream frame by frame: a gesture once it is over, from onset to release; a pose with every
-/// frame, from the last half second but not from before the touch that is there. Allocates only when made. Not
-/// thread-safe.
+/// Names events in a stream frame by frame: a gesture once it is over, from onset to release, and a pose with every
+/// frame. A pose is named from the last half second, but not from before the present touch. Allocates only when made.
+/// Not thread-safe.
 class StreamRecogniser {
  public:
-  /// `source`: as for Recogniser::create(). Fails on classes of gestures whose onset and release were not learned, and
-  /// on frames so large that twice the frames looked at together were more than 2^26 readings.
+  /// `source`: as for Recogniser::create(). Fails on classes of gestures whose onset and release were not learned.
+  /// Fails also on frames so large that twice the frames of one look would exceed 2^26 readings.
   [[nodiscard]] static Result<StreamRecogniser> create(Classes classes, const Layout& source);
 
   /// `readings`: of one frame, tared; `extras`: beside it. The answer is valid until the next call.

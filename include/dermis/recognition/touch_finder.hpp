@@ -9,13 +9,13 @@
 
 #include "dermis/core/result.hpp"
 
-/// Where touches begin and end in a stream: docs/recognition.md tells the rule.
+/// Where touches begin and end in a stream: docs/recognition.md has the rule.
 namespace dermis::recognition {
 
-/// What is a touch, as forces (sums of the readings of a frame) and frames.
+/// The limits of a touch, as forces (sums of the readings of a frame) and frames.
 struct TouchLimits {
   double onset = 1.0;             ///< Force above the idle level from which on there is a touch, > 0.
-  double release_share = 0.3;     ///< Of the peak force of the touch, 0 ... 1: below that it is released.
+  double release_share = 0.3;     ///< Share of the touch's peak force, 0 ... 1, below which it is released.
   std::size_t gap_frames = 3;     ///< So many frames in a row without force end a touch, 1 ... 1000.
   std::size_t before_frames = 0;  ///< Frames before the onset that belong to a touch, at most 1000.
   std::size_t after_frames = 0;   ///< Frames after the release that belong to a touch, at most 1000.
@@ -53,7 +53,7 @@ class TouchFinder {
   [[nodiscard]] Touch end_touch();
 
   TouchLimits limits_;
-  std::vector<double> recent_;  ///< Of the last kIdleFrames or gap_frames, whichever are more; a ring.
+  std::vector<double> recent_;  ///< Forces of the last kIdleFrames or gap_frames, whichever are more; a ring.
   std::size_t idle_count_ = 0;  ///< How many of those were without a touch.
   std::size_t frame_ = 0;       ///< Of the next frame.
   bool is_touched_ = false;
@@ -67,7 +67,7 @@ class TouchFinder {
 /// How well touches are found.
 struct FindingReport {
   std::size_t labelled = 0;
-  std::size_t found = 0;   ///< Of those: with an intersection over union of at least 0.5.
+  std::size_t found = 0;   ///< The ones of those with an intersection over union of at least 0.5.
   std::size_t others = 0;  ///< Touches that were found where no label is.
 };
 [[nodiscard]] FindingReport judge_finding(std::span<const Touch> labelled, std::span<const Touch> found);

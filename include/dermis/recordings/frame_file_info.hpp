@@ -15,7 +15,7 @@
 
 namespace dermis::recordings {
 
-/// What a file of frames holds; empty if its format does not contain it.
+/// The content of a file of frames; empty if its format does not contain it.
 struct FrameFileInfo {
   FrameFormat format = FrameFormat::csv;
   std::uint64_t bytes = 0;  ///< 0 of a pipe.

@@ -24,7 +24,7 @@ enum class FrameFormat {
   hdf5,      ///< .h5, .hdf5
   wiresens,  ///< .wiresens.h5, .wiresens.hdf5; files of .h5 and .hdf5 that are read may be of this format too
   npy,       ///< .npy
-  // Of others, and only read (dermis/importers):
+  // Formats of other systems, only read (dermis/importers):
   npz,          ///< .npz
   dsa,          ///< .dsa, .dsa3
   tekscan,      ///< .asf; .csv and .txt that begin as one
@@ -58,8 +58,8 @@ struct FrameFileInput {
   std::function<void(const std::string&)> loss{};    ///< Receives one line at the end, if the file is cut off there.
 };
 
-/// The frames of a file, read one by one. Of a file that is cut off, all whole frames are given, then `loss` is told. A
-/// file without a frame is bad input: next() says so.
+/// The frames of a file, read one by one. A file that is cut off gives all whole frames, then `loss` is called. A file
+/// without a frame is bad input: next() says so.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_frames(const std::string& path,
                                                                const FrameFileInput& input = {});
 

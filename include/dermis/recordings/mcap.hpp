@@ -58,11 +58,11 @@ struct McapMetadata {
   bool operator==(const McapMetadata&) const = default;
 };
 
-/// Writes an MCAP file of the profile "ros2". The file is beside its final place until appear() or finish(). What
+/// Writes an MCAP file of the profile "ros2". The file is beside its final place until appear() or finish(). Data that
 /// close_chunk() wrote can be read even if the process dies afterwards. After the first write error the file is cut
 /// back to the last whole record, and later data are dropped. finish() then adds the index. Where the disk is full, the
-/// last chunks make room for it. Until then the index lies in a file without a name beside the recording: about 110
-/// bytes for each chunk (and 10 for each topic in it). Memory: two chunks and those that wait. Not thread-safe.
+/// last chunks make room for it. Until then the index lies in a file without a name beside the recording. It has about
+/// 110 bytes for each chunk (and 10 for each topic in it). Memory: two chunks and those that wait. Not thread-safe.
 class McapWriter {
  public:
   [[nodiscard]] static Result<std::unique_ptr<McapWriter>> create(const std::string& path, McapCompression compression);
@@ -89,7 +89,7 @@ class McapWriter {
   [[nodiscard]] Status appear();
   /// Waits until the data of close_chunk() are on the disk. Another thread may call it while this one writes.
   [[nodiscard]] Status synchronise();
-  /// Writes the open chunk and the index, and puts the file in its place. To be called once.
+  /// Writes the open chunk and the index, and puts the file in its place. Call it once.
   [[nodiscard]] Status finish();
 
  private:

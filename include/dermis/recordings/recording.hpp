@@ -30,10 +30,11 @@ struct RecordingPlace {
 [[nodiscard]] RecordingPlace recording_place(const std::string& text);
 
 struct RecordingOptions {
-  std::string name = "array";  ///< Of the array; topics are /<name>/raw, ... with '_' for what a topic cannot have.
-  std::string array_toml;      ///< Description of the array, as array.toml; empty: none.
-  std::string model_hash;      ///< content_hash() of the model that gave the forces; empty: none.
-  messages::Pitch pitch;       ///< Of the array, for the forces.
+  /// Name of the array; topics are /<name>/raw, ... with '_' for characters that a topic cannot have.
+  std::string name = "array";
+  std::string array_toml;  ///< Description of the array, as array.toml; empty: none.
+  std::string model_hash;  ///< content_hash() of the model that gave the forces; empty: none.
+  messages::Pitch pitch;   ///< Of the array, for the forces.
   McapCompression compression = McapCompression::lz4;
   /// If true, the file takes its place with its first frames. Frames are then in it 50 ms after write(), even if the
   /// process dies. If false, it appears complete or not at all.
@@ -103,7 +104,7 @@ struct RecordingTopic {
   std::uint64_t messages = 0;
 };
 
-/// What a recording holds of an array.
+/// The data on an array in a recording.
 struct RecordedArrayInfo {
   std::string name;                 ///< Empty if unknown.
   std::optional<FrameShape> shape;  ///< Empty if the recording has no frame and does not contain it.
@@ -113,7 +114,7 @@ struct RecordedArrayInfo {
   std::string model_hash;  ///< Empty where there is none.
 };
 
-/// What a recording holds.
+/// The content of a recording.
 struct RecordingInfo {
   std::uint64_t frames = 0;               ///< Of all arrays.
   std::uint64_t lost = 0;                 ///< Of all arrays.
@@ -131,7 +132,7 @@ struct RecordingInfo {
 /// everything.
 [[nodiscard]] Result<RecordingInfo> recording_info(const std::string& path);
 
-/// What a recovery found.
+/// The result of a recovery.
 struct Recovery {
   bool was_complete = false;         ///< The file had its index already.
   std::uint64_t frames = 0;          ///< Kept.

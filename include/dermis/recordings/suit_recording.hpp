@@ -64,7 +64,7 @@ class SuitRecordingWriter {
   /// array says how many before it are lost. Events have as much room again, so that frames do not take it.
   [[nodiscard]] Result<bool> try_write(std::size_t array, const RawFrame& frame);
   [[nodiscard]] Result<bool> try_write(const RecordedEvent& event);
-  /// To be called once, when no write() is under way or follows.
+  /// Call it once, when no write() is under way or follows.
   [[nodiscard]] Status commit();
 
  private:
@@ -78,8 +78,8 @@ class SuitRecordingWriter {
 [[nodiscard]] Result<std::size_t> find_array(const std::vector<RecordedArray>& arrays, const std::string& path,
                                              const std::string& name);
 
-/// Reads every RawFrame of all arrays of a recording, in the order of the file. Of other MCAP files there is one array:
-/// the first topic of images (RecordingReader). Not thread-safe.
+/// Reads every RawFrame of all arrays of a recording, in the order of the file. Other MCAP files give one array: the
+/// first topic of images (RecordingReader). Not thread-safe.
 class SuitRecordingReader {
  public:
   [[nodiscard]] static Result<std::unique_ptr<SuitRecordingReader>> open(const std::string& path);

@@ -12,7 +12,7 @@
 
 namespace dermis::report {
 
-/// What is known of the frames that were judged, and of what judged them.
+/// The origin of the judged frames, and of the model that judged them.
 struct Origin {
   std::string summary;      ///< "Simulated frames." Empty: nothing is known.
   std::vector<Fact> facts;  ///< Files with their times and hashes, versions.

@@ -19,10 +19,10 @@ struct Colour {
   std::uint8_t blue = 0;
 };
 
-/// A sequential colour map, from ink over red to pale yellow, for readers with any colour vision and for grey prints:
-/// the palette of the viewer. `share` is clamped to [0, 1]; not NaN. Lightness rises in even steps (Oklab, B. Ottosson,
-/// "A perceptual color space for image processing", 2020). The first percent has a tenth of them, so that it differs
-/// from 0.
+/// A sequential colour map, from ink over red to pale yellow: the palette of the viewer. It suits readers with any
+/// colour vision and grey prints. `share` is clamped to [0, 1]; not NaN. Lightness rises in even steps (Oklab, B.
+/// Ottosson, "A perceptual color space for image processing", 2020). The first percent has a tenth of them, so that it
+/// differs from 0.
 [[nodiscard]] Colour sequential_colour(double share) noexcept;
 
 /// A diverging colour map for signed quantities: dark blue over near white at 0 to dark orange. `share` is clamped to

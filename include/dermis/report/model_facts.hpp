@@ -14,7 +14,7 @@ namespace dermis::report {
 /// Size and pitch, the circuit and its resistances, ADC and supply.
 [[nodiscard]] std::vector<Fact> array_facts(const ArrayDescription& array);
 
-/// Of what a model was made, what it covers, how sure it is, and what its calibration had to say. A model that was not
+/// The origin of a model, its coverage and its certainty, and the remarks of its calibration. A model that was not
 /// calibrated has one fact that says so.
 [[nodiscard]] std::vector<Fact> calibration_facts(const pipeline::Model& model);
 

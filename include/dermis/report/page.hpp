@@ -54,7 +54,7 @@ struct Table {
   /// "numbers", also "numbers compact" for few columns and "numbers dense" for many rows; or "claims": sentences, which
   /// stand below each other on a narrow screen.
   std::string style = "numbers";
-  std::vector<Group> groups;       ///< Of the columns after the first; none, or over all of them.
+  std::vector<Group> groups;       ///< Groups of the columns after the first; none, or over all of them.
   std::vector<std::string> heads;  ///< The first is that of the names.
   std::vector<Row> rows;
 };

@@ -13,7 +13,7 @@ namespace dermis::report {
 
 enum class Scale { linear, logarithmic };
 
-/// The multiples of 1, 2 or 5 times a power of ten inside [low, high], with the finest step that gives at most `most`
+/// The multiples of 1, 2 or 5 times a power of ten inside [low, high]. The step is the finest that gives at most `most`
 /// of them (`most` >= 2). low < high, both finite.
 [[nodiscard]] std::vector<double> linear_ticks(double low, double high, std::size_t most);
 
@@ -43,7 +43,7 @@ struct Point {
 };
 
 /// A plot with axes, grid and legend. Points with a NaN are left out; points beyond an axis are drawn on its edge.
-/// Series differ in colour and in the shape of their marks; `style` is the number of the series, from 0, and gives it
+/// Series differ in colour and in the shape of their marks. `style` is the number of the series, from 0, and gives it
 /// the same look in every plot. A series that was added earlier lies above those that were added later, and all of them
 /// above regions and references.
 class Plot {

@@ -12,8 +12,8 @@
 
 namespace dermis::report {
 
-/// What 'dermis learn' found, as a page: accuracy, advice, estimators side by side, confusion, and what the worst
-/// errors look like. `learned`: of all labels of `data`.
+/// The results of 'dermis learn' as a page: accuracy, advice, estimators side by side, confusion, and the worst errors.
+/// `learned`: of all labels of `data`.
 [[nodiscard]] std::string recognition_page(const recognition::LabelledFrames& data, const recognition::Learned& learned,
                                            std::span<const recognition::EstimatorFigures> estimators);
 

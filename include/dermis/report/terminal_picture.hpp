@@ -22,12 +22,12 @@ struct TerminalSize {
   std::size_t columns = 80;
 };
 
-/// What is shown of an array.
+/// The picture of an array.
 struct TerminalPicture {
   std::string name;
   std::string unit;
   FrameShape shape;            ///< 1x1 at least.
-  std::vector<double> values;  ///< Of the taxels; NaN where there is none.
+  std::vector<double> values;  ///< Values of the taxels; NaN where there is none.
   double high = 1.0;           ///< End of the colour scale.
   bool has_contacts = false;   ///< There is a model.
   ContactReport report;

@@ -13,20 +13,20 @@
 
 namespace dermis::serve {
 
-/// What a client has described.
+/// The description by a client.
 struct DescribedArray {
   std::string from{};   ///< URI of its source.
   std::string model{};  ///< Its NAME.toml, or a model or array.toml from last time, in the current folder.
 };
 
-/// An array of which nothing is written yet. Serves a page that shows what its source sends, and asks for what that
-/// does not tell: the source itself, rows and columns, which way round they are. What a client answers becomes an
-/// array.toml with circuit = "auto", as soon as the source has sent a frame of that shape; until then it is asked on.
+/// An array of which nothing is written yet. Serves a page that shows what its source sends, and asks for the rest: the
+/// source itself, rows and columns, and their directions. The answers of a client become an array.toml with circuit =
+/// "auto", as soon as the source has sent a frame of that shape. Until then the page keeps asking.
 class ArraySetup {
  public:
   /// Reads the first frame of the source that the URI `from` names, for at most 8 s, and begins to answer clients.
-  /// Bytes of which no frame can be made are no error: the page tells what they lack. Fails where the URI is wrong, its
-  /// device is not there, or the port cannot be bound.
+  /// Bytes that make no frame are no error: the page says what they lack. Fails where the URI is wrong, its device is
+  /// not there, or the port cannot be bound.
   ///
   /// Where `from` is empty, clients choose: a serial port of this machine, an address, a recording of the current
   /// folder, or the simulator. Only clients of this machine may: a server that others can reach needs `from`. Nothing
@@ -40,7 +40,7 @@ class ArraySetup {
 
   [[nodiscard]] std::uint16_t port() const noexcept;
 
-  /// Waits until a client has described the array; both are empty where `stop` was set before. To be called once.
+  /// Waits until a client has described the array; both are empty where `stop` was set before. Call it once.
   [[nodiscard]] DescribedArray run(const std::atomic<bool>& stop);
 
  private:

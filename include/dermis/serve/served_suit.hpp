@@ -34,19 +34,21 @@ struct ServedArray {
   ArraySurface surface;
   Pose suit_from_array{};        ///< With all joints of a body at 0, as `surface` has it.
   ArrayDescription description;  ///< As calibration takes it: parts of the circuit may still be unknown.
-  std::string model_path{};      ///< Of the model or its array.toml: a calibration saves into that folder.
-  std::optional<recognition::Classes> classes{};  ///< What touches it are named by; learned from newtons.
+  std::string model_path{};      ///< Path of the model or its array.toml: a calibration saves into that folder.
+  std::optional<recognition::Classes> classes{};  ///< Names for its touches; learned from newtons.
 };
 
-/// What is to be served.
+/// The suit to be served.
 struct ServedSuit {
   std::string name = "suit";
-  std::vector<ServedArray> arrays;                         ///< At least one.
-  std::optional<recognition::Classes> classes{};           ///< What touches several of them together, or one beside
-                                                           ///< further readings; learned from newtons.
+  std::vector<ServedArray> arrays;  ///< At least one.
+  /// Names for touches on several arrays together, or on one beside further readings; learned from newtons.
+  std::optional<recognition::Classes> classes{};
   std::optional<dermis::threats::ThreatLimits> threats{};  ///< Zones name arrays as `arrays` does.
-  std::shared_ptr<WornBody> body{};                        ///< What wears it; null: nothing is known of it.
-  std::unique_ptr<live::Playback> playback{};  ///< Of the recording from which all sources come; null: they are live.
+  /// The body that wears the suit; null: nothing is known of it.
+  std::shared_ptr<WornBody> body{};
+  /// Plays the recording from which all sources come; null: they are live.
+  std::unique_ptr<live::Playback> playback{};
   /// Heard by the simulated hands among the sources. Not null.
   std::shared_ptr<sources::GuideVoice> guide = std::make_shared<sources::GuideVoice>();
 };
@@ -63,20 +65,20 @@ struct ServedSuit {
 /// Whether it is a recording that holds the description of its array.
 [[nodiscard]] bool describes_its_array(const sources::SourceName& from);
 
-/// What is to be opened: one source with its model, or a suit.
+/// The place to be opened: one source with its model, or a suit.
 struct SuitPlace {
   std::string from{};  ///< URI or recording; of a suit: a recording of it, or empty for its own sources.
   /// Model file, or the array.toml of an array to be calibrated, where `suit` is empty. Empty: `from` describes its
   /// array.
   std::string model{};
   std::string suit{};     ///< suit.toml
-  std::string classes{};  ///< Of `dermis learn`, for one source; a suit.toml names its own. Empty: none.
+  std::string classes{};  ///< From `dermis learn`, for one source; a suit.toml names its own. Empty: none.
   std::string threats{};  ///< threats.toml; empty: none.
 };
 
 /// Opens all that the place names, the sources of a suit at once: `notice` may be called by several threads together.
-/// Of the options, `array` and `guide` are not used. Fails where a file or a source cannot be opened, and where they do
-/// not fit each other.
+/// The options `array` and `guide` are not used. Fails where a file or a source cannot be opened, and where they do not
+/// fit each other.
 [[nodiscard]] Result<ServedSuit> open_suit(const SuitPlace& place, sources::SourceOptions options = {});
 
 }  // namespace dermis::serve

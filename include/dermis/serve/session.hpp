@@ -17,9 +17,9 @@
 namespace dermis::serve {
 
 struct SessionOptions {
-  /// `notice` must be thread-safe: arrays and recordings tell it their lines, too.
+  /// `notice` must be thread-safe: it gets lines of arrays and recordings, too.
   stream::ServerOptions server{};
-  std::vector<stream::Asset> page{};  ///< What browsers are shown; empty: there is the stream alone.
+  std::vector<stream::Asset> page{};  ///< The page for browsers; empty: there is the stream alone.
   /// A recording to begin with, .mcap; those that clients begin take their names from it. Empty: none.
   std::string record{};
   std::string recordings{};                    ///< A recording in whose folder clients record; empty: that of `record`.
@@ -39,7 +39,7 @@ class Session {
   [[nodiscard]] std::uint16_t port() const noexcept;
 
   /// Runs all arrays until `stop` is set, which must end sources that wait, too; a recording is complete then. Fails
-  /// where it could not be written. To be called once.
+  /// where it could not be written. Call it once.
   [[nodiscard]] Status run(const std::atomic<bool>& stop);
 
  private:

@@ -19,12 +19,12 @@ namespace dermis::serve {
 
 /// A mesh of a body, as clients get it.
 struct BodyFile {
-  std::string name;  ///< As the description of the body names it.
+  std::string name;  ///< Its name in the description of the body.
   std::string path;  ///< "/body/0.stl"
   std::string bytes;
 };
 
-/// What a body is made of.
+/// The parts of a body.
 struct BodyParts {
   Body body;
   std::vector<BodyFile> files;
@@ -62,10 +62,11 @@ class WornBody {
   /// Rises with each set_joints().
   [[nodiscard]] std::uint64_t version() const noexcept { return version_; }
 
-  [[nodiscard]] std::vector<Pose> suit_from_links() const;                        ///< Of all links, now.
-  [[nodiscard]] Pose suit_from_array(std::size_t array) const;                    ///< Now.
-  [[nodiscard]] const std::vector<Pose>& rest() const noexcept { return rest_; }  ///< Of all links, all joints at 0.
-  /// From where an array is at rest to where it is now.
+  [[nodiscard]] std::vector<Pose> suit_from_links() const;      ///< Of all links, now.
+  [[nodiscard]] Pose suit_from_array(std::size_t array) const;  ///< Now.
+  /// Poses of all links with all joints at 0.
+  [[nodiscard]] const std::vector<Pose>& rest() const noexcept { return rest_; }
+  /// The move of an array from its place at rest to its present one.
   [[nodiscard]] Pose move_of(std::size_t array) const;
 
  private:

@@ -25,7 +25,7 @@ struct BrokenLines {
   std::vector<std::size_t> shorted;   ///< Line k is shorted to line k + 1.
 };
 
-/// What is broken in a simulated array, and when.
+/// The defects of a simulated array, and their times.
 struct LineFaults {
   BrokenLines rows;                         ///< In files "open_rows", "grounded_rows" and so on.
   BrokenLines columns;                      ///< The same.

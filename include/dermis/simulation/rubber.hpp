@@ -69,8 +69,8 @@ struct RubberOptions {
 ///   a = a0 g^-b,  g = gain exp(gain_spread N(0,1))
 ///   F_eff = [F (1 - creep) + creep mean(s_1, s_2, s_3)] (1 - hysteresis/2 m)
 /// s: Kelvin-Voigt elements of 0.1, 3 and 100 s that follow F. m: a stop (elastic-plastic) operator on ln(1 + F/1 N)
-/// with reach 0.5, from 0 on a new piece to +1 after loading (reads low) and -1 after unloading (reads high). n: 1/f
-/// noise, one Ornstein-Uhlenbeck process a decade with corners at 1 mHz ... 10 Hz. F: the force on the taxel, after
+/// with reach 0.5, from 0 on a new piece. It is +1 after loading (reads low) and -1 after unloading (reads high). n:
+/// 1/f noise, one Ornstein-Uhlenbeck process a decade with corners at 1 mHz ... 10 Hz. F: the force on the taxel, after
 /// mechanical_spread. With RubberOptions::memory, F_eff and the unloaded conductance are those of RubberMemory. Exact
 /// for any time step. Const members are thread-safe, the others are not.
 class ConductiveRubber {

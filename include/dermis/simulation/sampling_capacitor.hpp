@@ -11,8 +11,9 @@
 
 namespace dermis::simulation {
 
-/// The capacitor behind the multiplexer, at which the ADC reads. It has no time to settle: of the voltage of the
-/// reading before it keeps the share s = AdcErrors::settling, in the order in which the device sends its readings:
+/// The capacitor behind the multiplexer, at which the ADC reads. It has no time to settle, so it keeps the share s =
+/// AdcErrors::settling of the voltage of the reading before. Readings follow each other in the order in which the
+/// device sends them:
 ///   held = (1 - s) input + s held_before
 /// The first reading of a frame follows the last of the frame before. The first of all finds the capacitor at its own
 /// voltage. Not thread-safe.

@@ -43,7 +43,7 @@ struct AppliedContact {
   double x_m = 0.0;            ///< Centre [m].
   double y_m = 0.0;            ///< Centre [m].
   double diameter_m = 0.0;     ///< 2 a [m].
-  double force_n = 0.0;        ///< Of the whole patch [N], > 0.
+  double force_n = 0.0;        ///< Force of the whole patch [N], > 0.
   double taxel_force_n = 0.0;  ///< Its part on taxels [N]; the rest presses between and beside them.
 
   bool operator==(const AppliedContact&) const = default;
@@ -61,7 +61,7 @@ struct SceneFrame {
   std::vector<AppliedContact> contacts;  ///< By id; empty where the scene has none (SceneKind::has_contacts).
 };
 
-/// What some scenes leave open.
+/// The options that some scenes leave open.
 struct SceneOptions {
   std::optional<double> rate_hz{};      ///< touches (100), two_weights (50): frames a second, 10 ... 1000.
   std::optional<std::size_t> taxels{};  ///< two_weights (4, or all of fewer): how many are pressed, 1 ... all.
@@ -74,12 +74,12 @@ enum class ScenePace {
   any_rate,  ///< Continuous in time at SceneOptions::rate_hz.
 };
 
-/// What a scene is, apart from its loads.
+/// The kind of a scene, apart from its loads.
 struct SceneKind {
   const char* name;
   ScenePace pace;
   bool is_of_any_length;  ///< Takes a number of frames.
-  bool has_contacts;      ///< Tells SceneFrame::contacts.
+  bool has_contacts;      ///< Fills SceneFrame::contacts.
 };
 
 /// All scenes.

@@ -54,10 +54,10 @@ class Simulator final : public FrameSource {
 
   [[nodiscard]] std::size_t frame_count() const noexcept { return scene_.frame_count(); }
 
-  /// What a calibration rig would know of the last frame: its lines of loads.csv.
+  /// The knowledge of a calibration rig about the last frame: its lines of loads.csv.
   [[nodiscard]] const std::vector<Load>& loads() const noexcept { return truth_.loads; }
 
-  /// What nobody could know of the last frame: true forces, contacts, temperature and supply.
+  /// The hidden truth of the last frame: true forces, contacts, temperature and supply.
   [[nodiscard]] const SceneFrame& truth() const noexcept { return truth_; }
 
   /// True conductances of the last frame [S], [rows, cols].

@@ -17,8 +17,8 @@
 
 namespace dermis::sources {
 
-/// Plays a device: sends encoded frames and waits for requests, as its protocol wants it. Who comes later gets what is
-/// sent from then on. Not thread-safe.
+/// Plays a device: sends encoded frames and waits for requests, as its protocol wants it. Later clients get the data
+/// from then on. Not thread-safe.
 class EmulatedDevice {
  public:
   /// `stream`: of make_target_stream(), by `transport`. `stop`: set, all calls return within 100 ms.

@@ -11,7 +11,7 @@
 
 namespace dermis::sources {
 
-/// What a person at an array that is being calibrated is to do now.
+/// The present task of a person at an array that is being calibrated.
 struct GuideWords {
   bool press = false;     ///< The weight is to lie on the taxel; else nothing is to lie on the array.
   bool is_wrong = false;  ///< Something else is pressed than was asked for.
@@ -30,7 +30,7 @@ class GuideVoice {
 
   void say(const GuideWords& words);
 
-  /// Those that were said last; at first, nothing is to be pressed.
+  /// The last words; at first, nothing is to be pressed.
   [[nodiscard]] GuideWords words() const;
 
  private:

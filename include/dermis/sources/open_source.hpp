@@ -39,8 +39,8 @@ struct SourceOptions {
 /// sim:SCENE with a rate is a device that repeats the frames of the scene at that rate, with sequence and device time.
 /// Frames that are not fetched within 500 ms are lost, as they would be in the buffers of a TCP connection. The scene
 /// "contacts" runs at its own speed whatever the rate. Without a rate, it is the scene once, as fast as it is read. The
-/// array is that of the URI, else that of the options, else the reference array of examples/chest, with the rows and
-/// cols of the URI.
+/// array is that of the URI, or else that of the options. Without either it is the reference array of examples/chest,
+/// with the rows and cols of the URI.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> open_source(const SourceName& from,
                                                                const SourceOptions& options = {});
 
@@ -51,7 +51,7 @@ struct SourceOptions {
 /// All frames of the file that `from` names. Fails where open_source() does, and on a device, which has no end.
 [[nodiscard]] Result<std::vector<RawFrame>> read_frames(const std::string& from, const SourceOptions& options = {});
 
-/// What is wrong with a source that has no end where one is needed; it names the mend.
+/// The error for a source without an end where one is needed; it names the mend.
 [[nodiscard]] Error has_no_end(const std::string& from);
 
 /// Names of the arrays of a recording that holds several where `from` names none of them; empty of every other source.

@@ -11,8 +11,8 @@
 namespace dermis::sources {
 
 /// Recordings hold frames that are turned already. Fails where `array` turns its device, but the recording was made
-/// before its description said so: `recorded_toml` is the array.toml in it, empty where there is none. `path` stands
-/// for the recording in the error, which says how to turn it.
+/// before its description said so. `recorded_toml` is the array.toml in the recording, empty where there is none.
+/// `path` stands for the recording in the error, which says how to turn it.
 [[nodiscard]] Status check_recorded_order(const std::string& path, std::string_view recorded_toml,
                                           const ArrayDescription& array);
 

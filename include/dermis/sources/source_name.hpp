@@ -17,7 +17,7 @@ enum class SourceKind {
   file,        ///< Any other file of frames, by its path or by file:PATH?rate=...
 };
 
-/// What the name of a source says (docs/devices.md). Opens nothing.
+/// The name of a source, parsed (docs/devices.md). Opens nothing.
 struct SourceName {
   std::string text;  ///< As it was given.
   SourceKind kind = SourceKind::file;

@@ -35,8 +35,9 @@ struct ServerOptions {
   /// At least 8 letters, digits and "-._~", as it stands in URLs.
   std::string token;
   std::string name = "dermis";    ///< Told to clients.
-  std::size_t most_clients = 64;  ///< Of the stream, 1 ... 1000; more are refused with 503.
-  /// Per client; beyond it the oldest data messages are dropped, and who lets as many bytes of answers wait is cut off.
+  std::size_t most_clients = 64;  ///< Clients of the stream, 1 ... 1000; more are refused with 503.
+  /// Per client; beyond it the oldest data messages are dropped. A client with as many bytes of waiting answers is cut
+  /// off.
   std::size_t client_queue_bytes = 2U << 20U;
   std::function<void(const std::string&)> notice{};  ///< One line for the log; called on the server's thread.
 
@@ -102,12 +103,12 @@ class Server {
                                                               std::optional<PlaybackService> playback = {});
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
-  /// As stop().
+  /// Does the same as stop().
   ~Server();
 
   [[nodiscard]] std::uint16_t port() const noexcept;
 
-  /// Begins to serve: from now on the handlers and services may be called. To be called once.
+  /// Begins to serve: from now on the handlers and services may be called. Call it once.
   void start(Handlers handlers = {}, std::vector<Service> services = {});
 
   /// Closes all connections; waits for the handler or service that is at work, and calls none from then on.
@@ -116,7 +117,7 @@ class Server {
   /// Advertised to all clients, also to those that are connected. At most 4096.
   ChannelId add_channel(std::string topic, std::string schema_name, std::string schema);
 
-  /// What "/name.json" is from now on. Unlike the assets it is given to those with the token only.
+  /// Sets the content of "/name.json" from now on. Unlike the assets, only clients with the token get it.
   void set_document(std::string path, std::string content_type, std::string content);
 
   /// "/recordings/a.mcap" is that file from now on, to be saved by a browser, with the token only. It is read when it
@@ -129,7 +130,7 @@ class Server {
   [[nodiscard]] std::uint64_t subscriptions() const noexcept;
 
   /// Queues a message for all subscribers of the channel and returns at once; copies the bytes, once for all clients.
-  /// Of pictures, clients that tell what they have taken get as many as they can take.
+  /// Clients that report the pictures they have taken get only as many as they can take.
   void publish(ChannelId channel, Nanos log_time, std::span<const std::uint8_t> message,
                MessageKind kind = MessageKind::event);
 

@@ -10,11 +10,11 @@
 
 #include "dermis/core/result.hpp"
 
-/// What a robot must not do to whom it touches, and must not suffer, in the user's own figures. No limits come with
-/// dermis: which hold is for the standards and the risk assessment of the machine to say. Not a safety function.
+/// Limits on forces between a robot and those it touches, in both directions, in the user's own figures. No limits come
+/// with dermis: the standards and the risk assessment of the machine decide which hold. Not a safety function.
 namespace dermis::threats {
 
-/// What is held against a limit.
+/// The quantity that is compared with a limit.
 enum class ThreatQuantity : std::uint8_t {
   total_force,       ///< Sum over the taxels that something presses [N].
   contact_force,     ///< Of one contact [N].
@@ -41,7 +41,7 @@ struct Zone {
   bool operator==(const Zone&) const = default;
 };
 
-/// One line of what must not be.
+/// One limit.
 struct ThreatLimit {
   std::string name;
   ThreatQuantity quantity = ThreatQuantity::contact_force;
@@ -68,7 +68,7 @@ struct ThreatLimits {
 };
 
 /// Reads threats.toml (docs/threats.md). Unknown keys are errors with the nearest known name; every error names the
-/// file and the line where there is one. What is read has passed ThreatLimits::validate().
+/// file and the line where there is one. The limits that it returns have passed ThreatLimits::validate().
 [[nodiscard]] Result<ThreatLimits> read_threat_limits(const std::string& path);
 /// The same from memory; `name` stands for the path.
 [[nodiscard]] Result<ThreatLimits> threat_limits_from_toml(std::string_view text, const std::string& name);

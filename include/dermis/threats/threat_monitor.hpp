@@ -18,20 +18,20 @@
 
 namespace dermis::threats {
 
-/// Over which force_rate is taken.
+/// The window of force_rate.
 inline constexpr Nanos kRateWindow = std::chrono::milliseconds(30);
 
 /// A value is beyond a limit only where so many standard deviations less still are.
 inline constexpr double kThreatSigmas = 2.0;
 
-/// A value that is held against a limit.
+/// A value that is compared with a limit.
 struct ThreatValue {
   double value = 0.0;      ///< In the unit of the quantity.
   double sigma = 0.0;      ///< Standard deviation; 0 where `value` is a lower bound (a taxel is saturated).
   PlaneVector position{};  ///< Where, in the plane of the array: of the contact, the taxel, the centre of pressure [m].
   std::uint32_t contact = 0;  ///< Id of the contact; 0 where it is of none.
 
-  /// What it is at least.
+  /// The least value within the uncertainty.
   [[nodiscard]] double least() const noexcept { return value - kThreatSigmas * sigma; }
 
   bool operator==(const ThreatValue&) const = default;

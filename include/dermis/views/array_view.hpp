@@ -32,17 +32,17 @@ class ArrayView {
   /// Takes the next frame. Returns false at the end.
   [[nodiscard]] Result<bool> next();
 
-  /// Of the frames so far: failed where most have no force (pipeline::FrameTroubles::verdict()).
+  /// The verdict on the frames so far: failed where most have no force (pipeline::FrameTroubles::verdict()).
   [[nodiscard]] Status verdict() const { return troubles_ ? troubles_->verdict() : Status(Done{}); }
 
-  // Of the last frame.
+  // Data of the last frame.
   [[nodiscard]] const RawFrame& raw() const noexcept { return raw_; }
   [[nodiscard]] const std::vector<double>& values() const noexcept { return values_; }
   [[nodiscard]] const ContactReport& contacts() const noexcept { return report_; }
 
   [[nodiscard]] FrameShape shape() const;
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  /// What was opened.
+  /// The name that was opened.
   [[nodiscard]] const std::string& from() const noexcept { return from_; }
   [[nodiscard]] const char* unit() const noexcept { return work_ ? "N" : "counts"; }
   [[nodiscard]] double row_pitch_m() const noexcept { return row_pitch_m_; }

@@ -19,9 +19,9 @@ namespace dermis::views {
 inline constexpr Nanos kPictureTime = std::chrono::milliseconds(40);
 inline constexpr std::size_t kMostPictures = 1500;  ///< Of an animation.
 
-/// Which frames are drawn, by their number from 0 or by their times after the first.
+/// The frames to draw, by their number from 0 or by their times after the first.
 struct PictureRange {
-  std::optional<std::size_t> number{};  ///< Of the only frame; empty: the first from `from` on.
+  std::optional<std::size_t> number{};  ///< Number of the only frame; empty: the first from `from` on.
   Nanos from{};
   std::optional<Nanos> to{};  ///< Later than `from`: a picture every kPictureTime of the recording, each of the last
                               ///< frame before that moment. Empty: one frame is drawn.

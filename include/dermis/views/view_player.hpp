@@ -25,7 +25,7 @@ class ViewPlayer {
   ViewPlayer& operator=(const ViewPlayer&) = delete;
   ~ViewPlayer();
 
-  /// Of the last frame; without values before the first. Thread-safe.
+  /// The picture of the last frame; without values before the first. Thread-safe.
   [[nodiscard]] report::TerminalPicture picture() const;
   /// Whether the source has failed. Thread-safe.
   [[nodiscard]] Status status() const;

@@ -12,7 +12,7 @@
 
 namespace dermis::calibration {
 
-/// What is taken for likely, as pseudo-observations: row . step + value = 0 with the standard deviation sigma.
+/// A likely value as a pseudo-observation: `row . step + value = 0` with the standard deviation sigma.
 struct Assumption {
   Eigen::VectorXd row;  ///< [parameters]
   double value = 0.0;
@@ -25,15 +25,15 @@ struct Assumption {
 /// The scale is that of the nominal load where no resistance is given: only ratios exist then.
 [[nodiscard]] std::vector<Assumption> nominal_scale(const LineParameters& lines, const Eigen::VectorXd& parameters);
 
-/// The unloaded rubber from line to line.
+/// How the unloaded rubber differs from line to line.
 struct SheetComparison {
   double scatter = 0.0;  ///< Between the means of driven lines, relative.
   std::vector<Assumption> assumptions;
 };
 
-/// The rubber is taken to differ from sensed line to sensed line no more than it does from driven line to driven line,
-/// where it is measured: what the unloaded conductances then differ by is the loads. Empty: no loads are unknown, or
-/// too few taxels to compare the lines by.
+/// Assumes that the rubber differs no more from sensed line to sensed line than from driven line to driven line, where
+/// that is measured. Any further difference of the unloaded conductances is due to the loads. Empty: no loads are
+/// unknown, or there are too few taxels to compare the lines.
 [[nodiscard]] std::optional<SheetComparison> compare_sheet(const LineParameters& lines, const Elimination& idle);
 
 }  // namespace dermis::calibration

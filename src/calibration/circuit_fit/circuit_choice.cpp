@@ -11,14 +11,14 @@
 #include <utility>
 
 #include "calibration/circuit_fit/circuit_trial.hpp"
+#include "calibration/circuit_fit/discriminating_presses.hpp"
 #include "calibration/circuit_fit/frame_selection.hpp"
-#include "calibration/circuit_fit/telling_presses.hpp"
 
 namespace dermis::calibration {
 namespace {
 
-/// Lines that taxels share have crosstalk. None is shown by presses that leave the idle taxels of their lines alone
-/// although the circuit says that they must not, where the laws of the pressed ones do not suffer from it.
+/// Lines that taxels share have crosstalk. `none` is shown by presses that leave the idle taxels of their lines alone
+/// although the circuit says that they must not. Only presses whose laws do not suffer from it count.
 bool is_none_shown(const CircuitTrial& none, const CircuitTrial& circuit) {
   if (!circuit.fit) return true;
   const auto [of_none, of_circuit] = compare(none, circuit);
@@ -27,7 +27,7 @@ bool is_none_shown(const CircuitTrial& none, const CircuitTrial& circuit) {
          of_none.crossed_square + sure_square(of_none) < of_circuit.crossed_square;
 }
 
-/// Under loads on the whole array alone, what a circuit does and a law of the rubber look alike.
+/// Under loads on the whole array alone, the effect of a circuit looks like a law of the rubber.
 bool presses_parts(const CircuitFrames& frames) {
   return std::any_of(frames.frames.begin(), frames.frames.end(), [](const CircuitFrame& frame) {
     const auto is_pressed = [](float newtons) { return newtons > 0.0F; };
@@ -37,8 +37,8 @@ bool presses_parts(const CircuitFrames& frames) {
   });
 }
 
-/// No circuit only where that is shown against all of them. Where the true one may be among those that are not
-/// resolved, one of the others must be better than none, and not by a law.
+/// The answer is `none` only where that is shown against all circuits. Where the true one may be among the unresolved
+/// ones, a resolved one must be better than none, and not by a law.
 const CircuitTrial& choose(const std::vector<CircuitTrial>& trials, const CircuitFrames& frames) {
   const auto none = std::find_if(trials.begin(), trials.end(), [](const CircuitTrial& trial) {
     return trial.array.readout.circuit == Circuit::none;
@@ -53,22 +53,22 @@ const CircuitTrial& choose(const std::vector<CircuitTrial>& trials, const Circui
   return is_shown ? *none : *best;
 }
 
-/// "none" is a rival of a circuit only where it leaves surely less.
-bool is_told(const CircuitTrial& trial, const CircuitTrial& chosen) {
+/// `none` is a rival of a circuit only where its residual is surely less.
+bool is_distinguishable(const CircuitTrial& trial, const CircuitTrial& chosen) {
   return trial.array.readout.circuit == Circuit::none ? !is_surely_less(trial, chosen) : is_surely_less(chosen, trial);
 }
 
-std::vector<PressPair> presses_to_tell(const std::vector<CircuitTrial>& trials, const CircuitTrial& chosen,
-                                       const CircuitFrames& frames) {
+std::vector<PressPair> discriminating_presses_of(const std::vector<CircuitTrial>& trials, const CircuitTrial& chosen,
+                                                 const CircuitFrames& frames) {
   std::vector<const CommonRatio*> circuits{&*chosen.fit};
   for (const CircuitTrial& trial : trials) {
-    if (trial.name != chosen.name && !is_told(trial, chosen)) circuits.push_back(&*trial.fit);
+    if (trial.name != chosen.name && !is_distinguishable(trial, chosen)) circuits.push_back(&*trial.fit);
   }
   if (circuits.size() == 1) return {};
-  return telling_presses(circuits, frames, sure_square(chosen.misfit));
+  return discriminating_presses(circuits, frames, sure_square(chosen.misfit));
 }
 
-/// The chosen one, and what a few frames do not refute.
+/// The chosen circuit, and those that a few frames do not refute.
 std::vector<CircuitTrial> rivals(const std::vector<CircuitTrial>& trials, const CircuitFrames& frames) {
   const CircuitTrial& chosen = choose(trials, frames);
   std::vector<CircuitTrial> rivals;
@@ -98,13 +98,13 @@ std::vector<CircuitCandidate> candidates_of(const std::vector<CircuitTrial>& tri
   for (const CircuitTrial& trial : trials) {
     candidates.push_back(candidate_of(trial));
     candidates.back().chosen = trial.name == chosen.name;
-    candidates.back().indistinguishable = trial.name != chosen.name && !is_told(trial, chosen);
+    candidates.back().indistinguishable = trial.name != chosen.name && !is_distinguishable(trial, chosen);
   }
   sort_candidates(candidates);
   return candidates;
 }
 
-/// By fewer frames than those that are left, so that they do not compare with them any more.
+/// Refuted circuits were judged by fewer frames than the ones left, so their misfits do not compare with these.
 std::vector<CircuitCandidate> refuted_candidates(const std::vector<CircuitTrial>& trials,
                                                  const std::vector<CircuitTrial>& left) {
   std::vector<CircuitCandidate> candidates;
@@ -132,7 +132,7 @@ Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const Circui
   std::vector<CircuitCandidate> candidates = candidates_of(left, chosen);
   std::vector<CircuitCandidate> refuted = refuted_candidates(trials, left);
   std::move(refuted.begin(), refuted.end(), std::back_inserter(candidates));
-  return CircuitChoice{chosen.array, std::move(candidates), presses_to_tell(left, chosen, frames)};
+  return CircuitChoice{chosen.array, std::move(candidates), discriminating_presses_of(left, chosen, frames)};
 }
 
 }  // namespace dermis::calibration

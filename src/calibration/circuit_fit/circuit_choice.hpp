@@ -13,14 +13,14 @@ namespace dermis::calibration {
 
 /// The kind of circuit that explains the frames best.
 struct CircuitChoice {
-  ArrayDescription array;                    ///< Of that kind; resistances that are not given are kFitOhm.
-  std::vector<CircuitCandidate> candidates;  ///< The best first.
-  std::vector<PressPair> telling_presses;    ///< Where some of them are indistinguishable.
+  ArrayDescription array;                         ///< Has that kind; resistances that are not given are kFitOhm.
+  std::vector<CircuitCandidate> candidates;       ///< The best first.
+  std::vector<PressPair> discriminating_presses;  ///< Where some of them are indistinguishable.
 };
 
-/// Fits every kind that the ADC resolves with one resistance for all drivers and one for all loads, and compares what
-/// they leave; those that leave nearly the same once more, with resistances of each line's own. All have the same laws
-/// for the taxels. Errors: no kind explains the frames.
+/// Fits every kind that the ADC resolves with one resistance for all drivers and one for all loads, and compares their
+/// residuals. Kinds with nearly the same residual are fitted again with a resistance for each line. All have the same
+/// laws for the taxels. Errors: no kind explains the frames.
 [[nodiscard]] Result<CircuitChoice> choose_circuit(const ArrayDescription& array, const CircuitFrames& frames);
 
 }  // namespace dermis::calibration

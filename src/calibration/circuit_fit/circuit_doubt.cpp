@@ -19,7 +19,7 @@ namespace {
 
 using Trials = std::vector<CircuitTrial>;
 
-const double kLikely = 2.0 * std::log(100.0);  // odds of a hundred to one tell resistances from others
+const double kLikely = 2.0 * std::log(100.0);  // odds of a hundred to one distinguish resistances
 
 /// Frames by which the description is judged.
 std::size_t affordable(const ArrayDescription& array) {
@@ -28,7 +28,7 @@ std::size_t affordable(const ArrayDescription& array) {
   return std::clamp(kTaxels / array.taxel_count(), few_frames(array.taxel_count()), kMost);
 }
 
-/// Idle taxels on the lines of a press show crosstalk; others show what else there is.
+/// Idle taxels on the lines of a press show crosstalk; others show other effects.
 bool leaves_crosstalk(const CircuitTrial& described) {
   constexpr double kMuch = 1.1;  // of squares on pressed lines, over those elsewhere
   constexpr double kSure = 5.0;  // standard deviations
@@ -41,7 +41,7 @@ bool leaves_crosstalk(const CircuitTrial& described) {
   return ratio > kMuch && ratio - 1.0 > kSure * std::sqrt(2.0 / misfit.crossed_readings + 2.0 / others);
 }
 
-/// Nothing is known of it but its ADC.
+/// Everything but its ADC is unknown.
 ArrayDescription without_readout(ArrayDescription array) {
   Readout unknown;
   unknown.circuit = Circuit::automatic;
@@ -62,7 +62,7 @@ double sum_of(const std::vector<double>& ohms) {
   return std::accumulate(ohms.begin(), ohms.end(), 0.0);
 }
 
-/// Mean driver over mean load: all that single presses tell of resistances. 0 without a circuit.
+/// Mean driver over mean load: single presses determine no more of the resistances. 0 without a circuit.
 double drive_over_load(const ArrayDescription& array) {
   const Readout& readout = array.readout;
   if (readout.drive_ohm.empty()) return 0.0;
@@ -71,14 +71,14 @@ double drive_over_load(const ArrayDescription& array) {
   return loads_per_driver * sum_of(readout.drive_ohm) / sum_of(readout.load_ohm);
 }
 
-/// Parts differ, and forces hardly do.
+/// Differences within the tolerance of parts hardly change forces.
 bool are_alike(double ratio, double other) {
   constexpr double kFactor = 2.0;
   constexpr double kNothing = 0.003;
   return std::max(ratio, other) <= kFactor * std::min(ratio, other) + kNothing;
 }
 
-/// A circuit of the same kind explains more, with far other resistances.
+/// A circuit of the same kind with quite different resistances explains more.
 bool has_other_resistances(const CircuitTrial& described, const CircuitTrial& free) {
   if (!described.fit || !free.fit) return false;
   if (are_alike(drive_over_load(described.fit->array), drive_over_load(free.fit->array))) return false;
@@ -95,7 +95,7 @@ double highest_counts(const ArrayDescription& array, const CircuitFrames& frames
   return highest * array.readout.full_scale_counts();
 }
 
-/// The same circuit with the common ADC of the least bits that gives all readings, where that is a smaller one.
+/// The same circuit with the common ADC of the fewest bits that can give all readings, where it is smaller.
 std::optional<ArrayDescription> with_smaller_adc(ArrayDescription array, double highest_counts) {
   for (const int bits : {8, 10, 12, 14, 16}) {
     if (bits >= array.readout.adc_bits) break;
@@ -117,7 +117,7 @@ CircuitFrames rescaled(CircuitFrames frames, const ArrayDescription& array, cons
   return frames;
 }
 
-/// "divider, idle rows grounded" and what the frames do not tell from it.
+/// "divider, idle rows grounded" and the circuits that the frames do not distinguish from it.
 std::string names_of_best(const Trials& rivals, const CircuitTrial& best) {
   std::string names = '"' + best.name + '"';
   for (const CircuitTrial& rival : rivals) {

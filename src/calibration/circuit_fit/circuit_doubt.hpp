@@ -11,8 +11,8 @@
 namespace dermis::calibration {
 
 /// A sentence where another circuit, other resistances or another ADC explain the frames surely better than what the
-/// description says. Only frames in which idle taxels on pressed lines read what the described circuit does not explain
-/// are worth the search. Empty: there is none; the kind of the circuit is not given.
+/// description says. The search runs only where idle taxels on pressed lines have readings that the described circuit
+/// does not explain. Empty: there is none; the kind of the circuit is not given.
 [[nodiscard]] std::optional<std::string> doubt_circuit(const ArrayDescription& array, const CircuitFrames& frames);
 
 }  // namespace dermis::calibration

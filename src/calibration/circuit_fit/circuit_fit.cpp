@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "calibration/circuit_fit/circuit_choice.hpp"
-#include "calibration/circuit_fit/circuit_trial.hpp"
 #include "calibration/circuit_fit/circuit_frames.hpp"
 #include "calibration/circuit_fit/circuit_statements.hpp"
+#include "calibration/circuit_fit/circuit_trial.hpp"
 #include "calibration/circuit_fit/resistance_fit.hpp"
 #include "calibration/circuit_fit/resolution.hpp"
 
@@ -49,8 +49,8 @@ Result<CircuitFit> fit_circuit(const ArrayDescription& array, std::span<const Ra
     if (!choice) return choice.error();
     result.array = std::move(choice->array);
     result.candidates = std::move(choice->candidates);
-    result.telling_presses = std::move(choice->telling_presses);
-    result.statements = describe_choice(array, result.candidates, result.telling_presses);
+    result.discriminating_presses = std::move(choice->discriminating_presses);
+    result.statements = describe_choice(array, result.candidates, result.discriminating_presses);
   }
   Result<ResistanceFit> fit = fit_resistances(result.array, *labelled);
   if (!fit) return fit.error();

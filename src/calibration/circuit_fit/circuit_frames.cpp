@@ -25,11 +25,11 @@ constexpr double kSameCelsius = 1.0;  // frames this near in temperature are ave
 struct Labelled {
   CircuitFrame frame;
   std::optional<double> celsius;
-  double squares = 0.0;  // of idle readings about their mean, in the variances that are said of them
+  double squares = 0.0;  // of idle readings about their mean, over their described variances
   double freedom = 0.0;
 };
 
-/// Rubber spreads a load to the taxels around it: what is beside a pressed taxel is not known to be idle.
+/// Rubber spreads a load to the taxels around it: a taxel beside a pressed one may not be idle.
 void forget_neighbours(const ArrayDescription& array, std::vector<float>& newtons) {
   const std::vector<float> labelled = newtons;
   for (std::size_t taxel = 0; taxel < labelled.size(); ++taxel) {
@@ -40,7 +40,7 @@ void forget_neighbours(const ArrayDescription& array, std::vector<float>& newton
   }
 }
 
-/// A reading at the end of the ADC does not tell its conductance, on which all readings of both its lines depend.
+/// A reading at the end of the ADC does not determine its conductance, on which all readings of both its lines depend.
 void forget_lines_of(const ArrayDescription& array, std::size_t saturated, std::vector<float>& newtons) {
   for (std::size_t taxel = 0; taxel < newtons.size(); ++taxel) {
     const bool is_on_its_lines =
@@ -131,9 +131,9 @@ std::vector<Labelled> labelled_frames(const ArrayDescription& array, std::span<c
   return labelled;
 }
 
-/// Frames may be means of many: their noise is what repetitions of as many differ by.
+/// Frames may be means of many: their noise is the difference between repetitions of as many.
 void measure_noise(std::vector<Labelled>& labelled) {
-  constexpr double kLeastVariance = 1e-3;  // of what is said: rounding hides the noise of means
+  constexpr double kLeastVariance = 1e-3;  // of the described one: rounding hides the noise of means
   std::map<std::size_t, std::pair<double, double>> sums;
   for (const Labelled& frame : labelled) {
     sums[frame.frame.averaged].first += frame.squares;

@@ -15,10 +15,10 @@ namespace dermis::calibration {
 
 /// A labelled frame as the fit of the circuit sees it.
 struct CircuitFrame {
-  std::vector<double> ratio;   ///< Reading / supply [taxels].
-  double sigma_ratio = 0.0;    ///< Standard deviation of each, as repetitions show it.
-  double said_sigma = 0.0;     ///< Of one reading, as the description says it: what is averaged was cut at 0 with it.
-  std::vector<float> newtons;  ///< [taxels]: 0 idle, NaN unknown or beside a pressed taxel, which may touch it too.
+  std::vector<double> ratio;       ///< Reading / supply [taxels].
+  double sigma_ratio = 0.0;        ///< Standard deviation of each, as repetitions show it.
+  double said_sigma = 0.0;         ///< Described sigma of one reading; the readings were cut at 0 with it.
+  std::vector<float> newtons;      ///< [taxels]: 0 idle, NaN unknown or beside a pressed taxel, which may touch it too.
   std::vector<TotalForce> totals;  ///< Over taxels that share it in an unknown way, none of them at the rail.
   double temperature = 0.0;        ///< In [-1, 1] over the recording; 0 where it is not an input.
   std::size_t averaged = 1;        ///< Frames in a row with the same loads, taken as one.

@@ -10,7 +10,7 @@
 #include <limits>
 #include <optional>
 
-#include "calibration/circuit_fit/telling_presses.hpp"
+#include "calibration/circuit_fit/discriminating_presses.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -33,15 +33,16 @@ std::string describe_candidates(const std::vector<CircuitCandidate>& candidates)
 
 std::optional<std::string> describe_doubt(const ArrayDescription& array,
                                           const std::vector<CircuitCandidate>& candidates,
-                                          const std::vector<PressPair>& telling_presses) {
+                                          const std::vector<PressPair>& discriminating_presses) {
   std::string names;
   for (const CircuitCandidate& candidate : candidates) {
     if (candidate.indistinguishable) names += (names.empty() ? "\"" : ", \"") + candidate.name + "\"";
   }
   if (names.empty()) return std::nullopt;
-  const std::string mend = telling_presses.empty() ? "two taxels at once with these weights would not either, and "
-                                                     "forces of one or two presses hardly depend on it"
-                                                   : describe(telling_presses, array);
+  const std::string mend = discriminating_presses.empty()
+                               ? "two taxels at once with these weights would not either, and "
+                                 "forces of one or two presses hardly depend on it"
+                               : describe(discriminating_presses, array);
   return "these frames do not tell the chosen circuit from " + names + "; " + mend;
 }
 
@@ -108,9 +109,9 @@ void describe_loads(const ResistanceFit& fit, std::vector<std::string>& statemen
 }  // namespace
 
 std::vector<std::string> describe_choice(const ArrayDescription& array, const std::vector<CircuitCandidate>& candidates,
-                                         const std::vector<PressPair>& telling_presses) {
+                                         const std::vector<PressPair>& discriminating_presses) {
   std::vector<std::string> statements{describe_candidates(candidates)};
-  if (const auto doubt = describe_doubt(array, candidates, telling_presses)) statements.push_back(*doubt);
+  if (const auto doubt = describe_doubt(array, candidates, discriminating_presses)) statements.push_back(*doubt);
   const bool is_none = candidates.front().name == "none";
   for (const CircuitCandidate& candidate : candidates) {
     if (candidate.noise_share == 0.0) continue;

@@ -10,15 +10,15 @@
 
 namespace dermis::calibration {
 
-/// Which kind was chosen, from which ones the frames do not tell it, and which presses would.
+/// Says which kind was chosen, which ones the frames do not distinguish from it, and which presses would.
 [[nodiscard]] std::vector<std::string> describe_choice(const ArrayDescription& array,
                                                        const std::vector<CircuitCandidate>& candidates,
-                                                       const std::vector<PressPair>& telling_presses);
+                                                       const std::vector<PressPair>& discriminating_presses);
 
 /// "the ADC does not resolve "divider, idle rows floating" under these loads (...)".
 [[nodiscard]] std::string describe_unresolved(const std::string& circuit, double noise_share);
 
-/// The resistances with their standard errors, and what the frames cannot determine.
+/// Gives the resistances with their standard errors, and names those that the frames cannot determine.
 [[nodiscard]] std::vector<std::string> describe_fit(const ResistanceFit& fit);
 
 }  // namespace dermis::calibration

@@ -18,7 +18,7 @@
 namespace dermis::calibration {
 namespace {
 
-const double kSureSquare = 2.0 * std::log(1000.0);  // odds of a thousand to one tell one circuit from another
+const double kSureSquare = 2.0 * std::log(1000.0);  // odds of a thousand to one distinguish circuits
 
 constexpr double kNearly = 1.1;  // of the misfit that the best circuit leaves
 constexpr double kEnough = 0.3;  // a step this small against the standard errors ends a fit
@@ -79,7 +79,7 @@ std::vector<SelectedFrames> select_for_all(std::size_t most, const std::vector<C
   return frames;
 }
 
-/// All by the least scatter that one of them leaves.
+/// Judges all by the least scatter among them.
 void judge(const std::vector<SelectedFrames>& frames, std::vector<CircuitTrial>& trials) {
   Scatter least;
   least.noise_variance = least.rubber_variance = std::numeric_limits<double>::infinity();
@@ -94,7 +94,7 @@ void judge(const std::vector<SelectedFrames>& frames, std::vector<CircuitTrial>&
   }
 }
 
-/// With resistances of each line's own. Where two circuits explain the frames nearly as well, what lines differ by may
+/// Fits a resistance for each line. Where two circuits explain the frames nearly as well, differences between lines may
 /// decide for the wrong one.
 Result<CommonRatio> with_lines(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
                                const CommonRatio& common) {
@@ -114,7 +114,7 @@ Result<CommonRatio> with_lines(const LineParameters& lines, const std::vector<co
   return result;
 }
 
-/// Empty where it leaves more than before: it has lost its way.
+/// Empty where the residual is larger than before: the fit has lost its way.
 std::optional<CommonRatio> refit(const std::vector<const CircuitFrame*>& frames, const CircuitTrial& trial) {
   Result<CommonRatio> refit = with_lines(LineParameters(trial.array), frames, *trial.fit);
   if (!refit) return std::nullopt;
@@ -124,7 +124,7 @@ std::optional<CommonRatio> refit(const std::vector<const CircuitFrame*>& frames,
   return *std::move(refit);
 }
 
-/// Those that are near the best of the circuits, where there are several; all of them, or they would not compare.
+/// Fits all circuits that are near the best one, where there are several; only then do they compare.
 void fit_lines_of_rivals(const std::vector<SelectedFrames>& frames, std::vector<CircuitTrial>& trials) {
   double least = std::numeric_limits<double>::infinity();
   const auto is_circuit = [](const CircuitTrial& trial) {

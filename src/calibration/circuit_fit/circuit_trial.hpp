@@ -14,21 +14,21 @@
 
 namespace dermis::calibration {
 
-/// A circuit, and what it makes of the frames.
+/// A circuit, and its fit to the frames.
 struct CircuitTrial {
   std::string name;                       ///< "divider, idle rows floating"
   ArrayDescription array;                 ///< Unknown resistances are kFitOhm.
   const CircuitFrames* frames = nullptr;  ///< Those of the array's ADC.
   std::optional<CommonRatio> fit = {};    ///< Empty: it cannot give them, or is not resolved.
   double noise_share = 0.0;               ///< 0: it is resolved.
-  bool is_rough = false;                  ///< What its lines differ by could not be compared.
+  bool is_rough = false;                  ///< The differences between its lines could not be compared.
   JudgedReadings readings = {};
   FrameMisfit misfit = {std::numeric_limits<double>::infinity()};  ///< Of the readings that tell.
 
   [[nodiscard]] bool is_unresolved() const { return noise_share > 0.0; }
 };
 
-/// One of each kind. Of resistances those are kept that `array` gives for all drivers, or all loads.
+/// One of each kind. Keeps the resistances that `array` gives for all drivers, or for all loads.
 [[nodiscard]] std::vector<CircuitTrial> trials_of_all_kinds(const ArrayDescription& array, const CircuitFrames& frames);
 
 /// `array` with readings that are taken as proportional to conductance.
@@ -37,26 +37,26 @@ struct CircuitTrial {
 /// Fits `most` frames with one resistance for all drivers and one for all loads, and judges all by the same scatter.
 void fit_trials(std::size_t most, std::vector<CircuitTrial>& trials);
 
-/// The same; circuits that leave nearly the same are fitted once more, with resistances of each line's own.
+/// The same; circuits with nearly the same residual are fitted again with a resistance for each line.
 void fit_trials_and_lines(std::size_t most, std::vector<CircuitTrial>& trials);
 
-/// What two circuits leave of the readings that tell in both.
+/// The residuals of two circuits over the readings that depend on both.
 struct TrialComparison {
   FrameMisfit first;
   FrameMisfit second;
 };
 [[nodiscard]] TrialComparison compare(const CircuitTrial& first, const CircuitTrial& second);
 
-/// The sum of squares by which a circuit must be better to be told from another: readings that no circuit explains to
-/// their noise count for less.
+/// The sum of squares by which a circuit must be better to be distinguished from another. Readings that no circuit
+/// explains to their noise count for less.
 [[nodiscard]] double sure_square(const FrameMisfit& best);
 
 [[nodiscard]] bool has_less(const CircuitTrial& a, const CircuitTrial& b);
 
-/// A thousand to one. With lines whose differences could not be compared the odds must be far better.
+/// The odds are a thousand to one, or far better with lines whose differences could not be compared.
 [[nodiscard]] bool is_surely_less(const CircuitTrial& better, const CircuitTrial& worse);
 
-/// By a few frames, which leave the laws nearly free: they may take as much as they have terms.
+/// Judges by a few frames, which leave the laws nearly free: they may explain as many readings as they have terms.
 [[nodiscard]] bool is_refuted(const CircuitTrial& worse, const CircuitTrial& better);
 
 }  // namespace dermis::calibration

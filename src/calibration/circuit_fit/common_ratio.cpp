@@ -28,7 +28,7 @@ std::vector<const CircuitFrame*> some_of(const std::vector<const CircuitFrame*>&
   return some;
 }
 
-/// Most frames cannot be given.
+/// The circuit cannot give most frames.
 bool is_impossible(const InvertedFrames& inverted) {
   const auto unsolved = std::count_if(inverted.begin(), inverted.end(), [](const auto& frame) { return !frame; });
   return 2 * static_cast<std::size_t>(unsolved) > inverted.size();
@@ -103,7 +103,7 @@ class RatioSearch {
     for (CommonRatio& trial : trials_) judge(trial);
   }
 
-  /// A ratio between the best and its neighbours that promises less; empty: fine enough, or at an end.
+  /// A ratio between the best and its neighbours that promises a smaller misfit; empty: fine enough, or at an end.
   [[nodiscard]] std::optional<double> next() const {
     const std::size_t k = best();
     if (k == 0 || k + 1 >= trials_.size() || trials_[k - 1].ratio == 0.0) return std::nullopt;
@@ -116,7 +116,7 @@ class RatioSearch {
     const bool is_wider_below = x[1] - x[0] > x[2] - x[1];
     const double wider = std::max(x[1] - x[0], x[2] - x[1]);
     double promising = least_of_parabola(x, y);
-    // Too near to what was tried: halve the wider side instead.
+    // Too near to a tried ratio: halve the wider side instead.
     if (std::abs(promising - x[1]) < kFineEnough) promising = x[1] + (is_wider_below ? -0.5 : 0.5) * wider;
     if (wider < kFineEnough) return std::nullopt;
     return std::exp(promising);

@@ -23,8 +23,8 @@ struct CommonRatio {
   double misfit = 0.0;      ///< Sum of squares that is left of the frames, see judge_frames().
 };
 
-/// The ratio that leaves least of the frames, all laws fitted anew for each that is tried: the whole range is searched,
-/// so that no start has to be near. Errors: a circuit that cannot be inverted, or not at most of the frames.
+/// The ratio with the least residual over the frames, with all laws fitted anew for each ratio. The whole range is
+/// searched, so no start has to be near. Errors: a circuit that cannot be inverted, or not at most of the frames.
 [[nodiscard]] Result<CommonRatio> fit_common_ratio(const LineParameters& lines,
                                                    const std::vector<const CircuitFrame*>& frames,
                                                    const Rubber& unknown);

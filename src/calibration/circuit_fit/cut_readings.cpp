@@ -8,7 +8,7 @@
 namespace dermis::calibration {
 
 double trusted_above(const CircuitFrame& frame) {
-  constexpr double kMostNoise = 0.7;  // of a mean, over what is said of one reading
+  constexpr double kMostNoise = 0.7;  // of a mean, over the described one of a reading
   constexpr double kCutSigmas = 2.0;  // from here on a cut moves the mean by less than 0.01 sigma
   return frame.sigma_ratio < kMostNoise * frame.said_sigma ? kCutSigmas * frame.said_sigma : 0.0;
 }

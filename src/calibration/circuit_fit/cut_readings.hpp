@@ -6,9 +6,9 @@
 
 namespace dermis::calibration {
 
-/// Readings over the supply, below which the mean of a frame is not to be trusted: an ADC cuts its readings at 0, so
-/// near 0 their mean is above what the circuit gives. 0 for single frames, whose noise is known. A mean says too little
-/// of the noise with which its readings were cut.
+/// Ratio to the supply below which the mean of a frame cannot be trusted. An ADC cuts its readings at 0, so near 0
+/// their mean is above the value of the circuit. 0 for single frames, whose noise is known. A mean says too little
+/// about the noise with which its readings were cut.
 [[nodiscard]] double trusted_above(const CircuitFrame& frame);
 
 /// The mean of max(cut, x), where x is normal with `mean` and `sigma` > 0.

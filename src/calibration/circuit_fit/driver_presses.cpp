@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 constexpr std::size_t kPresses = 5;
 constexpr std::size_t kMostPairsOfLine = 10;  // that are looked at
 
-/// A pair and what it tells of its driver.
+/// A pair and its information on its driver.
 struct DriverPair {
   PressPair pair;
   Index driver = 0;          // among the parameters
@@ -41,8 +41,8 @@ std::vector<PressPair> pairs_of_line(const std::vector<std::size_t>& taxels, std
   return some;
 }
 
-/// How the readings of pairs of taxels follow their driver. A taxel that was pressed alone has told its law in series
-/// with the driver: where that is s ohm larger, the conductance is g^2 s more.
+/// How the readings of pairs of taxels follow their driver. A taxel that was pressed alone has shown its law in series
+/// with the driver. If the driver is s ohm larger, the conductance g is g^2 s larger.
 class PairInformation {
  public:
   PairInformation(const LineParameters& lines, const Estimate& fitted, compensation::CircuitModel& model, double noise)

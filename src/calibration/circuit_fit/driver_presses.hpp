@@ -12,9 +12,10 @@
 
 namespace dermis::calibration {
 
-/// The five pairs of taxels of one driven line each that make the drivers surest, one after the other, when both are
-/// pressed with the heaviest load they have had: each takes from the other what their driver loses. Only those that
-/// tell more of their driver than all frames did. `covariance`: of the drivers among the parameters.
+/// The five pairs of taxels, each on one driven line, that make the drivers surest when both are pressed. They are
+/// chosen one after the other, with the heaviest load that both have had. Each taxel of a pair takes from the other the
+/// voltage that their driver loses. Only pairs with more information on their driver than in all frames count.
+/// `covariance`: of the drivers among the parameters.
 [[nodiscard]] std::vector<PressPair> driver_presses(const LineParameters& lines, const Estimate& fitted,
                                                     Eigen::MatrixXd covariance, const CircuitFrames& frames);
 

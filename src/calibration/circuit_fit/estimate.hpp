@@ -12,17 +12,17 @@ inline constexpr double kLineSpread = 0.1;      // resistances of one kind are a
 inline constexpr double kShapeSpread = 0.1;     // first guess of the scatter of the laws' shapes over the taxels
 inline constexpr double kRubberScatter = 0.01;  // first guess
 
-/// How far things lie apart that are alike: learned from the readings.
+/// The scatter of values that are alike, learned from the readings.
 struct Scatter {
-  double noise_variance = 1.0;  ///< Of the idle readings, over what their noise is said to be.
-  double rubber_variance = kRubberScatter * kRubberScatter;  ///< Of a pressed taxel about its law, relative.
+  double noise_variance = 1.0;  ///< Variance of the idle readings over the nominal variance of their noise.
+  double rubber_variance = kRubberScatter * kRubberScatter;  ///< Relative variance of a pressed taxel about its law.
   Eigen::VectorXd shape_variance = Eigen::VectorXd::Constant(kShapeTerms, kShapeSpread* kShapeSpread);
   double drive_spread = kLineSpread;  ///< Relative.
   double load_spread = kLineSpread;
   double sheet = 0.0;  ///< Unloaded conductance from line to line, relative; 0: never compared.
 };
 
-/// What the fit takes for true at one time; a step gives the next.
+/// The state of the fit at one time; a step gives the next.
 struct Estimate {
   Eigen::VectorXd parameters;  ///< See LineParameters.
   Rubber rubber;

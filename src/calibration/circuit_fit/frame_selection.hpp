@@ -16,11 +16,11 @@ namespace dermis::calibration {
 /// The same where kinds of circuits are compared. `is_slow`: one of them is inverted slowly.
 [[nodiscard]] std::size_t affordable_frames_of_choice(std::size_t taxels, bool is_slow);
 
-/// The fewest with which a circuit is tried: less on large arrays.
+/// The fewest frames with which a circuit is tried: fewer on large arrays.
 [[nodiscard]] std::size_t few_frames(std::size_t taxels);
 
 /// About `most` frames of all, spread at random: neighbours in time may press the same taxels. At least half of the
-/// places are for frames that press several taxels, which tell more of the circuit.
+/// places are for frames with several pressed taxels, which depend more on the circuit.
 [[nodiscard]] std::vector<const CircuitFrame*> select_frames(const CircuitFrames& frames, std::size_t most);
 
 }  // namespace dermis::calibration

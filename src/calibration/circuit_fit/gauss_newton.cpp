@@ -28,8 +28,8 @@ constexpr double kSigmas = 3.0;          // of the cost, a sum of squares, by wh
 constexpr std::size_t kMayBeLost = 200;  // one frame in so many
 constexpr int kLawIterations = 2;
 
-/// What temperature does to an unloaded conductance is a hundred times it at most, whatever the unit; its level is
-/// known to a standard error.
+/// The effect of temperature on an unloaded conductance is at most a hundred times the conductance, in any unit. The
+/// level is known to a standard error.
 MatrixXd unloaded_precision(const NormalEquations& idle, Index terms) {
   constexpr double kPrecision = 1e-4;
   MatrixXd precision = MatrixXd::Zero(terms, static_cast<Index>(idle.local.size()));
@@ -111,7 +111,8 @@ double readings_of(const Linearisation& linearisation) {
   return linearisation.idle.readings + linearisation.pressed.readings;
 }
 
-/// By how much an estimate leaves more than `here`, both with the scatter that is given and for as many readings.
+/// By how much the residual of an estimate exceeds that of `here`, both with the given scatter and for as many
+/// readings.
 double rise_from(const Linearisation& here, const LineParameters& lines, const Measurements& measurements,
                  Estimate estimate, const Scatter& scatter) {
   estimate.scatter = scatter;
@@ -119,7 +120,7 @@ double rise_from(const Linearisation& here, const LineParameters& lines, const M
   return there.cost * readings_of(here) / readings_of(there) - here.cost;
 }
 
-/// What a share of the step leads to; the scatter is what the whole of it would leave.
+/// The estimate after a share of the step; the scatter is the one that the whole step would leave.
 Iteration follow(const LineParameters& lines, const Linearisation& here, const Measurements& measurements,
                  const Estimate& before, double share) {
   Step step = here.step;
@@ -133,9 +134,9 @@ Iteration follow(const LineParameters& lines, const Linearisation& here, const M
 
 }  // namespace
 
-// Where a conductance is what little a reading leaves of the supply, a step may be far too long: it is halved until it
-// leads uphill by no more than chance would, all steps together, and loses no frames. Where it never does, the fit
-// ends.
+// Where a conductance follows from the little that a reading leaves of the supply, a step may be far too long. It is
+// halved until it loses no frames and the cost rises by no more than chance. All steps together may rise by that much.
+// Where no share of the step does, the fit ends.
 Result<Iteration> iterate(const LineParameters& lines, const std::vector<const CircuitFrame*>& frames,
                           const Estimate& start, double enough) {
   Result<Measurements> measurements = measure(lines, frames, start);

@@ -14,12 +14,12 @@
 
 namespace dermis::calibration {
 
-/// What a Gauss-Newton step gives.
+/// The result of a Gauss-Newton step.
 struct Iteration {
   Estimate estimate;
-  Eigen::MatrixXd covariance;      ///< Of the parameters, then of what the pressed laws have in common.
+  Eigen::MatrixXd covariance;      ///< For the parameters, then for the common terms of the pressed laws.
   double step = 0.0;               ///< The largest of a parameter, in its standard errors.
-  bool has_idle_readings = false;  ///< That are large enough to tell something.
+  bool has_idle_readings = false;  ///< Large enough to be evidence.
 };
 
 /// Gauss-Newton with the taxels' laws eliminated (variable projection), until a step is smaller than `enough` standard

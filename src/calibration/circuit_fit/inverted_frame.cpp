@@ -44,7 +44,7 @@ std::optional<SmoothFrame> without_idle_noise(SlopedInversion& inversion, const 
   return smooth;
 }
 
-/// Idle readings without what cutting them at 0 adds to their mean; those that tell nothing have no end of noise.
+/// Idle readings without the rise of their mean by the cut at 0; those that are no evidence have infinite noise.
 void correct_for_cut(const CircuitFrame& frame, const SmoothFrame& smooth, const Rubber& rubber,
                      InvertedFrame& inverted) {
   for (std::size_t taxel = 0; taxel < inverted.siemens.size(); ++taxel) {

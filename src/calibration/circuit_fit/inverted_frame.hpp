@@ -18,7 +18,7 @@ namespace dermis::calibration {
 /// A frame's taxels in one circuit.
 struct InvertedFrame {
   std::vector<double> siemens;
-  std::vector<double> sigma_siemens;  ///< Infinite: a reading that tells nothing.
+  std::vector<double> sigma_siemens;  ///< Infinite: a reading without evidence.
   Eigen::MatrixXd slopes;             ///< d siemens / d parameter [taxels, parameters or 0].
 
   [[nodiscard]] Eigen::VectorXd slopes_of(std::size_t taxel) const {
@@ -27,9 +27,9 @@ struct InvertedFrame {
   }
 };
 
-/// Empty: the circuit cannot give this frame, and the inversion has forgotten it. Where slopes are wanted they, and the
-/// pressed taxels, are taken with the idle ones at their laws: derivatives taken at noisy readings would follow the
-/// noise, and the fit would do away with the noise by making all conductances small.
+/// Empty: the circuit cannot give this frame, and the inversion has forgotten it. Where slopes are wanted, they and the
+/// pressed taxels are taken with the idle ones at their laws. Derivatives at noisy readings would follow the noise, and
+/// the fit would reduce the noise by making all conductances small.
 [[nodiscard]] std::optional<InvertedFrame> invert_frame(SlopedInversion& inversion, const CircuitFrame& frame,
                                                         const Rubber& rubber);
 

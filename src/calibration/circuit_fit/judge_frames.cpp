@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kMostSquare = 25.0;  // of a reading
 constexpr double kResolved = 5.0;     // a pressed conductance over its noise
-constexpr double kCutSigmas = 3.0;    // below, idle readings that are mostly cut at 0 tell nothing
+constexpr double kCutSigmas = 3.0;    // below, idle readings are mostly cut at 0
 constexpr std::size_t kJudgedPerTask = 16;
 
 bool is_judged(const Rubber& rubber, std::size_t taxel, float newtons) {
@@ -67,10 +67,11 @@ void add(const JudgedReading& reading, float variance, FrameMisfit& misfit) {
 }
 
 void add_beside(const JudgedReading& reading, const JudgedReading& other, FrameMisfit& misfit) {
-  if (reading.is_telling && other.is_telling) add(reading, std::max(reading.variance, other.variance), misfit);
+  if (!reading.depends_on_circuit || !other.depends_on_circuit) return;
+  add(reading, std::max(reading.variance, other.variance), misfit);
 }
 
-/// What pressed taxels leave within their noise and scatter is taken as so much.
+/// Residuals of pressed taxels that are smaller than their noise and scatter count as large as these.
 FrameMisfit with_scatter(FrameMisfit frame) {
   const double scattered = std::max(frame.pressed_square, frame.pressed_readings);
   frame.square += scattered - frame.pressed_square;
@@ -101,7 +102,7 @@ class Judge {
       } else {
         reading = is_pressed ? judge_pressed(frame, *inverted, taxel) : judge_idle(frame, taxel);
       }
-      if (is_pressed && lines.are_of_one_press()) reading.is_telling = false;
+      if (is_pressed && lines.are_of_one_press()) reading.depends_on_circuit = false;
       reading.taxel = is_pressed           ? JudgedReading::Taxel::pressed
                       : lines.cross(taxel) ? JudgedReading::Taxel::crossed
                                            : JudgedReading::Taxel::idle;
@@ -130,7 +131,7 @@ class Judge {
     const PressedPoint point =
         pressed_point({taxel, log_force, frame.temperature, inverted.siemens[taxel], sigma, {}}, rubber_, scatter_);
     const double noise = std::sqrt(scatter_.noise_variance) * sigma / rubber_.reference_siemens;
-    // No law is nearer to its rubber than this: what is beyond is not the circuit's.
+    // No law is nearer to its rubber than this, so a larger residual is not due to the circuit.
     const double rubber = std::max(std::sqrt(scatter_.rubber_variance), kRubberScatter) * point.expected;
     return {static_cast<float>(std::pow((point.excess - point.expected) / noise, 2)),
             static_cast<float>(1.0 + std::pow(rubber / noise, 2)),

@@ -12,15 +12,15 @@
 
 namespace dermis::calibration {
 
-/// What a circuit leaves unexplained of a reading, in units of its noise, which is the same in all circuits.
+/// The residual of a reading in a circuit, in units of its noise, which is the same in all circuits.
 struct JudgedReading {
   enum class Taxel : unsigned char { unknown, idle, crossed, pressed };  ///< crossed: idle, on a line of a pressed one.
   float square = 0.0F;           ///< Infinite: the circuit cannot give its frame.
-  float variance = 1.0F;         ///< 1 and what the rubber scatters.
+  float variance = 1.0F;         ///< 1 and the scatter of the rubber.
   Taxel taxel = Taxel::unknown;  ///< unknown: not judged.
-  /// Of the circuit: not that of a taxel pressed alone, which the law of the taxel explains in any circuit, and not one
-  /// of whose conductance the noise leaves nothing in this circuit.
-  bool is_telling = false;
+  /// The reading depends on the circuit. It does not for a taxel pressed alone, which the law of the taxel explains in
+  /// any circuit. Nor does it where the noise hides the conductance in this circuit.
+  bool depends_on_circuit = false;
 };
 using JudgedReadings = std::vector<JudgedReading>;  ///< [frames, taxels]
 
@@ -42,15 +42,16 @@ struct FrameMisfit {
                                           const InvertedFrames& inverted,
                                           const std::vector<const CircuitFrame*>& frames);
 
-/// Of all readings that are judged.
+/// The misfit over all judged readings.
 [[nodiscard]] FrameMisfit misfit_of(const JudgedReadings& readings);
 
-/// Of the readings that tell in both circuits, by the larger of their variances: the two compare by these. A circuit in
-/// which a reading hardly follows its taxel would else look worse than one that leaves it to the rubber.
+/// The misfit over the readings that depend on both circuits, by the larger of their variances: the two compare by
+/// these. Otherwise a circuit in which a reading hardly follows its taxel would look worse than one that leaves it to
+/// the rubber.
 [[nodiscard]] FrameMisfit misfit_beside(const JudgedReadings& readings, const JudgedReadings& other);
 
-/// The same of circuits whose lines are not known singly. What the pressed taxels of a frame leave within their noise
-/// and scatter does not count: many that are pressed alike would else decide by the shape of their laws.
+/// The same of circuits whose lines are not known singly. Residuals of the pressed taxels of a frame within their noise
+/// and scatter do not count. Otherwise many taxels that are pressed alike would decide by the shape of their laws.
 [[nodiscard]] FrameMisfit rough_misfit_beside(const JudgedReadings& readings, const JudgedReadings& other,
                                               std::size_t taxels);
 

@@ -17,17 +17,17 @@ inline constexpr double kNominalLoadOhm = 1000.0;
 struct LineGroup {
   Eigen::VectorXd values;                ///< In the units of the parameters.
   std::vector<Eigen::Index> parameters;  ///< Of each line; -1: given.
-  double unit = 1.0;                     ///< What a relative spread of 1 means.
+  double unit = 1.0;                     ///< The unit of a relative spread of 1.
 };
 
 /// The inversion of idle rows that float takes longer than that of others.
 [[nodiscard]] bool is_inverted_slowly(const ArrayDescription& array);
 
-/// The unknown resistances of an array as parameters of a fit: drivers as a multiple of a reference resistance, so that
-/// 0 ohm is a value like any other; loads as logarithms. Drivers come first.
+/// The unknown resistances of an array as parameters of a fit. Drivers are multiples of a reference resistance, so that
+/// 0 ohm is a value like any other; loads are logarithms. Drivers come first.
 class LineParameters {
  public:
-  /// Unknown is what is kFitOhm.
+  /// A resistance of kFitOhm is unknown.
   explicit LineParameters(const ArrayDescription& array);
 
   [[nodiscard]] const ArrayDescription& array() const { return array_; }
@@ -40,7 +40,7 @@ class LineParameters {
   [[nodiscard]] bool has_absolute() const { return known_drive_ohm_ > 0.0 || known_load_ohm_ > 0.0; }
   [[nodiscard]] double reference_ohm() const { return reference_ohm_; }
 
-  /// start(0) exists: no driver is known that the loads' scale would have to come from.
+  /// start(0) exists: the loads' scale need not come from a known driver.
   [[nodiscard]] bool allows_ideal_drivers() const { return known_drive_ohm_ == 0.0; }
 
   /// All drivers, or all loads, in the same ratio to each other.

@@ -18,7 +18,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Others give a first law, and tell nothing more.
+/// Other readings give a first law and are no further evidence.
 bool tells_when_idle(const TaxelLaw& law) {
   return law.is_readable || law.unloaded.size() == 0;
 }

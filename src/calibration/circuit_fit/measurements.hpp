@@ -15,9 +15,9 @@
 
 namespace dermis::calibration {
 
-/// What the frames say in one circuit.
+/// The measurements of the frames as one circuit explains them.
 struct Measurements {
-  NormalEquations idle;  ///< Columns: parameters, conductance over the reference; by the noise that is said of them.
+  NormalEquations idle;  ///< Columns: parameters, conductance over the reference; weighted by the described noise.
   std::vector<PressedReading> pressed;
   std::size_t lost_frames = 0;  ///< That the circuit cannot give.
 };

@@ -27,13 +27,13 @@ struct NormalEquations {
 
 /// The laws that minimise, as linear functions of the step: law = [law_slope, law] (step, 1).
 struct Elimination {
-  Eigen::MatrixXd normal;  ///< Of E, laws eliminated; its last row and column hold the gradient and the cost.
-  std::vector<Eigen::MatrixXd> laws;        ///< Of every taxel [terms, columns]; empty: no reading.
-  std::vector<Eigen::MatrixXd> covariance;  ///< Of every law at a fixed step [terms, terms].
+  Eigen::MatrixXd normal;  ///< For E, with the laws eliminated; its last row and column hold the gradient and the cost.
+  std::vector<Eigen::MatrixXd> laws;        ///< For every taxel [terms, columns]; empty: no reading.
+  std::vector<Eigen::MatrixXd> covariance;  ///< For every law at a fixed step [terms, terms].
   double readings = 0.0;
   double taxels = 0.0;
 
-  /// What is left of the readings at no step.
+  /// The residual of the readings at no step.
   [[nodiscard]] double cost() const { return normal(normal.rows() - 1, normal.cols() - 1); }
 };
 

@@ -19,7 +19,7 @@ double conductance(const Rubber& rubber, std::size_t taxel, double newtons) {
   const double log_force = rubber.force_scale.log_force(newtons);
   const double open = law.pressed.dot(pressed_basis(log_force, 0.0)) +
                       rubber.sheet.tail(kCommonTerms).dot(common_basis(log_force, 0.0, 0.0));
-  // What all have in series: ln g = open - r g.
+  // The series resistance that all taxels share: ln g = open - r g.
   double excess = std::exp(open);
   const double series = rubber.sheet[kSheetTerms - 1];
   constexpr int kSteps = 20;

@@ -22,7 +22,7 @@ struct PressedReading {
   Eigen::VectorXd slope;  ///< d siemens / d parameter.
 };
 
-/// It against its law.
+/// A pressed reading against its law.
 struct PressedPoint {
   bool usable = false;             ///< Large enough over the noise to take its logarithm.
   double excess = 0.0;             ///< Over the unloaded conductance, over the reference conductance.
@@ -36,7 +36,7 @@ struct PressedPoint {
 
 [[nodiscard]] PressedPoint pressed_point(const PressedReading& reading, const Rubber& rubber, const Scatter& scatter);
 
-/// Columns: parameters, what the taxels' laws have in common, ln(g - u). `idle`: how the unloaded laws follow the
+/// Columns: parameters, common terms of the taxels' laws, ln(g - u). `idle`: how the unloaded laws follow the
 /// parameters.
 [[nodiscard]] NormalEquations pressed_equations(const std::vector<PressedReading>& readings, const Elimination& idle,
                                                 const Rubber& rubber, const Scatter& scatter);

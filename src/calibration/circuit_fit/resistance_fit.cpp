@@ -20,7 +20,7 @@ constexpr std::size_t kFirstFrames = 1500;  // and the way to the solution with 
 constexpr double kEnoughAtFirst = 0.1;      // a step this small against the standard errors ends the fit
 constexpr double kEnough = 0.25;            // the same, with all frames
 
-/// Errors that were given stay where the drivers were.
+/// Given errors stay where the drivers were given.
 void keep_given_errors(const Readout& given, Readout& fitted) {
   if (given.drive_error_ohm.empty()) return;
   const auto is_fitted = [](double ohm) { return ohm > 0.0; };

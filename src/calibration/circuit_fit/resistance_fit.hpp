@@ -16,10 +16,10 @@ namespace dermis::calibration {
 struct ResistanceFit {
   ArrayDescription array;  ///< With numbers for all resistances.
   StandardErrors errors;
-  std::vector<PressPair> driver_presses;  ///< That would tell the fitted drivers, see driver_presses().
-  double rubber_scatter = 0.0;            ///< Of a pressed taxel about its law, relative.
+  std::vector<PressPair> driver_presses;  ///< Presses that would determine the fitted drivers, see driver_presses().
+  double rubber_scatter = 0.0;            ///< Relative standard deviation of a pressed taxel about its law.
   double sheet_scatter = 0.0;             ///< Unloaded conductance from line to line, relative; 0: not compared.
-  bool has_idle_readings = false;         ///< That are large enough to tell something.
+  bool has_idle_readings = false;         ///< Large enough to be evidence.
   bool has_absolute = false;  ///< A resistance was given; if not, the loads' geometric mean is kNominalLoadOhm.
 };
 

@@ -50,11 +50,11 @@ std::vector<double> apparent_siemens(const CircuitFrame& frame, double load_ohm)
   return siemens;
 }
 
-/// The noise of a reading as a share of a taxel's conductance, where most taxels are pressed in all frames with a load:
-/// idle lines that float tie all others to one potential then, and a reading hardly depends on its own taxel. In the
-/// frame where that is least. Changes of conductance that leave the sums of all lines as they are stand for all. 0:
-/// there are frames with fewer pressed taxels, which any circuit resolves. Unknown drivers are taken to be ideal,
-/// unknown loads to be alike.
+/// The noise of a reading as a share of a taxel's conductance, in the frame where it is least. It matters where most
+/// taxels are pressed in all frames with a load. Floating idle lines then tie all others to one potential, and a
+/// reading hardly depends on its own taxel. Changes of conductance that keep the sums of all lines stand for all
+/// changes. 0: there are frames with fewer pressed taxels, which any circuit resolves. Unknown drivers are taken to be
+/// ideal, unknown loads to be alike.
 double noise_share(const ArrayDescription& array, const CircuitFrames& frames) {
   std::vector<const CircuitFrame*> pressed;
   for (const CircuitFrame& frame : frames.frames) {

@@ -7,8 +7,8 @@
 
 namespace dermis::calibration {
 
-/// The noise of a reading as a share of a taxel's conductance, where it is too much for the conductances to be found; 0
-/// where they can be, and without a circuit.
+/// The noise of a reading as a share of a taxel's conductance, where it is too large for the conductances to be found.
+/// 0: they can be found, or there is no circuit.
 [[nodiscard]] double unresolved_share(const ArrayDescription& array, const CircuitFrames& frames);
 
 }  // namespace dermis::calibration

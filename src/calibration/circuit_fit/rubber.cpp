@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 constexpr double kLeastIdleSigmas = 1.0;  // an idle reading below this is cut at 0 too often
 
-/// Where readings of idle taxels are well above 0 on average, whatever the circuit and the temperature.
+/// The taxels whose idle readings are well above 0 on average, whatever the circuit and the temperature.
 std::vector<bool> readable_taxels(const CircuitFrames& frames, std::size_t taxels) {
   std::vector<double> sums(taxels);
   std::vector<double> counts(taxels);

@@ -37,19 +37,20 @@ struct Rubber {
   ForceScale force_scale;
   Eigen::Index unloaded_terms = 1;  ///< 3 where temperature is known.
   std::vector<TaxelLaw> laws;
-  Eigen::VectorXd sheet = Eigen::VectorXd::Zero(kSheetTerms);  ///< Mean of the shapes; what all pressed laws share.
+  /// Mean of the shapes; common terms of all pressed laws.
+  Eigen::VectorXd sheet = Eigen::VectorXd::Zero(kSheetTerms);
 };
 
-/// Nothing is known of its laws yet.
+/// Rubber whose laws are not known yet.
 [[nodiscard]] Rubber unknown_rubber(const CircuitFrames& frames, std::size_t taxels, double reference_siemens);
 
 [[nodiscard]] Eigen::VectorXd unloaded_basis(const Rubber& rubber, double temperature);
 
 [[nodiscard]] Eigen::VectorXd pressed_basis(double x, double t);
 
-/// What all taxels of a piece of rubber have in common. A contact resistance in series with each cannot be told from
-/// the mean of the drivers by the laws: without its column the fit would take a law that is not quite a cubic for it.
-/// `excess`: conductance over the unloaded one.
+/// The terms that all taxels of a piece of rubber share. The laws cannot distinguish a contact resistance in series
+/// with each taxel from the mean of the drivers. Without its column the fit would take a law that is not quite a cubic
+/// for it. `excess`: conductance over the unloaded one.
 [[nodiscard]] Eigen::VectorXd common_basis(double x, double t, double excess);
 
 }  // namespace dermis::calibration

@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastNoiseVariance = 0.01;  // over what noise is said to be: readings that are cut at 0 have none
+constexpr double kLeastNoiseVariance = 0.01;  // over the described noise: readings that are cut at 0 have none
 constexpr double kLeastShapeSpread = 1e-4;
 constexpr double kLeastRubberScatter = 1e-4;
 constexpr double kMostRubberScatter = 1.0;
@@ -30,7 +30,7 @@ double learn_noise(const Elimination& idle, const Step& step, Index unloaded_ter
   return std::max(noise_variance * (extended.dot(idle.normal * extended) / freedom), kLeastNoiseVariance);
 }
 
-/// What the readings scatter about their laws more than their noise explains: a Newton step of its likelihood.
+/// The scatter of the readings about their laws beyond their noise: a Newton step of its likelihood.
 double learn_rubber(const std::vector<PressedReading>& readings, double freedom_lost, const Rubber& rubber,
                     const Scatter& scatter) {
   double excess_variance = 0.0;

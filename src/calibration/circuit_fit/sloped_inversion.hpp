@@ -34,7 +34,7 @@ class SlopedInversion {
   /// false: the circuit cannot give these readings.
   [[nodiscard]] bool invert(const std::vector<double>& ratio, std::vector<double>& siemens);
 
-  /// Of the frame inverted last.
+  /// Propagates the noise of the frame inverted last.
   void propagate_noise(double sigma_ratio, std::vector<double>& sigma);
 
   /// d siemens / d parameter [taxels, parameters] at readings whose inversion is `siemens`.

@@ -11,8 +11,8 @@
 
 namespace dermis::calibration {
 
-/// How the conductances that give the same readings move with the parameters, from the derivatives of the readings:
-/// one factorisation instead of an inversion beside each parameter, which takes long where rows float.
+/// How the conductances that give the same readings move with the parameters, from the derivatives of the readings. One
+/// factorisation replaces an inversion beside each parameter, which takes long where rows float.
 class SolvedSlopes {
  public:
   static Result<SolvedSlopes> create(const LineParameters& lines, const Eigen::VectorXd& parameters);

@@ -13,9 +13,9 @@ namespace dermis::calibration {
 struct StandardErrors {
   std::vector<double> drive;
   std::vector<double> load;
-  std::vector<double> drive_ohm;  ///< Of the drivers, not relative [ohm]; empty: all are given.
+  std::vector<double> drive_ohm;  ///< Errors of the drivers, not relative [ohm]; empty: all are given.
   double common_drive = 0.0;      ///< Of the drivers' mean.
-  double correlation = 0.0;       ///< Share of the variance of the drivers that all have in common.
+  double correlation = 0.0;       ///< Share of the variance that all drivers share.
 };
 
 /// `covariance` is of the parameters, and may be of more after them.

@@ -11,7 +11,7 @@
 
 namespace dermis::calibration {
 
-/// A step of the parameters, then of what the pressed laws have in common (Rubber::sheet).
+/// A step of the parameters, then of the common terms of the pressed laws (Rubber::sheet).
 struct Step {
   Eigen::VectorXd solution;
   Eigen::MatrixXd covariance;
@@ -20,7 +20,7 @@ struct Step {
   [[nodiscard]] Eigen::VectorXd of_parameters() const { return solution.head(parameters); }
   [[nodiscard]] Eigen::VectorXd sheet() const { return solution.tail(solution.size() - parameters); }
 
-  /// Goes only a share of the way of the parameters.
+  /// Goes only a share of the way in the parameters.
   void shorten(double share) { solution.head(parameters) *= share; }
 
   /// The largest step of a parameter, in its standard errors.
@@ -31,7 +31,7 @@ struct Step {
 [[nodiscard]] Step solve_step(const LineParameters& lines, const Elimination& idle, const Elimination& pressed,
                               const std::vector<Assumption>& assumptions);
 
-/// What the equations leave at the present parameters, with the best laws.
+/// The residual of the equations at the present parameters, with the best laws.
 [[nodiscard]] double cost_without_step(const LineParameters& lines, const Elimination& idle, const Elimination& pressed,
                                        const std::vector<Assumption>& assumptions);
 

@@ -25,9 +25,9 @@ class EstimatorRow {
   /// True force from which on taxels are judged [N].
   [[nodiscard]] double judged_from_n() const noexcept { return judged_from_n_; }
   [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
-  /// Of the last frame, [estimators][taxels].
+  /// Estimates for the last frame, [estimators][taxels].
   [[nodiscard]] const std::vector<std::vector<float>>& newtons() const noexcept { return newtons_; }
-  /// Of dermis.
+  /// The frame of dermis.
   [[nodiscard]] const ForceFrame& force() const noexcept { return force_; }
   [[nodiscard]] const pipeline::Pipeline& pipeline() const noexcept { return pipeline_; }
   /// counts / full scale [taxels].

@@ -24,7 +24,7 @@ class ReleaseGhosts {
   std::map<std::size_t, std::vector<std::vector<double>>> newtons_;  // of each bin [estimators]
 };
 
-/// What every estimator made of the loads, gathered while the frames go by.
+/// The errors of every estimator on the loads, gathered while the frames go by.
 struct Judgement {
   Judgement(std::size_t estimators, std::size_t taxels) : ghost_n(estimators), clocks(taxels) {}
 

@@ -12,7 +12,7 @@
 
 namespace dermis::calibration {
 
-/// The Cramer-Rao bound of the forces of a frame: no unbiased estimator that knows the circuit and the material
+/// The Cramer-Rao bound of the forces of a frame. No unbiased estimator that knows the circuit and the material
 /// scatters less under the noise of the ADC alone. For the conductances it is sigma_ratio sqrt(diag((J^T J)^-1)), J the
 /// derivatives of the readings; the derivative of the networks carries it to newtons.
 class NoiseBound {

@@ -11,19 +11,19 @@
 namespace dermis::calibration {
 namespace {
 
-/// What lies on the taxels that have a force; empty where some of it is not known.
+/// The load on the taxels that have a force; empty where some of it is not known.
 std::optional<double> true_sum(const Sample& truth, const ForceFrame& force) {
-  std::vector<bool> is_told(truth.known_newtons.size());
+  std::vector<bool> is_known(truth.known_newtons.size());
   double sum = 0.0;
   for (const TotalForce& total : truth.totals) {
     sum += total.newtons;
     for (const std::size_t taxel : total.taxels) {
-      if (is_told[taxel] || std::isnan(force.newtons[taxel])) return std::nullopt;
-      is_told[taxel] = true;
+      if (is_known[taxel] || std::isnan(force.newtons[taxel])) return std::nullopt;
+      is_known[taxel] = true;
     }
   }
-  for (std::size_t taxel = 0; taxel < is_told.size(); ++taxel) {
-    if (is_told[taxel] || std::isnan(force.newtons[taxel])) continue;
+  for (std::size_t taxel = 0; taxel < is_known.size(); ++taxel) {
+    if (is_known[taxel] || std::isnan(force.newtons[taxel])) continue;
     const double newtons = truth.known_newtons[taxel];
     if (std::isnan(newtons)) return std::nullopt;
     sum += newtons;

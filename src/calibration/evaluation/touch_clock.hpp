@@ -11,13 +11,13 @@
 
 namespace dermis::calibration {
 
-/// What the known forces of a place tell of time, label by label.
+/// The evidence of the known forces of a place on time, label by label.
 class PlaceClock {
  public:
   /// Labels more than a second apart are not of one touch, and zero so long before a force is not its onset.
   void add(Nanos time, double newtons);
 
-  /// Of the last label, where it is above zero.
+  /// Touch of the last label, where it is above zero.
   [[nodiscard]] TouchTime touch() const;
 
   /// Since the last force went, where the last label is zero and the force was seen going.

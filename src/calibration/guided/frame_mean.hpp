@@ -10,8 +10,8 @@
 
 namespace dermis::calibration {
 
-/// The mean of frames of one array that follow each other. Because temperature and supply are averaged with the counts,
-/// a ratio that is steady comes out right under a supply that is not.
+/// The mean of frames of one array that follow each other. Temperature and supply are averaged with the counts, so a
+/// steady ratio is right under an unsteady supply.
 class FrameMean {
  public:
   void clear();

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/circuit_fit/telling_presses.hpp"
+#include "calibration/circuit_fit/discriminating_presses.hpp"
 
 namespace dermis::calibration {
 namespace {
@@ -51,7 +51,7 @@ std::string name_of(std::optional<std::size_t> taxel, const ArrayDescription& ar
   return taxel ? array.taxel_name(*taxel) : "another taxel";
 }
 
-/// Of two taxels that are asked for, one is pressed, and another one in the place of the other.
+/// One of the two taxels that are asked for is pressed, and another taxel in place of the other.
 std::string describe_misplaced(const GuideState& state, const ArrayDescription& array) {
   const bool is_first_missing = state.missing_taxel == state.taxel;
   return fmt::format("That is {}: put {} on {} instead. {} is right.", name_of(state.pressed_taxel, array),
@@ -110,10 +110,10 @@ std::string describe_result(const Calibration& calibration, const GuideState& st
   if (!training.dead_taxels.empty()) {
     text += fmt::format(" {} taxels did not answer and are marked dead.", training.dead_taxels.size());
   }
-  const std::vector<PressPair>& telling = calibration.report.telling_presses;
-  if (!telling.empty()) {
+  const std::vector<PressPair>& discriminating = calibration.report.discriminating_presses;
+  if (!discriminating.empty()) {
     text += fmt::format(" The circuit is not certain: {}, add these frames to the saved ones and calibrate again.",
-                        describe(telling, calibration.model.array));
+                        describe(discriminating, calibration.model.array));
   }
   for (const std::string& doubt : calibration.report.doubts) text += " Doubtful: " + doubt + ".";
   text += fmt::format(" Forces above {:g} N are extrapolated, less and less surely, to eight times as much.",

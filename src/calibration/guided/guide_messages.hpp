@@ -14,16 +14,16 @@ namespace dermis::calibration {
 /// "5 N (510 g)".
 [[nodiscard]] std::string describe_weight(double newtons);
 
-/// What a person is to do in the stage `unloaded`.
+/// The instruction to a person in the stage `unloaded`.
 [[nodiscard]] std::string describe_quiet(bool is_disturbed);
 
-/// What a person is to do in the stage `pressing`.
+/// The instruction to a person in the stage `pressing`.
 [[nodiscard]] std::string describe_press(const GuideState& state, const ArrayDescription& array);
 
-/// What goes on in the stage `fitting`, of which that share is done after so many seconds.
+/// Describes the stage `fitting`, of which that share is done after so many seconds.
 [[nodiscard]] std::string describe_fitting(const GuidedPresses& presses, double share, double seconds);
 
-/// What a finished calibration reached and what it holds for.
+/// Describes what a finished calibration reached and what it holds for.
 [[nodiscard]] std::string describe_result(const Calibration& calibration, const GuideState& state,
                                           const GuidedPresses& presses);
 

@@ -47,7 +47,7 @@ class GuidedCalibration::Implementation {
   GuidedData data() const;
 
  private:
-  /// What the fits have found so far.
+  /// The findings of the fits so far.
   struct Fit {
     std::size_t presses = 0;  // of the last one that was asked for
     std::optional<double> error;
@@ -135,7 +135,7 @@ void GuidedCalibration::Implementation::ask_for_next() {
   recogniser_->expect(presses_.taxels());
 }
 
-/// After the plan's presses. An unknown kind of circuit is found first: others may tell it.
+/// Presses after those of the plan. An unknown kind of circuit is found first: further presses may determine it.
 void GuidedCalibration::Implementation::ask_for_proof() {
   if (presses_.has_open() || presses_.has_pairs() || array_.readout.circuit == Circuit::automatic) return;
   presses_.ask_for(proof_presses(array_, presses_.kept()));
@@ -166,9 +166,9 @@ void GuidedCalibration::Implementation::accept_fit(GuideFitter::Outcome outcome)
   fit_.unpressed_error = outcome.unpressed_error;
   if (!outcome.calibration) return;
   if (!*outcome.calibration) return fail(outcome.calibration->error().message);
-  const std::vector<PressPair>& telling = outcome.calibration->value().report.telling_presses;
-  if (!telling.empty() && !presses_.has_pairs()) {
-    presses_.ask_for(telling);
+  const std::vector<PressPair>& discriminating = outcome.calibration->value().report.discriminating_presses;
+  if (!discriminating.empty() && !presses_.has_pairs()) {
+    presses_.ask_for(discriminating);
     stage_ = GuideStage::pressing;
     return ask_for_next();
   }

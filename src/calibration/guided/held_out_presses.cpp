@@ -22,7 +22,7 @@ constexpr std::size_t kTaxelFolds = 4;
 
 using PressesOfTaxel = std::map<std::size_t, GuidedPresses>;
 
-/// Those of single taxels, from the lightest.
+/// Presses of single taxels, from the lightest.
 PressesOfTaxel by_taxel(const GuidedPresses& presses) {
   PressesOfTaxel grouped;
   for (const auto& press : presses) {
@@ -35,7 +35,7 @@ PressesOfTaxel by_taxel(const GuidedPresses& presses) {
   return grouped;
 }
 
-/// Of every second taxel one of its presses, in turn the lightest, the next, ...
+/// Chooses one press of every second taxel, in turn the lightest, the next, ...
 GuidedPresses single_presses(const PressesOfTaxel& grouped) {
   GuidedPresses chosen;
   std::size_t number = 0;
@@ -91,7 +91,7 @@ std::vector<double> errors_of(const pipeline::Model& model, const GuidedPresses&
   return errors;
 }
 
-/// Of a fit without them; none where too few presses are left.
+/// The errors of a fit without the left-out presses; none where too few presses are left.
 std::vector<double> errors_on(const GuidedPresses& left_out, const ArrayDescription& array,
                               const std::vector<RawFrame>& unloaded, const GuidedPresses& presses) {
   const GuidedPresses kept = without(presses, left_out);

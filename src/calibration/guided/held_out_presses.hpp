@@ -28,8 +28,8 @@ using GuidedPresses = std::vector<std::shared_ptr<const GuidedPress>>;
                                          const GuidedPresses& presses);
 
 /// Median relative error on presses that a fit without them finds; empty where there are too few. `array` is to be
-/// known in full. On taxels with other presses: of every second taxel one press is left out, never its heaviest,
-/// because forces beyond the heaviest are less sure.
+/// known in full. The taxels have other presses: one press of every second taxel is left out. It is never the heaviest,
+/// because forces beyond that are less sure.
 [[nodiscard]] std::optional<double> error_on_left_out_presses(const ArrayDescription& array,
                                                               const std::vector<RawFrame>& unloaded,
                                                               const GuidedPresses& presses);

@@ -11,8 +11,8 @@
 
 namespace dermis::calibration {
 
-/// A press of one or more taxels that is to be held: a quarter of its time to settle, then kParts quarters whose means
-/// agree on each of these taxels. After a quarter that does not agree it begins anew.
+/// A press of one or more taxels that is to be held. A quarter of its time is for settling, then the means of kParts
+/// quarters must agree on each of these taxels. After a quarter that does not agree it begins anew.
 class PressHold {
  public:
   static constexpr std::size_t kParts = 4;
@@ -32,7 +32,7 @@ class PressHold {
   [[nodiscard]] bool is_done() const noexcept { return is_settled_ && parts_.size() == kParts; }
   [[nodiscard]] bool was_unsteady() const noexcept { return was_unsteady_; }
   [[nodiscard]] double share(Nanos now) const noexcept;
-  /// Of a pressed taxel in the parts that are there, or in the present one.
+  /// Mean excess of a pressed taxel in the finished parts, or in the present one.
   [[nodiscard]] double mean_excess(std::size_t pressed) const noexcept;
   /// Means of the hold in `count` pieces of equal length; `count` divides kParts.
   [[nodiscard]] std::vector<RawFrame> frames(std::size_t count) const;

@@ -70,7 +70,7 @@ bool PressRecogniser::is_as_asked() const {
   return touch_.felt == asked_.size() && !touch_.foreign;
 }
 
-/// Of what is not pressed as asked.
+/// The mistake where something else is pressed than was asked for.
 GuideHint PressRecogniser::mistake() const {
   if (!touch_.foreign) return GuideHint::one_of_two;
   return touch_.missing ? GuideHint::other_taxel : GuideHint::several;

@@ -15,8 +15,8 @@
 
 namespace dermis::calibration {
 
-/// Recognises in the frames of an array that the taxels which are asked for are pressed, held and released, and hints
-/// at what the person does instead.
+/// Recognises in the frames of an array that the wanted taxels are pressed, held and released, and hints at other
+/// actions of the person.
 class PressRecogniser {
  public:
   enum class Event : std::uint8_t { none, held, released };
@@ -35,9 +35,9 @@ class PressRecogniser {
   std::vector<RawFrame> keep_hold(std::size_t count);
 
   [[nodiscard]] GuideHint hint() const noexcept { return hint_; }
-  /// Of one of the taxels that are asked for, over that of the unloaded taxel.
+  /// Reading of one of the wanted taxels, over that of the unloaded taxel.
   [[nodiscard]] double reading(std::size_t asked) const;
-  /// Of the hold that is done.
+  /// Share of the hold that is done.
   [[nodiscard]] double share(Nanos now) const noexcept;
   /// As GuideState::pressed_taxel.
   [[nodiscard]] std::optional<std::size_t> pressed_taxel() const;
@@ -45,7 +45,7 @@ class PressRecogniser {
   [[nodiscard]] std::optional<std::size_t> missing_taxel() const;
 
  private:
-  /// What the array feels.
+  /// The present touch of the array.
   struct Touch {
     std::optional<std::size_t> strongest;
     std::optional<std::size_t> foreign;  // the strongest one that is not asked for, if it is no mere crosstalk

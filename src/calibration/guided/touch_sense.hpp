@@ -49,8 +49,8 @@ class QuietWindow {
   bool is_disturbed_ = false;
 };
 
-/// Compares readings with those of the unloaded array. Idle readings are followed slowly, so that drift of the array
-/// over an hour is not taken for a touch, nor is what the material remembers of a press.
+/// Compares readings with those of the unloaded array. Idle readings are followed slowly, so drift of the array over an
+/// hour does not count as a touch. Nor does the material's memory of a press.
 class TouchSense {
  public:
   TouchSense(const FrameMean& unloaded, double ratio_per_count);
@@ -65,7 +65,7 @@ class TouchSense {
     }
     return strongest;
   }
-  /// Of an array that nothing touches, `seconds` after the last one.
+  /// Takes the readings of an array that nothing touches, `seconds` after the last one.
   void follow(std::span<const double> ratio, double seconds);
   /// A weight is taken off the taxel: what it still reads is memory of the material, from now on.
   void leave(std::span<const double> ratio, std::size_t taxel) {

@@ -26,7 +26,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr std::size_t kLeastPresses = 8;  // on several taxels, that tell anything
+constexpr std::size_t kLeastPresses = 8;  // on several taxels, for any evidence
 constexpr int kSteps = 4;                 // of Gauss-Newton
 constexpr double kLimit = 4.0;            // sigmas from which on a press is an outlier
 constexpr double kEvidence = 30.0;        // squares that a part must explain
@@ -94,12 +94,12 @@ class Judge {
     return residuals;
   }
 
-  /// What nine of ten presses on several taxels differ by at most, relative.
+  /// The relative difference that nine of ten presses on several taxels stay below.
   [[nodiscard]] double largest_difference(const VectorXd& residuals) const {
     const VectorXd sizes = residuals.head(sigmas_.size()).cwiseProduct(sigmas_).cwiseAbs();
     return quantile(std::vector<double>(sizes.begin(), sizes.end()), kMostPressesShare);
   }
-  /// Of presses on several taxels, which come first: the mean, or what the median makes of it where that is less, so
+  /// The mean for presses on several taxels, which come first. Or its estimate by the median where that is less, so
   /// that single outliers are no misfit.
   [[nodiscard]] double square_of_totals(const VectorXd& residuals) const {
     constexpr double kMedianOfSquare = 0.4549;  // of a standard normal variable
@@ -250,7 +250,7 @@ std::string describe(const Explanation& found, const ArrayDescription& array, st
       ohms.minCoeff(), ohms.maxCoeff());
 }
 
-/// What such a part takes from one of two equal presses in a row, the heaviest: relative.
+/// The relative loss through such a part of one of two equal presses in a row, for the heaviest.
 double effect_of(InstrumentPart part, const Explanation& found, const CircuitFrames& frames) {
   const std::vector<InstrumentPart>& parts = found.parameters.parts();
   const auto here = std::find(parts.begin(), parts.end(), part);
@@ -272,7 +272,7 @@ Explanation without_drivers(Judge& judge, const ArrayDescription& array, const E
   return rest ? *std::move(rest) : found;
 }
 
-/// What is left after what was applied: how sure forces are, and a sentence where presses do not agree.
+/// Judges the residual after the applied parts: how sure forces are, and a sentence where presses do not agree.
 void notice(const Judge& judge, const Explanation& applied, InstrumentFit& fit) {
   const double square = judge.square_of_totals(applied.residuals);
   if (square <= kNoticed) return;

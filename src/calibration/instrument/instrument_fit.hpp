@@ -17,11 +17,11 @@ namespace dermis::calibration {
 struct InstrumentFit {
   ArrayDescription array;               ///< With what was found.
   std::vector<std::string> statements;  ///< What was found, a sentence each.
-  std::vector<std::string> doubts;      ///< What is not as described and stays so, a sentence each.
-  /// By how much presses on several taxels differ from single ones beyond chance and beyond all that was found,
-  /// relative; 0: they agree, or there are none.
+  std::vector<std::string> doubts;      ///< Parts that are not as described and stay so, a sentence each.
+  /// The relative difference of presses on several taxels from single ones, beyond chance and beyond all that was
+  /// found. 0: they agree, or there are none.
   double unexplained = 0.0;
-  /// Too few presses on several taxels tell whether the instrument is as described.
+  /// Too few presses on several taxels show whether the instrument is as described.
   bool lacks_proof = false;
 };
 
@@ -31,17 +31,18 @@ struct InstrumentFit {
 /// Offset and supply that are to be fitted are left out.
 [[nodiscard]] ArrayDescription without_unknown_instrument(ArrayDescription array);
 
-/// Sets what the description leaves open of the settling to what single presses tell (measure_settling()), or to none.
+/// Sets a settling that the description leaves open to the measured one of single presses (measure_settling()), or to
+/// none.
 [[nodiscard]] InstrumentFit fit_settling(const ArrayDescription& array, std::span<const RawFrame> frames,
                                          std::span<const Load> loads);
 
-/// Presses on several taxels must give the forces that single presses have taught: offset and curve of the ADC,
-/// resistance of the supply and drivers are what they may tell. Each kind that the description leaves open is fitted by
-/// Gauss-Newton, and the one that explains most is taken, then the next beside it, as long as chance would not
-/// explain as much. Idle taxels on pressed lines add to this, but without eight presses on several taxels nothing is
-/// fitted: temperature and material move idle taxels, too. Drivers are named, not changed: the description gives them.
-/// `array` has a circuit whose resistances are known. `is_asked_for`: it is said where nothing can tell. Errors: those
-/// of circuit_frames(), a circuit that cannot be inverted.
+/// Presses on several taxels must give the forces that single presses have taught. They may show offset and curve of
+/// the ADC, and resistance of the supply and of the drivers. Each kind that the description leaves open is fitted by
+/// Gauss-Newton. The kind that explains most is taken, then the next beside it, as long as chance would not explain as
+/// much. Idle taxels on pressed lines add to this, but without eight presses on several taxels nothing is fitted:
+/// temperature and material move idle taxels, too. Drivers are named, not changed: the description gives them. `array`
+/// has a circuit whose resistances are known. `is_asked_for`: a sentence says so where nothing can be determined.
+/// Errors: those of circuit_frames(), a circuit that cannot be inverted.
 [[nodiscard]] Result<InstrumentFit> fit_instrument(const ArrayDescription& array, std::span<const RawFrame> frames,
                                                    std::span<const Load> loads, Nanos settle_time, bool is_asked_for);
 

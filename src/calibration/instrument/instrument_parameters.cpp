@@ -34,7 +34,7 @@ double bow(double share) {
   return 4.0 * share * (1.0 - share);
 }
 
-/// Of a bowed curve where readings of idle taxels are: the noise there follows it.
+/// Slope of a bowed curve at the readings of idle taxels: the noise there follows it.
 double idle_slope(double height, const Readout& readout) {
   constexpr double kSlopeOfBow = 4.0;  // at its ends
   return std::abs(1.0 - (readout.pressure_raises_reading ? kSlopeOfBow : -kSlopeOfBow) * height);

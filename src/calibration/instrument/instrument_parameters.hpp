@@ -13,11 +13,11 @@
 
 namespace dermis::calibration {
 
-/// What an instrument may be wrong in.
+/// The parts of an instrument that may be wrong.
 enum class InstrumentPart { offset, supply, curve, drivers };
 
-/// The numbers of some parts, each on the scale of what is usual of it: [counts], [share of the mean load], [share of
-/// the full scale], and a driver's ohms over the mean load, one a driven line.
+/// The numbers of some parts, each on the scale of its usual size: [counts], [share of the mean load] and [share of the
+/// full scale]. Drivers have one number a driven line, their ohms over the mean load.
 class InstrumentParameters {
  public:
   InstrumentParameters(const ArrayDescription& array, std::vector<InstrumentPart> parts);

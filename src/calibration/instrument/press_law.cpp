@@ -112,7 +112,8 @@ bool is_above_noise(std::size_t taxel, const std::vector<double>& unloaded, cons
   return unloaded[taxel] > sigmas * inverted.front()->sigma_siemens[taxel];
 }
 
-/// What conducts nothing cannot be lowered by any press: an instrument that takes all from idle taxels would be right.
+/// No press can lower a taxel that conducts nothing, so an instrument that takes everything from idle taxels would be
+/// right.
 bool stay_readable(const std::vector<bool>& readable, const std::vector<double>& unloaded,
                    const InvertedFrames& inverted) {
   constexpr double kStillReadable = 1.0;
@@ -127,7 +128,7 @@ bool stay_readable(const std::vector<bool>& readable, const std::vector<double>&
   return lost <= kMostLost * all;
 }
 
-/// What a frame says of one of its taxels.
+/// The evidence of a frame on one of its taxels.
 struct LawPoint {
   double z = 0.0;      // ln of the conductance above the unloaded one
   double sigma = 0.0;  // of z, by the noise of readings
@@ -186,7 +187,7 @@ class PressLaws {
     moved.z += kStep;
     return (log_force(taxel, moved) - log_force(taxel, point)) / kStep;
   }
-  /// Of the law, over that of a press.
+  /// Variance of the law, over that of a press.
   [[nodiscard]] double variance(std::size_t taxel) const { return variance_[taxel]; }
 
  private:
@@ -251,7 +252,7 @@ struct LearnedLaws {
   double scatter = 0.0;  // of a single press about its law
 };
 
-/// Empty: too few presses that tell.
+/// Empty: too few presses that are evidence.
 std::optional<LearnedLaws> learn_laws(const Presses& presses, const InvertedFrames& inverted,
                                       const std::vector<double>& unloaded, const Scale& scale) {
   if (!scale.is_there()) return std::nullopt;

@@ -11,7 +11,7 @@
 
 namespace dermis::calibration {
 
-/// What one frame presses, and with how much in all.
+/// The pressed taxels of a frame, and their force in all.
 struct Press {
   const CircuitFrame* frame = nullptr;
   std::vector<std::size_t> taxels;
@@ -30,22 +30,22 @@ struct Presses {
 /// The frames of all presses: the single ones, then those of several.
 [[nodiscard]] std::vector<const CircuitFrame*> frames_of(const Presses& presses);
 
-/// What an instrument leaves unexplained.
+/// The residuals of an instrument.
 struct InstrumentMisfit {
   std::vector<double> totals;  ///< ln(total as the laws of single presses say / true) [several]
   std::vector<double> sigmas;  ///< Standard deviation of each, if the circuit is right.
-  /// What the idle taxels in the row, then in the column of a single press conduct more than untouched, beside the idle
-  /// ones elsewhere, in standard deviations [2 single].
+  /// Excess conductance of the idle taxels in the row, then in the column, of a single press over untouched, beside the
+  /// idle ones elsewhere. In standard deviations [2 single].
   std::vector<double> idle;
 };
 
-/// The taxels whose readings, while idle, stand so far above 0 that they tell what lowers them [taxels].
+/// The taxels whose idle readings stand so far above 0 that they show what lowers them [taxels].
 [[nodiscard]] std::vector<bool> readable_taxels(const Presses& presses, const InvertedFrames& inverted);
 
 /// `inverted`: of frames_of(presses), all there. A press must not change what idle taxels conduct. Each taxel has a law
-/// ln F = a + b z + c z^2 + d z^3 + e z^4 of z = ln(conductance above the unloaded one), with c, d and e of all taxels
-/// the same; temperature shifts it. Empty: too few presses to tell, conductances that follow no law, or `readable`
-/// taxels that would conduct nothing.
+/// `ln F = a + b z + c z^2 + d z^3 + e z^4` of `z = ln(conductance above the unloaded one)`. All taxels share c, d and
+/// e; temperature shifts the law. Empty: too few presses, conductances that follow no law, or `readable` taxels that
+/// would conduct nothing.
 [[nodiscard]] std::optional<InstrumentMisfit> misfit_of(const Presses& presses, const InvertedFrames& inverted,
                                                         std::size_t cols, const std::vector<bool>& readable);
 

@@ -27,7 +27,7 @@ struct ScannedFrame {
   std::vector<float> newtons;
 };
 
-/// Of taxels, in the order of the scan.
+/// The taxels in the order of the scan.
 std::vector<std::size_t> scan_of(const ArrayDescription& array) {
   const std::vector<std::size_t> places = array.order.sent_places(array.order.sent({array.rows, array.cols}));
   std::vector<std::size_t> scan(places.size());

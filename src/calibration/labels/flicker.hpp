@@ -12,9 +12,9 @@
 
 namespace dermis::calibration {
 
-/// Single taxels, rising, whose readings jump to and fro from frame to frame while nothing is on the array, as those of
-/// a loose contact do. Frames that are called unloaded and are not rise and fall once. Empty where it cannot be told,
-/// or where many taxels do: then it is no taxel that is broken. Some taxel of the array never does.
+/// Single taxels, rising, whose readings jump to and fro from frame to frame while nothing is on the array, like a
+/// loose contact. Frames that are called unloaded and are not rise and fall once. Empty where that cannot be
+/// determined, or where many taxels do: then no taxel is broken. Some taxel of the array never does.
 [[nodiscard]] std::vector<std::size_t> find_flickering_taxels(const ArrayDescription& array,
                                                               std::span<const RawFrame> frames,
                                                               std::span<const Load> loads);

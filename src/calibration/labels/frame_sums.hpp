@@ -17,8 +17,8 @@ namespace dermis::calibration {
 /// A frame with all its taxels in one number: it rises with the load, whatever the circuit.
 struct FrameSum {
   double ratio = 0.0;           ///< Sum over the taxels.
-  double sigma = 0.0;           ///< Of the sum, by the noise of the array's description.
-  double newtons = 0.0;         ///< Of all loads together; NaN: not labelled.
+  double sigma = 0.0;           ///< Standard deviation of the sum, by the noise of the array's description.
+  double newtons = 0.0;         ///< Force of all loads together; NaN: not labelled.
   double celsius = 0.0;         ///< NaN: not known.
   std::uint32_t frame = 0;      ///< Index in the recording.
   std::uint32_t strongest = 0;  ///< The taxel that rises most above its unloaded reading.
@@ -31,7 +31,7 @@ struct FrameSum {
 [[nodiscard]] std::vector<double> unloaded_levels(const ArrayDescription& array, std::span<const RawFrame> frames,
                                                   std::span<const std::optional<double>> newtons);
 
-/// Of all frames after settling that are not rejected.
+/// The sums of all frames after settling that are not rejected.
 [[nodiscard]] std::vector<FrameSum> sum_frames(const ArrayDescription& array, std::span<const RawFrame> frames,
                                                std::span<const Load> loads, Nanos settle_time);
 

@@ -27,7 +27,7 @@ constexpr std::size_t kLeastUnloaded = 5;  // frames, for a majority
 constexpr double kPressedSigmas = 6.0;
 constexpr double kPressedShare = 0.005;  // of what a typical load reads
 
-/// What the array reads unloaded, as most of the frames that are called so say; at 0 C where there is a slope.
+/// The unloaded sum of the array by most of the frames that are called so; at 0 C where there is a slope.
 struct UnloadedSum {
   RobustLine line;
   double sigma = 0.0;

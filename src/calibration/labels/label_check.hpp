@@ -19,8 +19,8 @@ namespace dermis::calibration {
 /// circuit.
 struct LabelCheck {
   std::vector<std::size_t> pressed_frames;  ///< Called unloaded, but pressed; rising.
-  std::vector<std::string> remarks;         ///< What is wrong with the labels, a sentence each.
-  std::optional<std::string> exchange;      ///< What makes all of them useless: find_exchange().
+  std::vector<std::string> remarks;         ///< Errors in the labels, a sentence each.
+  std::optional<std::string> exchange;      ///< The error that makes all of them useless: find_exchange().
 
   [[nodiscard]] bool is_pressed(std::size_t frame) const {
     return std::binary_search(pressed_frames.begin(), pressed_frames.end(), frame);

@@ -11,8 +11,8 @@
 
 namespace dermis::calibration {
 
-/// Says where labels fit frames up to 10 earlier or later clearly better than their own: by where the array is pressed,
-/// which tells presses of equal force in several places apart, or by how hard. Empty where they do not.
+/// Says where labels fit frames up to 10 earlier or later clearly better than their own. The evidence is where the
+/// array is pressed, which distinguishes equal forces in several places, or how hard. Empty where they do not.
 [[nodiscard]] std::optional<std::string> remark_on_shift(std::span<const FrameSum> sums, const LoadsOfFrames& loads,
                                                          const ArrayDescription& array);
 

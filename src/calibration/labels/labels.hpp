@@ -14,7 +14,7 @@ namespace dermis::calibration {
 /// There are loads, they name frames that exist, and a pressure can be turned into a force.
 [[nodiscard]] Status check_loads(const ArrayDescription& array, std::size_t frame_count, std::span<const Load> loads);
 
-/// What a load presses with in all [N].
+/// The force of a load in all [N].
 [[nodiscard]] double total_newtons(const Load& load, const ArrayDescription& array);
 
 /// The sum of the loads of every frame [N]; none for unlabelled frames.
@@ -41,7 +41,7 @@ class LoadsOfFrames {
   std::vector<std::uint32_t> first_;  // of each frame in loads_ [frames + 1]
 };
 
-/// Forces of every taxel that the loads of one frame tell: `known_newtons` [taxels], `totals` and `unloaded`. Taxels
+/// Known forces of every taxel by the loads of one frame: `known_newtons` [taxels], `totals` and `unloaded`. Taxels
 /// that the sheet does not have carry nothing.
 void expand_loads(const ArrayDescription& array, std::span<const Load> loads, Sample& sample);
 

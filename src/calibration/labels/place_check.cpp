@@ -11,7 +11,7 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr std::size_t kLeastTaxels = 3;  // that tell
+constexpr std::size_t kLeastTaxels = 3;  // that show it
 
 /// Frames in which the taxel alone is loaded.
 struct Answers {

@@ -12,8 +12,8 @@
 
 namespace dermis::calibration {
 
-/// What is wrong, where loads of single taxels name the column as row and the row as column: nearly always r1c0 answers
-/// where r0c1 is named. Empty where they do not, or fewer than three taxels tell. `sums`: of the frames of `loads`.
+/// The error where loads of single taxels exchange row and column: nearly always r1c0 answers where r0c1 is named.
+/// Empty where they do not, or fewer than three taxels show it. `sums`: of the frames of `loads`.
 [[nodiscard]] std::optional<std::string> find_exchange(const ArrayDescription& array, std::span<const FrameSum> sums,
                                                        std::span<const Load> loads);
 

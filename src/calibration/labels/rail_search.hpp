@@ -11,8 +11,8 @@
 
 namespace dermis::calibration {
 
-/// The reading at which the readout saturates before its ADC ends [counts], where the labelled frames show one: loads
-/// that differ twofold drive readings to the same last count, and hardly any reading stands just before it.
+/// The reading at which the readout saturates before its ADC ends [counts], where the labelled frames show one. There,
+/// loads that differ twofold give the same last count, and hardly any reading stands just before it.
 [[nodiscard]] std::optional<double> find_rail(const ArrayDescription& array, std::span<const RawFrame> frames,
                                               std::span<const Load> loads);
 

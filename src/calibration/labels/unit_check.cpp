@@ -33,7 +33,7 @@ double area_of_taxel(const ArrayDescription& array) {
   return std::max(array.taxel_area_m2.value_or(0.0), array.row_pitch_m * array.col_pitch_m);
 }
 
-/// Taxels that rise with the load of a frame; those that it names where no reading tells.
+/// Taxels that rise with the load of a frame; those that it names where no reading shows it.
 std::size_t felt_taxels(const ArrayDescription& array, const RawFrame& frame, const Load& load,
                         std::span<const double> unloaded) {
   preprocessing::Conditioner conditioner(array);

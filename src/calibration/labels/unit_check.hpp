@@ -13,8 +13,8 @@
 namespace dermis::calibration {
 
 /// A question, where the heaviest loads would press with more than rubber bears, or with less than a dozen sheets of
-/// paper: over the taxels that feel them, each with all that lies around it. Empty where the loads may be as they are.
-/// `loads` as check_loads() wants them.
+/// paper. A load presses on the taxels that feel it, each with the area around it. Empty where the loads may be as they
+/// are. `loads` as check_loads() wants them.
 [[nodiscard]] std::optional<std::string> remark_on_units(const ArrayDescription& array,
                                                          std::span<const RawFrame> frames, std::span<const Load> loads);
 

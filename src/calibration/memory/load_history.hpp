@@ -13,7 +13,7 @@
 
 namespace dermis::calibration {
 
-/// What the material of a sheet went through: the conductances of the frames of a recording, labelled or not.
+/// The history of a sheet's material: the conductances of the frames of a recording, labelled or not.
 struct LoadHistory {
   std::size_t taxels = 0;
   std::vector<std::size_t> frame;                          ///< Numbers in the recording, rising [frames].

@@ -69,7 +69,7 @@ class MemoryProblem {
 
   [[nodiscard]] std::size_t residual_count() const { return loads_.size() + kShares; }
 
-  /// Of each load, about relative.
+  /// The error of each load, about relative.
   void errors(const fusion::MemoryLaw& law, std::span<double> errors) const {
     const std::vector<FreedLoad> freed = freed_loads(felt_, loads_, law);
     const std::vector<double> gain = gains(freed);
@@ -116,7 +116,7 @@ class MemoryProblem {
 
   [[nodiscard]] double weight(std::size_t k) const { return 1.0 / (loads_[k].newtons + floor_newtons_); }
 
-  /// Of each taxel, and of the totals.
+  /// The gain of each taxel, and of the totals.
   [[nodiscard]] std::vector<double> gains(const std::vector<FreedLoad>& freed) const {
     std::vector<double> above(felt_.taxels + 1);
     std::vector<double> below(felt_.taxels + 1);

@@ -41,11 +41,11 @@ struct FreedLoad {
   double newtons = 0.0;
 };
 
-/// What a law makes of the loads.
+/// The loads as a law frees them.
 [[nodiscard]] std::vector<FreedLoad> freed_loads(const FeltHistory& felt, std::span<const KnownLoad> loads,
                                                  const fusion::MemoryLaw& law);
 
-/// Root mean square relative error of the loads by a law, each taxel and all totals with a gain of their own: networks
+/// Root mean square relative error of the loads by a law. Each taxel and all totals have a gain of their own: networks
 /// may be wrong by one.
 [[nodiscard]] double memory_misfit(const FeltHistory& felt, std::span<const KnownLoad> loads,
                                    const fusion::MemoryLaw& law);

@@ -40,8 +40,8 @@ constexpr Nanos kLeastPause = std::chrono::seconds(1);  // between frames: other
 constexpr int kIntervalsOfPause = 2;
 constexpr fusion::MemoryLaw kStart{{0.04F, 0.04F, 0.04F, 0.04F}, {0.02F, 0.02F, 0.02F}};
 
-/// The same samples with what the material felt under their loads: as much more or less than the load as a law that was
-/// fitted to about these forces says. Loads that it does not see are unknown.
+/// The same samples with the forces that the material felt under their loads. The ratio to the load is that of a law
+/// that was fitted to about these forces. Loads that the law does not cover are unknown.
 SampleDatabase felt_database(const SampleDatabase& database, const std::vector<KnownLoad>& loads,
                              const std::vector<FreedLoad>& freed) {
   SampleDatabase felt = database;
@@ -149,7 +149,7 @@ struct HeldOutErrors {
   double with = 0.0;
 };
 
-/// Of fits to the other pieces.
+/// The errors of fits to the other pieces.
 std::optional<HeldOutErrors> held_out_errors(const SampleDatabase& database, const LoadHistory& history,
                                              const fusion::MemoryLaw& start) {
   const std::vector<KnownLoad> loads = known_loads(database, history);
@@ -179,7 +179,7 @@ Nanos usual_interval(const std::vector<Nanos>& times) {
   return intervals.empty() ? Nanos{} : upper_median(std::move(intervals));
 }
 
-/// Each piece after a pause is told as a recording of its own, which begins earlier than the last one ended.
+/// Each piece after a pause counts as a recording of its own, which begins earlier than the last one ended.
 std::vector<Nanos> times_of_pieces(const std::vector<Nanos>& times) {
   const Nanos pause = std::max(kLeastPause, kIntervalsOfPause * usual_interval(times));
   std::vector<Nanos> of_pieces;
@@ -204,7 +204,7 @@ std::vector<Nanos> likelier_times(const LoadHistory& history, const std::vector<
   return misfit_of_pieces < misfit ? of_pieces : history.time;
 }
 
-/// What the recording can tell of time and of unloading.
+/// The evidence of the recording on time and unloading.
 void observe_loads(const std::vector<KnownLoad>& loads, const LoadHistory& history, LearnedMemory& memory) {
   struct Hold {
     Nanos begin{};
@@ -236,7 +236,7 @@ bool is_pressed_in_both(const Sample& before, const Sample& sample) {
 }  // namespace
 
 std::string describe(const LearnedMemory& memory) {
-  // What one newton is felt as, so long after it was put on.
+  // The felt share of one newton, so long after it was put on.
   const auto felt_after = [&](double seconds) {
     double felt = 1.0;
     for (std::size_t k = 0; k < memory.law.creep.size(); ++k) {

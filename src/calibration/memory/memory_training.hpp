@@ -13,7 +13,7 @@
 
 namespace dermis::calibration {
 
-/// What a recording tells of the memory of its material.
+/// The memory of a material as a recording shows it.
 struct LearnedMemory {
   fusion::MemoryLaw law;
   SampleDatabase felt;                ///< The same samples, with what the material felt of their forces,
@@ -32,15 +32,15 @@ struct LearnedMemory {
 /// The frames are so close in time that most loads are seen as they come, lie and go.
 [[nodiscard]] bool is_continuous(std::span<const RawFrame> frames);
 
-/// Labels name loads on the same taxels at least every 1.5 s: slower frames tell of memory, too. `frames`: the
-/// recording of `database`, or empty.
+/// Labels name loads on the same taxels at least every 1.5 s: slower frames show memory, too. `frames`: the recording
+/// of `database`, or empty.
 [[nodiscard]] bool loads_follow_each_other(const SampleDatabase& database, std::span<const RawFrame> frames);
 
-/// Learns the law of MaterialMemory from a continuous recording with labels: networks give what the material feels in
-/// every frame, labelled or not; the law is what frees these forces best from their past where the load is known; and
-/// the networks are trained again on what the loads must have been felt as. Kept only where the errors on one half of
-/// the recording that neither networks nor law have seen, and then on the other, fall by 5 % or more. Empty also where
-/// there are too few loads. `frames`: the recording of `database`; `plain`: what was trained on it.
+/// Learns the law of MaterialMemory from a continuous recording with labels. Networks give the felt force in every
+/// frame, labelled or not. The law is the one that best frees these forces from their past where the load is known.
+/// Then the networks are trained again on the felt forces of the loads. The result is kept only where the errors on
+/// each half of the recording, unseen by networks and law, fall by 5 % or more. Empty also where there are too few
+/// loads. `frames`: the recording of `database`; `plain`: what was trained on it.
 [[nodiscard]] std::optional<LearnedMemory> learn_memory(const SampleDatabase& database,
                                                         std::span<const RawFrame> frames, const ForceTraining& plain);
 

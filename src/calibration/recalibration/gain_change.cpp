@@ -17,7 +17,7 @@ constexpr std::size_t kLeastToTellSpread = 5;
 constexpr double kMostSpread = 0.3;
 constexpr int kSpreadSteps = 15;
 
-/// sum over the taxels of the shares of two presses: how far they tell of the same taxels.
+/// sum over the taxels of the shares of two presses: how far they concern the same taxels.
 Eigen::MatrixXd overlaps(std::span<const KnownPress> presses, std::size_t taxels) {
   const auto count = static_cast<Eigen::Index>(presses.size());
   Eigen::MatrixXd shares = Eigen::MatrixXd::Zero(count, static_cast<Eigen::Index>(taxels));

@@ -16,7 +16,7 @@ constexpr double kReleased = 1.0 / 3.0;  // of what was read
 constexpr float kPressedSigmas = 3.0F;
 constexpr double kLeastSigma = 0.005;  // relative
 
-/// Of taxels that are pressed, together.
+/// The readings of pressed taxels, together.
 struct Reading {
   std::vector<double> newtons;  // of each of them, 0 where it is not pressed
   double total_n = 0.0;

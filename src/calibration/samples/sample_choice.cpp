@@ -13,7 +13,7 @@ namespace dermis::calibration {
 namespace {
 
 constexpr std::size_t kMostOfPlace = 4000;         // as many points as a network of its own is trained on
-constexpr std::size_t kLeastShareOfUnloaded = 16;  // one of so many samples may be: each tells the zero of all taxels
+constexpr std::size_t kLeastShareOfUnloaded = 16;  // one of so many samples may be: each shows the zero of all taxels
 constexpr std::size_t kMostBytes = 180'000'000;
 constexpr std::size_t kBytesPerTaxel = 17;  // of a sample: ratio, siemens, sigma, status, force
 constexpr std::size_t kAllocations = 5;     // of a sample, and what each of them costs

@@ -73,7 +73,7 @@ class Selection {
   }
 
   [[nodiscard]] const preprocessing::MissingReadings& missing() const { return missing_; }
-  /// Of the frames so far, without the outliers among many.
+  /// Supplies of the frames so far, without the outliers among many.
   [[nodiscard]] std::optional<preprocessing::SupplyRange> supply() const {
     if (supplies_v_.empty()) return std::nullopt;
     return preprocessing::SupplyRange{quantile(supplies_v_, kOutliers), quantile(supplies_v_, 1.0 - kOutliers)};
@@ -102,7 +102,7 @@ Sample make_sample(const ArrayDescription& array, std::size_t frame, std::span<c
   sample.sigma_siemens.assign(conductance.sigma_siemens.begin(), conductance.sigma_siemens.end());
   sample.taxels = conditioned.taxels;
   expand_loads(array, loads, sample);
-  // A reading at the end of the ADC no longer tells its force, of one that is missing the neighbours tell some.
+  // A reading at the end of the ADC no longer shows its force. The neighbours of a missing one show some.
   for (std::size_t taxel = 0; taxel < array.taxel_count(); ++taxel) {
     if (conductance.taxels[taxel] != TaxelStatus::ok) {
       sample.known_newtons[taxel] = std::numeric_limits<float>::quiet_NaN();
@@ -228,7 +228,7 @@ bool has_floating_lines(const Readout& readout) {
   return readout.idle_rows == IdleRows::floating || readout.idle_columns == IdleColumns::floating;
 }
 
-/// What is wrong with the frames is said where they become samples, with its place.
+/// Errors of the frames are reported where they become samples, with their place.
 InstrumentFit judge_instrument(const ArrayDescription& array, std::span<const RawFrame> frames,
                                std::span<const Load> loads, Nanos settle_time, bool is_asked_for) {
   InstrumentFit as_described{.array = array, .statements = {}, .doubts = {}};

@@ -19,7 +19,7 @@ namespace dermis::calibration {
 /// Unloaded conductance of every taxel and the noise of one frame about it.
 struct UnloadedFit {
   UnloadedLaw law;
-  std::vector<double> offset_sigma_siemens;  ///< Of the fit, averaged over its temperatures [taxels].
+  std::vector<double> offset_sigma_siemens;  ///< Standard error of the fit, averaged over its temperatures [taxels].
   std::vector<double> noise_siemens;  ///< Standard deviation of a single frame [taxels], at least a third of a count.
   std::vector<bool> is_stuck;         ///< Saturated although nothing presses, or without any reading [taxels].
 };

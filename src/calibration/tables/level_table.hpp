@@ -19,8 +19,8 @@ struct LevelPoint {
 /// The k of signal * (1 + k dT) that makes the signals of equal force agree best; `points` by rising force.
 [[nodiscard]] double temperature_coefficient(std::span<LevelPoint> points);
 
-/// Newtons and signal at the reference, both rising: a knot at every force of `points`, which are by rising force (at
-/// most 64, in equal shares beyond), the mean signal there, neighbours that fall pooled.
+/// Newtons and signal at the reference, both rising, with a knot at every force of `points` (at most 64, in equal
+/// shares beyond). Points are by rising force. A knot has the mean signal there; falling neighbours are pooled.
 [[nodiscard]] std::vector<Knot> level_table(std::vector<LevelPoint> points, double coefficient);
 
 }  // namespace dermis::calibration

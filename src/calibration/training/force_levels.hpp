@@ -7,10 +7,10 @@
 
 namespace dermis::calibration {
 
-/// Heaviest over lightest load that tell of a power of conductance.
+/// Heaviest over lightest load that determine a power of conductance.
 inline constexpr double kLeastForceRange = 2.0;
 
-/// Forces that are needed to tell how the power changes with the load; the level and the power take two.
+/// Forces that are needed to determine how the power changes with the load; the level and the power take two.
 inline constexpr std::size_t kLeastLevelsOfBend = 3;
 
 /// Different forces of a calibration; labels weighed by a load cell scatter about their level.

@@ -8,8 +8,8 @@
 namespace dermis::calibration {
 namespace {
 
-// Standard deviations of the prior: a hidden unit bends ln(newtons) by about one over the range of its inputs; the
-// power law and what many temperatures tell are left nearly free. Rubbers drift by 0.2 to 1 %/C.
+// Standard deviations of the prior. A hidden unit bends ln(newtons) by about one over the range of its inputs. The
+// power law and a temperature law from many temperatures are nearly free. Rubbers drift by 0.2 to 1 %/C.
 constexpr double kHiddenDeviation = 1.5;
 constexpr double kDirectDeviation = 5.0;
 constexpr double kDeviationPerCelsius = 0.02;

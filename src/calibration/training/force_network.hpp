@@ -39,30 +39,30 @@ struct ForceNetwork {
 [[nodiscard]] std::vector<double> random_start(const network::PerceptronShape& shape, double newtons_at_reference,
                                                Random& random);
 
-/// What the data can tell of the power law of conductance.
+/// How far the data determine the power law of conductance.
 enum class PowerPrior {
   free,      ///< All of it.
   straight,  ///< Its exponent, but not how that changes with the load: forces on two levels.
   held,      ///< Nothing: the exponent is 1.
 };
 
-/// What the data can tell of temperature.
+/// How far the data determine the effect of temperature.
 enum class TemperaturePrior {
   free,  ///< How it changes the law of force and conductance.
   line,  ///< A factor on the force whose logarithm is a line: hidden units do not see temperature.
 };
 
-/// What the data can tell of the law, for prior_residuals().
+/// How far the data determine the law, for prior_residuals().
 struct NetworkPrior {
   PowerPrior power = PowerPrior::free;
   TemperaturePrior temperature = TemperaturePrior::free;
   double half_span_celsius = 0.0;  ///< That an input of 1 is worth, where temperature is one.
 };
 
-/// A Gaussian prior on the parameters, as residuals that are appended to those of the data: hidden weights are about 0,
-/// the power of conductance about 1, the temperature coefficient what rubbers have, and what `prior` calls unknown
-/// hardly leaves that. `scale`: standard deviation of a data residual. Fills residuals [parameter_count] and, where it
-/// is not empty, jacobian [parameter_count, columns].
+/// A Gaussian prior on the parameters, as residuals that are appended to those of the data. Hidden weights are about 0,
+/// the power of conductance about 1, and the temperature coefficient about that of rubbers. Parameters that `prior`
+/// calls unknown hardly leave their values. `scale`: standard deviation of a data residual. Fills residuals
+/// [parameter_count] and, where it is not empty, jacobian [parameter_count, columns].
 void prior_residuals(const ForceNetwork& network, const NetworkPrior& prior, double scale, std::span<double> residuals,
                      std::span<double> jacobian, std::size_t columns) noexcept;
 

@@ -37,7 +37,7 @@ constexpr double kLeastTemperatureShare = 0.5;
 constexpr float kUnknownRelativeSigma = 0.01F;  // until fit_uncertainty()
 constexpr double kDetectable = 3.0;             // in standard deviations of the unloaded reading
 
-/// What the samples say about each taxel.
+/// The evidence of the samples on each taxel.
 struct Evidence {
   SampleTemperatures temperatures;
   UnloadedFit unloaded;
@@ -45,7 +45,7 @@ struct Evidence {
   std::vector<bool> dead;                       ///< [taxels]
 };
 
-/// Mean of the unloaded samples; 0: not known. What noise does to a conductance depends on all that presses.
+/// Mean of the unloaded samples; 0: not known. The effect of noise on a conductance depends on all presses.
 double unloaded_sigma_siemens(const SampleDatabase& database, std::size_t taxel) {
   double sum = 0.0;
   double count = 0.0;
@@ -143,8 +143,8 @@ bool supports_own_network(const std::vector<TaxelPoint>& points, bool uses_tempe
          (!uses_temperature || hottest - coldest >= 2.0 * kLeastTemperatureShare);
 }
 
-/// Hidden units that the points can hold. Each bends the law between forces: many samples under few forces tell nothing
-/// of that, and where the material remembers, their scatter would make the law a stair.
+/// Hidden units that the points can hold. Each bends the law between forces, about which many samples under few forces
+/// say nothing. Where the material remembers, their scatter would make the law a stair.
 std::size_t hidden_units(const std::vector<TaxelPoint>& points, bool uses_temperature) {
   const std::size_t parameters_of_unit = force_shape(uses_temperature, 1).inputs + 2;
   const std::size_t levels = count_levels(rising_loads(points));

@@ -68,8 +68,8 @@ std::vector<std::size_t> folds_of_loads(const std::vector<Points>& presses, cons
   return fold_of;
 }
 
-/// What a fit without the press would make of a sample of it: the samples of a press are alike, so that each pulls at
-/// the fit as all of them do that the fit has seen.
+/// The error of a fit without the press on a sample of it. The samples of a press are alike, so each pulls at the fit
+/// as all its samples in the fit do.
 double left_out_error(const TestedLoad& load, std::size_t samples_of_press) {
   const double pull = std::min(load.leverage * static_cast<double>(samples_of_press), kMostLeverage);
   return load.residual_n / load.newtons / (1.0 - pull);

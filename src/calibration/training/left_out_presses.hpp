@@ -12,9 +12,10 @@
 
 namespace dermis::calibration {
 
-/// What networks and tables make of presses that neither has seen [taxels]. A tenth of the presses of a taxel is left
-/// out of its table at a time; where it has but two loads, all presses of one. The error of the network on a press is
-/// that of a fit without it, by the leverage of its samples. Presses heavier than all that are left are not judged.
+/// The errors of networks and tables on presses that neither has seen [taxels]. A tenth of the presses of a taxel is
+/// left out of its table at a time. Where it has only two loads, all presses of one are left out. The error of the
+/// network on a press is that of a fit without it, by the leverage of its samples. Presses heavier than all that are
+/// left are not judged.
 [[nodiscard]] std::vector<ComparedTaxel> judge_left_out_presses(std::span<const std::vector<TaxelPoint>> points,
                                                                 const TableMaker& maker, const ForceTraining& training);
 

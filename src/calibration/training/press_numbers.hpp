@@ -9,7 +9,7 @@
 
 namespace dermis::calibration {
 
-/// Tells the presses and the touches in one place apart. A press is samples in a row under the same load. In a touch
+/// Numbers the presses and the touches in one place. A press is samples in a row under the same load. In a touch
 /// presses follow each other, as where a weight is put onto another: what one touch changes, all of them have in
 /// common.
 class PressNumbers {
@@ -20,7 +20,7 @@ class PressNumbers {
     std::size_t touch = 0;
   };
 
-  /// Of sample `index` of the database; they rise from call to call.
+  /// Numbers for sample `index` of the database; they rise from call to call.
   const Numbers& next(const Sample& sample, std::size_t index, double load_newtons) {
     const auto [least, most] = std::minmax(load_newtons, first_newtons_);
     const bool is_next = samples_ > 0 && index == last_ + 1;

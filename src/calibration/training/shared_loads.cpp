@@ -11,7 +11,7 @@
 namespace dermis::calibration {
 namespace {
 
-constexpr std::size_t kMostPresses = 12;  // of one taxel alone; more tell little about all
+constexpr std::size_t kMostPresses = 12;  // of one taxel alone; more are little evidence on all
 
 }  // namespace
 

@@ -24,8 +24,8 @@ struct MeasuredLoad {
   std::size_t touch = 0;  ///< First sample of its touch.
 };
 
-/// The loads of a database that one network of all taxels learns from: those on several taxels, and some of the presses
-/// on each taxel alone, where a taxel that is not dead feels them.
+/// The loads of a database that one network of all taxels learns from. These are the loads on several taxels, and some
+/// presses on single taxels that are not dead and feel them.
 class SharedLoads {
  public:
   SharedLoads(const SampleDatabase& database, const SampleTemperatures& temperatures, const UnloadedFit& unloaded,

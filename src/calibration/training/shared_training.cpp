@@ -196,8 +196,8 @@ void train(const SharedProblem& problem, Candidate& candidate) {
 }
 
 /// Hidden units that loads of so few different forces allow. With a handful of weights, each on many taxels, a network
-/// that can bend learns a stair with the weights as its steps: it is right on every load that is left out, because the
-/// other taxels carried the same weight, and wrong between the weights.
+/// that can bend learns a stair with the weights as its steps. It is right on every left-out load, because the other
+/// taxels carried the same weight, and wrong between the weights.
 std::size_t most_hidden_units(const std::vector<MeasuredLoad>& loads) {
   return std::min(kMostHiddenUnits, levels_of(loads) / kLevelsPerHiddenUnit);
 }
@@ -293,8 +293,8 @@ std::vector<network::FittedResidual> fitted_loads(const SharedProblem& problem, 
                                    chosen.free, groups);
 }
 
-/// The errors of the loads as if each were left out. The leverage knows of the network's parameters but not of the
-/// gains: the errors are scaled by as much as held-out loads are worse than that, or not at all.
+/// The errors of the loads as if each were left out. The leverage covers the network's parameters but not the gains. So
+/// the errors are scaled by the ratio at which held-out loads are worse, or not at all.
 std::vector<TestedLoad> tested_loads(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
                                      const Candidate& chosen, double scale) {
   std::vector<std::size_t> touches;
@@ -329,9 +329,9 @@ double heaviest_share(const SharedProblem& problem, const ForceNetwork& network)
 }
 
 /// The errors of the loads on single taxels as those of taxels that were never pressed: the network alone, without the
-/// gain. The p parameters that take up what differs from taxel to taxel leave n - p of n taxels to tell of it; what is
-/// known of sheets counts as kTaxelsOfPrior more. A new taxel's variance is larger by 1 + p / n, and by the variance of
-/// Student's distribution of f degrees of freedom, f / (f - 2), because the scatter is itself uncertain.
+/// gain. The p parameters that absorb the differences between taxels leave n - p of n taxels as evidence on it. Prior
+/// knowledge of sheets counts as kTaxelsOfPrior more. A new taxel's variance is larger by 1 + p / n. The scatter is
+/// itself uncertain, so the variance of Student's distribution of f degrees of freedom, f / (f - 2), is a factor, too.
 std::vector<TestedLoad> tested_as_unpressed(const std::vector<MeasuredLoad>& raw, const SharedProblem& problem,
                                             const ForceNetwork& network, const Candidate& chosen) {
   std::vector<std::size_t> places;

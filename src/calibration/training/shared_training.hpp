@@ -19,13 +19,14 @@ struct SharedNetwork {
   double heaviest_newtons = 0.0;     ///< The most that one taxel carried, by this network.
   double leave_one_out_error = 0.0;  ///< Root mean square relative error of a load that is held out.
   std::vector<TestedLoad> tested;
-  std::vector<TestedLoad> tested_unpressed;  ///< Of single taxels, with the errors of taxels that no load pressed.
+  /// Loads on single taxels, with the errors of taxels that no load pressed.
+  std::vector<TestedLoad> tested_unpressed;
 };
 
-/// Trains through the sum: for every load, sum over its taxels of gain_i f(e_i, t) = newtons. The number of hidden
-/// units (0 ... 3; one for every seven different forces) is chosen by the analytic leave-one-out error, each trained
-/// from the best of several random starts. Gains, with a prior about 1 as wide as taxels are known to differ, are
-/// fitted in turn with the network as long as they lower the error of loads that are held out. Large calibrations are
+/// Trains through the sum: for every load, sum over its taxels of gain_i f(e_i, t) = newtons. The analytic
+/// leave-one-out error chooses the number of hidden units (0 ... 3; one for every seven different forces). Each is
+/// trained from the best of several random starts. Gains have a prior about 1, as wide as taxels are known to differ.
+/// They are fitted in turn with the network as long as they lower the error of held-out loads. Large calibrations are
 /// thinned out evenly (12 presses of a taxel alone, 200,000 taxels of all loads together). Deterministic, whatever the
 /// number of threads.
 [[nodiscard]] SharedNetwork train_shared(const SampleDatabase& database, const SampleTemperatures& temperatures,

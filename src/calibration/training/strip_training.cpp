@@ -77,7 +77,7 @@ void extend(std::vector<Knot>& knots, const std::vector<KnownTouch>& touches) {
   if (last.x > knots.back().x && last.y >= knots.back().y) knots.push_back(last);
 }
 
-/// What the touches scatter about the table beyond the noise of their centres of mass.
+/// The scatter of the touches about the table beyond the noise of their centres of mass.
 double scatter_m(const contacts::StripTable& table, const std::vector<KnownTouch>& touches) {
   double square = 0.0;
   double noise = 0.0;

@@ -12,12 +12,12 @@
 
 namespace dermis::calibration {
 
-/// Holds a table of every taxel, as the baseline "crosstalk_lookup" has it, against the networks, group of neighbouring
-/// taxels by group, on presses that neither has seen (judge_left_out_presses()). A group gets its tables where they are
-/// clearly better: by a fifth in the mean, and by four standard errors of the paired differences over at least twelve
-/// presses. Presses of one moment on several taxels are one.
+/// Compares a table of every taxel, as in the baseline "crosstalk_lookup", with the networks, by groups of neighbouring
+/// taxels. The presses are ones that neither has seen (judge_left_out_presses()). A group gets its tables where they
+/// are clearly better: by a fifth in the mean, and by four standard errors of the paired differences. At least twelve
+/// presses are needed. Presses of one moment on several taxels are one.
 ///
-/// What a method reads after a press of a taxel, with nothing on the array, are ghosts; 99 of 100 are below the one
+/// Ghosts are the readings of a method after a press of a taxel, with nothing on the array. 99 of 100 are below the one
 /// that counts. The networks may see ghosts of more than a tenth of the lightest load, and twice those of the tables. A
 /// group then gets its tables also where they are not clearly worse on the presses. It gets none where its tables see
 /// such ghosts. All others keep their networks. `points`: known forces of each taxel [taxels], with the numbers of

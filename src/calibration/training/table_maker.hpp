@@ -13,7 +13,7 @@
 
 namespace dermis::calibration {
 
-/// Of one taxel.
+/// The table of one taxel.
 struct TaxelTable {
   std::vector<Knot> knots;   ///< Newtons and siemens, both rising; none: there is no table.
   double per_celsius = 0.0;  ///< The linear temperature term.

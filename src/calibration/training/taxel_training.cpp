@@ -97,7 +97,7 @@ class TaxelProblem {
  private:
   [[nodiscard]] std::size_t residual_count() const { return points_.size() + network_.shape.parameter_count(); }
 
-  /// Of the points, then of the prior.
+  /// The residuals of the points, then those of the prior.
   [[nodiscard]] network::ResidualFunction residual_function() {
     return [this](std::span<const double> free, std::span<double> residuals, std::span<double> jacobian) {
       const std::size_t n = free.size();

@@ -27,8 +27,8 @@ struct TaxelPoint {
 [[nodiscard]] std::vector<double> rising_loads(std::span<const TaxelPoint> points);
 
 /// Trains ln(newtons) of one taxel on its points by Levenberg-Marquardt, from several random starts. Every point counts
-/// by its noise and a floor for what the temperature and supply meters add. Two different loads tell a power, no more.
-/// `temperature` is the span of the inputs where they have one.
+/// by its noise and a floor for what the temperature and supply meters add. Two different loads determine a power, no
+/// more. `temperature` is the span of the inputs where they have one.
 [[nodiscard]] ForceNetwork train_taxel(const network::PerceptronShape& shape, std::span<const TaxelPoint> points,
                                        const TemperatureSpan& temperature, std::uint64_t seed);
 

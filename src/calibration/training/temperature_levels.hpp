@@ -17,12 +17,12 @@ struct WarmLoad {
   double temperature = 0.0;
 };
 
-/// What loads tell of temperature: at how many temperatures half of them were put on about alike. Where temperature
-/// goes with the load, that is one, however far both go.
+/// How far loads show the effect of temperature: the number of temperatures at which half of them were put on about
+/// alike. Where temperature follows the load, the number is one, however far both go.
 [[nodiscard]] TemperaturePrior temperature_prior(std::vector<WarmLoad> loads, const TemperatureSpan& span);
 
-/// The widest gap between temperatures at which something pressed, where it is more than half of the calibrated span:
-/// [lowest, highest] [C], both the centre where there is none.
+/// The widest gap between temperatures at which something pressed, where it is more than half of the calibrated span.
+/// As [lowest, highest] [C]; both are the centre where there is none.
 [[nodiscard]] std::array<double, 2> temperature_gap(const SampleDatabase& database,
                                                     const SampleTemperatures& temperatures);
 

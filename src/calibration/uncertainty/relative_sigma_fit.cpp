@@ -20,8 +20,8 @@ constexpr double kPriorShare = 0.1;  // of the loads: as many more say that all 
 
 using Square = double JudgedLoad::*;
 
-/// Whether more loads are outside their intervals than a normal distribution has outside: of one and of two standard
-/// deviations together, since the errors of a material with memory have longer tails.
+/// Whether more loads are outside their intervals than in a normal distribution. One and two standard deviations count
+/// together, since the errors of a material with memory have longer tails.
 bool is_too_sure(const std::vector<double>& square_scores) {
   const double one = quantile(square_scores, kOneSigmaShare);
   const double two = quantile(square_scores, kTwoSigmaShare) / 4.0;
@@ -69,7 +69,7 @@ double surprise(const std::vector<JudgedLoad>& loads, double supply_noise) {
 }
 
 /// The fixed point of the variance components of a normal distribution (the multiplicative step of Lange's MM
-/// algorithm), outliers as above. Loads that nobody put on say at each knot what all loads say together, so that a knot
+/// algorithm), outliers as above. Loads that nobody put on stand at each knot for the mean of all loads. So a knot
 /// without loads of its own leans on the others.
 VarianceProfile likeliest_profile(const std::vector<JudgedLoad>& loads, double supply_noise) {
   const VarianceProfile even = even_profile(loads, &JudgedLoad::square_error, supply_noise);

@@ -22,7 +22,7 @@ namespace {
 constexpr double kUnlearnedExponent = 0.2;     // of force over conductance, relative: rubbers have 0.8 to 2
 constexpr double kUnlearnedRepetition = 0.05;  // relative, where no load was repeated
 
-/// What was tested, by what gives the forces.
+/// The tested loads, by the source of their forces.
 struct JudgedLoads {
   std::vector<JudgedLoad> own;
   std::vector<JudgedLoad> shared;
@@ -90,7 +90,8 @@ std::set<std::size_t> unpressed_taxels(const ForceTraining& training) {
   return unpressed;
 }
 
-/// What the noise of the samples has left in the networks stays where readings are less noisy: the least a profile is.
+/// The noise of the samples leaves an error in the networks, which stays where readings are less noisy: the least of a
+/// profile.
 void add_uncertainty_of_networks(const std::vector<JudgedLoad>& loads, VarianceProfile& profile) {
   for (std::size_t k = 0; k < profile.size(); ++k) {
     double square = 0.0;
@@ -124,7 +125,7 @@ double mean_square_error(const std::vector<TestedLoad>& loads) {
   return std::max(mean, kUnlearnedRepetition * kUnlearnedRepetition);
 }
 
-/// How surely single presses tell the exponent of the law that taxels share.
+/// How surely single presses determine the exponent of the law that taxels share.
 struct ExponentEvidence {
   double mean_log_newtons = 0.0;  ///< Where the exponent has no part in forces.
   double variance = 0.0;          ///< Of the exponent, relative.
@@ -151,7 +152,7 @@ ExponentEvidence exponent_evidence(const ForceTraining& training) {
   return {mean_of(means), 1.0 / evidence};
 }
 
-/// What few loads do not tell of the law.
+/// Adds the uncertainty of a law that few loads leave open.
 void add_uncertainty_of_exponent(const ForceTraining& training, const fusion::ForceNetworks& networks,
                                  VarianceProfile& profile) {
   const ExponentEvidence evidence = exponent_evidence(training);
@@ -186,7 +187,7 @@ void place_knots(const ForceTraining& training, fusion::ForceNetworks& networks)
   networks.sigma_knots_newtons = {static_cast<float>(lightest), static_cast<float>(heaviest)};
 }
 
-/// What is left of the errors when the instruments' are known, taxels by what gives their forces.
+/// Fits the rest of the errors beside those of the instruments, by the source of the taxels' forces.
 void fit_material(const JudgedLoads& judged, const ForceTraining& training, fusion::ForceNetworks& networks,
                   UncertaintyReport& report) {
   const auto set_trained = [&](const std::vector<JudgedLoad>& loads, const std::vector<TestedLoad>& tested) {
@@ -211,7 +212,7 @@ void fit_material(const JudgedLoads& judged, const ForceTraining& training, fusi
   report.relative_sigma_of_tables = set_relative_sigma({tables.begin(), tables.end()}, profile, networks);
 }
 
-/// What circuit and ADC are said wrongly of touches every force, by as much as presses on several taxels show.
+/// A wrong description of circuit and ADC affects every force, by as much as presses on several taxels show.
 void widen(double unexplained_share, fusion::ForceNetworks& networks) {
   for (float& sigma : networks.relative_sigma) {
     sigma = static_cast<float>(std::hypot(static_cast<double>(sigma), unexplained_share));

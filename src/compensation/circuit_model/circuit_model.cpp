@@ -46,7 +46,7 @@ struct CircuitModel::Implementation {
     });
   }
 
-  /// Of a reading's derivative.
+  /// Loss of a reading's derivative.
   [[nodiscard]] double loss(std::size_t reading) const noexcept { return supply_left[reading] * supply_left[reading]; }
 
   ScannedLines lines;

@@ -15,10 +15,10 @@ namespace dermis::compensation {
 /// How a circuit is read: one driven and one sensed line at a time. Every reading is an affine function of the current
 /// I_ds that leaves sensed line s while line d is driven: r = gain_s I_ds + offset_s.
 ///
-/// Where lines of one side at least stay tied, a scan ties one driven or one sensed line on top of the base network, a
-/// rank-1 change of which the potentials are known already (Sherman-Morrison). By reciprocity (Tellegen) a conductance
-/// g across the drops f of the scan and h of the response to 1 V behind rho_s moves the current by dI_ds/dg = -f h, and
-/// rho_t with the currents i and k into the network moves it by dI_ds/drho_t = i k.
+/// Where lines of one side at least stay tied, a scan ties one driven or one sensed line on top of the base network.
+/// The potentials of this rank-1 change are known already (Sherman-Morrison). A conductance g moves the current by
+/// dI_ds/dg = -f h, by reciprocity (Tellegen). Here f is the drop across g in the scan, and h that in the response to 1
+/// V behind rho_s. And rho_t with the currents i and k into the network moves it by dI_ds/drho_t = i k.
 class CircuitScan {
  public:
   /// `lines` are to outlive it.

@@ -25,8 +25,8 @@ std::size_t length_of(const ScannedLines& lines, std::size_t line) {
   return lines.is_row(line) ? lines.array().cols : lines.array().rows;
 }
 
-// Nodes are numbered from one end of the longer side of the array to the other, lines without resistance along it and
-// held nodes last: every node then has few later neighbours.
+// Nodes are numbered from one end of the longer side of the array to the other. Lines without resistance along it and
+// held nodes are last, so every node has few later neighbours.
 NodePlace place_of(const ScannedLines& lines, std::size_t line, std::size_t position) {
   const bool is_along = lines.is_row(line) != (lines.array().rows >= lines.array().cols);
   const std::size_t past_all = length_of(lines, line);

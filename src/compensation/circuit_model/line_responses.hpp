@@ -10,8 +10,8 @@
 
 namespace dermis::compensation {
 
-/// The base network's response to each line alone: to 1 V behind the rho of a tied one, to 1 A into the head of a
-/// floating one; and to the offsets of the amplifiers, the source after those of the lines.
+/// The base network's response to each line alone, and to the offsets of the amplifiers, the source after those of the
+/// lines. A tied line gets 1 V behind its rho, a floating one 1 A into its head.
 class LineResponses {
  public:
   /// Both outlive this.
@@ -20,12 +20,12 @@ class LineResponses {
   /// At the conductances that the network was eliminated with.
   void solve() noexcept;
 
-  /// Turns the drops of a floating line from those for 1 A to those for 1 V behind its rho; the admittance of the loop
-  /// through it [S].
+  /// Turns the drops of a floating line from those for 1 A to those for 1 V behind its rho. Returns the admittance of
+  /// the loop through it [S].
   double drive_floating_line(std::size_t line) noexcept;
 
-  /// While `line` is scanned, a first taxel on another floating line that has none would bring that line to the
-  /// potential of the taxel's other end: no drop.
+  /// While `line` is scanned, a first taxel on another, empty floating line would bring that line to the potential of
+  /// the taxel's other end: no drop.
   void clear_isolated_lines(std::size_t line, Matrix::RowXpr drops) const noexcept;
 
   /// Out of the head of a tied line.

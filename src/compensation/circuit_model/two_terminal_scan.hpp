@@ -7,8 +7,8 @@
 namespace dermis::compensation {
 
 /// All lines float but the two that a scan connects. The potentials of each scan are found anew, for 1 A from its
-/// driven to its sensed line: differences of the responses of single lines would lose the parts of the array that hang
-/// on each other by weak taxels only.
+/// driven to its sensed line. Differences of the responses of single lines would lose parts of the array that hang on
+/// each other by weak taxels only.
 class TwoTerminalScan final : public CircuitScan {
  public:
   TwoTerminalScan(const ScannedLines& lines, const LineNetwork& network);

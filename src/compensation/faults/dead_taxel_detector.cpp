@@ -8,7 +8,7 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr float kCrosstalkShare = 0.3F;  // of what crosses over from other taxels may be solved wrongly
+constexpr float kCrosstalkShare = 0.3F;  // of the crosstalk from other taxels may be solved wrongly
 constexpr int kPassedOver = 2;           // frames in which taxels on both sides are pressed
 constexpr double kAboveSmallest = 4.0;  // times the smallest reading: a press that no threshold hides on a weaker taxel
 
@@ -80,7 +80,7 @@ void DeadTaxelDetector::forget(std::size_t frame, const TaxelBlock& block) noexc
   }
 }
 
-/// On both sides on its row, or on its column.
+/// Taxels are pressed on both sides on its row, or on its column.
 bool DeadTaxelDetector::is_between_presses(const Observation& seen, std::size_t taxel) const noexcept {
   const double least = kAboveSmallest * seen.unloaded.smallest_reading();
   const auto is_pressed = [&](std::size_t other) {

@@ -14,10 +14,9 @@
 
 namespace dermis::compensation {
 
-/// A taxel is dead when its conductance stays below what an unloaded one has: what crosses over from pressed taxels is
-/// solved there. Where it reads something all the same, that is no evidence: the circuit may not be quite the given
-/// one.
-/// As its unloaded conductance alone may be wrong, it must also keep silent between pressed taxels.
+/// A taxel is dead when its conductance stays below that of an unloaded one: there crosstalk from pressed taxels is
+/// solved. A reading that remains is no evidence against it: the circuit may not be quite the given one. As its
+/// unloaded conductance alone may be wrong, it must also keep silent between pressed taxels.
 class DeadTaxelDetector {
  public:
   explicit DeadTaxelDetector(const ArrayDescription& array);

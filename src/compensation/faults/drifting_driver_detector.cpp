@@ -37,7 +37,7 @@ void DriftingDriverDetector::Fit::add(double slope, double value, double varianc
   pairs = kMemory * pairs + 1.0;
 }
 
-/// From the scatter of what was fitted, which memory of the material makes wider than noise alone.
+/// Takes the scatter of the fitted values, which memory of the material makes wider than noise alone.
 double DriftingDriverDetector::Fit::deviation() const {
   const double scatter = (square - moment * moment / normal) / pairs;
   return std::sqrt(std::max(scatter, 1.0) / normal);
@@ -100,8 +100,7 @@ DriftingDriverDetector::Pair DriftingDriverDetector::untouched_pair(const Observ
   return pair;
 }
 
-/// Places of a line near which the line or one beside it is touched: reads more than an unloaded taxel, in this frame
-/// or in the last one.
+/// Finds where a line or one beside it is touched: a taxel reads more than an unloaded one, in this frame or the last.
 void DriftingDriverDetector::find_touched(const Observation& seen, std::size_t line) noexcept {
   const Axis driven = driven_axis(array_);
   const std::size_t places = touched_.size();

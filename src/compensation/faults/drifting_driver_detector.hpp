@@ -12,10 +12,10 @@
 
 namespace dermis::compensation {
 
-/// A driver whose resistance is higher by d than the inversion takes it to be makes all conductances of its line come
-/// out too small by the factor 1 - d Y, Y the sum of the line as it comes out: untouched taxels fall at once when Y
-/// rises, and rise when it falls. Memory of the material does not: what a press leaves behind only fades. Two frames
-/// of one line at a time, while there is no other fault.
+/// A driver whose resistance is higher by d than the inversion assumes makes all conductances of its line come out too
+/// small. The factor is 1 - d Y, where Y is the sum of the line as it comes out. So untouched taxels fall at once when
+/// Y rises, and rise when it falls. Memory of the material acts otherwise: the trace of a press only fades. The
+/// detector compares two frames of one line at a time, while there is no other fault.
 class DriftingDriverDetector {
  public:
   explicit DriftingDriverDetector(const ArrayDescription& array);

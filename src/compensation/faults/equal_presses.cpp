@@ -37,7 +37,7 @@ EqualPresses EqualPresses::without(const EqualPresses& others) const {
   return rest;
 }
 
-/// Places of one press are not independent where more presses than chance makes are equal everywhere.
+/// Places of one press are not independent where more presses are equal everywhere than chance allows.
 double EqualPresses::evidence(int places) const {
   if (scattered_ < std::max(kLeastScattered, kScatteredShare * presses_)) return 0.0;
   const double of_places = -places * std::log(chance_of_place());

@@ -4,7 +4,7 @@
 
 namespace dermis::compensation {
 
-/// A press that reads the same on two lines at one place: how the lines compare at the other places that it presses.
+/// A press that reads the same on two lines at one place: how the lines compare at its other places.
 struct PressComparison {
   int equal = 0;  // places
   int more = 0;   // on the first line, beyond the noise
@@ -13,9 +13,9 @@ struct PressComparison {
   [[nodiscard]] int places() const { return equal + more + less; }
 };
 
-/// How improbable it is that healthy lines read the same, as those of this array show it. Two lines may be pressed
-/// alike at one place by chance; taxels that scatter then differ at the others, one way and the other. Where all taxels
-/// are the same, or the shape of the presses alone makes them differ, lines that are equal once are equal everywhere.
+/// How improbable equal readings of healthy lines are, as the lines of this array show. Two lines may be pressed alike
+/// at one place by chance. Taxels that scatter then differ at the others, some up and some down. Where all taxels are
+/// the same, or the shape of the presses alone makes them differ, lines that are equal once are equal everywhere.
 class EqualPresses {
  public:
   void add(const PressComparison& press);

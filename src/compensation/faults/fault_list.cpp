@@ -69,7 +69,7 @@ void FaultList::mask_taxels() noexcept {
       witnesses_[axis][taxel] = (causes_[taxel] & ~own) == 0 ? 1.0F : 0.0F;
     }
   }
-  // A column that a row holds reads next to nothing of its other taxels; at virtual ground the row does.
+  // A column held by a row reads next to nothing of its other taxels; at virtual ground the row does.
   const Axis axis = sharing_axis(array_).value_or(Axis::column);
   for (const std::size_t taxel : suspected_) {
     const std::size_t line = line_of(array_, axis, taxel);

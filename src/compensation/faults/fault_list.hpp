@@ -59,7 +59,7 @@ class FaultList {
   /// Bits of kRowCause ... kPairCause; 0: the reading is the taxel's own.
   [[nodiscard]] std::uint8_t causes(std::size_t taxel) const noexcept { return causes_[taxel]; }
 
-  /// 1 where the taxel is evidence on its line, 0 where another fault than that of the line, or death, masks it.
+  /// 1 where the taxel is evidence on its line. 0 where another fault than that of the line masks it, or it is dead.
   [[nodiscard]] std::span<const float> witnesses(Axis axis) const noexcept { return witnesses_[axis]; }
 
  private:

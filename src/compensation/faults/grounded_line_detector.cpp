@@ -91,7 +91,7 @@ void GroundedLineDetector::judge_line(const Observation& seen, LineFault& fault)
   fault.grounded = fault.ground_evidence > (fault.grounded ? -kGroundEvidence : kGroundEvidence);
 }
 
-/// In the scan of its own line.
+/// Judges a taxel in the scan of its own line.
 void GroundedLineDetector::judge_taxel(const Observation& seen, LineFault& fault) const noexcept {
   const Axis driven = driven_axis(array_);
   const std::size_t place = driven == Axis::row ? fault.place % array_.cols : fault.place / array_.cols;
@@ -99,7 +99,7 @@ void GroundedLineDetector::judge_taxel(const Observation& seen, LineFault& fault
   fault.ground_evidence = std::max(fault.ground_evidence, -kEvidence);
 }
 
-/// As the taxels on both its sides conduct; 0 where they are not pressed.
+/// Conductance between those of the taxels on both its sides; 0 where they are not pressed.
 double GroundedLineDetector::siemens_between(const Observation& seen, std::size_t taxel) const noexcept {
   const std::size_t row = taxel / array_.cols;
   const std::size_t col = taxel % array_.cols;
@@ -113,7 +113,7 @@ double GroundedLineDetector::siemens_between(const Observation& seen, std::size_
                   has_ends ? between(taxel - array_.cols, taxel + array_.cols) : 0.0);
 }
 
-/// Of the line that crosses the silent one there: what its untouched taxels miss, against what a short would take.
+/// Judges the line that crosses the silent one there: the loss of its untouched taxels against the loss by a short.
 double GroundedLineDetector::evidence_at(const Observation& seen, const LineFault& fault,
                                          std::size_t place) const noexcept {
   const Axis axis = *traits_of(fault.kind).axis;
@@ -135,7 +135,7 @@ double GroundedLineDetector::evidence_of_current(const Observation& seen, Axis a
   return std::clamp(difference * (missing - 0.5 * difference) / variance, -kMostEvidence, kMostEvidence);
 }
 
-/// What a short of the line would take from the untouched taxels of the line that crosses it at `place`.
+/// The share that a short of the line would take from the untouched taxels of the line that crosses it at `place`.
 double GroundedLineDetector::taken_share(const Observation& seen, Axis axis, std::size_t place,
                                          double pressed_siemens) const noexcept {
   if (axis != driven_axis(array_)) {

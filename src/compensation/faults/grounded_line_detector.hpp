@@ -12,9 +12,9 @@
 
 namespace dermis::compensation {
 
-/// Tells silent lines that are shorted to 0 V from open ones: shorted, a line takes current from the lines that cross
-/// it where it is pressed (as its neighbours are), and untouched taxels on those read less. Taxels that seem to be dead
-/// are told from ones whose reading is stuck at 0, and which conduct, in the same way.
+/// Distinguishes silent lines that are shorted to 0 V from open ones. A pressed shorted line takes current from the
+/// lines that cross it, and untouched taxels on those read less. It counts as pressed where its neighbours are. In the
+/// same way it distinguishes dead taxels from ones that conduct but whose reading is stuck at 0.
 class GroundedLineDetector {
  public:
   explicit GroundedLineDetector(const ArrayDescription& array);
@@ -22,7 +22,7 @@ class GroundedLineDetector {
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
  private:
-  /// Of the untouched taxels of a line.
+  /// Sums over the untouched taxels of a line.
   struct Sums {
     double siemens = 0.0;
     double expected = 0.0;
@@ -35,7 +35,8 @@ class GroundedLineDetector {
   void judge_taxel(const Observation& seen, LineFault& fault) const noexcept;
   [[nodiscard]] double siemens_between(const Observation& seen, std::size_t taxel) const noexcept;
   [[nodiscard]] double evidence_at(const Observation& seen, const LineFault& fault, std::size_t place) const noexcept;
-  /// That a line of `axis` takes the current of a conductance at `place`; `is_solved`: with it.
+  /// Evidence that a line of `axis` takes the current of a conductance at `place`; `is_solved`: the crosstalk was
+  /// solved with it.
   [[nodiscard]] double evidence_of_current(const Observation& seen, Axis axis, std::size_t place, double siemens,
                                            bool is_solved) const noexcept;
   [[nodiscard]] double taken_share(const Observation& seen, Axis axis, std::size_t place,

@@ -16,10 +16,10 @@ constexpr int kFrames = 10;
 constexpr std::size_t kMostFound = 8;  // in one frame, and at once: more have a cause in common
 constexpr double kPerFrame = kEvidence / kFrames;
 constexpr double kStillShorted = 0.5;     // of what a taxel of 0 ohm reads alone
-constexpr double kMostRepetitions = 0.8;  // of the frames; what repeats more, though there is noise, is stuck
+constexpr double kMostRepetitions = 0.8;  // of the frames; a reading that repeats more in spite of noise is stuck
 constexpr double kNoiseThatShows = 0.7;   // counts; below it good readings repeat, too
 constexpr double kSame = 1e-3;            // standard deviations
-constexpr double kHigh = 0.5;             // of the supply: a reading that columns are asked about
+constexpr double kHigh = 0.5;             // of the supply: a reading that is compared with its column
 constexpr double kMostOfColumn = 0.6;     // taxels that read no more than unloaded ones
 constexpr double kUnloadedSigmas = 3.0;
 constexpr double kMostOfWhole = 0.15;  // by which unloaded taxels of other columns may have changed
@@ -101,7 +101,7 @@ void ImpossibleReadingDetector::watch_columns(const Observation& seen, const Fau
   for (std::size_t k = 0; k < count; ++k) watch(found[k], faults);
 }
 
-/// Of a high reading; `possible` where the others of its column have fallen.
+/// Judges a high reading; `possible` where the others of its column have fallen.
 ReadingVerdict ImpossibleReadingDetector::verdict_of_column(const Observation& seen, std::size_t taxel) const noexcept {
   const double ratio = seen.conditioned.ratio[taxel];
   if (ratio < kHigh) return ReadingVerdict::possible;
@@ -124,7 +124,7 @@ ReadingVerdict ImpossibleReadingDetector::verdict_of_column(const Observation& s
   return read > unloaded - fall ? ReadingVerdict::impossible : ReadingVerdict::possible;
 }
 
-/// Most taxels of the other columns read what the calibration says, and those together, too: else the whole has
+/// Most taxels of the other columns read as calibrated, and so do those together. Otherwise the whole array has
 /// changed.
 bool ImpossibleReadingDetector::others_are_unloaded(const Observation& seen, std::size_t col) const noexcept {
   double unloaded = 0.0;
@@ -142,7 +142,7 @@ bool ImpossibleReadingDetector::others_are_unloaded(const Observation& seen, std
   return are_most && std::abs(read - unloaded) < kMostOfWhole * unloaded;
 }
 
-/// Unless its line explains it.
+/// Judges a reading unless its line explains it.
 void ImpossibleReadingDetector::watch(std::size_t taxel, const FaultList& faults) noexcept {
   const auto is_same = [taxel](const Watched& watched) { return watched.taxel == taxel; };
   if (watched_.size() == kMostFound || is_of_faulty_line(faults, taxel)) return;
@@ -164,7 +164,7 @@ ReadingVerdict ImpossibleReadingDetector::verdict(const Observation& seen, std::
   return column == ReadingVerdict::impossible || own == ReadingVerdict::possible ? column : own;
 }
 
-/// But for those at the end of the ADC, which must be few: where they are many, their currents take the row's voltage.
+/// Taxels at the end of the ADC do not count, but must be few: the currents of many take the row's voltage.
 bool ImpossibleReadingDetector::row_is_silent(const Observation& seen, std::size_t taxel) const noexcept {
   const std::size_t row = taxel / array_.cols;
   double lacking = 0.0;

@@ -12,14 +12,14 @@
 
 namespace dermis::compensation {
 
-/// Readings that Compensator takes out of a frame, ten frames or more. One above what the circuit can give is
-/// impossible. One that only a taxel of a few ohm gives is a shorted crossing, or stuck where it never changes. At
-/// virtual ground a shorted crossing is a saturated taxel on a row that else reads nothing; where lines have
-/// resistance, presses can do that, too.
+/// Finds readings that Compensator takes out of a frame, after ten frames or more. One above what the circuit can give
+/// is impossible. One that only a taxel of a few ohm gives is a shorted crossing, or stuck where it never changes. At
+/// virtual ground a shorted crossing is a saturated taxel on a row that otherwise reads nothing. Where lines have
+/// resistance, presses can look like that, too.
 ///
 /// Where idle rows are grounded, a taxel that reads T leaves the others of its column 1 - T of what they read. A high
 /// reading beside which most of the column reads as unloaded is impossible, too; that takes twenty frames. At most
-/// eight readings have a name at once: more are a line's, or the array's.
+/// eight readings are named at once: more are a fault of a line, or of the array.
 class ImpossibleReadingDetector {
  public:
   explicit ImpossibleReadingDetector(const ArrayDescription& array);

@@ -8,7 +8,7 @@
 namespace dermis::compensation {
 namespace {
 
-/// In four parts, which do not wait for each other.
+/// Sums in four parts, which do not wait for each other.
 double sum_of(std::span<const double> values) {
   double parts[4] = {};
   std::size_t k = 0;

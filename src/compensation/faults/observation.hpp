@@ -29,7 +29,8 @@ struct Observation {
     return conditioned.ratio[taxel] > touched_above(unloaded.ratio()[taxel], conditioned.sigma_ratio, kPressedSigmas);
   }
 
-  /// It is the taxel's own conductance that is surely more: where rows float, a press reads like that on all of them.
+  /// The taxel's own conductance is surely more. The reading does not suffice where rows float: there a press shows on
+  /// all rows.
   [[nodiscard]] bool conducts_more(std::size_t taxel) const noexcept {
     return solved && conductance.siemens[taxel] > unloaded.most_siemens(taxel, conductance.sigma_siemens[taxel]);
   }

@@ -8,8 +8,8 @@
 
 namespace dermis::compensation {
 
-/// Log-likelihood ratio that decides. A false alarm in 1e5 frames of 1e3 lines and taxels would need odds of e^18; what
-/// the circuit's description leaves out is worth a margin.
+/// Log-likelihood ratio that decides. A false alarm in 1e5 frames of 1e3 lines and taxels would need odds of e^18. The
+/// rest is a margin for effects that the circuit's description leaves out.
 inline constexpr double kEvidence = 30.0;
 inline constexpr int kLineFrames = 3;   // for or against a faulty line, at least
 inline constexpr int kHealFrames = 10;  // for the end of a fault, at least

@@ -19,9 +19,9 @@ inline constexpr double kStandsOut = 2.0;       // times what others read
 inline constexpr std::size_t kSlide = 1;        // taxels from one frame to the next
 inline constexpr double kPressEvidence = 18.0;  // log-likelihood ratio that decides: a false alarm in 6e7 tries
 
-/// Presses on a line that speak for a short, since the last one that spoke against it. A press counts once, however
-/// long it lasts and wherever it slides: until nothing is pressed any more near the place where it was last. It says as
-/// much as its clearest frame.
+/// Presses on a line that are evidence for a short, since the last one against it. A press counts once, however long it
+/// lasts and wherever it slides: until nothing is pressed any more near the place where it was last. Its evidence is
+/// that of its clearest frame.
 struct PressCount {
   double evidence = 0.0;
   int against = 0;  // frames in a row
@@ -30,9 +30,9 @@ struct PressCount {
   std::size_t least_place = 0;  // of those that were counted
   std::size_t most_place = 0;
   std::optional<std::size_t> held_place;  // where the press that was counted is now
-  double held_evidence = 0.0;             // what it has said
+  double held_evidence = 0.0;             // its evidence so far
 
-  /// In every frame, before add(). `is_pressed(place)`: whether the line is, in this frame.
+  /// Call it in every frame, before add(). `is_pressed(place)`: whether the line is pressed there in this frame.
   template <typename IsPressed>
   void follow(std::size_t places, const IsPressed& is_pressed) {
     if (!held_place) return;
@@ -66,10 +66,10 @@ struct PressCount {
     most_place = std::max(most_place, place);
   }
 
-  /// Presses at one place may all be those of one tool.
+  /// Presses at one place may all come from one tool, so they do not suffice.
   [[nodiscard]] bool decides() const { return evidence >= kPressEvidence && most_place - least_place >= kContactReach; }
 
-  /// Half as much as it takes.
+  /// There is half the evidence that decides.
   [[nodiscard]] bool is_suspicious() const { return 2.0 * evidence >= kPressEvidence; }
 };
 

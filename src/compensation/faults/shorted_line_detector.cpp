@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kEvidenceOfPress = 3.0;    // of one place; 6 presses decide
 constexpr double kMostOfOtherPlaces = 6.0;  // 2 presses, at least
-constexpr double kCompressed = 0.7;         // of full scale: what is pressed hard reads the same
+constexpr double kCompressed = 0.7;         // of full scale: hard presses read the same
 constexpr double kAlikeSums = 0.05;         // difference of the readings of two lines that may be shorted
 constexpr std::size_t kLeastLines = 3;
 
@@ -77,7 +77,7 @@ bool ShortedLineDetector::sums_are_alike(const Observation& seen, Axis axis, std
   return sums[line] > kComparedSigmas * seen.conditioned.sigma_ratio;
 }
 
-/// At any place: elsewhere nothing can be found to be equal.
+/// The lines are pressed at some place: elsewhere equality means nothing.
 bool ShortedLineDetector::is_pressed(const Observation& seen, Axis axis, std::size_t line) const noexcept {
   for (std::size_t place = 0; place < line_length(array_, axis); ++place) {
     if (seen.is_pressed(taxel_on_line(array_, axis, line, place))) return true;
@@ -137,7 +137,7 @@ bool ShortedLineDetector::are_joined(const Observation& seen, Axis axis, std::si
   return true;
 }
 
-/// Presses that a short made equal say nothing of healthy lines.
+/// Presses that a short made equal are no evidence on healthy lines.
 void ShortedLineDetector::forget(Pair& pair) noexcept {
   equal_presses_ = equal_presses_.without(pair.learned);
   pair.learned = EqualPresses();
@@ -186,7 +186,7 @@ ShortedLineDetector::Comparison ShortedLineDetector::compare_with_next(const Obs
   return found;
 }
 
-/// The other places where the lines are pressed. Those that read the same as this one say nothing: a readout may end
+/// The other places where the lines are pressed. Those that read the same as this one do not count: a readout may end
 /// there.
 PressComparison ShortedLineDetector::compare_beside(const Observation& seen, Axis axis, std::size_t line,
                                                     std::size_t place, const FaultList& faults) const noexcept {
@@ -208,7 +208,7 @@ PressComparison ShortedLineDetector::compare_beside(const Observation& seen, Axi
   return press;
 }
 
-/// The pair reads something else there than the lines beside it, and much more than one of them: presses end there.
+/// The pair reads differently there from the lines beside it, and much more than one of them: presses end there.
 bool ShortedLineDetector::stands_out(const Observation& seen, Axis axis, std::size_t line, std::size_t place,
                                      double deviation) const noexcept {
   const std::span<const double> ratio = seen.conditioned.ratio;

@@ -14,24 +14,24 @@
 
 namespace dermis::compensation {
 
-/// Two lines next to each other are shorted when they read the same wherever they are pressed and wherever they are
-/// not, within the noise, and the lines beside them do not. One press that shows both that they are equal and that the
-/// others are not is a chance of its shape; many of them, each released before the next, are a short. The more places a
-/// press covers, the more it says, where other lines show that taxels scatter. Pairs under suspicion are compared in
-/// every frame, as are those whose sums are alike. With `circuit = "none"` equal readings may have any reason, and
-/// lines without others beside them have nothing to differ from.
+/// Two neighbouring lines are shorted when they read the same within the noise everywhere, pressed or not, and the
+/// lines beside them differ. One press that shows both that they are equal and that the others are not may owe it to
+/// its shape. Many of them, each released before the next, are a short. Where other lines show that taxels scatter, a
+/// press is stronger evidence the more places it covers. Pairs under suspicion are compared in every frame, as are
+/// those whose sums are alike. With `circuit = "none"` equal readings may have any reason, and lines without others
+/// beside them have nothing to differ from.
 class ShortedLineDetector {
  public:
-  /// `equal_presses`: told of every press that is equal on two lines.
+  /// `equal_presses`: gets every press that is equal on two lines.
   ShortedLineDetector(const ArrayDescription& array, EqualPresses& equal_presses);
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
-  /// Pairs that half as much as it takes speaks for; allocates.
+  /// Adds the pairs with half the evidence that a fault needs; allocates.
   void suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const;
 
  private:
-  /// What is known of a line and the next one.
+  /// The state of a line and the next one.
   struct Pair {
     double ratio = 1.0;  // of their readings where they are shorted
     PressCount count{};

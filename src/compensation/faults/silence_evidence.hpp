@@ -4,9 +4,9 @@
 
 namespace dermis::compensation {
 
-inline constexpr float kMostMean = 8.0F;  // beyond, silence is told by less than half of this many deviations
+inline constexpr float kMostMean = 8.0F;  // beyond, less than half of this many deviations show silence
 
-/// What the noise of a reading makes of one at the floor of the ADC.
+/// Evidence of a reading at the floor of the ADC, by the noise of a reading.
 struct FloorEvidence {
   float sigmas = 0.0F;       // readings below half a count are the floor
   float slope = 0.0F;        // log P(floor | silent) / P(floor | mean), to second order in the mean:
@@ -17,8 +17,8 @@ struct FloorEvidence {
 /// `noise_counts`: standard deviation of a reading, rounding included.
 [[nodiscard]] FloorEvidence floor_evidence(double noise_counts);
 
-/// Log-likelihood ratio of a silent taxel against one that reads `expected`, or more [standard deviations]: Gaussian
-/// noise, cut off at the floor of the ADC, where readings below `floor_end` are.
+/// Log-likelihood ratio of a silent taxel against one that reads `expected`, or more [standard deviations]. The noise
+/// is Gaussian, cut off at the floor of the ADC: readings below `floor_end`.
 inline float silence_evidence(float reading, float expected, float floor_end, const FloorEvidence& floor, float most) {
   constexpr float kMostAgainst = -20.0F;
   const float mean = expected < kMostMean ? expected : kMostMean;

@@ -13,15 +13,16 @@
 
 namespace dermis::compensation {
 
-/// A line is silent when its taxels read less than unloaded ones would, all together: evidence that each is silent,
-/// summed over the line and the frames. It has to read nothing but noise, while unloaded taxels elsewhere do read.
+/// A line is silent when its taxels together read less than unloaded ones would. The evidence that each is silent is
+/// summed over the line and the frames. The line has to read nothing but noise, while unloaded taxels elsewhere do
+/// read.
 class SilentLineDetector {
  public:
   SilentLineDetector(const ArrayDescription& array, const UnloadedTaxels& unloaded, UnloadedWitnesses& witnesses);
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
-  /// The line would be missed within 10 frames. False until the first frame.
+  /// Silence of the line would be noticed within 10 frames. False until the first frame.
   [[nodiscard]] bool sees(Axis axis, std::size_t line) const noexcept;
 
  private:
@@ -38,7 +39,7 @@ class SilentLineDetector {
 
   const ArrayDescription& array_;
   const UnloadedTaxels& unloaded_;
-  UnloadedWitnesses& witnesses_;  // told of every frame
+  UnloadedWitnesses& witnesses_;  // gets every frame
   FloorEvidence floor_;
   double last_sigma_ratio_ = 0.0;
   std::vector<float> evidence_;                // that the taxel is silent, of this frame [taxels]

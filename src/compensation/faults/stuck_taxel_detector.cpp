@@ -10,7 +10,7 @@ namespace dermis::compensation {
 namespace {
 
 constexpr double kSameCount = 1e-3;
-constexpr double kLeastOthers = 4.0;  // interior readings that tell how often a reading repeats
+constexpr double kLeastOthers = 4.0;  // interior readings that show how often a reading repeats
 constexpr double kLonger = 3.0;       // than any of those repeats
 constexpr double kFades = 0.999;      // a visit
 constexpr double kMaybeRail = 0.95;   // of the largest rise

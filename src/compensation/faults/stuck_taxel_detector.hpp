@@ -11,8 +11,8 @@
 
 namespace dermis::compensation {
 
-/// Noise moves a reading to another count with a probability that is known, and that taxels which nothing presses show:
-/// a reading that repeats while it should not is as unlikely as the repetitions multiplied. Readings like those of
+/// Noise moves a reading to another count with a known probability, which taxels that nothing presses show. A reading
+/// that repeats while it should not is as unlikely as the product of these probabilities. Readings like those of
 /// unloaded taxels are not judged: they are weak, and may be quiet. Where the noise is less than a count, others repeat
 /// as long; where the readout ends before its full scale, the hardest pressed do.
 class StuckTaxelDetector {

@@ -27,7 +27,7 @@ bool reads_full_scale(const Observation& seen, const ArrayDescription& array, st
   return true;
 }
 
-/// An amplifier at its rail, rows that float, no other row that holds the column down.
+/// True with an amplifier at its rail, with rows that float, and without another row that holds the column down.
 bool can_reach_full_scale(const ArrayDescription& array) {
   const Readout& readout = array.readout;
   return readout.circuit != Circuit::divider || readout.idle_rows != IdleRows::grounded || array.rows == 1;

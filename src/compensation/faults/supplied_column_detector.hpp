@@ -28,7 +28,7 @@ class SuppliedColumnDetector {
   };
 
   [[nodiscard]] bool loads_have_changed(const Observation& seen, std::size_t col) noexcept;
-  /// How many columns are.
+  /// Finds the columns at full scale and returns how many.
   std::size_t find_full_scale(const Observation& seen, const FaultList& faults) noexcept;
 
   const ArrayDescription& array_;

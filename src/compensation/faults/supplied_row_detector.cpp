@@ -60,7 +60,7 @@ void SuppliedRowDetector::choose_candidate(const Observation& seen, const FaultL
   follow_rows_below(seen, faults, noise);
 }
 
-/// Where the candidate is not pressed: all other rows hold its reading beside their own.
+/// Judges places where the candidate is not pressed: all other rows hold its reading beside their own.
 void SuppliedRowDetector::follow_rows_below(const Observation& seen, const FaultList& faults, double noise) noexcept {
   for (std::size_t col = 0; col < array_.cols; ++col) {
     if (seen.is_pressed(array_.index(candidate_, col))) return;
@@ -100,7 +100,7 @@ void SuppliedRowDetector::forget_presses() noexcept {
   decisive_frames_ = 0;
 }
 
-/// Taxels that scatter are equal at several places, which read differently: it is not the end of the readout.
+/// Taxels that scatter are equal at several places with different readings, so the end of the readout is not the cause.
 bool SuppliedRowDetector::is_decisive(const Observation& seen, const Comparison& compared) const noexcept {
   const double deviation = std::hypot(seen.conditioned.sigma_ratio, kEqualShare * compared.most);
   return compared.most - compared.least > kDifferentSigmas * deviation &&
@@ -175,7 +175,7 @@ SuppliedRowDetector::ColumnComparison SuppliedRowDetector::compare_in_column(con
   return found;
 }
 
-/// A press on another row stands out of what this row shows in its column, or may have shown below a threshold.
+/// A press on another row stands out of this row's readings in its column, or of the most that a threshold may hide.
 bool SuppliedRowDetector::another_row_is_pressed(const Observation& seen, std::size_t row,
                                                  const FaultList& faults) const noexcept {
   const std::span<const double> ratio = seen.conditioned.ratio;

@@ -13,10 +13,10 @@
 
 namespace dermis::compensation {
 
-/// A row at the supply reads the least in every column, as the others hold its reading too. What speaks for it is a
-/// press on a part of it that shows in most other rows, equal within the noise, while presses on other rows show on
-/// them alone: where a whole column or everything is pressed, rows read alike without a fault. Where taxels are seen to
-/// scatter, no load makes so many of them equal: one press does, once all other rows have read more for 3 frames. With
+/// A row at the supply reads the least in every column, as the others hold its reading too. The evidence is a press on
+/// a part of it that shows in most other rows, equal within the noise. Presses on other rows must show on them alone:
+/// where a whole column or everything is pressed, rows read alike without a fault. Where taxels are seen to scatter, no
+/// load makes so many of them equal. One press then suffices, once all other rows have read more for 3 frames. With
 /// `circuit = "none"` there is no supply on a row.
 class SuppliedRowDetector {
  public:
@@ -24,11 +24,11 @@ class SuppliedRowDetector {
 
   void judge(const Observation& seen, FaultList& faults) noexcept;
 
-  /// The row that half as much as it takes speaks for; allocates.
+  /// Adds the row with half the evidence that a fault needs; allocates.
   void suspect(const FaultList& faults, std::vector<LineFault>& suspicions) const;
 
  private:
-  /// What the presses on a row show in the other rows.
+  /// How the presses on a row show in the other rows.
   struct Comparison {
     std::optional<std::size_t> place;  // of a press that shows
     std::size_t alike = 0;             // readings of other rows that are equal to that press
@@ -39,7 +39,7 @@ class SuppliedRowDetector {
     int fails = 0;  // readings below those of the row
   };
 
-  /// How a press on a row stands against the readings of the other rows in its column.
+  /// How a press on a row compares with the readings of the other rows in its column.
   struct ColumnComparison {
     bool shows = false;
     std::size_t alike = 0;

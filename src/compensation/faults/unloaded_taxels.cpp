@@ -10,7 +10,7 @@
 namespace dermis::compensation {
 namespace {
 
-constexpr double kMostCutOff = 0.05;  // of full scale: what readouts send as 0
+constexpr double kMostCutOff = 0.05;  // of full scale: the most that readouts send as 0
 constexpr double kOneCount = 1.5;     // less is no more than one: nothing but rounding cuts off below it
 
 }  // namespace
@@ -68,7 +68,7 @@ void UnloadedTaxels::follow_smallest_reading(std::span<const double> ratio, cons
   }
 }
 
-/// Of a conductance that has faded an offset takes as much as of one that has not.
+/// An offset takes as much from a conductance that has faded as from one that has not.
 void UnloadedTaxels::take_off(double sigma_ratio) noexcept {
   for (std::size_t taxel = 0; taxel < least_reading_.size(); ++taxel) {
     least_reading_[taxel] -= static_cast<float>(taken_off(taxel) / sigma_ratio);
@@ -84,8 +84,8 @@ void UnloadedTaxels::forget_what_may_be_cut_off(double sigma_ratio) noexcept {
   for (float& least : least_reading_) least = least > cut_off ? least : 0.0F;
 }
 
-/// Pressed taxels on the sensed line of an unloaded one take the share of the supply that they read themselves, those
-/// on its driven line pull the line down.
+/// Pressed taxels on the sensed line of an unloaded one take the share of the supply that they read themselves. Pressed
+/// taxels on its driven line pull the line down.
 void UnloadedTaxels::expect_beside_presses(const LineSums& sums, double sigma_ratio, bool solved) noexcept {
   const Readout& readout = array_.readout;
   const Axis driven = driven_axis(array_);
@@ -116,7 +116,7 @@ void UnloadedTaxels::expect_beside_presses(const LineSums& sums, double sigma_ra
   }
 }
 
-/// In an unknown circuit nobody knows what a press takes from the taxels of its lines.
+/// In an unknown circuit the effect of a press on the taxels of its lines is unknown.
 void UnloadedTaxels::expect_beside_no_press(const ConditionedFrame& conditioned) noexcept {
   find_pressed_lines(conditioned);
   for (std::size_t taxel = 0; taxel < ratio_.size(); ++taxel) {

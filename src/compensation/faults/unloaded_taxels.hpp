@@ -16,15 +16,15 @@
 namespace dermis::compensation {
 
 inline constexpr double kUnloadedShare = 0.3;  // of the unloaded conductance: temperature, memory, age leave at least
-inline constexpr double kRoundedToNone = 0.5;  // of a count, in every frame, however much noise there is said to be
+inline constexpr double kRoundedToNone = 0.5;  // of a count, in every frame, whatever the described noise
 
-/// What taxels read that nothing presses.
+/// The readings of taxels that nothing presses.
 class UnloadedTaxels {
  public:
   /// `siemens`: see LineFaultMonitor.
   UnloadedTaxels(const ArrayDescription& array, std::span<const double> siemens);
 
-  /// Finds least_reading() of this frame, from what the pressed taxels take from the others of their lines.
+  /// Finds least_reading() of this frame, from the share that pressed taxels take from the others of their lines.
   void expect(const ConditionedFrame& conditioned, const LineSums& sums, std::size_t frame, bool solved) noexcept;
 
   /// Conductance of every taxel; 0 where it is not known.
@@ -38,14 +38,14 @@ class UnloadedTaxels {
     return kUnloadedShare * ratio_[taxel] - taken_off(taxel);
   }
 
-  /// Least reading of every unloaded taxel among the loads of this frame [standard deviations]; 0 where none can be
-  /// expected, as the readout has never sent so small a reading: it may cut them off.
+  /// Least reading of every unloaded taxel among the loads of this frame [standard deviations]. 0 where none can be
+  /// expected: the readout has never sent so small a reading and may cut it off.
   [[nodiscard]] std::span<const float> least_reading() const noexcept { return least_reading_; }
 
-  /// Of all readings above 0 so far: a readout that cuts readings off does so below it.
+  /// The smallest of all readings above 0 so far: a readout that cuts readings off does so below it.
   [[nodiscard]] double smallest_reading() const noexcept { return smallest_reading_; }
 
-  /// Most that an unloaded taxel may come out with, at this standard deviation of its conductance.
+  /// The largest conductance of an unloaded taxel, at this standard deviation of it.
   [[nodiscard]] double most_siemens(std::size_t taxel, double sigma_siemens) const noexcept {
     return touched_above(siemens_[taxel], sigma_siemens, kMostSigmas);
   }

@@ -8,9 +8,9 @@
 
 namespace dermis::compensation {
 
-/// Whether unloaded taxels read at all. Where most rows or most columns keep silent together, the readout cuts small
-/// readings off, or was tared, or something touched the array while its unloaded readings were taken: silence is no
-/// fault there, nor soon after, when a light touch may look like unloaded taxels.
+/// Whether unloaded taxels read at all. Most rows or columns keep silent together where the readout cuts small readings
+/// off or was tared. So they do where something touched the array during its unloaded readings. Silence is no fault
+/// there, nor soon after, when a light touch may look like unloaded taxels.
 class UnloadedWitnesses {
  public:
   /// `silence`: evidence of this frame that a line is silent; 0 where nothing is expected to be read.

@@ -10,7 +10,7 @@ namespace dermis::compensation {
 
 inline constexpr std::size_t kContactReach = 3;  // taxels beside a pressed one that may be touched too
 
-/// It is known what a taxel that nothing touches loses to the current of its lines.
+/// The loss of an untouched taxel to the current of its lines is known.
 [[nodiscard]] inline bool knows_what_currents_take(const Readout& readout) noexcept {
   return readout.circuit == Circuit::transimpedance || readout.circuit == Circuit::flexitac ||
          (readout.circuit == Circuit::divider && readout.idle_rows == IdleRows::grounded);

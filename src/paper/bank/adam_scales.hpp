@@ -9,7 +9,7 @@
 
 namespace dermis::paper {
 
-/// What takes the bias from the moments of Adam at step t (Kingma and Ba, 2015, algorithm 1), and the rate.
+/// The factors that take the bias from the moments of Adam at step t (Kingma and Ba, 2015, algorithm 1), and the rate.
 struct AdamScales {
   float rate;                 ///< rate / (1 - first_decay^t)
   float second_scale = 1.0F;  ///< 1 / (1 - second_decay^t)

@@ -30,7 +30,7 @@ constexpr double kHighestRate = 0.05;
 constexpr double kLowestRate = 1e-5;
 constexpr float kSecondDecay = 0.97F;  // 0.999 takes twice the steps
 
-/// Of each taxel over all samples; a taxel that never changes gets a range of 1.
+/// The range of each taxel over all samples; a taxel that never changes gets a range of 1.
 std::vector<PaperBank::Range> ratio_ranges(const SampleDatabase& database) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<PaperBank::Range> ranges(database.array.taxel_count(), {kInfinity, -kInfinity});
@@ -174,7 +174,7 @@ void BankTraining::draw_batch() {
     for (std::size_t k = 0; k < kBatch; ++k) {
       const bool want_loaded = (k < kBatch / 2 && !choice.loaded.empty()) || choice.unloaded.empty();
       const std::vector<std::uint32_t>& from = want_loaded ? choice.loaded : choice.unloaded;
-      if (from.empty()) break;  // no sample tells of this taxel: its chosen weights stay 0
+      if (from.empty()) break;  // no sample has this taxel: its chosen weights stay 0
       const std::uint32_t sample = from[choice.random.below(from.size())];
       chosen_[taxel * kBatch + k] = sample;
       chosen_weights_[taxel * kBatch + k] = weights_[sample * networks + taxel];

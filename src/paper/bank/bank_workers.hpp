@@ -12,13 +12,13 @@
 namespace dermis::paper {
 
 /// Threads that are worth waking for so many multiply-adds. Measured on two cores: a frame of half a million parameters
-/// (34 us) gains nothing from the second, one of two million (118 us) takes 0.6 times as long.
+/// (34 us) gains nothing from the second core. One of two million (118 us) takes 0.6 times as long.
 [[nodiscard]] inline std::size_t worker_count(std::size_t multiply_adds) {
   constexpr std::size_t kWorthSharing = std::size_t{1} << 21U;
   return multiply_adds < kWorthSharing ? 1 : std::max(1U, std::thread::hardware_concurrency());
 }
 
-/// Calls body(item, worker) for all items; a worker, of which there are `workers`, takes one item after the other and
+/// Calls body(item, worker) for all items. A worker, of which there are `workers`, takes one item after the other and
 /// has its work space to itself. Allocates nothing.
 template <class Body>
 void share_among_workers(std::size_t items, std::size_t workers, const Body& body) {

@@ -22,7 +22,7 @@ class FrameSpace {
     backwards_ = !backwards_;
   }
 
-  /// The network to take as number `item` of the frame: every other frame goes backwards, and so begins with the
+  /// The network to take as number `item` of the frame. Every other frame goes backwards, and so begins with the
   /// parameters that the frame before has left in the cache.
   [[nodiscard]] std::size_t network(std::size_t item, std::size_t networks) const {
     return backwards_ ? networks - 1 - item : item;

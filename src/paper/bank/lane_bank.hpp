@@ -16,7 +16,7 @@ inline constexpr std::size_t kGroup = 16;
 /// Patterns that go through a group together.
 inline constexpr std::size_t kTilePatterns = 4;
 
-/// Work space of one thread for a tile of patterns of one group: what each layer puts out and, on the way back, its
+/// Work space of one thread for a tile of patterns of one group: the outputs of each layer and, on the way back, its
 /// deltas, [patterns, units, 16].
 class LaneSpace {
  public:
@@ -25,7 +25,7 @@ class LaneSpace {
   /// Level 0 holds the inputs, level l + 1 what layer l puts out.
   [[nodiscard]] float* level(std::size_t level) { return values_.data() + starts_[level]; }
   [[nodiscard]] float* targets() { return values_.data() + starts_[starts_.size() - 2]; }
-  /// Of the patterns, over the size of the batch, [patterns, 16].
+  /// Weights of the patterns, over the size of the batch, [patterns, 16].
   [[nodiscard]] float* weights() { return values_.data() + starts_.back(); }
 
   HugeVector<float> gradient;  ///< [parameters, 16]
@@ -35,8 +35,8 @@ class LaneSpace {
   HugeVector<float> values_;
 };
 
-/// Parameters of one group, [parameters, 16], the moments of their gradients, and the constants of a step that depend
-/// on how many steps a network has made, [16].
+/// Parameters of one group, [parameters, 16], and the moments of their gradients. Also the constants of a step that
+/// depend on how many steps a network has made, [16].
 struct LaneParameters {
   float* values;
   float* first_moments;
@@ -71,10 +71,10 @@ class LaneBank final : public BankStorage {
   std::size_t groups_;
   std::size_t group_size_;               ///< Values of a group: parameters * 16.
   HugeVector<float> values_;             ///< [groups, parameters, 16], parameters as NetworkShape orders them.
-  HugeVector<float> first_moments_;      ///< Of the same form; empty before the first step of Adam.
+  HugeVector<float> first_moments_;      ///< Moments in the same form; empty before the first step of Adam.
   HugeVector<float> second_moments_;     ///< Likewise.
   std::vector<std::size_t> adam_steps_;  ///< [groups * 16]
-  HugeVector<float> inputs_;             ///< Of a block of patterns, each input in all lanes, [patterns, inputs, 16].
+  HugeVector<float> inputs_;             ///< Inputs of a block of patterns, each in all lanes, [patterns, inputs, 16].
   std::vector<LaneSpace> spaces_;        ///< One a worker.
 };
 

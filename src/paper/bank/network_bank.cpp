@@ -13,11 +13,11 @@ namespace dermis::paper {
 
 namespace {
 
-/// Small networks lie side by side in the lanes of vectors, large ones each in panels of its own. Measured on
-/// N-N-N-1 and 256-N-1 networks (Zen 4, AVX-512): a training step in lanes takes 0.3 times what it takes in panels for
-/// 8-8-8-1, 0.6 times for 16-16-16-1, 0.9 times for 32-32-32-1 and 256-8-1 (2,145 and 2,065 parameters), 1.1 times for
-/// 48-48-48-1; evaluating gains more. Lanes that are left empty cost as much as full ones: at 8 of 16 the two are equal
-/// at 350 to 600 parameters, at 2 of 16 at 45.
+/// Small networks lie side by side in the lanes of vectors, large ones each in panels of its own. Measured on N-N-N-1
+/// and 256-N-1 networks (Zen 4, AVX-512), a training step in lanes takes a share of the time in panels. It is 0.3 for
+/// 8-8-8-1, 0.6 for 16-16-16-1, 0.9 for 32-32-32-1 and 256-8-1 (2,145 and 2,065 parameters), and 1.1 for 48-48-48-1.
+/// Evaluating gains more. Empty lanes cost as much as full ones. With 8 of 16 lanes filled the two are equal at 350 to
+/// 600 parameters, with 2 of 16 at 45.
 bool belongs_in_lanes(const NetworkShape& shape, std::size_t networks) {
   constexpr double kMostParameters = 2200.0;
   const double filled = static_cast<double>(networks) / static_cast<double>(round_up(networks, kGroup));

@@ -23,7 +23,7 @@ namespace dermis::paper::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using network::HWY_NAMESPACE::slope_from_output;
 
-/// Calls write(tag, values, column, row) for four values of a column at a time, those of rows row ... row + 3: stored
+/// Calls write(tag, values, column, row) for four values of a column at a time, those of rows row ... row + 3. Stored
 /// as a row they make the transpose. `rows` and `columns` are rounded up to blocks of four.
 template <class Write>
 HWY_INLINE void transpose(Level from, std::size_t rows, std::size_t columns, const Write& write) {
@@ -109,7 +109,7 @@ void move_panels(const PanelLayer& layer, const Rule& rule, Level below, Level d
   });
 }
 
-/// A layer of one unit: moves its weights and, unless it is the lowest, turns what the layer below put out into its
+/// A layer of one unit. Moves its weights and, unless it is the lowest, turns the outputs of the layer below into its
 /// deltas, both in one pass.
 template <class Rule>
 void move_row(const PanelLayer& layer, const float* weights, const Rule& rule, const PanelLayer* layer_below,

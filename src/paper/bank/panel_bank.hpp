@@ -33,13 +33,13 @@ class PanelBank final : public BankStorage {
   PanelLayout layout_;
   std::size_t networks_;
   HugeVector<float> values_;         ///< [networks, layout.size]
-  HugeVector<float> first_moments_;  ///< Of the same form; empty before the first step of Adam.
+  HugeVector<float> first_moments_;  ///< Moments in the same form; empty before the first step of Adam.
   HugeVector<float> second_moments_;
   std::vector<std::size_t> adam_steps_;  ///< [networks]
   FrameSpace frame_;
   HugeVector<float> packed_;                ///< Patterns of evaluate_batch(), each as pack_row() leaves it.
-  std::vector<PatternSpace> block_spaces_;  ///< Of evaluate_batch(), one a worker, for kBlock patterns.
-  std::vector<PatternSpace> batch_spaces_;  ///< Of train_step(), one a worker, for the last batch's patterns.
+  std::vector<PatternSpace> block_spaces_;  ///< For evaluate_batch(), one a worker, for kBlock patterns.
+  std::vector<PatternSpace> batch_spaces_;  ///< For train_step(), one a worker, for the last batch's patterns.
 };
 
 }  // namespace dermis::paper

@@ -21,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace dermis::paper::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// What a step does to a weight once its gradient is summed.
+// The change of a weight by a step once its gradient is summed.
 
 /// w -= rate * gradient.
 class DescentRule {

@@ -30,7 +30,7 @@ class PatternSpace {
   [[nodiscard]] std::size_t stride(std::size_t level) const { return strides_[level]; }
   /// Deltas of a layer with the patterns side by side, [units, column_stride].
   [[nodiscard]] float* columns() { return values_.data() + columns_; }
-  /// What they give for the layer below, of the same form.
+  /// Values for the layer below, of the same form.
   [[nodiscard]] float* columns_below() { return values_.data() + columns_below_; }
   [[nodiscard]] std::size_t column_stride() const { return column_stride_; }
 

@@ -159,8 +159,8 @@ void layer_deltas(D d, const PlacedLayer& layer, const PlacedLayer& below, const
   });
 }
 
-/// A network of one hidden layer on few inputs with one output, as in Fig. 5 of the paper: the gradient of both layers
-/// in one pass over the hidden neurons unit ... unit + Units - 1, whose deltas are never stored. The weight between
+/// A network of one hidden layer on few inputs with one output, as in Fig. 5 of the paper. The gradient of both layers
+/// takes one pass over the hidden neurons unit ... unit + Units - 1, whose deltas are never stored. The weight between
 /// output and hidden neuron is common to all samples: it multiplies the sums.
 template <std::size_t Units, std::size_t Inputs, class D, typename Real = hn::TFromD<D>>
 HWY_INLINE void one_output_block(D d, const PlacedShape& shape, std::size_t unit, const Real* parameters,

@@ -24,8 +24,8 @@ inline std::size_t packed_rows(const PlacedShape& shape) {
   return shape.inputs + shape.outputs() + 1;
 }
 
-/// Places in the work space of FeedForward, in values; each begins a cache line. What evaluate() needs comes first,
-/// then what the gradient needs, then the normal equations.
+/// Places in the work space of FeedForward, in values; each begins a cache line. The values for evaluate() come first,
+/// then those for the gradient, then the normal equations.
 template <std::floating_point Real>
 struct WorkSpace {
   static constexpr std::size_t kLine = kCacheLineBytes / sizeof(Real);
@@ -56,7 +56,7 @@ struct WorkSpace {
   static constexpr std::size_t kBlock = 4;
 
   std::size_t prepared;        ///< The parameters, scaled for the activation functions.
-  std::size_t inputs;          ///< Of one tile [inputs, kTile], where they are not packed.
+  std::size_t inputs;          ///< Inputs of one tile [inputs, kTile], where they are not packed.
   std::size_t outputs;         ///< Of every layer [units, kTile].
   std::size_t deltas[2] = {};  ///< dE/dsum of two layers in turn [units, kTile].
   std::size_t sums;            ///< The gradient, still apart in lanes [parameters, kLine].

@@ -41,9 +41,9 @@ void outer_products(D d, const Real* deltas, std::size_t units, const Real* belo
   }
 }
 
-/// The rows of one output's Jacobian for a tile, each sample times the root of its weight: parameters of the lower
-/// layers, weights and threshold of the output, and as the last row the residual. The derivatives by the thresholds are
-/// the deltas, so these are made in place.
+/// The rows of one output's Jacobian for a tile, each sample times the root of its weight. They are the parameters of
+/// the lower layers, weights and threshold of the output, and as the last row the residual. The derivatives by the
+/// thresholds are the deltas, so these are made in place.
 template <class D, typename Real = hn::TFromD<D>>
 void jacobian_rows(D d, const PlacedShape& shape, std::size_t output, const Real* parameters, const Real* inputs,
                    const Real* targets, const Real* weights, std::size_t vectors, const WorkSpace<Real>& space,
@@ -158,8 +158,8 @@ void add_products(D d, const Real* rows, std::size_t count, std::size_t vectors,
   }
 }
 
-/// Adds the products of one output to the gradient and the lower triangle of the normal equations of all parameters;
-/// returns its part of the error.
+/// Adds the products of one output to the gradient and the lower triangle of the normal equations of all parameters.
+/// Returns its part of the error.
 template <typename Real>
 double add_to_normal(const PlacedShape& shape, std::size_t output, const WorkSpace<Real>& space, const Real* products,
                      Real* gradient, Real* normal) {

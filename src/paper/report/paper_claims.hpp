@@ -19,7 +19,7 @@ enum class Verdict : std::uint8_t {
 
 [[nodiscard]] std::string to_words(Verdict verdict);
 
-/// What the paper says, and what was found.
+/// A claim of the paper, and the finding.
 struct Claim {
   std::string where;  ///< "eq. (2), Fig. 5"
   std::string said;

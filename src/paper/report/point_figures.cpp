@@ -78,7 +78,7 @@ std::vector<Point> outline(const std::vector<Point>& lower, const std::vector<Po
   return points;
 }
 
-/// What the points are compared with, and the paper's 5 % around it.
+/// The reference of the points, and the paper's 5 % around it.
 void draw_calibration(Plot& plot, const std::vector<Point>& calibration) {
   const std::vector<Point> lower = scaled(calibration, 1.0 - kPaperTolerance);
   const std::vector<Point> upper = scaled(calibration, 1.0 + kPaperTolerance);

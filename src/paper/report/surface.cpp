@@ -31,7 +31,7 @@ namespace {
 constexpr double kWidth = 480.0;
 constexpr double kHeight = 368.0;
 constexpr double kSide = 252.0;     // Of the floor [px].
-constexpr double kTallness = 0.58;  // Of the box, in sides of the floor.
+constexpr double kTallness = 0.58;  // Height of the box, in sides of the floor.
 constexpr Point kCentre{254.0, 182.0};
 
 struct Place {

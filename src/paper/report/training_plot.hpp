@@ -15,7 +15,7 @@ namespace dermis::paper {
 /// A curve can be drawn where it has points: as many values as steps.
 [[nodiscard]] bool has_points(const TrainingCurve& curve);
 
-/// What the curve comes down to: the mean of its last tenth, for the errors of batches are noisy. It must have points.
+/// The final error of the curve: the mean of its last tenth, for the errors of batches are noisy. It must have points.
 [[nodiscard]] double final_error(const TrainingCurve& curve);
 
 /// Errors over the steps, both logarithmic. Steps that are less than 2 % apart are drawn as one, with their mean error.
@@ -26,7 +26,7 @@ struct TrainingPlot {
   };
 
   std::string title;
-  std::string error;           ///< What the values are: "E, eq. (2)".
+  std::string error;           ///< Name of the values: "E, eq. (2)".
   std::vector<Series> series;  ///< At least one, all with points.
   std::optional<double> goal;  ///< Of eq. (2), drawn across.
 };

@@ -25,7 +25,7 @@ struct TrainingPoint {
   FeedForward<Real> network;
   PackedSamples<Real> packed;
   double scale;                ///< From eq. (6) to eq. (2).
-  std::vector<Real> gradient;  ///< Of eq. (6), all patterns, at the parameters; empty for levenberg_marquardt.
+  std::vector<Real> gradient;  ///< Gradient of eq. (6), all patterns, at the parameters; empty for levenberg_marquardt.
 
   /// The algorithm takes some patterns a step, so it does not know the gradient of all of them.
   [[nodiscard]] bool in_batches() const { return options.batch != 0 && options.batch < samples.count; }

@@ -39,7 +39,7 @@ struct Patterns {
   }
 };
 
-/// What the size and the end of the training are chosen by, and the rest.
+/// The patterns that choose the size and the end of the training, and the rest.
 struct Division {
   Patterns learned;
   Patterns held_out;

@@ -22,8 +22,8 @@ double dot(const std::vector<Real>& a, const std::vector<Real>& b) {
                             [](Real x, Real y) { return double{x} * double{y}; });
 }
 
-/// The numbers and the names are those of Moller's paper, with its delta less lambda |p|^2 as the curvature: what it
-/// calls lambda-bar is then not needed.
+/// The numbers and the names are those of Moller's paper, with its delta less lambda |p|^2 as the curvature. The
+/// paper's lambda-bar is then not needed.
 template <std::floating_point Real>
 class ConjugateGradient final : public Algorithm<Real> {
  public:

@@ -13,9 +13,9 @@
 
 namespace dermis::paper {
 
-/// The rows of weights of a layer lie in SIMD lanes: rows of units, one for each input and one of the thresholds; or
-/// rows of inputs, one for each unit, with the threshold as the weight of a last input that is 1. Each row begins at a
-/// cache line and ends with zeros.
+/// The rows of weights of a layer lie in SIMD lanes. They are rows of units, one for each input and one of the
+/// thresholds. Or they are rows of inputs, one for each unit, with the threshold as the weight of a last input that is
+/// 1. Each row begins at a cache line and ends with zeros.
 template <std::floating_point Real>
 struct LaneLayer {
   std::size_t units = 0;

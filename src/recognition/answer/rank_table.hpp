@@ -13,7 +13,7 @@ namespace dermis::recognition {
 /// The share of a table's values that a value exceeds, 0 ... 1; beyond the largest it grows on with the logarithm.
 [[nodiscard]] double rank_in(std::span<const float> table, double value);
 
-/// Of each value: its rank in the table of all others, as one that comes later will have it. Alone it has 1.
+/// The rank of each value in the table of all others, as a later value will have it. Alone it has 1.
 [[nodiscard]] std::vector<double> ranks_among_others(const std::vector<double>& values);
 
 }  // namespace dermis::recognition

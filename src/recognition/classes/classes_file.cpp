@@ -98,7 +98,7 @@ class JsonReader {
   bool is_good_ = true;
 };
 
-/// Files before `quantity` tell forces by the least reading that means anything.
+/// Files before `quantity` show forces by the least reading that means anything.
 Quantity quantity_from(const Json& json, JsonReader& reader) {
   const double least_reading = reader.number(json, "least_reading");
   if (!json.contains("quantity")) return least_reading == kLeastNewtons ? Quantity::force : Quantity::counts;

@@ -65,7 +65,7 @@ Result<std::vector<std::size_t>> recordings_of(const CsvTable& table, const std:
   return places;
 }
 
-/// What is wrong with the labels of one recording, or with its frames.
+/// The errors in the labels of one recording, or in its frames.
 Status check_recording(const LabelledFrames& data, const LoadRecording& recording) {
   if (Status checked = data.check_labels(); !checked) return checked;
   for (const Label& label : data.labels) {

@@ -22,7 +22,7 @@ class Circle {
     }
   }
 
-  /// Of the i-th angle; it may go round more than once.
+  /// Cosine of the i-th angle; it may go round more than once.
   [[nodiscard]] double cosine(std::size_t i) const noexcept { return cosine_[i % Angles]; }
   [[nodiscard]] double sine(std::size_t i) const noexcept { return sine_[i % Angles]; }
 

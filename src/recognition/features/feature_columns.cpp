@@ -25,7 +25,7 @@ void add(FeatureColumns& columns, Block block, std::size_t array, std::vector<Fe
   columns.count += size;
 }
 
-/// Whatever changes tells of time.
+/// All that changes is a feature of time.
 std::vector<FeatureGroup> changed(std::vector<FeatureGroup> groups) {
   for (FeatureGroup& group : groups) group.aspect = FeatureAspect::time;
   return groups;

@@ -24,7 +24,7 @@ struct BlockColumns {
 
 /// All features of a segment, in their order.
 struct FeatureColumns {
-  std::vector<BlockColumns> blocks;  ///< Of the first array, of the second ..., then those of all arrays.
+  std::vector<BlockColumns> blocks;  ///< Blocks of the first array, of the second ..., then those of all arrays.
   std::size_t count = 0;
 };
 
@@ -34,7 +34,7 @@ struct FeatureColumns {
 /// `moving`: whether time counts.
 [[nodiscard]] FeatureColumns feature_columns(const Layout& layout, bool moving);
 
-/// What one expert looks at.
+/// The features of one expert.
 struct ExpertColumns {
   std::string name;
   std::vector<std::size_t> columns;  ///< Rising.

@@ -8,10 +8,10 @@
 
 namespace dermis::recognition {
 
-/// What features tell, in plain words.
+/// The meaning of features, in plain words.
 enum class FeatureAspect { place, force, area, shape, time, further };
 
-/// Features of a block that stand side by side and tell the same.
+/// Features of a block that stand side by side and mean the same.
 struct FeatureGroup {
   const char* name;
   FeatureAspect aspect;

@@ -192,7 +192,7 @@ void FormBlock::put_directions(const ImageAnalysis& analysis, std::span<double> 
   }
 }
 
-/// What is finer than each blur.
+/// Writes the detail that is finer than each blur.
 void FormBlock::put_textures(const ImageAnalysis& analysis, std::span<double> out) {
   medium_.apply(analysis.normalised(), blurred_);
   coarse_.apply(analysis.normalised(), blurred_more_);

@@ -12,15 +12,14 @@
 
 namespace dermis::recognition {
 
-/// How much of a cell a line of taxels makes up, and of the next one, in which its rest may lie: a cell has two lines
-/// or more.
+/// The shares of a line of taxels in a cell and in the next one, where its rest may lie. A cell has two lines or more.
 struct CellShares {
   std::size_t cell = 0;
   double of_cell = 0.0;
   double of_next = 0.0;
 };
 
-/// Where edges are and how they run: histograms of oriented gradients over a grid of cells, which share a taxel that
+/// Where edges are and how they run: histograms of oriented gradients over a grid of cells. Cells share a taxel that
 /// lies in several by its area. Not thread-safe.
 class HogBlock {
  public:

@@ -36,7 +36,7 @@ std::size_t mirrored(std::ptrdiff_t place, std::size_t count) {
   return within < count ? within : 2 * count - 1 - within;
 }
 
-/// Of all places that a kernel of so many taps reaches.
+/// All places that a kernel of so many taps reaches.
 std::vector<std::size_t> mirrored_places(std::size_t count, std::size_t taps) {
   std::vector<std::size_t> places;
   const auto reach = static_cast<std::ptrdiff_t>(taps / 2);
@@ -57,7 +57,7 @@ void blend(std::span<const double> kernel, const LineAt& line_at, std::size_t co
   for (std::size_t tap = 0; tap < middle; ++tap) sums += kernel[tap] * (line(tap) + line(kernel.size() - 1 - tap));
 }
 
-/// Of a line of `count` values `stride` apart, at `place`: central, one-sided at the ends.
+/// Slope of a line of `count` values `stride` apart, at `place`: central, one-sided at the ends.
 double slope(std::span<const double> values, std::size_t at, std::size_t place, std::size_t count, std::size_t stride) {
   if (count < 2) return 0.0;
   const std::size_t before = place > 0 ? at - stride : at;

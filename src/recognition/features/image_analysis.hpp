@@ -19,7 +19,7 @@ struct Lattice {
   [[nodiscard]] std::size_t taxels() const noexcept { return rows * cols; }
 };
 
-/// Of an image taken as a distribution; all 0 but the sizes where the image is empty.
+/// Moments of an image taken as a distribution; all 0 but the sizes where the image is empty.
 struct Moments {
   double sum = 0.0;
   double peak = 0.0;
@@ -67,9 +67,9 @@ class ImageAnalysis {
   [[nodiscard]] std::span<const double> root() const noexcept { return root_; }          ///< Over its largest: 0 ... 1.
   [[nodiscard]] std::span<const double> normalised() const noexcept { return normal_; }  ///< Root with an RMS of 1.
   [[nodiscard]] std::span<const double> smooth() const noexcept { return smooth_; }  ///< Normalised, blurred by 0.7.
-  /// Of the gradient of smooth(): its size.
+  /// Size of the gradient of smooth().
   [[nodiscard]] std::span<const double> steepness() const noexcept { return steepness_; }
-  /// Of the gradient of smooth(): its direction without sign, 0 ... 1 for 0 ... pi.
+  /// Direction of the gradient of smooth() without sign, 0 ... 1 for 0 ... pi.
   [[nodiscard]] std::span<const double> direction() const noexcept { return direction_; }
 
  private:

@@ -12,8 +12,8 @@
 
 namespace dermis::recognition {
 
-/// The form of the contact whichever way it is turned: the image on rings around the centre of force, and the sizes of
-/// its Fourier components round each ring. Not thread-safe.
+/// The form of the contact whichever way it is turned. It takes the image on rings around the centre of force, and the
+/// sizes of its Fourier components round each ring. Not thread-safe.
 class PolarBlock {
  public:
   PolarBlock();

@@ -11,8 +11,8 @@ namespace dermis::recognition {
 
 inline constexpr FeatureGroup kPoseGroup{"centre and direction", FeatureAspect::place, 4};
 
-/// Where on the array the contact is, along its rows and columns, and which way it lies, the more it is elongated:
-/// (1 - minor/major) (cos 2 angle, sin 2 angle).
+/// Where on the array the contact is, along its rows and columns, and its direction: (1 - minor/major) (cos 2 angle,
+/// sin 2 angle). The direction counts more the longer the contact is.
 void write_pose(const ImageAnalysis& analysis, std::span<double> out);
 
 }  // namespace dermis::recognition

@@ -11,8 +11,8 @@
 
 namespace dermis::recognition {
 
-/// The lattice on which an array is seen by classes that were learned on another of the same part of the body: as large
-/// as the array is, with the pitch of the examples. The array's own where either pitch is not known.
+/// The lattice of an array for classes that were learned on another of the same part of the body. It is as large as the
+/// array, with the pitch of the examples. It is the array's own where either pitch is not known.
 [[nodiscard]] Lattice common_lattice(const SensedArray& examples, const SensedArray& source);
 
 /// Readings of an array on a lattice. A taxel's reading is shared out by area, so the sum stays. Not thread-safe.

@@ -28,7 +28,7 @@ std::size_t resampled_count(std::size_t frames, double source_per_frame) {
   return 1 + static_cast<std::size_t>(static_cast<double>(frames - 1) / source_per_frame + kRounding);
 }
 
-/// Of a frame without force the centre of the frame before.
+/// A frame without force has the centre of the frame before.
 void set_centre(FrameSeries& series, std::size_t frame, const Moments& moments) {
   const bool is_touched = moments.sum > 0.0 || frame == 0;
   series.row[frame] = is_touched ? moments.row : series.row[frame - 1];

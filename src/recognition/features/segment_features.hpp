@@ -20,8 +20,8 @@ namespace dermis::recognition {
 /// Segment -> features. Allocates only when made. Not thread-safe.
 class SegmentFeatures {
  public:
-  /// Features as of the array and rate of the `examples`, of frames of `source`, which has as many arrays and extras;
-  /// of longer segments than `most_frames` (of the source) the last so many frames are taken.
+  /// Makes features as for the array and rate of the `examples`, from frames of `source`, which has as many arrays and
+  /// extras. The last `most_frames` (of the source) of longer segments are taken.
   SegmentFeatures(const Layout& examples, const Layout& source, bool moving, std::size_t most_frames);
 
   /// In the order of feature_columns(); valid until the next call. `segment` has at least one frame.

@@ -12,7 +12,7 @@
 
 namespace dermis::recognition {
 
-/// What each frame of a segment says of one array, [frames] each. Lengths as in Lattice.
+/// Data of one array for each frame of a segment, [frames] each. Lengths as in Lattice.
 struct FrameSeries {
   std::vector<double> force;   ///< Sum of the readings.
   std::vector<double> row;     ///< Centre of force; of a frame without force that of the frame before.

@@ -10,8 +10,8 @@
 
 namespace dermis::recognition {
 
-/// The two classes that are taken for each other most often, as `report` has it; empty where none are. What tells them
-/// apart is judged by the same folds.
+/// The two classes that are taken for each other most often, as `report` has it; empty where none are. Their
+/// differences are judged by the same folds.
 [[nodiscard]] std::optional<ConfusedPair> find_confused_pair(const LearningReport& report, const TrainingTable& table,
                                                              const std::vector<ExpertColumns>& aspects,
                                                              const Folds& folds);

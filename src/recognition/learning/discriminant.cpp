@@ -101,8 +101,8 @@ Matrix scores_of(const Projections& points, const Vector& values, double shrinka
   return scores;
 }
 
-/// Axes of the space that the means span, from L with C = L L': V are eigenvectors of M C^-1 M', l their values;
-/// y = l^-1/2 V' M C^-1 z. Where there are more classes than columns it is the whole space.
+/// Axes of the space that the means span, y = l^-1/2 V' M C^-1 z. With C = L L', V are eigenvectors of M C^-1 M', and l
+/// their values. Where there are more classes than columns it is the whole space.
 Discriminant spanned(const Eigen::LLT<Eigen::MatrixXd>& cholesky, const Matrix& means) {
   Discriminant result;
   if (means.rows() >= means.cols()) {

@@ -13,12 +13,12 @@ namespace dermis::recognition {
 
 inline constexpr std::array kShrinkages{0.003, 0.01, 0.03, 0.1, 0.3, 0.6, 0.8, 0.9, 0.97};
 
-/// What a discriminant learns from.
+/// The examples of a discriminant.
 struct Teaching {
   Matrix examples;                   ///< [examples, columns]
   std::vector<std::size_t> classes;  ///< Of each, below `class_count`.
   std::size_t class_count = 0;
-  /// [any, columns]: differences that do not tell classes apart. Their squares are added to those within the classes.
+  /// [any, columns]: differences that do not distinguish classes. Their squares are added to those within the classes.
   Matrix strays{};
 };
 

@@ -12,7 +12,7 @@
 
 namespace dermis::recognition {
 
-/// What is learned from.
+/// The data for learning.
 struct TrainingTable {
   const Matrix& features;             ///< [segments, features]
   const std::vector<Matrix>& raised;  ///< The same of the segments as they would be with a zero that lies higher.
@@ -21,7 +21,7 @@ struct TrainingTable {
   std::size_t class_count = 0;
 };
 
-/// What some of the rows teach an expert that takes these features; `classes`: of each of them.
+/// The teaching by some of the rows for an expert with these features; `classes`: of each of them.
 [[nodiscard]] Teaching teaching_of(const TrainingTable& table, const std::vector<std::size_t>& rows,
                                    std::vector<std::size_t> classes, const Standardisation& standardisation,
                                    bool strays);
@@ -38,7 +38,7 @@ struct LearningWay {
 /// How an expert learns best, and what it says of each example by what the other folds taught.
 struct ExpertChoice {
   LearningWay way{};
-  double sharpness = 1.0;  ///< What the scores are to be multiplied by.
+  double sharpness = 1.0;  ///< The factor on the scores.
   Matrix scores{};         ///< [examples, classes], multiplied already
 };
 

@@ -14,7 +14,7 @@ namespace dermis::recognition {
 struct Folds {
   enum class Kind { by_group, by_time };
   Kind kind = Kind::by_time;
-  std::vector<std::size_t> fold_of;  ///< Of each example, 0 ... count - 1.
+  std::vector<std::size_t> fold_of;  ///< Fold of each example, 0 ... count - 1.
   std::size_t count = 0;
 };
 
@@ -25,7 +25,7 @@ enum class Deal {
 };
 
 /// Whole groups (subjects, sessions) in at most ten folds, where all labels name one and most examples can then be
-/// judged; else the examples of each class as `deal` says.
+/// judged. Else the examples of each class as `deal` says.
 [[nodiscard]] Folds make_folds(const std::vector<Label>& labels, const std::vector<std::size_t>& classes, Deal deal);
 
 }  // namespace dermis::recognition

@@ -26,8 +26,8 @@
 namespace dermis::recognition {
 namespace {
 
-/// What an array calls zero is not the same on another day. So much higher it lies in copies of the examples, as shares
-/// of the largest reading of each: by how they differ from the examples, classes are not told apart.
+/// The zero of an array is not the same on another day. It is raised so much in copies of the examples, as shares of
+/// the largest reading of each. Classes are not distinguished by that difference.
 constexpr std::array kRaisedZeros{0.03, 0.08};
 
 /// The loads of a segment above a level that is a share of its largest.
@@ -74,7 +74,7 @@ std::vector<Touch> touches_of(const std::vector<Label>& labels) {
   return touches;
 }
 
-/// Of each frame.
+/// Force of each frame.
 std::vector<double> forces_of(const LabelledFrames& data) {
   std::vector<double> forces;
   const std::span<const float> frames = data.frames;
@@ -129,7 +129,7 @@ Expert train_expert(const TrainingTable& table, const ExpertColumns& columns, co
   return expert;
 }
 
-/// The experts that tell anything apart, each with what it says of examples that it had not learned from.
+/// The experts that distinguish anything, each with its answers on examples that it had not learned from.
 struct Panel {
   std::vector<ExpertColumns> columns;
   std::vector<ExpertChoice> choices;

@@ -25,7 +25,7 @@ bool is_match(const Touch& a, const Touch& b) {
   return overlap > 0 && 2 * overlap >= length_of(a) + length_of(b) - overlap;
 }
 
-/// Of all touches in order, those that overlap one.
+/// The touches in order that overlap one.
 std::span<const Touch> overlapping(std::span<const Touch> touches, const Touch& touch) {
   const auto begin = std::lower_bound(touches.begin(), touches.end(), touch.first,
                                       [](const Touch& each, std::size_t frame) { return each.last < frame; });

@@ -15,7 +15,7 @@ namespace {
 constexpr double kKnownShare = 0.95;  // of new touches of known classes shall not be called unknown
 constexpr double kConfidence = 0.95;
 
-/// What the unknown score is made from, of several examples.
+/// The data for the unknown score, of several examples.
 struct Observations {
   std::vector<std::vector<double>> distances;  ///< [experts][examples] to the class that was answered
   std::vector<double> doubts;                  ///< [examples] 1 - largest probability
@@ -25,7 +25,7 @@ struct Observations {
 /// for there is none.
 Observations observe(Judged judged, const Matrix& scores, const std::vector<Matrix>& distances,
                      bool without_their_class) {
-  // So many examples do not tell what is more certain: of n that are right the next may be wrong by 1 / (n + 2).
+  // So many examples allow no greater certainty: after n right ones the next may be wrong by 1 / (n + 2).
   const double least_doubt = 1.0 / static_cast<double>(judged.classes.size() + 2);
   Observations result{std::vector<std::vector<double>>(distances.size()), {}};
   for (std::size_t i = 0; i < judged.classes.size(); ++i) {
@@ -50,8 +50,8 @@ Observations observe(Judged judged, const Matrix& scores, const std::vector<Matr
   return result;
 }
 
-/// Ranks of the distances by each expert, then of the doubts: [experts + 1][examples]; each among the others, as that
-/// of a new touch is among them.
+/// Ranks of the distances by each expert, then of the doubts: [experts + 1][examples]. Each is among the others, as a
+/// new touch is among them.
 std::vector<std::vector<double>> ranks_of_known(const Observations& known) {
   std::vector<std::vector<double>> ranks;
   for (const std::vector<double>& distances : known.distances) ranks.push_back(ranks_among_others(distances));
@@ -73,9 +73,9 @@ std::vector<std::vector<double>> ranks_of_unknown(const Classes& classes, const 
   return ranks;
 }
 
-/// Weights >= 0, of sum 1, of the logistic regression that tells the two apart.
-std::vector<double> telling_weights(const std::vector<std::vector<double>>& known,
-                                    const std::vector<std::vector<double>>& unknown) {
+/// Weights >= 0, of sum 1, of the logistic regression that distinguishes the two.
+std::vector<double> discriminating_weights(const std::vector<std::vector<double>>& known,
+                                           const std::vector<std::vector<double>>& unknown) {
   const std::size_t count = known.front().size();
   const std::size_t both = count + unknown.front().size();
   Judged judged;
@@ -107,9 +107,9 @@ std::vector<double> even_weights(std::size_t experts) {
 
 std::vector<double> weights_of(const Classes& classes, const std::vector<std::vector<double>>& known,
                                const Observations& unknown) {
-  const bool can_be_told = classes.names.size() > 2 && !unknown.doubts.empty();
-  return can_be_told ? telling_weights(known, ranks_of_unknown(classes, unknown))
-                     : even_weights(classes.experts.size());
+  const bool can_be_learned = classes.names.size() > 2 && !unknown.doubts.empty();
+  return can_be_learned ? discriminating_weights(known, ranks_of_unknown(classes, unknown))
+                        : even_weights(classes.experts.size());
 }
 
 /// How many of n scores may lie above a limit that, as sure as kConfidence, has the share of all below it (S. S. Wilks,

@@ -28,7 +28,7 @@ class BodyPart final : public Part {
     return {service("/body/joints", *this, &BodyPart::set_joints, kMostJointsBytes)};
   }
 
-  /// The meshes of the body, which /suit.json names; where everything is for nodes that come later.
+  /// Offers the meshes of the body, which /suit.json names, and publishes the present places for later nodes.
   [[nodiscard]] Status prepare() override {
     publish(Ends::dds);
     if (!suit_.body) return Done{};

@@ -22,7 +22,7 @@ using calibration::GuideStage;
 
 constexpr const char* kNoCalibration = "no calibration is going on; begin with /calibration/start";
 
-/// What `dermis calibrate` needs to make the model again, or a better one.
+/// Writes the data from which `dermis calibrate` makes the model again, or a better one.
 Status write_data(const std::string& path, const ArrayDescription& array, const GuidedData& data) {
   if (Status written = files::write_array(path + ".array.toml", array); !written) return written;
   const auto fill = [&](std::size_t number, RawFrame& frame) { frame = data.frames[number]; };
@@ -113,7 +113,7 @@ void CalibrationServices::replace(Calibration calibration) {
     std::swap(last_, calibration);
   }
   say_what_to_do();
-  // Its end may have to wait for a fit, the caller not.
+  // Its end may have to wait for a fit; the caller must not.
   if (calibration.guide) {
     ending_ = std::async(std::launch::async, [old = std::move(calibration.guide)]() mutable { old.reset(); });
   }

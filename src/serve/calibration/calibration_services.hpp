@@ -24,7 +24,7 @@
 
 namespace dermis::serve {
 
-/// What a calibration asks for, as it is said to a simulated hand.
+/// The request of a calibration, in the words of a simulated hand.
 [[nodiscard]] sources::GuideWords words_of(const calibration::GuideState& state, Nanos hold_time);
 
 /// The services /calibration/... of docs/stream.md: one guided calibration at a time. Services are called by one
@@ -39,7 +39,7 @@ class CalibrationServices final : public Part {
   /// Is called ten times a second; asks progress() where somebody wants to know.
   using Tell = std::function<void(const CalibrationServices&)>;
 
-  /// `guide_voice`: what the calibration asks for is said to it, for simulated hands.
+  /// `guide_voice`: gets the requests of the calibration, for simulated hands.
   CalibrationServices(ServiceArrays arrays, UseModel use_model, std::shared_ptr<sources::GuideVoice> guide_voice,
                       MayBegin may_begin = {}, Tell tell = {});
 
@@ -81,7 +81,7 @@ class CalibrationServices final : public Part {
   const Tell tell_;
   std::future<void> ending_;  ///< A calibration whose last fit is waited for.
   std::atomic<std::size_t> active_array_{kNone};
-  mutable std::mutex mutex_;  ///< Of what follows; never held for long, because frames wait for it.
+  mutable std::mutex mutex_;  ///< Guards the members below; never held for long, because frames wait for it.
   Calibration last_;
 };
 

@@ -20,7 +20,7 @@ class AgeingWatch {
 
   void add(const live::ArrayResult& result);
 
-  /// What touches have told since the array has had its model.
+  /// The evidence of touches since the array got its model.
   [[nodiscard]] health::AgeingEvidence evidence(std::size_t array) const;
 
   /// The array has another model.

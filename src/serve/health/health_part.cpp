@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::int64_t kTicksToReport = std::int64_t{5} * Part::kTicksPerSecond;
 
-/// How the arrays are and how the work goes: the topics of health and statistics, and lines for the log where
-/// something is left out.
+/// The state of the arrays and of the work: the topics of health and statistics, and lines for the log where something
+/// is left out.
 class HealthPart final : public Part {
  public:
   HealthPart(Host& host, const Topic& health, const Topic& statistics)
@@ -86,7 +86,7 @@ class HealthPart final : public Part {
   Topic health_;
   Topic statistics_;
   AgeingWatch ageing_;
-  std::uint64_t left_out_ = 0;  // when it was told last
+  std::uint64_t left_out_ = 0;  // when it was reported last
   std::uint64_t left_out_of_dds_ = 0;
   std::vector<std::uint8_t> message_;
 };

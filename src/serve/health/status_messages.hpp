@@ -9,7 +9,7 @@
 #include "dermis/messages/live_messages.hpp"
 #include "dermis/pipeline/model.hpp"
 
-/// What is known of an array at work, as messages say it.
+/// The state of an array at work, in the words of messages.
 namespace dermis::serve {
 
 [[nodiscard]] messages::ArrayStatistics statistics_message(const std::string& array,

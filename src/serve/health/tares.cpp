@@ -48,7 +48,7 @@ std::vector<LiveParameter> Tares::parameters() {
   return all;
 }
 
-/// Of the arrays [first, end): on where all of them are tared.
+/// Controls the arrays [first, end): on where all of them are tared.
 LiveParameter Tares::tare_of(const std::string& name, std::size_t first, std::size_t end) {
   const auto value = [this, first, end] {
     const std::lock_guard lock(mutex_);
@@ -81,7 +81,7 @@ void Tares::tare(std::size_t array, pipeline::TareOver over, const std::string& 
   zero.refusal.clear();
 }
 
-/// Those that were refused; all, where none was.
+/// The arrays whose tare was refused; all where none was.
 void Tares::force(const std::string& client) {
   const auto is_refused = [](const Zero& zero) { return !zero.refusal.empty(); };
   const bool is_any = std::any_of(zeros_.begin(), zeros_.end(), is_refused);

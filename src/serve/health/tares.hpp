@@ -24,7 +24,7 @@ class Tares final : public Part {
  public:
   static constexpr std::size_t kMostLines = 20;
 
-  /// Is told the lines of follow(), where there are some.
+  /// Gets the lines of follow(), where there are some.
   using Tell = std::function<void(const std::vector<std::string>& lines)>;
 
   /// `suit` and `live` must outlive it.
@@ -36,8 +36,8 @@ class Tares final : public Part {
   /// It begins at its own zero.
   void model_changed(std::size_t array) override;
 
-  /// What clients have done to zeros, as far as it is done, a line each: "2026-11-22 10:15:00 UTC: chest was tared by
-  /// 127.0.0.1:53412". To be called again and again.
+  /// Changes of zeros by clients that are done, a line each: "2026-11-22 10:15:00 UTC: chest was tared by
+  /// 127.0.0.1:53412". Call it again and again.
   [[nodiscard]] std::vector<std::string> follow();
 
  private:
@@ -68,7 +68,7 @@ class Tares final : public Part {
   mutable std::mutex mutex_;       // of the following
   std::vector<Zero> zeros_;        // of each array
   std::deque<std::string> log_;    // the newest first
-  std::vector<std::string> news_;  // that follow() has not told
+  std::vector<std::string> news_;  // that follow() has not returned yet
 };
 
 }  // namespace dermis::serve

@@ -104,7 +104,7 @@ void ThreatPublisher::keep_standing(Watched& watched) {
   }
 }
 
-/// What began or ended, and where `all`, to clients, how the other limits stand.
+/// Publishes which limits began or ended, and with `all` how the other limits stand.
 void ThreatPublisher::tell(Watched& watched, Nanos time, bool all) {
   bool is_news = all;
   for (const ThreatState& state : watched.monitor.states()) {

@@ -72,7 +72,7 @@ class ThreatPublisher final : public Part {
 [[nodiscard]] messages::Diagnosis diagnosis_of(const std::string& array, const threats::ThreatLimit& limit,
                                                const threats::ThreatState& state);
 
-/// As a message says it.
+/// The state in the words of a message.
 [[nodiscard]] messages::Threat::State state_of(const threats::ThreatLimit& limit, const threats::ThreatState& state);
 
 }  // namespace dermis::serve

@@ -21,8 +21,8 @@ namespace dermis::serve {
 class SuitRecorder;
 class Topics;
 
-/// What the parts of a server share. What one of them asks of all goes through here. Thread-safe as its members are;
-/// they outlive it.
+/// The objects that all parts of a server use. Requests of a part to all parts go through here. Thread-safe as its
+/// members are; they outlive it.
 struct Host {
   ServedSuit& suit;
   const SessionOptions options;
@@ -33,7 +33,7 @@ struct Host {
   SuitRecorder& recorder;
   PartList& parts;
 
-  /// Takes a model into use for an array, and tells all parts and clients.
+  /// Takes a model into use for an array, and notifies all parts and clients.
   [[nodiscard]] Status use_model(std::size_t array, const std::shared_ptr<const pipeline::Model>& model);
   [[nodiscard]] Status use_classes(std::size_t array, recognition::Classes classes);
 

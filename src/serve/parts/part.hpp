@@ -24,9 +24,8 @@ struct LiveParameter {
   std::function<Status(bool, const std::string& client)> set_switch{};
 };
 
-/// One subject of the server in one place: what it offers to clients, what it makes of frames, and what it does when
-/// something changes. Parts know nothing of each other (Host). Ticks and requests each come from one thread, frames
-/// from that of their array.
+/// One subject of the server in one place: its offers to clients, its use of frames, and its response to changes. Parts
+/// know nothing of each other (Host). Ticks and requests each come from one thread, frames from that of their array.
 class Part {
  public:
   static constexpr int kTicksPerSecond = 30;
@@ -36,13 +35,13 @@ class Part {
   Part& operator=(const Part&) = delete;
   virtual ~Part() = default;
 
-  /// Asked for once, before the server begins.
+  /// The server asks for these once, before it begins.
   [[nodiscard]] virtual std::vector<stream::Service> services() { return {}; }
   [[nodiscard]] virtual std::vector<LiveParameter> parameters() { return {}; }
-  /// What else has to happen before clients come. Errors end the session.
+  /// Does the rest of the work before clients come. Errors end the session.
   [[nodiscard]] virtual Status prepare() { return Done{}; }
 
-  /// Every frame of every array, with what was made of it.
+  /// Takes every frame of every array with its results.
   virtual void hear(const live::ArrayResult& /*result*/) {}
   virtual void tick(std::int64_t /*tick*/) {}
   /// The array has another model, which is in Host::models.
@@ -51,7 +50,7 @@ class Part {
   [[nodiscard]] virtual Status use_classes(std::size_t /*array*/, const recognition::Classes& /*classes*/) {
     return Done{};
   }
-  /// Adds what is wrong with the arrays.
+  /// Adds the problems of the arrays.
   virtual void diagnose(std::vector<messages::Diagnosis>& /*diagnoses*/) const {}
   /// After the last frame.
   virtual void finish() {}

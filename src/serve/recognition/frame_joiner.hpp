@@ -23,8 +23,8 @@ class FrameJoiner {
   /// Keeps the newtons of an array that is not the first. Rejected frames are passed over.
   void keep(std::size_t array, const ForceFrame& force);
 
-  /// All arrays side by side at a frame of the first. What is further than recognition::kLongestSilence from it has no
-  /// load. Valid until the next call.
+  /// All arrays side by side at a frame of the first. An array whose frame is further than recognition::kLongestSilence
+  /// from it has no load. Valid until the next call.
   [[nodiscard]] const ForceFrame& join(const ForceFrame& first);
 
  private:

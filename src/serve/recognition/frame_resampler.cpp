@@ -13,7 +13,7 @@ namespace {
 
 constexpr Nanos kLongestGap = std::chrono::milliseconds(500);
 
-/// A taxel that says nothing has no load, so that it spoils no frame but its own.
+/// A taxel without a value has no load, so that it spoils no frame but its own.
 float load_of(float newtons) noexcept {
   return std::isfinite(newtons) ? newtons : 0.0F;
 }

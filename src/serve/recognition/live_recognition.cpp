@@ -17,14 +17,14 @@ using recognition::StreamRecogniser;
 
 constexpr double kPosesHz = 30.0;
 constexpr double kMostHz = 1000.0;
-constexpr Nanos kTellPeriod = std::chrono::milliseconds(100);
+constexpr Nanos kRepeatPeriod = std::chrono::milliseconds(100);
 
 /// 0: every frame is looked at, as the rate of the examples is not known.
 double rate_for(const Classes& classes) {
   return classes.moving ? std::min(classes.layout.rate_hz, kMostHz) : kPosesHz;
 }
 
-/// Of newtons of these arrays, side by side.
+/// The layout of newtons of these arrays, side by side.
 Layout layout_of(std::vector<recognition::SensedArray> arrays, std::size_t further, const Classes& classes) {
   Layout layout;
   for (recognition::SensedArray& array : arrays) {
@@ -54,9 +54,9 @@ LiveRecognition::LiveRecognition(StreamRecogniser recogniser, double rate_hz, st
 std::optional<Answer> LiveRecognition::next(const ForceFrame& force, std::span<const float> further) {
   if (has(force.status, FrameStatus::rejected)) return std::nullopt;
   if (resampler_.leaps_to(force)) {
-    // What was going on then is not answered for.
+    // A touch that was going on then gets no answer.
     static_cast<void>(recogniser_.finish());
-    told_.reset();
+    published_.reset();
   }
   std::optional<Answer> answer;
   resampler_.take(force, [&](std::span<const float> newtons) {
@@ -68,9 +68,9 @@ std::optional<Answer> LiveRecognition::next(const ForceFrame& force, std::span<c
 
 bool LiveRecognition::is_news(const Answer& answer, Nanos time) {
   if (classes().moving) return true;
-  const bool is_same = told_ && told_->likeliest == answer.likeliest && told_->verdict == answer.verdict;
-  if (is_same && time - told_->time < kTellPeriod) return false;
-  told_ = Told{answer.likeliest, answer.verdict, time};
+  const bool is_same = published_ && published_->likeliest == answer.likeliest && published_->verdict == answer.verdict;
+  if (is_same && time - published_->time < kRepeatPeriod) return false;
+  published_ = Published{answer.likeliest, answer.verdict, time};
   return true;
 }
 

@@ -14,8 +14,8 @@
 
 namespace dermis::serve {
 
-/// What touches one array or several at work, from their newtons. Frames are brought to the rate of the examples, of
-/// poses to 30 a second. Allocates only when made. Not thread-safe.
+/// Recognises touches of one array or several at work, from their newtons. Frames are brought to the rate of the
+/// examples, of poses to 30 a second. Allocates only when made. Not thread-safe.
 class LiveRecognition {
  public:
   /// `arrays`: side by side in each frame, in this order; `further`: readings beside a frame. Fails where the classes
@@ -24,9 +24,8 @@ class LiveRecognition {
                                                       std::vector<recognition::SensedArray> arrays,
                                                       std::size_t further = 0);
 
-  /// The answer where there is one to tell: of a gesture once it is over; of a pose when it changes, and ten times a
-  /// second. `further`: as many as were told to create(). Valid until the next call. Rejected
-  /// frames are passed over.
+  /// The new answer, if any: for a gesture once it is over; for a pose when it changes, and ten times a second.
+  /// `further`: as many as create() was given. Valid until the next call. Rejected frames are passed over.
   [[nodiscard]] std::optional<recognition::Answer> next(const ForceFrame& force, std::span<const float> further = {});
 
   [[nodiscard]] const recognition::Classes& classes() const noexcept { return recogniser_.classes(); }
@@ -38,13 +37,13 @@ class LiveRecognition {
 
   recognition::StreamRecogniser recogniser_;
   FrameResampler resampler_;
-  /// The pose that was told last.
-  struct Told {
+  /// The pose that was published last.
+  struct Published {
     std::size_t likeliest = 0;
     recognition::Verdict verdict = recognition::Verdict::known;
     Nanos time{};
   };
-  std::optional<Told> told_{};
+  std::optional<Published> published_{};
 };
 
 }  // namespace dermis::serve

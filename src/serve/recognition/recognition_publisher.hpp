@@ -41,7 +41,7 @@ class RecognitionPublisher final : public Part {
     std::atomic<bool> has_next = false;
     std::mutex next_mutex{};
     std::unique_ptr<LiveRecognition> next{};
-    // Of the array's thread alone.
+    // Used by the array's thread alone.
     std::unique_ptr<LiveRecognition> recognition{};
     std::vector<std::size_t> order{};
     std::vector<messages::Hypothesis> results{};

@@ -90,12 +90,12 @@ void SuitRecognition::hear(const live::ArrayResult& result) {
   topic_.publish(result.force.time, message_);
 }
 
-/// As they are at the time of a frame.
+/// Takes the further readings at the time of a frame.
 void SuitRecognition::read_further(Nanos time) {
   const std::lock_guard lock(readings_mutex_);
-  if (told_) {
-    further_.swap(*told_);
-    told_.reset();
+  if (pending_) {
+    further_.swap(*pending_);
+    pending_.reset();
     further_time_ = time;
   }
   const bool is_near = further_time_ && std::chrono::abs(time - *further_time_) <= recognition::kLongestSilence;
@@ -111,7 +111,7 @@ Result<std::string> SuitRecognition::take_readings(const JsonRequest& request) {
   Result<std::vector<double>> readings = request.numbers_or_null("values", recognition_.classes().layout.extras);
   if (!readings) return readings.error();
   const std::lock_guard lock(readings_mutex_);
-  told_.emplace(readings->begin(), readings->end());
+  pending_.emplace(readings->begin(), readings->end());
   return std::string("{}");
 }
 

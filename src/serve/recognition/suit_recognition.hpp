@@ -23,8 +23,8 @@
 
 namespace dermis::serve {
 
-/// The topic /suit/recognition of docs/stream.md: what touches several arrays together, or one beside further readings.
-/// Thread-safe: each array on a thread of its own.
+/// The topic /suit/recognition of docs/stream.md: touches of several arrays together, or of one beside further
+/// readings. Thread-safe: each array on a thread of its own.
 class SuitRecognition final : public Part {
  public:
   /// By the classes of the suit, which must have some. Fails where they do not fit its arrays. `topics` and `recorder`
@@ -50,8 +50,8 @@ class SuitRecognition final : public Part {
   FrameJoiner joiner_;
   EventTopic topic_;
   std::mutex readings_mutex_;
-  std::optional<std::vector<float>> told_{};  ///< Further readings that no frame has seen yet.
-  // Of the thread of the first array alone.
+  std::optional<std::vector<float>> pending_{};  ///< Further readings that no frame has seen yet.
+  // Used by the thread of the first array alone.
   std::vector<float> further_;
   std::optional<Nanos> further_time_{};
   std::vector<std::size_t> order_{};
@@ -59,7 +59,7 @@ class SuitRecognition final : public Part {
   std::vector<std::uint8_t> message_{};
 };
 
-/// What the classes of several arrays say of those of a suit, which are known by their names; one may have another name
+/// Applies the classes of several arrays to those of a suit, which are found by their names. One may have another name
 /// where the suit has no other array. Fails where they do not fit.
 [[nodiscard]] Result<LiveRecognition> recognition_of_suit(const recognition::Classes& classes,
                                                           const std::vector<ServedArray>& arrays);

@@ -13,8 +13,8 @@
 
 namespace dermis::serve {
 
-/// The frames of the last minute of each array, to be saved when somebody wishes that they had been. All arrays
-/// together hold 16 MB at most: of many or fast ones there is less than a minute. Thread-safe.
+/// The frames of the last minute of each array, to be saved afterwards. All arrays together hold 16 MB at most: with
+/// many or fast arrays there is less than a minute. Thread-safe.
 class LastMinute {
  public:
   static constexpr Nanos kLongest = std::chrono::minutes(1);
@@ -25,7 +25,7 @@ class LastMinute {
   /// On one thread for each array, which waits for a copy of a few frames at most. Time that goes back begins anew.
   void keep(std::size_t array, const RawFrame& frame);
 
-  /// Those from `first` to `last`, with the times in order; frames that are forgotten meanwhile are left out.
+  /// The frames from `first` to `last`, with the times in order; frames that are forgotten meanwhile are left out.
   [[nodiscard]] std::vector<RawFrame> frames(std::size_t array, Nanos first, Nanos last) const;
 
  private:

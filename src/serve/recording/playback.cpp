@@ -11,13 +11,13 @@
 namespace dermis::serve {
 namespace {
 
-/// Tells clients where the recording is that is played.
+/// Publishes the position in the played recording.
 class PlaybackClock final : public Part {
  public:
   PlaybackClock(live::Playback& playback, stream::Server& server) : playback_(playback), server_(server) {}
 
-  /// Ten times a second while it runs and once when it stands still. Who comes while it stands still is told, too, and
-  /// shown the frame at which it stands.
+  /// Ten times a second while it runs and once when it stands still. A client that comes while it stands still gets it,
+  /// too, and sees the frame at which it stands.
   void tick(std::int64_t tick) override {
     if (tick % 3 != 1) return;
     const PlaybackStatus status = playback_.status();

@@ -14,8 +14,8 @@
 
 namespace dermis::serve {
 
-/// A recording that is played on a port of its own, beside the session that goes on: its clients, its limits and who
-/// listens to them notice nothing. One at a time. Not thread-safe.
+/// Plays a recording on a port of its own, beside the running session, whose clients, limits and listeners notice
+/// nothing. One at a time. Not thread-safe.
 class PlayedRecording {
  public:
   /// The suit that takes its frames from a recording.

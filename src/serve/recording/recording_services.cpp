@@ -22,7 +22,7 @@ constexpr std::size_t kMostFileName = 255;
 constexpr const char* kMilliseconds = "a whole number of milliseconds since 1970";
 constexpr std::uint64_t kMostMilliseconds = 9'000'000'000'000;  // the year 2255; Nanos end soon after
 
-/// {"from_ms", "to_ms"}; what is missing does not bound.
+/// {"from_ms", "to_ms"}; a missing one sets no bound.
 Result<Selection> selection_of(const JsonRequest& request) {
   Selection selection{Nanos::min(), Nanos::max()};
   for (const auto& [field, end] : {std::pair("from_ms", &selection.first), std::pair("to_ms", &selection.last)}) {
@@ -171,7 +171,7 @@ Result<std::unique_ptr<Part>> make_recording(Host& host) {
     for (std::size_t k = 0; k < suit->arrays.size(); ++k) suit->arrays[k].model = host.models.of(k);
     return suit;
   };
-  // What is played itself plays no other.
+  // A played recording cannot play another one.
   std::optional<PlayedRecording::PlayedSuit> player;
   if (!host.suit.playback) player = played;
   return std::unique_ptr<Part>(std::make_unique<RecordingServices>(host.suit, host.options, arrays, host.models,

@@ -18,7 +18,7 @@ struct SavedFile {
   std::int64_t changed_s = 0;  ///< Seconds since 1970.
 };
 
-/// Of a file or folder, without "." and "..", as a person would look for it.
+/// The path of a file or folder without `.` and `..`, as a person would look for it.
 [[nodiscard]] std::string absolute_path(const std::string& path);
 
 /// The folder into which clients record, and nothing outside of it. Links are passed over. Thread-safe.

@@ -57,7 +57,7 @@ void SuitRecorder::stop() {
   recording_ = false;
 }
 
-/// How it ended is told here, too: once, and by a thread that nobody waits for.
+/// The end is reported here, too: once, and by a thread that nobody waits for.
 void SuitRecorder::close(recordings::SuitRecordingWriter& writer) {
   outcome_ = writer.commit();
   if (!outcome_) return failed_(outcome_.error().message);
@@ -82,7 +82,7 @@ void SuitRecorder::await_closing() {
 
 void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
   write_with([&](recordings::SuitRecordingWriter& writer) {
-    const Result<bool> taken = writer.try_write(array, raw);
+    Result<bool> taken = writer.try_write(array, raw);
     if (taken) ++(*taken ? frames_ : left_out_);
     return taken;
   });
@@ -90,7 +90,7 @@ void SuitRecorder::write(std::size_t array, const RawFrame& raw) {
 
 void SuitRecorder::write(const recordings::RecordedEvent& event) {
   write_with([&](recordings::SuitRecordingWriter& writer) {
-    const Result<bool> taken = writer.try_write(event);
+    Result<bool> taken = writer.try_write(event);
     if (taken && !*taken) ++left_out_;
     return taken;
   });

@@ -20,26 +20,27 @@
 
 namespace dermis::serve {
 
-/// The name of a recording: the first has the one that is wanted; the next, and all where none is wanted or the wanted
-/// one exists, the time in it, as "rec-20261122-101500-123.mcap", so that nothing is overwritten.
+/// The name of a recording, so that nothing is overwritten. The first has the wanted name. Later ones, and all where
+/// none is wanted or it exists, have the time in it: "rec-20261122-101500-123.mcap".
 [[nodiscard]] std::string recording_name(const std::string& wanted, bool is_first,
                                          std::chrono::system_clock::time_point now);
 
-/// Records every frame of all arrays, as the device said it, from begin() to stop(): the model gives the forces again,
-/// and they would be four fifths of the bytes. No array waits for the disk. Frames wait for a disk that stalls, as many
-/// as have room in 64 MB; what comes then is left out and counted. Thread-safe.
+/// Records every frame of all arrays as the device sent it, from begin() to stop(). Forces are left out: the model
+/// gives them again, and they would be four fifths of the bytes. No array waits for the disk. While a disk stalls,
+/// frames wait in 64 MB of memory; later ones are left out and counted. Thread-safe.
 class SuitRecorder {
  public:
   using Arrays = std::function<std::vector<recordings::RecordedArray>()>;
   using Failed = std::function<void(const std::string& why)>;
   using Written = std::function<void(std::uint64_t frames)>;
 
-  /// `wanted`: the path of the first recording, or empty. `arrays` tells begin() what is recorded. On the thread that
-  /// closes the file, `failed` is told why a recording ended, and `written` how many frames a complete one has.
+  /// `wanted`: the path of the first recording, or empty. `arrays` gives begin() the recorded arrays. The thread that
+  /// closes the file calls `failed` with the reason why a recording ended, and `written` with the frames of a complete
+  /// one.
   SuitRecorder(std::string wanted, Arrays arrays, Failed failed, Written written = {});
   SuitRecorder(const SuitRecorder&) = delete;
   SuitRecorder& operator=(const SuitRecorder&) = delete;
-  /// As end().
+  /// Does the same as end().
   ~SuitRecorder();
 
   /// Fails where the file cannot be made, or a recording goes on. `path`: of a file that is not there yet; empty: the
@@ -55,10 +56,10 @@ class SuitRecorder {
   void write(const recordings::RecordedEvent& event);
 
   [[nodiscard]] bool recording() const noexcept { return recording_.load(); }
-  /// Of the present or the last recording.
+  /// Path of the present or the last recording.
   [[nodiscard]] std::string path() const;
   [[nodiscard]] std::uint64_t frames() const noexcept { return frames_.load(); }
-  /// Frames and events that the present or the last recording has not, because its disk did not follow.
+  /// Frames and events that are missing in the present or the last recording, because its disk was too slow.
   [[nodiscard]] std::uint64_t left_out() const noexcept { return left_out_.load(); }
 
  private:
@@ -78,7 +79,7 @@ class SuitRecorder {
   std::atomic<std::uint64_t> left_out_{0};
   Status outcome_ = Done{};  // Of closing_, once it has ended.
 
-  mutable std::shared_mutex writer_mutex_;  // Of what follows; shared by those who write.
+  mutable std::shared_mutex writer_mutex_;  // Guards the members below; shared by those who write.
   std::unique_ptr<recordings::SuitRecordingWriter> writer_;
   std::thread closing_;
   std::string path_;

@@ -11,7 +11,7 @@
 namespace dermis::serve {
 
 /// An array of unknown circuit, as a client describes it: {"name": "mat", "rows": 12, "cols": 10, "pitch_um": 10000,
-/// "adc_bits": 12}, and where they are wanted "transpose", "flip_rows" and "flip_cols". Its name is one for files.
+/// "adc_bits": 12}. "transpose", "flip_rows" and "flip_cols" may be added. Its name is one for files.
 [[nodiscard]] Result<ArrayDescription> array_request(std::string_view text);
 
 /// {"rows": 12, "cols": 10}, each 1 ... kMaxLines.

@@ -15,7 +15,7 @@
 
 namespace dermis::serve {
 
-/// The call of a service by a client: a JSON object of at most 4 KiB where nothing else is said.
+/// The call of a service by a client: a JSON object of at most 4 KiB by default.
 class JsonRequest {
  public:
   static constexpr std::size_t kMostBytes = 4096;

@@ -67,7 +67,7 @@ class Models {
   std::map<std::string, Known> read_;
 };
 
-/// As suit.toml tells, or one flat array.
+/// The suit of suit.toml, or one flat array.
 Result<SuitDescription> describe(const SuitPlace& place) {
   if (!place.suit.empty()) return files::read_suit(place.suit);
   SuitArray array;
@@ -113,7 +113,7 @@ Status read_classes_of_suit(const std::string& path, const Notice& notice, Serve
   return Done{};
 }
 
-/// Of the files that suit.toml names; a command tells those that its user named.
+/// Takes the files that suit.toml names; a command warns about those that its user named.
 void tell_missing_checksums(const SuitDescription& suit, const Notice& notice) {
   if (!notice) return;
   std::set<std::pair<std::string, const files::FileFormat*>> named{{suit.classes, &recognition::kClassesFormat}};
@@ -149,7 +149,7 @@ Status read_threats(const std::string& path, const Notice& notice, ServedSuit& s
   return Done{};
 }
 
-/// Where an array is on a body that stands at rest.
+/// The place of an array on a body at rest.
 struct RestPlace {
   WornBody::Carried carried;
   Pose suit_from_array;
@@ -240,7 +240,8 @@ Status open_playback(const std::string& from, ServedSuit& suit) {
   return Done{};
 }
 
-/// All at once: a device may take its time to answer, and a scene to be simulated. Of several errors the first array's.
+/// All at once: a device may take its time to answer, and a scene to be simulated. Returns the first array's error
+/// where there are several.
 Status open_together(const SuitDescription& described, const sources::SourceOptions& options, ServedSuit& suit) {
   using Opened = Result<std::unique_ptr<FrameSource>>;
   const auto how = suit.arrays.size() == 1 ? std::launch::deferred : std::launch::async;

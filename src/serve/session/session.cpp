@@ -18,7 +18,7 @@
 
 namespace dermis::serve {
 
-/// Makes the parts of a server and what they share, and is their clock.
+/// Makes the parts of a server and their common objects, and is their clock.
 class Session::Implementation {
  public:
   explicit Implementation(ServedSuit suit) : suit_(std::move(suit)), models_(suit_) {}

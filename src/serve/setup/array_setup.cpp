@@ -198,7 +198,7 @@ class ArraySetup::Implementation {
     return json_text(nlohmann::json{{"file", model}});
   }
 
-  /// Waits for a frame of such an array: what sends none is not served, as its map would stay blank. Those of
+  /// Waits for a frame of such an array: a source without one is not served, as its map would stay blank. Those of
   /// recordings are turned already.
   Status check_frames(const ArrayDescription& array) {
     const FrameShape shape{array.rows, array.cols};
@@ -222,7 +222,7 @@ class ArraySetup::Implementation {
     watch_ = std::make_unique<TouchWatch>(*name_, shape, options_);
   }
 
-  /// From now on touch() tells what is sent; `request` says its shape.
+  /// From now on touch() gives the sent readings; `request` has their shape.
   Result<std::string> watch(std::string_view request) {
     if (!name_) return bad_input(kNoSource);
     const Result<FrameShape> shape = shape_request(request);

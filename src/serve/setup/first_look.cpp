@@ -36,7 +36,7 @@ class Patience {
   std::jthread thread_;
 };
 
-/// No frame was made of these bytes, which may be none.
+/// These bytes, possibly none, made no frame.
 void explain(const sources::SourceName& name, std::vector<std::uint8_t> bytes, FirstLook& found) {
   if (!name.uri || bytes.empty()) {
     if (found.message.empty()) found.message = "nothing came within 8 s";

@@ -17,15 +17,15 @@ namespace dermis::serve {
 /// How long a device may take to send its first frame.
 inline constexpr std::chrono::seconds kPatience{8};
 
-/// What a source sends, as far as that tells the array.
+/// The traffic of a source, as far as it shows the array.
 struct FirstLook {
   bool has_frames = false;
-  std::optional<FrameShape> shape{};  ///< Of the frames; without frames the one that they would likely have.
-  std::string message{};              ///< What the bytes are, or what they lack.
+  std::optional<FrameShape> shape{};  ///< Shape of the frames; without frames the likely one.
+  std::string message{};              ///< Describes the bytes, or what they lack.
   std::vector<std::uint8_t> bytes{};  ///< The first of those of which no frame was made, at most 256.
 };
 
-/// Reads the first frame, for at most kPatience. Bytes of which no frame can be made are told, and no error.
+/// Reads the first frame, for at most kPatience. Bytes that make no frame are described and are no error.
 [[nodiscard]] Result<FirstLook> first_look(const sources::SourceName& name, sources::SourceOptions options);
 
 }  // namespace dermis::serve

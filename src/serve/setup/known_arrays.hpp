@@ -17,7 +17,7 @@ struct KnownArray {
   bool is_calibrated = false;
 };
 
-/// Those of the newest 100 models and descriptions in the current folder, the newest first, one of each name.
+/// The arrays of the newest 100 models and descriptions in the current folder, the newest first, one of each name.
 [[nodiscard]] std::vector<KnownArray> known_arrays();
 
 /// One of known_arrays(). Fails on all other files.

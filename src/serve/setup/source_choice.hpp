@@ -14,9 +14,9 @@ namespace dermis::serve {
 /// "simulations": [scene]}. Opens none.
 [[nodiscard]] std::string source_choices();
 
-/// What a client chose: {"port": path of one of the ports, "baud": 115200}, {"recording": one of them}, {"simulation":
-/// one of them}, or {"address": "192.168.4.1:3333"}. An address may also be a URI of TCP or UDP. Fails on anything that
-/// source_choices() does not offer.
+/// The choice of a client: {"port": path of one of the ports, "baud": 115200}, {"recording": one of them},
+/// {"simulation": one of them}, or {"address": "192.168.4.1:3333"}. An address may also be a URI of TCP or UDP. Fails
+/// on anything that source_choices() does not offer.
 [[nodiscard]] Result<sources::SourceName> source_request(std::string_view text);
 
 }  // namespace dermis::serve

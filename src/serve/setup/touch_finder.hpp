@@ -9,14 +9,14 @@
 
 namespace dermis::serve {
 
-/// Where an array is pressed of which nothing is known: at the reading that is farthest from its rest. Not thread-safe.
+/// Finds where an unknown array is pressed: at the reading farthest from its rest. Not thread-safe.
 class TouchFinder {
  public:
   static constexpr std::size_t kRestFrames = 15;  ///< The first ones: nothing may press meanwhile.
 
   explicit TouchFinder(std::size_t taxels);
 
-  /// `counts`: one reading a taxel. What is not a number is left out.
+  /// `counts`: one reading a taxel. Readings that are not numbers are left out.
   void add(std::span<const float> counts);
 
   /// It knows the readings at rest.

@@ -16,8 +16,8 @@
 
 namespace dermis::serve {
 
-/// Reads a source, from its making to its end, for what it sends and where the array is touched. A recording is read at
-/// its own pace. Thread-safe.
+/// Reads a source as long as it lives, for its readings and for where the array is touched. A recording is read at its
+/// own pace. Thread-safe.
 class TouchWatch {
  public:
   struct Seen {
@@ -28,7 +28,7 @@ class TouchWatch {
     std::string problem{};               ///< Why the source gives no frames (any more).
   };
 
-  /// `shape`: of the frames. Of the options, `array` and `stop` are not used.
+  /// `shape`: of the frames. The options `array` and `stop` are not used.
   TouchWatch(sources::SourceName name, FrameShape shape, sources::SourceOptions options);
   TouchWatch(const TouchWatch&) = delete;
   TouchWatch& operator=(const TouchWatch&) = delete;

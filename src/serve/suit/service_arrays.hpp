@@ -23,7 +23,7 @@ struct ServiceArray {
   /// A new name in the folder with the time in it, "skin-20261122-101500" or "skin-touches-20261122-101500", with "-2"
   /// and so on where frames have that name.
   [[nodiscard]] std::string new_name(std::string_view content = {}) const;
-  /// In the folder.
+  /// A path in the folder.
   [[nodiscard]] std::string path_of(const std::string& name) const;
 };
 

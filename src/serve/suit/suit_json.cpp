@@ -57,7 +57,7 @@ nlohmann::ordered_json json_of(const BodyVisual& visual, const std::vector<BodyF
   return json;
 }
 
-/// Links where they are at rest; /tf tells where they are.
+/// The links at rest; /tf has their present places.
 nlohmann::ordered_json json_of(const WornBody& worn) {
   const Body& body = worn.body();
   nlohmann::ordered_json json = {{"name", body.name}, {"links", nlohmann::ordered_json::array()}};

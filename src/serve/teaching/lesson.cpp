@@ -57,8 +57,8 @@ double agreement(const recognition::Label& label, const recognition::Touch& touc
   return static_cast<double>(last - first + 1) / static_cast<double>(any);
 }
 
-/// Examples begin and end as such touches are found in the stream, not as they were when they were collected: what is
-/// learned of is cut as what is answered for.
+/// Examples begin and end as such touches are found in the stream, not as they were collected. So touches are cut alike
+/// in learning and in recognition.
 void cut_as_found(LabelledFrames& data, const recognition::TouchLimits& limits) {
   std::vector<double> forces;
   for (std::size_t frame = 0; frame < data.frame_count(); ++frame) {

@@ -34,11 +34,11 @@ struct LessonState {
 };
 
 struct LearnedLesson {
-  std::string name;  ///< Of the files beside the model of the array, without their endings.
+  std::string name;  ///< Name of the files beside the model of the array, without their endings.
   recognition::Learned learned;
 };
 
-/// A person names touches while they happen, and classes are learned of them. One array listens at a time; each has
+/// A person names touches while they happen, and classes are learned from them. One array listens at a time; each has
 /// its examples. Thread-safe; learn() for one thread at a time.
 class Lesson {
  public:

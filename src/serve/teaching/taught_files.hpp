@@ -17,8 +17,8 @@ namespace dermis::serve {
 [[nodiscard]] Status write_taught(const std::string& path, const ArrayDescription& array,
                                   const recognition::LabelledFrames& data);
 
-/// What write_taught() wrote of an array of that layout, labels in order of time: at most so many frames as 1000
-/// touches have, and 256 MiB of them. Errors name the file.
+/// Reads the file of write_taught() for an array of that layout, with labels in order of time. It has at most the
+/// frames of 1000 touches, and 256 MiB of them. Errors name the file.
 [[nodiscard]] Result<recognition::LabelledFrames> read_taught(const std::string& path,
                                                               const recognition::Layout& layout);
 

@@ -25,7 +25,7 @@ struct CollectedTouch {
 class TouchCollector {
  public:
   static constexpr double kRateHz = 50.0;
-  static constexpr std::size_t kMostFrames = 200;  ///< Of a touch; longer ones are none.
+  static constexpr std::size_t kMostFrames = 200;  ///< Longest touch; longer ones do not count.
 
   explicit TouchCollector(std::size_t taxels);
 

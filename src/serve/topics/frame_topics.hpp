@@ -23,8 +23,7 @@
 
 namespace dermis::serve {
 
-/// What comes of the frames: the topics of docs/stream.md, thinned to /stream/rate_hz, and all frames as those of
-/// docs/ros.md.
+/// The topics of frames: those of docs/stream.md, thinned to /stream/rate_hz, and those of docs/ros.md with all frames.
 class FrameTopics final : public Part {
  public:
   /// `suit` and `topics` must outlive it. Errors: those of Topics::add().
@@ -36,7 +35,7 @@ class FrameTopics final : public Part {
   void tick(std::int64_t tick) override;
 
  private:
-  /// What the contacts of an array do to the suit.
+  /// The force of an array's contacts on the suit.
   struct Press {
     std::optional<Nanos> time{};  // empty: there was no frame yet
     Wrench in_suit{};

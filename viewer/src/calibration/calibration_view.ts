@@ -37,7 +37,7 @@ class CalibrationView implements View {
   readonly #sure = element("dialog", { class: "dialog", "aria-label": "Cancel the calibration", "data-role": "sure" });
   readonly #beep = new Beep();
   #state: CalibrationState | undefined;
-  /** Of the calibration that was begun on this page. */
+  /** Taxels of the calibration that was begun on this page. */
   #planned: readonly number[] = [];
   #unfollow: (() => void)[] = [];
 
@@ -126,7 +126,7 @@ class CalibrationView implements View {
     this.#call("start", request);
   }
 
-  /** What is done is not to be lost by a slip; what is saved or not begun cannot be. */
+  /** A slip must not lose finished presses; saved or not begun ones are safe. */
   #cancel(): void {
     if (this.#state?.stage === CalibrationStage.pressing && this.#state.pressesDone > 0) this.#sure.showModal();
     else this.#call("cancel");

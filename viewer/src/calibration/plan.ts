@@ -52,7 +52,7 @@ export function describeWork(presses: number): string {
   return `${presses} presses, about ${time}`;
 }
 
-/** What a load of so many newtons weighs, for a kitchen scale. */
+/** The weight of a load of so many newtons, for a kitchen scale. */
 export function inGrams(newtons: number): string {
   const grams = (newtons * 1000) / 9.80665;
   return grams < 1000 ? `${grams.toFixed(0)} g` : `${(grams / 1000).toFixed(2)} kg`;

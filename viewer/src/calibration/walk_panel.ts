@@ -34,7 +34,7 @@ function levelOf({ stage, hint }: CalibrationState): "good" | "warn" | "bad" | "
   return hint >= CalibrationHint.otherTaxel && hint !== CalibrationHint.oneOfTwo ? "warn" : "";
 }
 
-/** What to do now, how far it is, how good it is. */
+/** The next action, the progress and the quality. */
 export class WalkPanel {
   readonly element: HTMLElement;
   readonly plot = new QualityPlot();
@@ -98,7 +98,7 @@ export class WalkPanel {
     this.#setButtons(state);
   }
 
-  /** What came of it is told in several sentences, a line each. */
+  /** The result has several sentences and is shown a line each. */
   #say({ stage, message }: CalibrationState): void {
     const isResult = stage === CalibrationStage.done;
     const lines = isResult ? message.split(/(?<=\.) (?=[A-Z0-9])/) : [message];

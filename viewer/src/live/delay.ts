@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-/** Log times go on with the clock of the server, which may differ from ours: the quickest message tells by how much. */
+/** Log times go on with the clock of the server, which may differ from ours: the quickest message shows by how much. */
 export class Delay {
   #logS = NaN;
   #least = Infinity;

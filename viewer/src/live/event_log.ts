@@ -14,7 +14,7 @@ export interface TimedEvent {
 
 const MOST_EVENTS = 1000;
 
-/** What happened, the oldest first. */
+/** The events, the oldest first. */
 export class EventLog {
   readonly events: TimedEvent[] = [];
   #marks = 0;

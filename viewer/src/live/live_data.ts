@@ -13,7 +13,7 @@ import { ForceHistory } from "./force_history";
 import { RegionForce } from "./region_force";
 import { ThreatBoard } from "./threat_board";
 
-/** What is known of one array, whatever is shown. */
+/** The data of one array, whatever is shown. */
 export class ArrayLive {
   readonly contacts = new ContactsFrame();
   /** Rises with each message. */
@@ -23,7 +23,7 @@ export class ArrayLive {
   /** Where the centre of pressure has been in the last two seconds, as long as something touches. */
   readonly centre = new Trail();
 
-  /** The force of each contact, at its place: what /contacts tells of the suit, in the plane of the array. */
+  /** The force of each contact, at its place: as /contacts gives it for the suit, in the plane of the array. */
   addCentre(): void {
     let [force, x, y] = [0, 0, 0];
     for (let index = 0; index < this.contacts.count; ++index) {
@@ -41,7 +41,7 @@ export class ArrayLive {
 /** Messages that wait for the end of a pause: a minute of a suit. */
 const MOST_HELD = 20000;
 
-/** What is followed from the beginning, as every view needs it: contacts, threats, statistics, health. Contacts and
+/** The topics that every view needs, followed from the beginning: contacts, threats, statistics, health. Contacts and
  *  the region stand still while the picture is paused, with all that is drawn of them; threats do not. */
 export class LiveData {
   arrays: ArrayLive[] = [];
@@ -50,7 +50,7 @@ export class LiveData {
   readonly events = new EventLog();
   readonly region: RegionForce;
   readonly health = new Signal<readonly HealthStatus[]>([]);
-  /** Of the frames, also while the picture is paused. */
+  /** Delay of the frames, also while the picture is paused. */
   readonly delay = new Delay();
   /** Time of the newest frame of any array. */
   latestS = 0;
@@ -94,7 +94,7 @@ export class LiveData {
     this.events.add("threat", isBegin ? threat.crossedS : threat.stampS, isBegin ? threat.name : `${threat.name} over`, threat.array);
   }
 
-  /** The first value tells how it was, not that it changed. */
+  /** The first value is the present state, not a change. */
   #seeTare(tare: unknown): void {
     if (typeof tare !== "boolean" || tare === this.#tare) return;
     if (this.#tare !== undefined) this.events.add("tare", this.latestS, tare ? "tare" : "tare taken back");

@@ -23,7 +23,7 @@ export function regionName({ rows, cols }: Region): string {
   return `r${rows[0]}c${cols[0]} \u2013 r${rows[1]}c${cols[1]}`;
 }
 
-/** Of its standard deviation, from which on a taxel counts: forces are cut at zero, so that the noise of others adds up. */
+/** Least force of a counted taxel in standard deviations: forces are cut at zero, so noise of others would add up. */
 const COUNTED_SIGMAS = 3;
 
 /** The force on the region that the user has drawn, from then on, whatever is shown. Faulty taxels have none. */

@@ -7,7 +7,7 @@ const MOST_ENTRIES = 200;
 
 /** How every limit stands, what stood when the page was opened, and what began and ended since. */
 export class ThreatBoard {
-  /** Of each array and limit the newest message, in the order in which they came first. */
+  /** The newest message of each array and limit, in the order in which they came first. */
   readonly limits = new Signal<readonly Threat[]>([]);
   /** Beginnings and ends, the newest first. */
   readonly log = new Signal<readonly Threat[]>([]);

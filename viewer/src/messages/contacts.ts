@@ -45,7 +45,7 @@ export class ContactsFrame {
 const MOST_CONTACTS = 4096;
 const reader = new CdrReader();
 
-/** Of which array it is: its index in `names`, -1 where it is of none of them; then `readContacts` may be called. */
+/** The array of the message: its index in `names`, -1 where it is not there; then `readContacts` may be called. */
 export function readContactsArray(message: DataView, names: readonly string[]): number {
   reader.begin(message).header();
   const mark = reader.position;

@@ -4,9 +4,9 @@
 /**
  * The palette of every map, also in terminals, pictures and reports (src/report/palette.hpp, held equal by a test).
  *
- * From ink through red to pale yellow, in equal steps to the eye: lightness and distance in OKLab rise evenly, so a map shows
- * no edge that the forces have not, and reads the same in grey. Rows: coefficients of share^0, share^1, ... for red, green,
- * blue in sRGB.
+ * From ink through red to pale yellow, in equal steps to the eye: lightness and distance in OKLab rise evenly. So a map
+ * shows no edge that the forces have not, and reads the same in grey. Rows: coefficients of share^0, share^1, ... for
+ * red, green, blue in sRGB.
  */
 export const COEFFICIENTS: readonly (readonly [number, number, number])[] = [
   [0.0479, 0.0528, 0.1676],
@@ -18,7 +18,7 @@ export const COEFFICIENTS: readonly (readonly [number, number, number])[] = [
   [8.755, 7.6851, 9.9848],
 ];
 
-/** What barely presses differs from nothing: so much of the colours lies between 0 and the first percent of the scale. */
+/** A light press differs from nothing: so much of the colours lies between 0 and the first percent of the scale. */
 export const TOE_SHARE = 0.01;
 export const TOE_COLORS = 0.1;
 

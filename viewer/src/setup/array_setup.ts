@@ -74,7 +74,7 @@ export function makeArraySetup(stream: Stream, suit: Suit, theme: Theme): HTMLEl
     if (touch.problem !== "") tell(touch.problem);
   });
 
-  /** Of a service; what it answers with an error is shown, and the question stays. */
+  /** Calls a service; an error in its answer is shown, and the question stays. */
   async function ask(service: string, request: object): Promise<void> {
     setHidden(problem, true);
     try {

@@ -7,7 +7,7 @@ import type { Shape, Touch, TouchFeed } from "./touch_feed";
 /** A finger that lands touches other taxels for a moment. */
 const STEADY_ANSWERS = 3;
 
-/** Asks for two touches, and tells from them which way round the lines are sent. */
+/** Asks for two touches, and finds from them which way round the lines are sent. */
 export class CornerGuide {
   readonly element: HTMLElement;
   readonly #feed: TouchFeed;
@@ -19,7 +19,7 @@ export class CornerGuide {
   #first: Place | undefined;
   #steady: { corner: Place | undefined; answers: number } = { corner: undefined, answers: 0 };
 
-  /** `shape`: of what is sent, where it is known; `turned`: told what was found. */
+  /** `shape`: of the sent frames, where it is known; `turned`: called with the result. */
   constructor(feed: TouchFeed, shape: () => Shape | undefined, turned: (way: WayRound) => void) {
     this.#feed = feed;
     this.#shape = shape;

@@ -4,7 +4,7 @@ import { element, setHidden } from "../dom";
 import { Signal } from "../signal";
 import type { Stream } from "../stream/stream";
 
-/** An array that was described or calibrated before, as /array/known tells it. */
+/** An array that was described or calibrated before, as /array/known has it. */
 export interface KnownArray {
   file: string;
   name: string;

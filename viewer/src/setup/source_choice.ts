@@ -8,7 +8,7 @@ const BAUDS = [9600, 57600, 115200, 230400, 250000, 460800, 921600, 1000000, 200
 const USUAL_BAUD = 115200;
 const SCENES: Readonly<Record<string, string>> = { contacts: "Contacts that wander", rehearsal: "A hand that obeys the guide" };
 
-/** What /source/list answers. */
+/** The answer of /source/list. */
 interface Choices {
   ports: { device: string; path: string; product: string }[];
   recordings: string[];

@@ -11,16 +11,16 @@ export interface Shape {
   cols: number;
 }
 
-/** What /array/touch answers. */
+/** The answer of /array/touch. */
 export interface Touch {
   ready: boolean;
   touched: Place | null;
   problem: string;
-  /** Of the newest frame, row-major, as they are sent; empty before the first. */
+  /** Readings of the newest frame, row-major, as they are sent; empty before the first. */
   counts: (number | null)[];
 }
 
-/** What the source sends, while one answers. */
+/** The traffic of the source, while a question is open. */
 export class TouchFeed {
   /** undefined: nothing has come yet, or nothing is watched. */
   readonly latest = new Signal<Touch | undefined>(undefined);

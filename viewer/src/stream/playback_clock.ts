@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: 2026 The dermis authors
 import { type PlaybackState, PlaybackStatus } from "./protocol";
 
-/** Where a recording is now, between the states that the server tells. */
+/** Where a recording is now, between the states that the server sends. */
 export class PlaybackClock {
   readonly startS: number;
   readonly endS: number;
@@ -20,7 +20,7 @@ export class PlaybackClock {
     this.#toldMs = nowMs;
   }
 
-  /** Holds until the server tells a state: who pauses and seeks before that has asked for both. */
+  /** Holds until the server sends a state: a user who pauses and seeks before that has asked for both. */
   ask(play: boolean, speed: number, positionS: number, nowMs: number): void {
     this.tell({ status: play ? PlaybackStatus.playing : PlaybackStatus.paused, nowS: this.startS + positionS, speed, didSeek: false }, nowMs);
   }

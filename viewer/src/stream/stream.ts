@@ -32,7 +32,7 @@ interface Topic {
 
 const LIVE_BEFORE_BACKOFF_RESETS_MS = 2000;
 const SILENCE_MS = 10000;
-/** So often the server is told what has come, and sends no more than that. */
+/** The server hears so often what has come, and sends no more than that. */
 const TAKEN_MS = 50;
 
 /**
@@ -66,7 +66,7 @@ export class Stream {
   #attempts = 0;
   #liveSinceMs = 0;
   #lastMessageMs = 0;
-  /** Of binary messages on this connection. */
+  /** Bytes of binary messages on this connection. */
   #taken = 0;
   #takenTimer = 0;
 

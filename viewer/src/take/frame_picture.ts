@@ -8,7 +8,7 @@ import { colorOf, rgbOf, TOE_COLORS, TOE_SHARE } from "../render/color_map";
 export interface Pictured {
   array: string;
   unit: string;
-  /** Of the colour scale, which begins at 0. */
+  /** End of the colour scale, which begins at 0. */
   end: number;
   frame: GridFrame;
 }

@@ -13,7 +13,7 @@ const PATIENCE_MS = 5000;
 /** A finished picture. */
 export interface Picture {
   blob: Blob;
-  /** Of its last frame. */
+  /** Time of the last frame. */
   stampS: number;
 }
 
@@ -29,7 +29,7 @@ function sourceOf({ name, calibrated }: ArrayDescription): Source {
   return calibrated ? { topic: `/${name}/force`, unit: "N", leastEnd: 1, read: readGrid } : { topic: `/${name}/raw`, unit: "counts", leastEnd: 100, read: readCounts };
 }
 
-/** Frames of an array as they come, every tenth of a second. What stands still is there once. */
+/** Frames of an array as they come, every tenth of a second. Equal frames are kept once. */
 async function collect(stream: Stream, { topic, read }: Source, seconds: number): Promise<GridFrame[]> {
   const frames: GridFrame[] = [];
   let newest: DataView | undefined;

@@ -4,7 +4,7 @@ import { element, setHidden, setText } from "../dom";
 import type { Stream } from "../stream/stream";
 import { sizeText } from "./save_file";
 
-/** A recording in the server's folder, as /recordings/list tells it. */
+/** A recording in the server's folder, as /recordings/list has it. */
 interface RecordingFile {
   name: string;
   bytes: number;

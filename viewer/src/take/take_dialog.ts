@@ -12,7 +12,7 @@ const FILM_S = 4;
 const LENGTHS_S = [5, 10, 30, 60];
 const FIRST_LENGTH_S = 10;
 
-/** What a user takes along: recordings, the last minute, pictures. */
+/** The data that a user can save: recordings, the last minute, pictures. */
 export class TakeDialog {
   readonly element: HTMLDialogElement;
   readonly #context: ViewContext;

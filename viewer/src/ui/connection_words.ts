@@ -4,21 +4,21 @@ import { fixed } from "../format";
 import { PlaybackStatus } from "../stream/protocol";
 import type { Connection } from "../stream/stream";
 
-/** What there is to say of the connection and of what comes by it. */
+/** The state of the connection and of its traffic. */
 export interface LinkState {
   connection: Connection;
   nowMs: number;
   /** The server asks where the array is or how it is made. */
   isAsked: boolean;
-  /** What comes makes no frames. */
+  /** The traffic makes no frames. */
   isUnreadable: boolean;
   /** The picture of this page stands. */
   isPaused: boolean;
-  /** Of a recording; undefined: what is served is live. */
+  /** State of a recording; undefined: the source is live. */
   playback: number | undefined;
   /** Since the last frame came; NaN: none has come. */
   silenceS: number;
-  /** Of what is live; a recording has a clock of its own. */
+  /** Delay of live frames; a recording has a clock of its own. */
   lateS: number;
 }
 

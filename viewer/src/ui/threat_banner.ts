@@ -8,7 +8,7 @@ import type { Stream } from "../stream/stream";
 
 const MOST_ROWS = 3;
 
-/** What threatens now, above every view. */
+/** The present threats, above every view. */
 export function makeThreatBanner(board: ThreatBoard, stream: Stream): HTMLElement {
   const rows = Array.from({ length: MOST_ROWS }, () => element("li", { "data-role": "threat" }));
   const more = element("li", { class: "dim" });

@@ -20,7 +20,7 @@ const TOPICS = QUANTITIES.filter(({ name }) => name !== "pressure");
 
 /** The frames of one array, quantity by quantity; pressures are its forces over the area of a taxel. */
 export class Feeds {
-  /** Of each quantity the newest frame that is shown. */
+  /** The newest shown frame of each quantity. */
   readonly frames: readonly GridFrame[];
   readonly #feeds: readonly Feed[] = TOPICS.map(() => ({ frame: emptyGrid(), heard: emptyGrid(), held: new HeldValues(), message: undefined, isHeld: false }));
   readonly #pressure = emptyGrid();
@@ -112,7 +112,7 @@ function read(index: number, message: DataView, frame: GridFrame): void {
   (index === RAW ? readCounts : readGrid)(message, frame);
 }
 
-/** Of the taxels that read; 0 where none does. */
+/** The highest value of the taxels with a reading; 0 where there are none. */
 export function highestOf({ values, statuses }: GridFrame): number {
   let highest = 0;
   values.forEach((value, taxel) => {

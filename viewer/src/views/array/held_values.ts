@@ -3,7 +3,7 @@
 import type { CountsFrame } from "../../messages/grids";
 
 export const TIME_SHARES = ["now", "highest", "average"] as const;
-/** What of the time a map shows: the newest frame, the highest value of each taxel since a reset, its average. */
+/** The span of time that a map shows: the newest frame, the highest value of each taxel since a reset, its average. */
 export type TimeShare = (typeof TIME_SHARES)[number];
 
 /** The average forgets what is older than about this. */

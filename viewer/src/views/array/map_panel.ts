@@ -90,7 +90,7 @@ export class MapPanel {
     this.#select.value = String(isStepped ? STEPS : end);
   }
 
-  /** What is drawn next. True: the scale has another end now. */
+  /** Takes the next frame to draw. True: the scale has another end now. */
   see(frame: GridFrame): boolean {
     if (this.#array === undefined) return false;
     this.#seen = frame;

@@ -13,13 +13,13 @@ import { AXIS_LEFT } from "./geometry";
 const TURN = 2 * Math.PI;
 const CENTRE_PIXELS = 7;
 const LABEL_HEIGHT = 18;
-/** Of a contact, which no label is to hide. */
+/** Size of a contact's middle, which no label may hide. */
 const MIDDLE_PIXELS = 14;
 const HALO = "rgb(0 0 0 / 70%)";
 const INK = "#ffffff";
 const FONT = '600 12px "Inter", "Segoe UI", Roboto, "Helvetica Neue", "Liberation Sans", Arial, sans-serif';
 
-/** What is drawn over the maps; what is undefined is not. */
+/** The marks over the maps; undefined ones are not drawn. */
 export interface Marks {
   /** The map of forces or pressures, which alone has contacts and their centre. */
   readonly load: Area;

@@ -3,7 +3,7 @@
 import { engineering } from "../../format";
 import type { ArrayDescription } from "../../suit";
 
-/** What a map of an array shows. */
+/** The quantity that a map of an array shows. */
 export interface Quantity {
   readonly name: "raw" | "conductance" | "force" | "pressure";
   readonly title: string;
@@ -26,7 +26,7 @@ const NEWTON_ENDS = [0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 const PASCAL_ENDS = [5e2, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4, 1e5, 2e5, 5e5, 1e6, 2e6, 5e6];
 const FIRST_NEWTONS = 10;
 
-/** The area on which the force of a taxel acts, as the pressures of contacts have it: a disc of 0.7 pitches where none is told. */
+/** The area on which the force of a taxel acts, as contacts have it: by default a disc of 0.7 pitches. */
 export function taxelAreaM2({ taxel_area_m2, pitch_m }: ArrayDescription): number {
   return taxel_area_m2 ?? 0.25 * Math.PI * (0.7 * Math.min(...pitch_m)) ** 2;
 }

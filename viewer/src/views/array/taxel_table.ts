@@ -70,7 +70,7 @@ function valueAt(frame: GridFrame, taxel: number): number {
   return frame.values[taxel] ?? NaN;
 }
 
-/** What the taxel under the cursor and the pinned ones read. */
+/** The readings of the taxel under the cursor and of the pinned ones. */
 export class TaxelTable {
   readonly element: HTMLElement;
   readonly #cursor = new Row("cursor");

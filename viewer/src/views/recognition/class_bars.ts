@@ -25,7 +25,7 @@ class Bar {
   }
 }
 
-/** What touches an array: the answer, and a bar for each class. */
+/** The touch of an array: the answer, and a bar for each class. */
 export class ClassBars {
   readonly element: HTMLElement;
   readonly #answer = element("span", { class: "large answer", "data-role": "answer" });

@@ -46,7 +46,7 @@ export class LimitTable {
   }
 }
 
-/** What began and ended, the newest first. */
+/** Beginnings and ends, the newest first. */
 export class ThreatLog {
   readonly element: HTMLElement;
   readonly #list = element("ul", { class: "threat-log", "data-role": "threat-log" });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
 
-/** A touch that a person has named, as /recognition/examples tells it; `picture` only at first. */
+/** A touch that a person has named, as /recognition/examples has it; `picture` only at first. */
 export interface TaughtTouch {
   id: number;
   class: string;
@@ -19,7 +19,7 @@ export function byClass(touches: readonly TaughtTouch[]): Map<string, TaughtTouc
   return classes;
 }
 
-/** What a person should know before the training. */
+/** Warnings to a person before the training. */
 export function warnings(touches: readonly TaughtTouch[]): string[] {
   const few = [...byClass(touches)].filter(([, some]) => some.length < FEW_EXAMPLES);
   const lines = few.map(([name, some]) => `${name} has ${some.length} of at least ${FEW_EXAMPLES} examples`);

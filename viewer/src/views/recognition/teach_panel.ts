@@ -128,7 +128,7 @@ export class TeachPanel {
     this.#onTrained(trained.classes);
   }
 
-  /** What was saved another day, and is not among the examples. */
+  /** Lists touches that were saved another day and are not among the examples. */
   async #listSaved(): Promise<void> {
     const array = this.#array;
     if (array === undefined) return;

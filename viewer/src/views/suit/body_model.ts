@@ -38,7 +38,7 @@ async function meshOf(path: string, bytes: ArrayBuffer, ink: three.Material): Pr
   return scene;
 }
 
-/** What is seen of the links of a body. */
+/** The visible links of a body. */
 export class BodyModel {
   readonly group = new three.Group();
   /** Boxes, cylinders and spheres. */

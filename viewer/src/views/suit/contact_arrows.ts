@@ -4,7 +4,7 @@ import * as three from "three";
 import type { Contact } from "../../messages/contacts";
 
 export const MOST_ARROWS = 64;
-/** Of an arrow at the end of the scale, as a share of the suit's size. */
+/** Length of an arrow at the end of the scale, as a share of the suit's size. */
 export const LONGEST_SHARE = 0.2;
 const HEAD_SHARE = 0.025;
 const DOWN = new three.Vector3(0, -1, 0);

@@ -4,7 +4,7 @@ import * as three from "three";
 import { ConvexGeometry } from "three/addons/geometries/ConvexGeometry.js";
 import type { ArrayDescription, SuitDescription } from "../../suit";
 
-/** Of the hull below its taxels, and of a hull that would be flat, as shares of the suit's size. */
+/** Distance of the hull below its taxels, and thickness of an otherwise flat hull, as shares of the suit's size. */
 const BELOW_SHARE = 0.006;
 const THICK_SHARE = 0.02;
 /** Normals of an array that point together: it has a front. */
@@ -12,7 +12,7 @@ const ONE_WAY = 0.7;
 /** Two arrays are two sides of one part of a body within so many of their own sizes. */
 const NEAR = 1.5;
 
-/** What is known of an array as a piece of a surface. */
+/** An array as a piece of a surface. */
 interface Piece {
   array: ArrayDescription;
   middle: three.Vector3;

@@ -45,7 +45,7 @@ export class OrientationGizmo {
     });
   }
 
-  /** Of each axis where it points on the picture: right, up and towards the eye, of length 1. */
+  /** Shows where each axis points on the picture: right, up and towards the eye, of length 1. */
   show(directions: readonly (readonly [number, number, number])[]): void {
     const order = directions.map((_, index) => index).sort((a, b) => directions[a]![2] - directions[b]![2]);
     for (const index of order) {

@@ -16,14 +16,14 @@ import { nearestNeighbour, TaxelCloud } from "./taxel_cloud";
 const TURN_STEP = 0.12;
 const ZOOM_STEP = 1.15;
 const FIT_ATTEMPTS = 6;
-/** Of a taxel, as the camera sees it: right and up. */
+/** Corners of a taxel, as the camera sees it: right and up. */
 const CORNERS = [[-1, -1], [-1, 1], [1, -1], [1, 1]] as const;
-/** Of the height and width of the picture. */
+/** Share of the picture's height and width. */
 const FIT_SHARE = 0.8;
 /** Clicks this near to a taxel mean its array, as a share of the suit's size. */
 const CLICK_SHARE = 0.03;
 
-/** Of the lines round zones above their taxels, as a share of the suit's size. */
+/** Height of the lines round zones above their taxels, as a share of the suit's size. */
 const LIFT_SHARE = 0.01;
 
 /** How the server names the links of the body among its frames. */
@@ -44,7 +44,7 @@ function outline([top, bottom]: [number, number], [left, right]: [number, number
   return path;
 }
 
-/** What is drawn once in the suit's frame: three.js, loaded when the view is first shown. */
+/** The drawing in the suit's frame: three.js, loaded when the view is first shown. */
 export class SuitScene {
   readonly #renderer: three.WebGLRenderer;
   readonly #scene = new three.Scene();
@@ -62,7 +62,7 @@ export class SuitScene {
   readonly #forces = new Float64Array(MOST_ARROWS);
   readonly #sight = new three.Raycaster();
   #arrowCount = 0;
-  /** Of each array, from where /suit.json has it to where it is now. */
+  /** Moves of each array, from its place in /suit.json to its present one. */
   #moves: three.Matrix4[] = [];
   #cloud: TaxelCloud | undefined;
   #body: BodyModel | undefined;
@@ -320,7 +320,7 @@ export class SuitScene {
     return (LONGEST_SHARE * this.#size * this.#height) / high;
   }
 
-  /** Of x, y and z where they point on the picture: right, up and towards the eye. */
+  /** Where x, y and z point on the picture: right, up and towards the eye. */
   axes(): [number, number, number][] {
     const { elements } = this.#camera.matrixWorldInverse;
     return [0, 4, 8].map((at) => {

@@ -75,7 +75,7 @@ class SuitView implements View {
   readonly #arrowShaft = element("span", { class: "arrow-length" });
   readonly #arrowForce = element("span", { class: "figure" });
   #labels: ArrayLabel[] = [];
-  /** Of each array the taxels at its border, one of which is the highest on the screen. */
+  /** The taxels at the border of each array, one of which is the highest on the screen. */
   #anchors: [number, number, number][][] = [];
   #scene: SuitScene | undefined;
   #isLoading = false;
@@ -83,7 +83,7 @@ class SuitView implements View {
   #transforms: DataView | undefined;
   #isPlaced = false;
   #isShown = false;
-  /** What was drawn last, and what stands while the picture is paused. */
+  /** The message drawn last, and the one that is held while the picture is paused. */
   #drawn: DataView | undefined;
   #held: DataView | undefined;
   #unsubscribe: () => void = () => undefined;

@@ -4,7 +4,7 @@ import type uPlot from "uplot";
 import { EVENT_KINDS, type EventKind, type TimedEvent } from "../../live/event_log";
 import { cssColor } from "../../theme";
 
-/** What the toolbar calls each kind, and the CSS variable of its colour. */
+/** The name of each kind in the toolbar, and the CSS variable of its colour. */
 export const EVENT_LOOKS: Readonly<Record<EventKind, { words: string; color: string }>> = {
   threat: { words: "threats", color: "--bad" },
   contact: { words: "contacts begin", color: "--control-line" },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: 2026 The dermis authors
-#include "calibration/circuit_fit/telling_presses.hpp"
+#include "calibration/circuit_fit/discriminating_presses.hpp"
 
 #include <fmt/core.h>
 
@@ -23,7 +23,7 @@ constexpr std::size_t kPresses = 5;
 constexpr std::size_t kMostPairs = 150;  // that are looked at
 constexpr std::uint64_t kPairSeed = 3;
 
-/// What a fitted circuit would read.
+/// The readings that a fitted circuit predicts.
 class Prediction {
  public:
   explicit Prediction(const CommonRatio& fit) : rubber_(fit.rubber) {
@@ -40,7 +40,7 @@ class Prediction {
     return {model_->ratio().begin(), model_->ratio().end()};
   }
 
-  /// Of a taxel that is the only one pressed.
+  /// The reading of a taxel that is the only one pressed.
   [[nodiscard]] double alone(std::size_t taxel, double newtons) { return readings({taxel, taxel, newtons})[taxel]; }
 
  private:
@@ -48,7 +48,7 @@ class Prediction {
   std::optional<compensation::CircuitModel> model_;  // empty: readings are conductances
 };
 
-/// Of taxels that all circuits have a law of; 0: none.
+/// For taxels that all circuits have a law for; 0: none.
 std::vector<double> heaviest_loads(const std::vector<const CommonRatio*>& circuits, const CircuitFrames& frames) {
   std::vector<double> heaviest = heaviest_loads(circuits.front()->rubber, frames);
   for (const CommonRatio* const circuit : circuits) {
@@ -59,7 +59,7 @@ std::vector<double> heaviest_loads(const std::vector<const CommonRatio*>& circui
   return heaviest;
 }
 
-/// Pairs that are no neighbours, all of them or as many as are looked at.
+/// Pairs that are no neighbours, at most kMostPairs of them.
 std::vector<PressPair> possible_pairs(const ArrayDescription& array, const std::vector<double>& heaviest) {
   std::vector<PressPair> pairs;
   for (std::size_t a = 0; a < heaviest.size(); ++a) {
@@ -82,7 +82,8 @@ struct Distances {
   std::vector<double> squares;  // [circuits - 1]
 };
 
-/// Of its pressed taxels only what the other press changes: what they read alone, laws explain in all circuits.
+/// The pressed taxels count only by the change that the other press makes: laws explain their readings alone in all
+/// circuits.
 Distances distances_of(std::vector<Prediction>& predictions, const PressPair& pair, double variance) {
   const std::vector<double> first = predictions.front().readings(pair);
   Distances distances{pair, {}};
@@ -114,8 +115,8 @@ double sum_of_best(std::vector<Distances>& pairs, const Square& square) {
 
 }  // namespace
 
-std::vector<PressPair> telling_presses(const std::vector<const CommonRatio*>& circuits, const CircuitFrames& frames,
-                                       double sure_square) {
+std::vector<PressPair> discriminating_presses(const std::vector<const CommonRatio*>& circuits,
+                                              const CircuitFrames& frames, double sure_square) {
   std::vector<Prediction> predictions;
   for (const CommonRatio* const circuit : circuits) predictions.emplace_back(*circuit);
   const double variance = std::pow(noise_of_presses(frames), 2) * circuits.front()->scatter.noise_variance;
@@ -123,16 +124,16 @@ std::vector<PressPair> telling_presses(const std::vector<const CommonRatio*>& ci
   for (const PressPair& pair : possible_pairs(circuits.front()->array, heaviest_loads(circuits, frames))) {
     pairs.push_back(distances_of(predictions, pair, variance));
   }
-  // A circuit that no pair would tell from the first does not keep the others from being told.
-  std::vector<std::size_t> tellable;
+  // A circuit that no pair would distinguish from the first does not hide the others.
+  std::vector<std::size_t> distinguishable;
   for (std::size_t k = 0; k + 1 < predictions.size(); ++k) {
     if (sum_of_best(pairs, [k](const Distances& pair) { return pair.squares[k]; }) >= sure_square)
-      tellable.push_back(k);
+      distinguishable.push_back(k);
   }
-  if (tellable.empty()) return {};
+  if (distinguishable.empty()) return {};
   sum_of_best(pairs, [&](const Distances& pair) {
     double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t k : tellable) least = std::min(least, pair.squares[k]);
+    for (const std::size_t k : distinguishable) least = std::min(least, pair.squares[k]);
     return least;
   });
   std::vector<PressPair> presses;
